@@ -63,6 +63,7 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   const CodeSet code = load_camera_code(arguments.codes.front(), arguments.camera, arguments.file);
   RawReadOptions reading;
   reading.dataset = arguments.dataset;
+  reading.marking = raw_marking_of(arguments.camera);
   if (!arguments.raw_format.empty()) reading.format = read_raw_format(arguments.raw_format);
   const RawFrames frames = read_raw_frames(arguments.frames, reading);
   ReferenceDepth reference = read_reference_depth(arguments.reference);

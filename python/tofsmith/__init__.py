@@ -33,6 +33,7 @@ from ._camera_fields import (
     OperatingMultipath,
     Optics,
     Playback,
+    RawMarkers,
     Sensor,
     Temperature,
 )
@@ -238,6 +239,7 @@ __all__ = [
     "PhotonTransferPoint",
     "PixelStatus",
     "Playback",
+    "RawMarkers",
     "ReadBackNumber",
     "ReceiverBound",
     "ReproducedItem",

@@ -24,6 +24,7 @@ from ._camera_fields import (
     OperatingMultipath,
     Optics,
     Playback,
+    RawMarkers,
     Sensor,
     Temperature,
 )
@@ -72,11 +73,11 @@ def _toml(value: Any, name: str) -> str:
 
 
 def _settings(keys: Mapping[str, Any]) -> list[str]:
-    """Keywords as `key=value`: keys of light, sensor, optics, operating and temperature one by one,
-    so that others stay."""
+    """Keywords as `key=value`: keys of light, sensor, raw, optics, operating and temperature one by
+    one, so that others stay."""
     settings = []
     for key, value in keys.items():
-        if key in ("light", "sensor", "optics", "operating", "temperature") and isinstance(value, Mapping):
+        if key in ("light", "sensor", "raw", "optics", "operating", "temperature") and isinstance(value, Mapping):
             settings += _settings({f"{key}.{inner}": v for inner, v in value.items()})
         else:
             settings.append(f"{key}={_toml(value, key)}")
@@ -87,9 +88,9 @@ class Camera:
     """A continuous-wave time-of-flight camera. Immutable; pickles.
 
     Keys are those of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`, `samples`,
-    `light`, `sensor`, `lens`, `optics`, `operating`, `playback`, `temperature`; see
-    docs/cameras.md. Those of light, sensor, optics, operating and temperature are dicts, of which
-    keys left out keep what they are.
+    `light`, `sensor`, `raw`, `lens`, `optics`, `operating`, `playback`, `temperature`; see
+    docs/cameras.md. Those of light, sensor, raw, optics, operating and temperature are dicts, of
+    which keys left out keep what they are.
 
     Parameters
     ----------
@@ -203,6 +204,12 @@ class Camera:
     @cached_property
     def sensor(self) -> Sensor:
         return Sensor(**_arm(self._fields["sensor"]))
+
+    @cached_property
+    def raw(self) -> RawMarkers:
+        """Raw numbers that mean saturated or invalid; none by default."""
+        lists = self._fields.get("raw", {})
+        return RawMarkers(**{key: tuple(map(float, numbers)) for key, numbers in lists.items()})
 
     @cached_property
     def lens(self) -> Optional[Lens]:

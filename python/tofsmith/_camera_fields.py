@@ -275,6 +275,22 @@ class Operating:
 
 
 @dataclass(frozen=True)
+class RawMarkers:
+    """Special raw numbers, which a sensor or its driver writes in place of a measurement.
+
+    Attributes
+    ----------
+    saturated : tuple of float
+        The measurement is clipped. NaN and infinity are allowed.
+    invalid : tuple of float
+        There is no measurement, for example of a dead pixel. NaN and infinity are allowed.
+    """
+
+    saturated: tuple[float, ...] = ()
+    invalid: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 class Playback:
     """How what is played differs from what the code says; `calibrate` finds it.
 

@@ -263,6 +263,7 @@ void Camera::validate() const {
   for (const double time_s : exposure_s.each_s) require_positive(time_s, "exposure_s");
   validate_light(light);
   validate_sensor(sensor);
+  raw.validate();
   if (light.generator) light.generator->validate("light.generator", fundamental_frequency_hz);
   if (sensor.generator) sensor.generator->validate("sensor.generator", fundamental_frequency_hz);
   if (lens && !lens->rays.empty()) {

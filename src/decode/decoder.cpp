@@ -12,6 +12,8 @@
 #include "decode/output/pixel_output.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/chord_matcher.hpp"
+#include "decode/shared/marked_raw.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -106,8 +108,10 @@ void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                 });
 }
 
-void Decoder::decode(const RawView& raw, const DecodedView& decoded,
+void Decoder::decode(const RawView& stored, const DecodedView& decoded,
                      const Progress& progress) const {
+  const MarkedRaw marked(stored, plan_->table.marking);
+  const RawView& raw = marked.view();
   const bool is_bin_enough = decoded.wants_bins_only();
   for_each_block(raw, measurements(), progress, [&](IndexRange block) {
     const auto write_bins = [&](const PixelTile& tile, std::int64_t first) {
@@ -133,10 +137,10 @@ DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& prog
 /// All wanted planes of a matched tile, whose raw numbers become electrons.
 void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedView& planes) const {
   std::array<std::uint8_t, pixels_per_tile> saturated{};
-  if (table.saturation_level && outputs.needs_saturation(planes))
+  if (const SaturationLevels levels(table); levels.has_any() && outputs.needs_saturation(planes))
     for (int k = 0; k < model.measurements(); ++k)
       for (int i = 0; i < tile.pixels; ++i)
-        if (tile.raw[k * pixels_per_tile + i] >= *table.saturation_level)
+        if (levels.clip(tile.raw[k * pixels_per_tile + i]))
           saturated[static_cast<std::size_t>(i)] = 1;
   if (outputs.needs_second_peaks(planes)) matcher.find_second_peaks(tile);
   if (outputs.needs_electrons(planes))

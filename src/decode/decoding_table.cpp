@@ -86,9 +86,10 @@ void DecodingTable::validate() const {
             "whitening", shape_of(whitening), "must be measurements x measurements");
     require(whitening.allFinite(), "whitening", "NaN or infinite", "must be finite");
   }
-  if (saturation_level)
-    require(!std::isnan(*saturation_level), "saturation_level", *saturation_level,
-            "must be a number");
+  const float highest = saturation_level.value_or(std::numeric_limits<float>::infinity());
+  require(!std::isnan(highest), "saturation_level", highest, "must be a number");
+  const float lowest = lower_saturation_level.value_or(-std::numeric_limits<float>::infinity());
+  require(lowest < highest, "lower_saturation_level", lowest, "must be below saturation_level");
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
   require(correlation_not_decodable(*this));
 }
@@ -161,6 +162,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
 
   if (model.has_rows()) whiten_rows(model, camera, table);
   const Sensor& sensor = camera.sensor;
+  set_saturation(camera, table);
   const double gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
   table.gain_e_per_raw = Eigen::VectorXd::Constant(table.measurements(), gain_e_per_raw);
   table.black_level = Eigen::VectorXd::Zero(table.measurements());
@@ -173,7 +175,6 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
     return table;
   }
   table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
-  table.saturation_level = saturation_level_of(sensor);
   return table;
 }
 
@@ -201,6 +202,8 @@ DecodingTable whitened(const DecodingTable& table) {
   white.black_level.setZero();
   white.gain_e_per_raw.setOnes();
   white.saturation_level.reset();
+  white.lower_saturation_level.reset();
+  white.marking = {};
   return white;
 }
 

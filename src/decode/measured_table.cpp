@@ -167,7 +167,9 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
     warm(*camera.temperature, table.bin_m(), table.shot_correlation);
   }
   table.correction = measured.correction;
-  if (!differs) table.saturation_level = saturation_level_of(sensor);
+  set_saturation(camera, table);
+  // The table's own black level holds for unsigned numbers, too.
+  if (measured.black_level.size() > 0) table.marking.unsigned_black_level = 0.0;
   return table;
 }
 

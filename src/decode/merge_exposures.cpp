@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "core/shared/pixel_runs.hpp"
+#include "decode/shared/marked_raw.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/filter.hpp"
@@ -19,14 +21,13 @@ namespace {
 struct Taps {
   std::vector<double> black_level, gain_e_per_raw;
   double constant_variance_e2 = 0.0;  // mean over measurements
-  double clipped = std::numeric_limits<double>::infinity();
+  SaturationLevels levels;
 
   explicit Taps(const DecodingTable& table)
       : black_level(table.black_level.begin(), table.black_level.end()),
         gain_e_per_raw(table.gain_e_per_raw.begin(), table.gain_e_per_raw.end()),
-        constant_variance_e2(table.constant_variance_e2.mean()) {
-    if (table.saturation_level) clipped = static_cast<double>(*table.saturation_level);
-  }
+        constant_variance_e2(table.constant_variance_e2.mean()),
+        levels(table) {}
 };
 
 /// One pixel in all exposures.
@@ -53,7 +54,7 @@ class Bracket {
       const bool valid = std::all_of(numbers, numbers + measurements_,
                                      [](double number) { return std::isfinite(number); });
       const bool clips = valid && std::any_of(numbers, numbers + measurements_,
-                                              [&](double n) { return n >= taps_.clipped; });
+                                              [&](double n) { return taps_.levels.clip(n); });
       usable_[f] = valid && !clips;
       any = any || usable_[f];
       if (clips &&
@@ -123,8 +124,12 @@ void check_exposures(std::span<const double> exposures, const std::string& field
           "the shortest must be 1: the camera's exposure_s");
 }
 
-void merge_exposures(std::span<const RawView> frames, std::span<const double> exposures,
+void merge_exposures(std::span<const RawView> stored, std::span<const double> exposures,
                      const DecodingTable& table, MergedExposures& merged) {
+  std::vector<std::vector<std::byte>> buffers(stored.size());
+  std::vector<RawView> frames;
+  for (std::size_t f = 0; f < stored.size(); ++f)
+    frames.push_back(mark_raw(stored[f], table.marking, buffers[f]));
   check_exposures(exposures, "exposures");
   require_exposures(table, "what merges exposures");
   require(frames.size() == exposures.size(), "frames", frames.size(),
@@ -179,6 +184,7 @@ RawView MergedExposures::view() const {
   RawView raw =
       RawView::interleaved(values.values.data(), values.height, values.width, values.measurements);
   raw.averaged = averaged.pixels.data();
+  raw.is_marked = true;
   return raw;
 }
 

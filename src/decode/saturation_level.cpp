@@ -6,10 +6,59 @@
 #include <cmath>
 #include <limits>
 
+#include "camera/shared/raw_numbers.hpp"
+
 namespace tofsmith {
 
+namespace {
+
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+/// First and last raw number of measurements that are clipped; infinite where they never are.
+struct Rails {
+  double lowest = -no_limit, highest = no_limit;
+};
+
+/// A mixer is clipped at both signs, by its well or its converter.
+Rails rails_of_mixer(const Sensor& sensor) {
+  Rails rails;
+  const double black = sensor.black_level_dn.value_or(0.0);
+  if (sensor.full_well_e) {
+    const double well = *sensor.full_well_e / sensor.gain_e_per_dn.value_or(1.0);
+    rails = {black - well, black + well};
+  }
+  if (sensor.adc_bits) {
+    const ConverterNumbers numbers = raw_numbers(sensor);
+    rails = {std::max(std::ceil(rails.lowest), numbers.min_dn),
+             std::min(std::floor(rails.highest), numbers.max_dn)};
+  }
+  return rails;
+}
+
+Rails rails_of(const Sensor& sensor) {
+  if (sensor.is_signed()) return rails_of_mixer(sensor);
+  const std::optional<float> tap = saturation_level_of(sensor);
+  if (!tap) return {};
+  const auto level = static_cast<double>(*tap);
+  if (sensor.readout != Readout::difference) return {-no_limit, level};
+  // One tap at its limit and nothing in the other.
+  const double largest = level - sensor.black_level_dn.value_or(0.0);
+  return {-largest, largest};
+}
+
+/// The same with numbers for saturated measurements that only markers tell.
+Rails rails_of(const Camera& camera) {
+  Rails rails = rails_of(camera.sensor);
+  if (camera.raw.saturated.empty() || std::isfinite(rails.highest)) return rails;
+  rails.highest = RawMarking().saturated_above;
+  if (camera.sensor.subtracts()) rails.lowest = -rails.highest;
+  return rails;
+}
+
+}  // namespace
+
 std::optional<float> saturation_level_of(const Sensor& sensor) {
-  double level = std::numeric_limits<double>::infinity();
+  double level = no_limit;
   if (sensor.full_well_e) {
     level = *sensor.full_well_e / sensor.gain_e_per_dn.value_or(1.0) +
             sensor.black_level_dn.value_or(0.0);
@@ -18,6 +67,34 @@ std::optional<float> saturation_level_of(const Sensor& sensor) {
   if (sensor.adc_bits) level = std::min(level, std::exp2(*sensor.adc_bits) - 1.0);
   if (!std::isfinite(level)) return std::nullopt;
   return static_cast<float>(level);
+}
+
+RawMarking raw_marking_of(const Camera& camera) {
+  const Sensor& sensor = camera.sensor;
+  const Rails rails = rails_of(camera);
+  RawMarking marking{.markers = camera.raw, .subtracts = sensor.subtracts()};
+  if (std::isfinite(rails.highest)) {
+    marking.saturated_above = rails.highest;
+    marking.saturated_below = std::isfinite(rails.lowest) ? rails.lowest : rails.highest;
+  }
+  if (marking.subtracts)
+    if (const auto level = saturation_level_of(sensor))
+      marking.tap_saturation_level = static_cast<double>(*level);
+  if (!sensor.adc_bits) return marking;
+  const double numbers = std::exp2(*sensor.adc_bits);
+  marking.converter_max = numbers - 1.0;
+  if (sensor.readout == Readout::difference) {
+    marking.signed_max = 0.5 * numbers - 1.0;
+    marking.unsigned_black_level = sensor.black_level_dn.value_or(0.0);
+  }
+  return marking;
+}
+
+void set_saturation(const Camera& camera, DecodingTable& table) {
+  const Rails rails = rails_of(camera);
+  if (std::isfinite(rails.highest)) table.saturation_level = static_cast<float>(rails.highest);
+  if (std::isfinite(rails.lowest)) table.lower_saturation_level = static_cast<float>(rails.lowest);
+  table.marking = raw_marking_of(camera);
 }
 
 }  // namespace tofsmith

@@ -7,6 +7,8 @@
 
 #include "core/shared/padded_convolution.hpp"
 #include "core/shared/pixel_runs.hpp"
+#include "decode/shared/marked_raw.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/filter.hpp"
@@ -87,7 +89,9 @@ Image<float> StrayLight::gathered(const Plan& plan, const Image<float>& seen) co
   return light;
 }
 
-void StrayLight::remove(const RawView& raw, const DecodingTable& table, RawFrames& clean) {
+void StrayLight::remove(const RawView& stored, const DecodingTable& table, RawFrames& clean) {
+  const MarkedRaw marked(stored, table.marking);
+  const RawView& raw = marked.view();
   require(raw.measurements == table.measurements(), "measurements", raw.measurements,
           fmt::format("must be {} as the table's", table.measurements()));
   const Plan& plan = plan_of(raw.height, raw.width);
@@ -103,8 +107,10 @@ void StrayLight::remove(const RawView& raw, const DecodingTable& table, RawFrame
       for (int k = 0; k < raw.measurements; ++k)
         clean.values[at++] = static_cast<float>(pixel[k * raw.measurement_stride]);
   });
-  const float clipped = table.saturation_level.value_or(INFINITY);
-  const float below_clipped = std::nextafter(clipped, -INFINITY);
+  const SaturationLevels levels(table);
+  const float highest = std::nextafter(levels.highest, -INFINITY),
+              lowest = std::nextafter(levels.lowest, INFINITY);
+  const auto unknown = static_cast<float>(RawMarking().saturated_above);
   parallel_for(raw.measurements, [&](std::int64_t measurement) {
     const auto k = static_cast<std::size_t>(measurement);
     const auto black = static_cast<float>(table.black_level[measurement]);
@@ -112,13 +118,13 @@ void StrayLight::remove(const RawView& raw, const DecodingTable& table, RawFrame
     Image<float> seen(raw.height, raw.width);
     for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
       const float number = clean.values[i * measurements + k];
-      seen.pixels[i] = std::isfinite(number) ? number - black : 0.0F;
+      seen.pixels[i] = std::abs(number) < unknown ? number - black : 0.0F;
     }
     const Image<float> light = gathered(plan, seen);
     for (std::size_t i = 0; i < light.pixels.size(); ++i) {
       float& number = clean.values[i * measurements + k];
-      if (std::isfinite(number) && number < clipped)
-        number = std::min(black + light.pixels[i], below_clipped);
+      if (std::isfinite(number) && !levels.clip(number))
+        number = std::clamp(black + light.pixels[i], lowest, highest);
     }
   });
 }

@@ -70,8 +70,7 @@ struct OutputParameters {
   int second_peak_directions, direction_stride;
 
   int dark_raw, gain_e_per_raw;  ///< of every measurement: pairs of words, a double or high and low
-  int has_saturation;
-  float saturation_level;
+  float lowest, highest;  ///< as SaturationLevels
   int finds_confidence;
 };
 

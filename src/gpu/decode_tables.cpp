@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "decode/shared/saturation_level.hpp"
 #include "gpu/table_words.hpp"
 
 namespace tofsmith {
@@ -124,7 +125,7 @@ OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kerne
     dark_raw.push_back(scale.dark_raw(k));
     gain_e_per_raw.push_back(scale.gain_e_per_raw(k));
   }
-  const std::optional<float> saturation_level = decoder.table().saturation_level;
+  const SaturationLevels levels(decoder.table());
   OutputParameters p{};
   p.samples = c.samples;
   p.bin_m = c.bin_m;
@@ -152,8 +153,8 @@ OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kerne
   p.direction_stride = records.directions.stride();
   p.dark_raw = words.add_doubles(dark_raw, has_doubles);
   p.gain_e_per_raw = words.add_doubles(gain_e_per_raw, has_doubles);
-  p.has_saturation = saturation_level ? 1 : 0;
-  p.saturation_level = saturation_level.value_or(0.0f);
+  p.lowest = levels.lowest;
+  p.highest = levels.highest;
   return p;
 }
 

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "decode/shared/marked_raw.hpp"
 #include "gpu/device_decoder_plan.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -32,6 +33,7 @@ void with_numbers_of(const RawView& raw, std::int64_t first, const std::vector<s
   RawView view =
       RawView::interleaved(values.data(), 1, static_cast<int>(open.size()), raw.measurements);
   if (raw.averaged) view.averaged = averaged.data();
+  view.is_marked = true;
   use(view);
 }
 
@@ -100,6 +102,7 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
     const float* const averaged = view.averaged;
     view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
     view.averaged = averaged;
+    view.is_marked = true;
   }
   decode_open_pixels(view, open, planes);
 }
@@ -193,9 +196,11 @@ DeviceDecoder& DeviceDecoder::operator=(DeviceDecoder&&) noexcept = default;
 
 const Device& DeviceDecoder::device() const { return plan_->device; }
 
-std::int64_t DeviceDecoder::decode(const RawView& raw, const DecodedView& decoded,
+std::int64_t DeviceDecoder::decode(const RawView& stored, const DecodedView& decoded,
                                    const Progress& progress) const {
-  require_frame(raw, plan_->decoder.measurements());
+  require_frame(stored, plan_->decoder.measurements());
+  const MarkedRaw marked(stored, plan_->decoder.table().marking);
+  const RawView& raw = marked.view();
   if (raw.pixels() < plan_->options.min_pixels) {
     plan_->decoder.decode(raw, decoded, progress);
     return raw.pixels();

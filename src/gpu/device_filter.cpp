@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "decode/shared/marked_raw.hpp"
 #include "gpu/device_decoder_plan.hpp"
 #include "gpu/device_frame.hpp"
 #include "tofsmith/core/error.hpp"
@@ -196,7 +197,8 @@ void DeviceFilter::apply(const RawView& raw, FilteredFrame& filtered, const Prog
                          const Image<std::uint8_t>& left_out) const {
   require_filterable(plan_of(plan_->filter), raw, left_out);
   const std::lock_guard lock(plan_->mutex);
-  plan_->run({.raw = raw}, nullptr, {}, &filtered, progress, left_out);
+  const MarkedRaw marked(raw, plan_of(plan_->filter).decoder.table().marking);
+  plan_->run({.raw = marked.view()}, nullptr, {}, &filtered, progress, left_out);
 }
 
 FilteredFrame DeviceFilter::apply(const RawFrames& raw, int frame, const Progress& progress) const {
@@ -209,7 +211,9 @@ std::int64_t DeviceFilter::decode(const RawView& raw, const DeviceDecoder& decod
                                   const DecodedView& decoded, FilteredFrame* filtered,
                                   const Progress& progress,
                                   const Image<std::uint8_t>& left_out) const {
-  return decode_source({.raw = raw}, device(), decoder, decoded, filtered, progress, left_out);
+  const MarkedRaw marked(raw, plan_of(plan_->filter).decoder.table().marking);
+  return decode_source({.raw = marked.view()}, device(), decoder, decoded, filtered, progress,
+                       left_out);
 }
 
 bool DeviceFilter::start(const FrameSource& frame, DeviceRaw& brought, DeviceTile& decoded_in,

@@ -3,6 +3,8 @@
 #include <string>
 
 #include "decode/output/shared/decoder_parts.hpp"
+#include "decode/shared/marked_raw.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "gpu/device_frames_plan.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -60,8 +62,9 @@ void DeviceFrames::add(const RawView& raw) {
   Plan& plan = *plan_;
   const bool is_first = plan.frames_added == 0 && !(plan.filter && !plan.filter->is_empty());
   plan.begin_frame(raw, is_first);
-  if (!plan.means) plan.means.emplace(plan.device, plan.table.saturation_level);
-  plan.on_device([&] { plan.means->add(raw); });
+  if (!plan.means) plan.means.emplace(plan.device, SaturationLevels(plan.table));
+  const MarkedRaw marked(raw, plan.table.marking);
+  plan.on_device([&] { plan.means->add(marked.view()); });
   ++plan.frames_added;
 }
 
@@ -88,7 +91,8 @@ void DeviceFrames::take(const RawView& raw) {
   require(plan.filter.has_value(), "time filter", "none",
           "is needed to take frames that are no means");
   plan.begin_frame(raw, plan.filter->is_empty());
-  plan.on_device([&] { plan.has_frame = plan.filter->add(raw); });
+  const MarkedRaw marked(raw, plan.table.marking);
+  plan.on_device([&] { plan.has_frame = plan.filter->add(marked.view()); });
 }
 
 bool DeviceFrames::take_end() {
@@ -123,6 +127,7 @@ RawView DeviceFrames::Plan::numbers_here() {
     view = RawView::planar(numbers.data(), height, width, k);
   }
   view.averaged = averaged.data();
+  view.is_marked = true;
   return view;
 }
 

@@ -119,7 +119,7 @@ void DeviceFramesUnderWay::start(const RawView& raw, const DecodedView& decoded)
   Plan::Slot& slot = plan.slots[(plan.first + plan.count) % 2];
   slot.planes = decoded;
   try {
-    plan.start(slot, raw);
+    plan.start(slot, MarkedRaw(raw, plan.decoding().decoder.table().marking).view());
   } catch (const IoError&) {
     plan.forget();
     throw;

@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-DeviceMeans::DeviceMeans(const Device& device, std::optional<float> saturation_level)
-    : queue_(device), clipped_(saturation_level.value_or(std::numeric_limits<float>::infinity())) {
+DeviceMeans::DeviceMeans(const Device& device, const SaturationLevels& levels)
+    : queue_(device), levels_(levels) {
   require(device.info().has_doubles, "device", device.info().name,
           "must have doubles for means of frames");
   const std::string options = "-DHAS_DOUBLES";
@@ -26,8 +26,8 @@ void DeviceMeans::add(const RawView& raw) {
   measurements_ = raw.measurements;
   frame_.upload_exactly(queue_, raw);
   reserve(queue_, sums.memory, raw.pixels() * measurements_ * std::int64_t{sizeof(double)});
-  queue_.run(add_to_sums_, sums.pixels, frame_.tile(), frame_.numbers(), measurements_, clipped_,
-             frames_ == 0 ? 1 : 0, &sums.memory);
+  queue_.run(add_to_sums_, sums.pixels, frame_.tile(), frame_.numbers(), measurements_,
+             levels_.lowest, levels_.highest, frames_ == 0 ? 1 : 0, &sums.memory);
   ++frames_;
 }
 
@@ -35,9 +35,9 @@ void DeviceMeans::finish(double averaged) {
   Sums& sums = sums_[static_cast<std::size_t>(mean_)];
   sums.frames = std::exchange(frames_, 0);
   result_.reserve_planes(queue_, sums.pixels, measurements_, raw_rounded);
-  queue_.run(write_means_, sums.pixels, sums.pixels, measurements_, sums.frames, clipped_,
-             static_cast<float>(averaged * sums.frames), &sums.memory, result_.numbers(),
-             result_.averaged());
+  queue_.run(write_means_, sums.pixels, sums.pixels, measurements_, sums.frames, levels_.lowest,
+             levels_.highest, static_cast<float>(averaged * sums.frames), &sums.memory,
+             result_.numbers(), result_.averaged());
 }
 
 std::vector<double> DeviceMeans::numbers_of(const std::vector<std::int32_t>& pixels, int mean) {
@@ -48,8 +48,9 @@ std::vector<double> DeviceMeans::numbers_of(const std::vector<std::int32_t>& pix
   queue_.upload(pixels.data(), bytes_of_wanted,
                 *reserve(queue_, wanted_, static_cast<std::int64_t>(bytes_of_wanted)));
   reserve(queue_, gathered_, static_cast<std::int64_t>(bytes));
-  queue_.run(gather_means_, std::ssize(pixels), sums.pixels, measurements_, sums.frames, clipped_,
-             &sums.memory, &wanted_, static_cast<std::int32_t>(pixels.size()), &gathered_);
+  queue_.run(gather_means_, std::ssize(pixels), sums.pixels, measurements_, sums.frames,
+             levels_.lowest, levels_.highest, &sums.memory, &wanted_,
+             static_cast<std::int32_t>(pixels.size()), &gathered_);
   queue_.download(gathered_, bytes, numbers.data());
   return numbers;
 }
@@ -59,8 +60,7 @@ std::vector<double> DeviceMeans::numbers() const {
   std::vector<double> numbers(static_cast<std::size_t>(sums.pixels) *
                               static_cast<std::size_t>(measurements_));
   queue_.download(sums.memory, numbers.size() * sizeof(double), numbers.data());
-  for (double& sum : numbers)
-    sum = std::isinf(sum) ? static_cast<double>(clipped_) : sum / sums.frames;
+  for (double& sum : numbers) sum = levels_.mean(sum, sums.frames);
   return numbers;
 }
 

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "decode/shared/saturation_level.hpp"
 #include "gpu/device_raw.hpp"
 
 namespace tofsmith {
@@ -18,8 +18,8 @@ extern const std::string_view mean_kernels;
 /// there grows with the largest frame.
 class DeviceMeans {
  public:
-  /// @param saturation_level  what is clipped in one frame is clipped in the mean
-  DeviceMeans(const Device& device, std::optional<float> saturation_level);
+  /// @param levels  numbers that are clipped in one frame are clipped in the mean
+  DeviceMeans(const Device& device, const SaturationLevels& levels);
 
   /// Adds a frame of the size of the others. It has been copied when this returns.
   void add(const RawView& raw);
@@ -44,7 +44,7 @@ class DeviceMeans {
  private:
   DeviceQueue queue_;
   DeviceKernel add_to_sums_, write_means_, gather_means_;
-  float clipped_;
+  SaturationLevels levels_;
   /// What a mean is made of.
   struct Sums {
     std::int32_t pixels = 0, frames = 0;

@@ -21,6 +21,7 @@ RawView OpenNumbers::view() const {
   view.column_stride = measurements_ + 1;
   view.row_stride = pixels * view.column_stride;
   view.averaged = averaged_.data();
+  view.is_marked = true;
   return view;
 }
 

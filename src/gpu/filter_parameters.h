@@ -22,7 +22,7 @@ struct FilterParameters {
   int shot_share;                                   ///< of every measurement
   int samples;
   float bins_per_m;
-  float clipped;
+  float lowest, highest;  ///< as SaturationLevels
   float floor_variance_e2, shot_per_signal, mean_curve_square;  ///< as HiddenSignal
   int has_own_shot_noise;
   float inverse_max_difference, same_depth_sigma2, own_light_sigma;

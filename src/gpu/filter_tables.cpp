@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "decode/shared/saturation_level.hpp"
 #include "gpu/table_words.hpp"
 
 namespace tofsmith {
@@ -121,8 +122,9 @@ FilterTables::FilterTables(const Filter::Plan& plan, bool fuses)
   p.shot_share = tables.add(plan.hidden.shot_share);
   p.samples = plan.samples();
   p.bins_per_m = static_cast<float>(1.0 / plan.decoder.table().bin_m());
-  p.clipped =
-      plan.decoder.table().saturation_level.value_or(std::numeric_limits<float>::infinity());
+  const SaturationLevels levels(plan.decoder.table());
+  p.lowest = levels.lowest;
+  p.highest = levels.highest;
   p.floor_variance_e2 = plan.hidden.floor_variance_e2;
   p.shot_per_signal = plan.hidden.shot_per_signal;
   p.mean_curve_square = plan.hidden.mean_curve_square;

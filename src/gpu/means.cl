@@ -8,47 +8,54 @@ double exact_number(const struct TileParameters* tile, global const uchar* raw, 
                                      (size_t)k * (size_t)tile->measurement_stride];
 }
 
-/// The mean of numbers that add up to this, of so many frames.
-double mean_of(double sum, double frames, float clipped) {
-  return isinf(sum) ? (double)clipped : sum / frames;
+/// As SaturationLevels::mean().
+double mean_of(double sum, double frames, float lowest, float highest) {
+  return isinf(sum) ? (double)(sum > 0.0 ? highest : lowest) : sum / frames;
 }
 
-/// Sums: infinite where a number is clipped, none where one is no number. The first frame's are
-/// its own.
+/// As SaturationLevels::added().
+double added(double sum, double value, float lowest, float highest) {
+  if (!isfinite(value) || isnan(sum)) return (double)NAN;
+  if (isinf(sum)) return sum;
+  return value >= (double)highest ? (double)INFINITY
+         : value <= (double)lowest ? -(double)INFINITY
+                                   : sum + value;
+}
+
+/// Sums of every number. Those of the first frame are its own.
 kernel void add_to_sums(const struct TileParameters tile, global const uchar* raw_numbers,
-                        const int measurements, const float clipped, const int is_first,
-                        global double* sums) {
+                        const int measurements, const float lowest, const float highest,
+                        const int is_first, global double* sums) {
   const int pixel = (int)get_global_id(0);
   if (pixel >= tile.pixels) return;
   for (int k = 0; k < measurements; ++k) {
     const size_t at = (size_t)k * (size_t)tile.pixels + (size_t)pixel;
     const double value = exact_number(&tile, raw_numbers, pixel, k);
     const double sum = is_first ? 0.0 : sums[at];
-    sums[at] = !isfinite(value) || isnan(sum) ? (double)NAN
-               : value >= (double)clipped     ? (double)INFINITY
-                                              : sum + value;
+    sums[at] = added(sum, value, lowest, highest);
   }
 }
 
 kernel void write_means(const int pixels, const int measurements, const int frames,
-                        const float clipped, const float averaged_now, global const double* sums,
-                        global float* means, global float* averaged) {
+                        const float lowest, const float highest, const float averaged_now,
+                        global const double* sums, global float* means, global float* averaged) {
   const int pixel = (int)get_global_id(0);
   if (pixel >= pixels) return;
   for (int k = 0; k < measurements; ++k) {
     const size_t at = (size_t)k * (size_t)pixels + (size_t)pixel;
-    means[at] = (float)mean_of(sums[at], (double)frames, clipped);
+    means[at] = (float)mean_of(sums[at], (double)frames, lowest, highest);
   }
   averaged[pixel] = averaged_now;
 }
 
 /// Means of some pixels, K each.
 kernel void gather_means(const int pixels, const int measurements, const int frames,
-                         const float clipped, global const double* sums, Ints wanted,
-                         const int count, global double* means) {
+                         const float lowest, const float highest, global const double* sums,
+                         Ints wanted, const int count, global double* means) {
   const int i = (int)get_global_id(0);
   if (i >= count) return;
   for (int k = 0; k < measurements; ++k)
     means[(size_t)i * (size_t)measurements + (size_t)k] =
-        mean_of(sums[(size_t)k * (size_t)pixels + (size_t)wanted[i]], (double)frames, clipped);
+        mean_of(sums[(size_t)k * (size_t)pixels + (size_t)wanted[i]], (double)frames, lowest,
+                highest);
 }

@@ -167,7 +167,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     if (signal * signal < p.low_signal_sigma2 * noise) value = STATUS_LOW_SIGNAL;
     if (!has_depth) value = STATUS_NO_RETURN;
     for (int k = 0; k < MEASUREMENTS; ++k)
-      if (p.has_saturation && raw[k] >= p.saturation_level) value = STATUS_SATURATED;
+      if (raw[k] >= p.highest || raw[k] <= p.lowest) value = STATUS_SATURATED;
     if (bin < 0) value = STATUS_INVALID;
     status[pixel] = value;
   }

@@ -53,8 +53,8 @@ kernel void compare_frames(const struct TimeParameters p, const struct TileParam
   for (int k = 0; k < MEASUREMENTS; ++k) {
     now[k] = raw_number(&tile, raw_numbers, pixel, k);
     before[k] = mean_of(&p, means, pixel, k);
-    usable = usable && now[k] >= -FLT_MAX && before[k] >= -FLT_MAX && now[k] < p.clipped &&
-             before[k] < p.clipped;
+    usable = usable && now[k] > p.lowest && before[k] > p.lowest && now[k] < p.highest &&
+             before[k] < p.highest;
     both[k] = (before[k] * past + now[k] * n) / (past + n);
   }
   const float signal =

@@ -28,7 +28,7 @@ struct TimeParameters {
 
   int gain, dark_raw, floor_variance_e2, shot_per_signal;  ///< of every measurement
   int to_plane;  ///< (RANK, K), times the gain
-  float clipped;
+  float lowest, highest;  ///< as SaturationLevels
   int has_own_shot_noise;
   float hidden_floor_e2, hidden_shot_per_signal, mean_curve_square;  ///< as HiddenSignal
   struct TimeTest pixel, patch, shared;

@@ -54,7 +54,7 @@ kernel void read_light(const struct FilterParameters p, const struct TileParamet
   float electrons[MEASUREMENTS], coordinates[MEASUREMENTS];
   for (int k = 0; k < MEASUREMENTS; ++k) {
     const float value = raw_number(&tile, raw_numbers, pixel, k);
-    usable = usable && value < p.clipped && value > -INFINITY;
+    usable = usable && value < p.highest && value > p.lowest;
     electrons[k] = value * tables[p.gain_e_per_raw + k] + tables[p.dark_e + k];
   }
   if (left_out && left_out[pixel] != 0) usable = false;

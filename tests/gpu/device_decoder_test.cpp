@@ -32,8 +32,8 @@ Outputs decoded(const DeviceDecoder& decoder, const RawView& raw, std::int64_t& 
 /// and with the largest and smallest numbers there are.
 void append_odd_pixels(const DecodingTable& table, std::vector<float>& raw) {
   using Limits = std::numeric_limits<float>;
-  for (const float value : {0.0f, 1000.0f, 65535.0f, -5.0f, Limits::quiet_NaN(), Limits::infinity(),
-                            Limits::max(), Limits::denorm_min()})
+  for (const float value : {0.0f, 1000.0f, 65535.0f, -65535.0f, -5.0f, Limits::quiet_NaN(),
+                            Limits::infinity(), Limits::max(), Limits::denorm_min()})
     for (int odd = -1; odd < table.measurements(); ++odd)
       for (int k = 0; k < table.measurements(); ++k)
         raw.push_back(odd < 0 || k == odd ? value : 700.0f + 10.0f * static_cast<float>(k));
@@ -86,6 +86,7 @@ TEST_F(DeviceDecoding, GivesBinsAndPlanesOfTheDecoderOfRandomCodes) {
     SCOPED_TRACE(testing::Message() << "K = " << code.measurements << ", N = " << code.samples);
     DecodingTable table = random_table(code, random);
     table.saturation_level = 60000.0f;
+    table.lower_saturation_level = -60000.0f;
     expect_what_the_decoder_gives(device(), table, random_pixels(table, 3000, random));
   }
 }

@@ -34,7 +34,7 @@ RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
 void spoil(RawFrames& raw, float saturated) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < raw.values.size(); ++i)
-    if (i % 97 == 5) raw.values[i] = i % 2 == 0 ? nan : saturated;
+    if (i % 97 == 5) raw.values[i] = i % 3 == 0 ? nan : i % 3 == 1 ? saturated : -saturated;
   for (std::size_t i = raw.values.size() / 3; i < raw.values.size() / 3 + 40; ++i)
     raw.values[i] = std::numeric_limits<float>::infinity();
 }
@@ -114,6 +114,7 @@ TEST_F(DeviceFiltering, GivesTheNumbersOfTheFilter) {
     const DecodeSetup setup(c.code, c.camera);
     DecodingTable table = setup.decoder.table();
     table.saturation_level = 5e4f;
+    table.lower_saturation_level = -5e4f;
     RawFrames raw = frame_of_surfaces(table, 71, 85);
     spoil(raw, 5e4f);
     for (const FilterStrength strength : all_filter_strengths) {

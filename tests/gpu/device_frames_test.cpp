@@ -37,7 +37,11 @@ void spoil(RawFrames& raw, float saturated, int f) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto frame = static_cast<std::size_t>(f);
   for (std::size_t i = 0; i < raw.values.size(); ++i)
-    if ((i + frame) % 97 == 5) raw.values[i] = i % 3 == 0 ? nan : i % 3 == 1 ? saturated : infinity;
+    if ((i + frame) % 97 == 5)
+      raw.values[i] = i % 4 == 0   ? nan
+                      : i % 4 == 1 ? saturated
+                      : i % 4 == 2 ? -saturated
+                                   : infinity;
 }
 
 class DeviceFramesOf : public OnDevice {
@@ -117,6 +121,7 @@ TEST_F(DeviceFramesOf, AreAddedUpAsTheTimeFilterDoes) {
     const DecodeSetup setup(code, camera);
     DecodingTable table = setup.decoder.table();
     table.saturation_level = 5e4f;
+    table.lower_saturation_level = -5e4f;
     const std::vector<RawFrames> frames = frames_of_motion(table, 43, 61, 7);
     for (const bool before_filter : {false, true}) {
       SCOPED_TRACE(testing::Message() << code << (before_filter ? " before a filter" : ""));
@@ -253,6 +258,7 @@ TEST_F(DeviceFramesOf, HaveMeansWithoutRounding) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   DecodingTable table = setup.decoder.table();
   table.saturation_level = 5e4f;
+  table.lower_saturation_level = -5e4f;
   const Decoder decoder(table);
   const DeviceDecoder after(device(), decoder, {.memory_mb = 0.1});
   DeviceFrames there(device(), table, nullptr);
@@ -266,14 +272,17 @@ TEST_F(DeviceFramesOf, HaveMeansWithoutRounding) {
       for (std::size_t i = 0; i < means.size(); ++i) {
         double& value = frames.back()[i];
         value += 1e-5 * static_cast<double>(i % 1000);
+        constexpr double unbounded = std::numeric_limits<double>::infinity();
         means[i] = !std::isfinite(value) || std::isnan(means[i])
                        ? std::numeric_limits<double>::quiet_NaN()
-                   : value >= 5e4 ? std::numeric_limits<double>::infinity()
-                                  : means[i] + value;
+                   : std::isinf(means[i]) ? means[i]
+                   : value >= 5e4         ? unbounded
+                   : value <= -5e4        ? -unbounded
+                                          : means[i] + value;
       }
       there.add(RawView::interleaved(frames.back().data(), 60, 50, 4));
     }
-    for (double& mean : means) mean = std::isinf(mean) ? 5e4 : mean / 3;
+    for (double& mean : means) mean = std::isinf(mean) ? std::copysign(5e4, mean) : mean / 3;
     there.take_mean(2.0);
     RawView expected = RawView::interleaved(means.data(), 60, 50, 4);
     const std::vector<float> averaged(60 * 50, 6.0f);

@@ -42,7 +42,7 @@ def test_codes_of_files_are_played_at_the_samples_of_the_camera(tmp_path):
 
 
 def test_every_key_of_a_camera_file_is_an_attribute():
-    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback, "temperature": ts.Temperature,
+    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback, "raw": ts.RawMarkers, "temperature": ts.Temperature,
              "operating": ts.Operating,
              "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
@@ -345,3 +345,21 @@ def test_import_is_lean():
         [sys.executable, "-c", "import tofsmith.plot, sys; print('matplotlib' in sys.modules)"],
         capture_output=True, text=True)
     assert said.stdout == "False\n", said.stderr
+
+
+def test_markers_of_raw_numbers_reach_every_decoder(camera):
+    marked = camera.replace(raw={"saturated": [65535, float("nan")], "invalid": [0]})
+    assert marked.raw.invalid == (0.0,) and camera.raw == ts.RawMarkers()
+    assert marked.raw.saturated[0] == 65535.0 and np.isnan(marked.raw.saturated[1])
+    assert ts.Camera("paper-10f0").replace(raw={"saturated": [1]}).raw == ts.RawMarkers((1.0,), ())
+    raw = ts.capture(ts.built_in_scene("ball", 6, 4), "hamiltonian-k4", camera)
+    raw = np.clip(np.round(raw), 1, 65534).astype(np.uint16)
+    raw[0, 0, 1], raw[0, 1, 2] = 65535, 0
+    for method in ("zncc", "ml"):
+        decoder = ts.Decoder("hamiltonian-k4", marked, method=method)
+        for numbers in (raw, raw.astype(np.float32)):
+            status = decoder.decode(numbers).status
+            assert status[0, 0] == ts.PixelStatus.saturated and status[0, 1] == ts.PixelStatus.invalid
+            assert not np.isin(status[1:], (ts.PixelStatus.saturated, ts.PixelStatus.invalid)).any()
+    with pytest.raises(ValueError, match="raw.invalid = 5; must not be in raw.saturated, too"):
+        camera.replace(raw={"saturated": [5], "invalid": [5]})

@@ -205,9 +205,10 @@ class Matched {
       electrons_[first * k_count() + k * tile_size + lane] =
           static_cast<float>(y[static_cast<int>(k)]);
     const float* raw = &raw_[i * k_count()];
-    saturated_[i] = table_.saturation_level && std::any_of(raw, raw + k_count(), [&](float value) {
-                      return value >= *table_.saturation_level;
-                    });
+    saturated_[i] = std::any_of(raw, raw + k_count(), [&](float value) {
+      return (table_.saturation_level && value >= *table_.saturation_level) ||
+             (table_.lower_saturation_level && value <= *table_.lower_saturation_level);
+    });
     bin_[i] = second_peak_[i] = -1;
     if (!y.allFinite()) return;
     bin_[i] = best_bin(q, 0, table_.samples());

@@ -11,6 +11,7 @@
 
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/lens_distortion.hpp"
 
 namespace tofsmith {
@@ -384,6 +385,7 @@ struct Camera {
   int samples = 240;  ///< N, samples per period, 8 .. 65536
   LightSource light;
   Sensor sensor;
+  RawMarkers raw;                ///< special raw numbers
   std::optional<Lens> lens;      ///< the pinhole: four keys of [lens]
   std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
   std::optional<Optics> optics;  ///< what turns watts and lux into electrons; none: unknown

@@ -68,6 +68,11 @@ struct RawView {
   /// How many equal measurements the numbers of a pixel are the mean of, each > 0, row by row (H,
   /// W): their variance is so many times smaller. Null: 1, as they leave a sensor.
   const float* averaged = nullptr;
+  /// The numbers were stored as unsigned integers and converted to another type.
+  bool was_unsigned = false;
+  /// Special numbers have already been replaced (see RawMarking): decoders and filters do not look
+  /// for them again.
+  bool is_marked = false;
 
   std::int64_t pixels() const { return std::int64_t{height} * width; }
 
@@ -82,6 +87,24 @@ struct RawView {
   static RawView planar(const Number* data, int height, int width, int measurements) {
     return {data, height, width, measurements, width, 1, std::ptrdiff_t{height} * width};
   }
+};
+
+/// Special raw numbers, which a sensor or its driver writes in place of a measurement. They are
+/// compared before any arithmetic and may be NaN or infinite. Field names are keys of [raw] in a
+/// camera file.
+struct RawMarkers {
+  std::vector<double> saturated;  ///< the measurement is clipped
+  std::vector<double> invalid;    ///< there is no measurement, for example of a dead pixel
+
+  bool empty() const { return saturated.empty() && invalid.empty(); }
+  /// Returns true if the list names the number. NaN equals NaN.
+  bool mean_saturated(double number) const;
+  bool mean_invalid(double number) const;
+  /// @throws std::invalid_argument naming the field as raw.*, value and rule
+  void validate() const;
+
+  /// NaN equals NaN.
+  friend bool operator==(const RawMarkers& a, const RawMarkers& b);
 };
 
 /// Frame f of several.

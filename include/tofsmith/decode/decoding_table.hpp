@@ -77,6 +77,38 @@ auto fields_of(ConstOrNot<DepthCorrection> auto& c) {
                     Field("max_signal_e_per_s", c.max_signal_e_per_s));
 }
 
+/// Rules that replace saturated and invalid raw numbers before any arithmetic: invalid ones by NaN,
+/// saturated ones by saturated_above or saturated_below, which the table's levels recognize.
+struct RawMarking {
+  RawMarkers markers;  ///< special numbers of the camera; these rules come first
+  /// Replaces a saturated number: the table's saturation level, or 2^53 without one.
+  double saturated_above = 0x1p53;
+  /// Replaces a number that is clipped at the lower end: the table's lower level.
+  double saturated_below = 0x1p53;
+  bool subtracts = false;  ///< numbers are differences of light: an unsigned 0 is clipped
+  /// Largest number of the converter [DN]: unsigned numbers from here on are clipped.
+  std::optional<double> converter_max = {};
+  /// Largest number of a converter of signed tap differences [DN]: signed numbers equal to this or
+  /// to -this - 1 are clipped. Larger ones occur if the taps are converted and then subtracted.
+  std::optional<double> signed_max = {};
+  double unsigned_black_level = 0.0;  ///< subtracted from unsigned differences of taps
+  /// Numbers of a tap from here on are clipped; for readers that subtract the taps.
+  std::optional<double> tap_saturation_level = {};
+
+  /// Returns false if every number of an array is kept.
+  bool replaces_numbers() const { return !markers.empty() || signed_max; }
+  /// Returns the replacement of a stored number; none if it is a measurement.
+  std::optional<double> replacement(double number, bool is_unsigned) const;
+  /// Returns the measurement of a stored number: its replacement, or the number itself without
+  /// unsigned_black_level.
+  double measured(double number, bool is_unsigned) const;
+  /// Returns the measurement A - B of the stored numbers of two taps.
+  double difference(double a, double b) const;
+};
+
+/// Returns the marking of a camera's raw numbers by its converter, full well and special numbers.
+RawMarking raw_marking_of(const Camera& camera);
+
 /// Everything a decoder needs to know of a code on a camera. Measurements are what leaves the
 /// sensor (K of them: one per tap, or the differences of two-bucket pairs):
 ///   expected electrons  mu_i(z) = T_i (S chi_i(z) + A kappa_i) + dark_i
@@ -98,8 +130,11 @@ struct DecodingTable : MeasurementTable {
   Eigen::VectorXd black_level;            ///< raw number without light (K); 0 where it is electrons
   Eigen::VectorXd gain_e_per_raw;         ///< electrons per raw number (K), each > 0
   std::optional<float> saturation_level;  ///< raw numbers from here on are clipped; none: no limit
-  double range_m = 0.0;                   ///< depth of a whole period [m], > 0
-  Eigen::MatrixXd whitening;              ///< (K, K), or empty: noise is independent
+  /// Raw numbers down from here are clipped, for differences; none: no limit.
+  std::optional<float> lower_saturation_level = {};
+  RawMarking marking = {};    ///< rules for saturated and invalid numbers as they are stored
+  double range_m = 0.0;       ///< depth of a whole period [m], > 0
+  Eigen::MatrixXd whitening;  ///< (K, K), or empty: noise is independent
   /// Of rows: covariance of whitening (electrons - dark), all of it. Empty without whitening.
   RowCovariance covariance;
   /// Of frames of one size; apply() takes it off what decoders give. None: nothing.
@@ -122,8 +157,9 @@ struct DecodingTable : MeasurementTable {
 };
 
 /// The table of a code on a camera. Raw numbers are electrons without ADC, else counts; differences
-/// of buckets are taken from converted values, so that the black level cancels and saturation does
-/// not show in them. Rows are whitened by their mean covariance over depth in the middle of the
+/// of buckets are taken from converted values, so that the black level cancels. They are clipped at
+/// the ends of the converter's numbers, signed or unsigned; a clipped bucket does not show in a
+/// smaller difference. Rows are whitened by their mean covariance over depth in the middle of the
 /// camera's operating points.
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera);
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/npy.hpp"
 
@@ -150,6 +151,9 @@ struct RawReadOptions {
   /// How a dump without header is laid out; the file is then read as one, whatever its extension,
   /// and `layout` does not count.
   std::optional<RawFormat> format;
+  /// Replaces saturated and invalid numbers before any arithmetic (see DecodingTable::marking). The
+  /// default replaces none.
+  RawMarking marking = {};
 };
 
 class RawDumpReader;
@@ -162,7 +166,8 @@ struct StoredArray;
 class RawFramesReader {
  public:
   /// @throws IoError as read_raw_frames(), if a file that cannot be read in parts would take more
-  ///         memory than allowed, or if an .h5 has no such data set
+  ///         memory than allowed, if an .h5 has no such data set, or if the file's numbers cannot
+  ///         be one of the markers
   explicit RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options = {});
   /// One file for each measurement of a pixel, in their order: (H, W) or (F, H, W) each, or dumps
   /// of one measurement. One file alone holds all measurements; `layout` counts for it only.
@@ -176,19 +181,21 @@ class RawFramesReader {
   int height() const { return sizes_.height; }
   int width() const { return sizes_.width; }
   int measurements() const { return sizes_.measurements; }
-  /// Of the numbers that read_rows() gives: int8, int16 and dumps come as float32, whole numbers of
-  /// more than 16 bits as float64.
+  /// Type of the numbers before marking: float32 for int8, int16 and dumps, float64 for whole
+  /// numbers of more than 16 bits.
   NpyType type() const { return type_; }
   /// Whether the file holds whole numbers.
   bool holds_integers() const { return holds_integers_; }
-  /// What one row of a frame takes [bytes].
+  /// Memory of one row of a frame in type() [bytes].
   std::size_t row_bytes() const;
+  /// Additional memory of one row that is marked [bytes]; 0 if no number is replaced.
+  std::size_t marked_row_bytes() const;
   /// What the reader itself holds [bytes]: the values of a file that cannot be read in parts.
   std::size_t bytes_in_memory() const;
 
   /// Rows first_row .. first_row + rows - 1 of a frame, in the file's layout and in type(): numbers
   /// of .npy and .npz in one of the types of RawView are not converted, big-endian ones are turned
-  /// round.
+  /// round. Where marking may replace numbers, all are floats or doubles, side by side.
   /// @param buffer  what the view looks at, as long as no later call changes it
   /// @throws std::invalid_argument if there is no such frame or row
   /// @throws IoError if the file cannot be read or became shorter
@@ -203,6 +210,7 @@ class RawFramesReader {
                   bool is_one_measurement);
   void open_parts(const std::vector<std::filesystem::path>& files, const RawReadOptions& options);
   void open_dump(const std::filesystem::path& path, const RawReadOptions& options);
+  RawView rows_as_stored(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
   void read_stored_rows(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
   RawView view_of(const std::byte* data, int rows, int rows_of_a_plane) const;
   RawView rows_in_memory(int frame, int first_row, int rows) const;
@@ -213,7 +221,8 @@ class RawFramesReader {
   std::vector<RawFramesReader> parts_;   // one a measurement; then none of the others
   NpyArray whole_;
   NpyType type_ = NpyType::float32;
-  bool holds_integers_ = false;
+  bool holds_integers_ = false, holds_unsigned_ = false;
+  RawMarking marking_;
   RawLayout layout_ = RawLayout::interleaved;
   RawFrames sizes_;  // without values
 };

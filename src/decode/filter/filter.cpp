@@ -9,6 +9,7 @@
 #include "core/shared/enum_words.hpp"
 #include "decode/filter/shared/filter_parts.hpp"
 #include "decode/output/pixel_output.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -72,9 +73,11 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
           strips * (weights * weight_floats(grid, strip) + scratch_floats(grid, strip)));
 }
 
-void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress,
+void Filter::apply(const RawView& stored, FilteredFrame& filtered, const Progress& progress,
                    const Image<std::uint8_t>& left_out) const {
   const Plan& plan = *plan_;
+  const MarkedRaw marked(stored, plan.decoder.table().marking);
+  const RawView& raw = marked.view();
   require_filterable(plan, raw, left_out);
   FilterPlanes& frame = *filtered.planes_;
   const int windows = plan.options.windows;

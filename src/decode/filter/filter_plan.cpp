@@ -9,6 +9,7 @@
 
 #include "core/shared/decompositions.hpp"
 #include "core/shared/pixel_runs.hpp"
+#include "decode/shared/saturation_level.hpp"
 
 namespace tofsmith {
 
@@ -132,29 +133,28 @@ void Filter::Plan::read_again(const RawView& raw, FilterPlanes& frame, int set,
 /// @param row_usable, row_variance  of the row; no variance where null
 void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, int set,
                             float* row_usable, float* row_variance) const {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  const float clipped = decoder.table().saturation_level.value_or(infinity);
+  const SaturationLevels levels(decoder.table());
   for_each_block_of_row(raw.width, [&](int first, int pixels) {
     const std::ptrdiff_t at = row * frame.grid.stride + first;
     float* const usable = row_usable + first;
     const float* const averaged = averaged_of(raw, row, first);
     for (int i = 0; i < pixels; ++i) usable[i] = !averaged || averaged[i] > 0.0f ? 1.0f : 0.0f;
     RowBlock electrons;
-    for_each_run(raw, std::int64_t{row} * raw.width + first, pixels,
-                 [&](const auto* pixel, std::int64_t length, std::int64_t) {
-                   for (int k = 0; k < measurements; ++k) {
-                     const auto* number = pixel + k * raw.measurement_stride;
-                     float* const e = electrons[k];
-                     const auto dark = static_cast<float>(scale.electrons(0.0, k));
-                     const auto gain =
-                         static_cast<float>(scale.electrons(1.0, k) - scale.electrons(0.0, k));
-                     for (std::int64_t i = 0; i < length; ++i, number += raw.column_stride) {
-                       const auto value = static_cast<float>(*number);
-                       usable[i] = value < clipped && value > -infinity ? usable[i] : 0.0f;
-                       e[i] = value * gain + dark;
-                     }
-                   }
-                 });
+    for_each_run(
+        raw, std::int64_t{row} * raw.width + first, pixels,
+        [&](const auto* pixel, std::int64_t length, std::int64_t) {
+          for (int k = 0; k < measurements; ++k) {
+            const auto* number = pixel + k * raw.measurement_stride;
+            float* const e = electrons[k];
+            const auto dark = static_cast<float>(scale.electrons(0.0, k));
+            const auto gain = static_cast<float>(scale.electrons(1.0, k) - scale.electrons(0.0, k));
+            for (std::int64_t i = 0; i < length; ++i, number += raw.column_stride) {
+              const auto value = static_cast<float>(*number);
+              usable[i] = value < levels.highest && value > levels.lowest ? usable[i] : 0.0f;
+              e[i] = value * gain + dark;
+            }
+          }
+        });
     if (frame.left_out) {
       const std::uint8_t* const left_out = frame.left_out + std::ptrdiff_t{row} * raw.width + first;
       for (int i = 0; i < pixels; ++i)

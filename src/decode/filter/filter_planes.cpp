@@ -76,7 +76,8 @@ RawView FilteredFrame::view() const {
           .row_stride = p.grid.stride,
           .column_stride = 1,
           .measurement_stride = p.grid.plane_floats(),
-          .averaged = p.averaged.pixels.data()};
+          .averaged = p.averaged.pixels.data(),
+          .is_marked = true};
 }
 
 RawFrames FilteredFrame::values() const {

@@ -48,7 +48,8 @@ void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from,
                          .row_stride = grid.stride,
                          .column_stride = 1,
                          .measurement_stride = grid.plane_floats(),
-                         .averaged = averaged - grid.margin};
+                         .averaged = averaged - grid.margin,
+                         .is_marked = true};
   decoder.decode(filtered, {.depth_m = depth - grid.margin,
                             .predicted_standard_deviation_m = variance - grid.margin});
   const auto per_bin = static_cast<float>(1.0 / decoder.table().bin_m());

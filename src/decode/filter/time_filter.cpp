@@ -5,6 +5,7 @@
 
 #include "decode/filter/shared/filter_parts.hpp"
 #include "decode/output/pixel_output.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -42,8 +43,10 @@ std::size_t TimeFilter::memory_bytes(const TimeFilterOptions& options, int heigh
                                                         width, measurements));
 }
 
-std::optional<RawView> TimeFilter::add(const RawView& raw) {
+std::optional<RawView> TimeFilter::add(const RawView& stored) {
   State& state = *state_;
+  const MarkedRaw marked(stored, state.table.marking);
+  const RawView& raw = marked.view();
   require_measurements(raw, state.measurements);
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");

@@ -24,7 +24,7 @@ TimeFilter::State::State(const DecodingTable& table_, const TimeFilterOptions& o
     : table(table_),
       options(options_),
       measurements(table.measurements()),
-      clipped(table.saturation_level.value_or(std::numeric_limits<float>::infinity())),
+      levels(table),
       hidden(ExpectedNoise(table), projection),
       has_own_shot_noise(table.shot_correlation.size() > 0),
       pixel_test(measurements, options.max_difference_sigma),
@@ -252,6 +252,7 @@ void TimeFilter::State::add(const RawView& raw, AddedFrames& added) {
 RawView TimeFilter::State::view(const AddedFrames& added) const {
   RawView view = RawView::planar(added.means.data(), height, width, measurements);
   view.averaged = added.averaged.pixels.data();
+  view.is_marked = true;
   return view;
 }
 

@@ -9,6 +9,7 @@
 #include "decode/filter/compared_rows.hpp"
 #include "decode/filter/filter_planes.hpp"
 #include "decode/filter/hidden_signal.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/filter.hpp"
 
@@ -71,7 +72,7 @@ struct TimeFilter::State {
   DecodingTable table;
   TimeFilterOptions options;
   int measurements;
-  float clipped;
+  SaturationLevels levels;
   HiddenSignal hidden;
   bool has_own_shot_noise;
   std::vector<float> floor_variance_e2;  // of each measurement, without light (K)

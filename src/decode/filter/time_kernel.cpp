@@ -31,7 +31,7 @@ void take_roots(float* values) {
 }
 
 void find_usable(const TimeFilter::State& s, const AddedFrames& added, const ComparedPixels& c) {
-  constexpr float lowest = std::numeric_limits<float>::lowest();
+  const auto [lowest, highest] = s.levels;
   const float* const past = added.averaged.pixels.data() + c.first;
   for (int i = 0; i < c.pixels; ++i)
     c.usable[i] = (c.averaged_now[i] > 0.0f) & (past[i] > 0.0f) ? 1.0f : 0.0f;
@@ -40,8 +40,8 @@ void find_usable(const TimeFilter::State& s, const AddedFrames& added, const Com
     const float* const before = s.mean(added, k, c.first);
     for (int i = 0; i < c.pixels; ++i) {
       // Comparisons with NaN are false.
-      const bool is_light = (now[i] >= lowest) & (before[i] >= lowest) & (now[i] < s.clipped) &
-                            (before[i] < s.clipped);
+      const bool is_light =
+          (now[i] > lowest) & (before[i] > lowest) & (now[i] < highest) & (before[i] < highest);
       c.usable[i] = is_light ? c.usable[i] : 0.0f;
     }
   }

@@ -11,6 +11,7 @@
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/search/nearest_bins.hpp"
+#include "decode/shared/marked_raw.hpp"
 
 namespace tofsmith {
 
@@ -70,7 +71,7 @@ void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
                                const Progress& progress) const {
   constexpr std::int64_t block_pixels = usual_block_pixels / 16;
   decode_frame(
-      raw, decoded, measurements(), progress,
+      MarkedRaw(raw, table().marking).view(), decoded, measurements(), progress,
       [&](const RawBlock& block, const DecodedView& planes) {
         std::vector<double> fall = plan_->work_space();
         for (std::int64_t i = 0; i < block.pixels; ++i)

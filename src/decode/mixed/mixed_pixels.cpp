@@ -14,6 +14,7 @@
 #include "decode/mixed/mixed_pixel_fit.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
@@ -379,12 +380,14 @@ std::string_view name_of(MixedPixels mixed) { return mixed_words.of(mixed); }
 
 MixedPixels parse_mixed_pixels(std::string_view name) { return mixed_words.parse(name); }
 
-std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, MixedPixels mixed,
+std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& stored, MixedPixels mixed,
                                const DecodedView& decoded, const PixelMaps& maps,
                                const Progress& progress, const UnfilteredPixels& unfiltered) {
   table.validate();
   require_exposures(table, "a search for mixed pixels");
-  check(table, raw, decoded, maps, unfiltered);
+  check(table, stored, decoded, maps, unfiltered);
+  const MarkedRaw marked_raw(stored, table.marking);
+  const RawView& raw = marked_raw.view();
   report(progress, 0.0, "looking for mixed pixels");
   const Surroundings around(decoded, unfiltered.mixed, raw.height, raw.width, table.range_m);
   const MixedPixelSearch search(table, raw, around, maps, unfiltered);

@@ -12,6 +12,7 @@
 #include "core/shared/exponential_average.hpp"
 #include "decode/multipath/multipath_support.hpp"
 #include "decode/search/nearest_bins.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -178,7 +179,7 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
 void MultipathEngine::decode(const RawView& raw, const DecodedView& decoded,
                              const Progress& progress) const {
   decode_frame(
-      raw, decoded, table().measurements(), progress,
+      MarkedRaw(raw, table().marking).view(), decoded, table().measurements(), progress,
       [&](const RawBlock& block, const DecodedView& planes) { decode_block(block, planes); });
 }
 
@@ -235,6 +236,7 @@ void MultipathEngine::decode_block(const RawBlock& raw, const DecodedView& decod
   RawView view =
       RawView::interleaved(raw.values, 1, static_cast<int>(pixels), table().measurements());
   view.averaged = raw.averaged;
+  view.is_marked = true;
   single_.decode(view, planes);
 
   PixelGroup group;

@@ -10,6 +10,7 @@
 #include "core/shared/shared_progress.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/nearest_bins.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -21,9 +22,9 @@ constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
 PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, const float* raw,
                       const PixelDecoding& pixel) {
-  if (table.saturation_level)
-    for (int k = 0; k < table.measurements(); ++k)
-      if (raw[k] >= *table.saturation_level) return PixelStatus::saturated;
+  const SaturationLevels levels(table);
+  for (int k = 0; k < table.measurements(); ++k)
+    if (levels.clip(raw[k])) return PixelStatus::saturated;
   const PixelEstimate& estimate = pixel.estimate;
   if (!(estimate.signal_e_per_s > 0.0)) return PixelStatus::no_return;
   if (estimate.signal_e_per_s <

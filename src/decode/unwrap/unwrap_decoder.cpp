@@ -12,6 +12,7 @@
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/search/nearest_bins.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "decode/unwrap/phase_model.hpp"
 #include "decode/unwrap/phase_unwrapper.hpp"
 #include "tofsmith/core/error.hpp"
@@ -119,7 +120,7 @@ void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
 
 void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,
                            const Progress& progress) const {
-  decode_frame(raw, decoded, measurements(), progress,
+  decode_frame(MarkedRaw(raw, table().marking).view(), decoded, measurements(), progress,
                [&](const RawBlock& block, const DecodedView& planes) {
                  for (std::int64_t i = 0; i < block.pixels; ++i)
                    plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),

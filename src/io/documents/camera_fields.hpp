@@ -90,6 +90,12 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
 }
 
 template <typename Table>
+void visit_raw(Table& table, Field<Table, RawMarkers>& raw) {
+  table.markers("saturated", raw.saturated);
+  table.markers("invalid", raw.invalid);
+}
+
+template <typename Table>
 void visit_distortion(Table& table, Field<Table, LensDistortion>& distortion) {
   table.choice("distortion_model", distortion.model,
                words_by_name<DistortionModel, 2>("DistortionModel", "distortion_model"));
@@ -214,6 +220,7 @@ void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.value("samples", camera.samples);
   table.table("light", camera.light, visit_light<Table>);
   table.table("sensor", camera.sensor, visit_sensor<Table>);
+  table.table("raw", camera.raw, visit_raw<Table>);
   table.table("lens", camera, visit_lens<Table>);
   table.table("optics", camera.optics, visit_optics<Table>);
   table.table("operating", camera.operating, visit_operating<Table>);

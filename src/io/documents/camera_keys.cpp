@@ -46,6 +46,9 @@ class KeyCollector {
                       bool& /*is_word*/) {
     add(key, CameraKeyType::number).words.emplace_back(word);
   }
+  void markers(std::string_view key, std::vector<double>& /*numbers*/) {
+    add(key, CameraKeyType::list);
+  }
   template <typename Value, typename Fields>
   void table(std::string_view key, Value& target, Fields&& fields) {
     add(key, CameraKeyType::table);

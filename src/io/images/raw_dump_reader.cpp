@@ -47,8 +47,9 @@ int frames_in(std::uint64_t found, const RawFormat& format, const std::string& f
 
 }  // namespace
 
-RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format)
-    : format_(std::move(format)) {
+RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format,
+                             RawMarking marking)
+    : format_(std::move(format)), marking_(std::move(marking)) {
   format_.validate();
   const auto file = std::make_shared<InputFile>(path);
   if (!file->size())
@@ -61,11 +62,12 @@ RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format
   };
 }
 
-RawDumpReader::RawDumpReader(std::span<const std::byte> bytes, RawFormat format)
+RawDumpReader::RawDumpReader(std::span<const std::byte> bytes, RawFormat format, RawMarking marking)
     : read_at_([bytes](std::uint64_t offset, std::span<std::byte> into) {
         std::ranges::copy(bytes.subspan(offset, into.size()), into.begin());
       }),
-      format_(std::move(format)) {
+      format_(std::move(format)),
+      marking_(std::move(marking)) {
   format_.validate();
   frames_ = frames_in(bytes.size(), format_, "bytes");
 }
@@ -100,6 +102,9 @@ void RawDumpReader::read_rows(int frame, int first_row, int rows, Number* number
   const auto width = static_cast<std::size_t>(f.width),
              measurements = static_cast<std::size_t>(f.measurements),
              outputs = static_cast<std::size_t>(f.output_measurements());
+  const bool is_unsigned = f.numbers == RawNumbers::integers && !f.is_signed;
+  const double black_level =
+      f.black_level == 0.0 && is_unsigned ? marking_.unsigned_black_level : f.black_level;
   std::vector<std::byte> bytes;
   std::vector<double> row_numbers, pixels(width * measurements);
   for (int r = 0; r < rows; ++r) {
@@ -129,10 +134,11 @@ void RawDumpReader::read_rows(int frame, int first_row, int rows, Number* number
     Number* const out = numbers + static_cast<std::size_t>(r) * width * outputs;
     if (f.subtract_taps)
       for (std::size_t i = 0; i < width * outputs; ++i)
-        out[i] = static_cast<Number>(pixels[2 * i] - pixels[2 * i + 1]);
+        out[i] = static_cast<Number>(marking_.difference(pixels[2 * i], pixels[2 * i + 1]));
     else
       for (std::size_t i = 0; i < pixels.size(); ++i)
-        out[i] = static_cast<Number>(pixels[i] - f.black_level);
+        out[i] = static_cast<Number>(
+            marking_.replacement(pixels[i], is_unsigned).value_or(pixels[i] - black_level));
   }
 }
 

@@ -17,10 +17,11 @@ namespace tofsmith {
 class RawDumpReader {
  public:
   /// @throws IoError if the file cannot be read or is not as long as the format says
-  RawDumpReader(const std::filesystem::path& path, RawFormat format);
+  /// @param marking  replaces numbers of the file that are no measurement
+  RawDumpReader(const std::filesystem::path& path, RawFormat format, RawMarking marking = {});
   /// Of bytes that stay where they are and may change between calls, as many as the format's
   /// frames.
-  RawDumpReader(std::span<const std::byte> bytes, RawFormat format);
+  RawDumpReader(std::span<const std::byte> bytes, RawFormat format, RawMarking marking = {});
 
   const RawFormat& format() const { return format_; }
   int frames() const { return frames_; }
@@ -37,6 +38,7 @@ class RawDumpReader {
 
   std::function<void(std::uint64_t offset, std::span<std::byte> into)> read_at_;
   RawFormat format_;
+  RawMarking marking_;
   int frames_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 
+#include "decode/shared/marked_raw.hpp"
 #include "io/arrays/stored_array.hpp"
 #include "io/image_limits.hpp"
 #include "io/images/array_image.hpp"
@@ -150,6 +151,9 @@ void RawFramesReader::open_array(const std::filesystem::path& path, const RawRea
                              is_one_measurement ? with_measurements(shape, path.string()) : shape,
                              options, path.string());
   holds_integers_ = stored != NpyType::float32 && stored != NpyType::float64;
+  holds_unsigned_ = is_unsigned(stored);
+  marking_ = options.marking;
+  check_markers(marking_.markers, stored, path.string());
   type_ = decoded_type(stored);
   if (!file_) whole_ = in_type(std::move(whole_), type_);
 }
@@ -174,7 +178,8 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
     if (describe_sizes(part) != describe_sizes(model))
       throw IoError(file.string(), fmt::format("found {}; expected {} as in {}",
                                                describe_sizes(part), describe_sizes(model), first));
-    if (part.type_ != model.type_ || part.holds_integers_ != model.holds_integers_)
+    if (part.type_ != model.type_ || part.holds_integers_ != model.holds_integers_ ||
+        part.holds_unsigned_ != model.holds_unsigned_)
       throw IoError(
           file.string(),
           fmt::format("found numbers that are read as {}{}; expected {}{} as in {}",
@@ -183,6 +188,8 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
   }
   type_ = parts_.front().type_;
   holds_integers_ = parts_.front().holds_integers_;
+  holds_unsigned_ = parts_.front().holds_unsigned_;
+  marking_ = options.marking;
   layout_ = RawLayout::planar;
   sizes_ = parts_.front().sizes_;
   sizes_.measurements = static_cast<int>(files.size());
@@ -190,8 +197,9 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
 
 void RawFramesReader::open_dump(const std::filesystem::path& path, const RawReadOptions& options) {
   refuse_dataset(path, options);
-  dump_ = std::make_unique<RawDumpReader>(path, *options.format);
+  dump_ = std::make_unique<RawDumpReader>(path, *options.format, options.marking);
   const RawFormat& format = dump_->format();
+  check_markers(options.marking.markers, format, path.string());
   type_ = format.needs_doubles() ? NpyType::float64 : NpyType::float32;
   holds_integers_ = format.numbers == RawNumbers::integers;
   layout_ = RawLayout::interleaved;
@@ -219,8 +227,24 @@ std::size_t RawFramesReader::bytes_in_memory() const {
   return bytes;
 }
 
+std::size_t RawFramesReader::marked_row_bytes() const {
+  if (dump_ || !marking_.replaces_numbers()) return 0;
+  return static_cast<std::size_t>(width()) * static_cast<std::size_t>(measurements()) *
+         (type_ == NpyType::float64 ? sizeof(double) : sizeof(float));
+}
+
 RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
                                    std::vector<std::byte>& buffer) const {
+  RawView view = rows_as_stored(frame, first_row, rows, buffer);
+  if (view.is_marked || !marking_.replaces_numbers()) return view;
+  std::vector<std::byte> marked;
+  view = mark_raw(view, marking_, marked);
+  buffer.swap(marked);
+  return view;
+}
+
+RawView RawFramesReader::rows_as_stored(int frame, int first_row, int rows,
+                                        std::vector<std::byte>& buffer) const {
   require(frame >= 0 && frame < frames(), "frame", frame,
           fmt::format("must be 0 .. {}", frames() - 1));
   require(first_row >= 0 && first_row <= height(), "first_row", first_row,
@@ -234,7 +258,9 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
       dump_->read_rows(frame, first_row, rows, reinterpret_cast<double*>(buffer.data()));
     else
       dump_->read_rows(frame, first_row, rows, reinterpret_cast<float*>(buffer.data()));
-    return view_of(buffer.data(), rows, rows);
+    RawView view = view_of(buffer.data(), rows, rows);
+    view.is_marked = true;
+    return view;
   }
   if (!file_) return rows_in_memory(frame, first_row, rows);
   read_stored_rows(frame, first_row, rows, buffer);
@@ -279,22 +305,27 @@ RawView RawFramesReader::rows_of_parts(int frame, int first_row, int rows,
   const std::size_t bytes = static_cast<std::size_t>(rows) * row_bytes() / parts_.size();
   buffer.resize(bytes * parts_.size());
   std::vector<std::byte> read;
+  bool is_marked = false;
   for (std::size_t k = 0; k < parts_.size(); ++k) {
-    const RawView part = parts_[k].read_rows(frame, first_row, rows, read);
+    const RawView part = parts_[k].rows_as_stored(frame, first_row, rows, read);
     std::visit([&](const auto* first) { std::memcpy(buffer.data() + k * bytes, first, bytes); },
                part.data);
+    is_marked = part.is_marked;
   }
-  return view_of(buffer.data(), rows, rows);
+  RawView view = view_of(buffer.data(), rows, rows);
+  view.is_marked = is_marked;
+  return view;
 }
 
 /// @param rows_of_a_plane  from one measurement's image to the next, if the layout is planar
 RawView RawFramesReader::view_of(const std::byte* data, int rows, int rows_of_a_plane) const {
   const auto view = [&](const auto* numbers) {
-    if (layout_ == RawLayout::interleaved)
-      return RawView::interleaved(numbers, rows, width(), measurements());
-    RawView planes = RawView::planar(numbers, rows, width(), measurements());
-    planes.measurement_stride = std::ptrdiff_t{rows_of_a_plane} * width();
-    return planes;
+    const bool planar = layout_ == RawLayout::planar;
+    RawView raw = planar ? RawView::planar(numbers, rows, width(), measurements())
+                         : RawView::interleaved(numbers, rows, width(), measurements());
+    if (planar) raw.measurement_stride = std::ptrdiff_t{rows_of_a_plane} * width();
+    raw.was_unsigned = holds_unsigned_;
+    return raw;
   };
   switch (type_) {
     case NpyType::uint8:

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "io/image_limits.hpp"
 #include "tofsmith/core/error.hpp"
@@ -48,6 +50,53 @@ void check_measurements(const NpyShape& shape, const RawReadOptions& options,
                                        : ""));
 }
 
+/// Smallest and largest number of a type of whole numbers.
+struct NumberRange {
+  double lowest = 0.0, highest = 0.0;
+};
+
+NumberRange whole_numbers(int bits, bool is_unsigned) {
+  const double count = std::exp2(bits);
+  if (is_unsigned) return {0.0, count - 1.0};
+  return {-0.5 * count, 0.5 * count - 1.0};
+}
+
+std::optional<NumberRange> range_of(NpyType type) {
+  if (type == NpyType::float32 || type == NpyType::float64) return std::nullopt;
+  return whole_numbers(8 * static_cast<int>(item_size(type)), is_unsigned(type));
+}
+
+std::optional<NumberRange> range_of(const RawFormat& format) {
+  if (format.numbers == RawNumbers::floats) return std::nullopt;
+  return whole_numbers(format.bits, !format.is_signed);
+}
+
+[[noreturn]] void refuse_marker(std::string_view key, double marker, std::string_view numbers,
+                                const std::string& rule, const std::string& file) {
+  throw IoError(file, fmt::format("found {}; raw.{} = {} of the camera must be {}, or it cannot "
+                                  "occur",
+                                  numbers, key, marker, rule));
+}
+
+/// @param range   of whole numbers; none: of floats
+/// @param digits  bits of a float's mantissa
+void check_markers(const RawMarkers& markers, const std::optional<NumberRange>& range, int digits,
+                   std::string_view numbers, const std::string& file) {
+  for (const auto& [key, list] :
+       {std::pair{"saturated", &markers.saturated}, std::pair{"invalid", &markers.invalid}})
+    for (const double marker : *list) {
+      if (range &&
+          (!(marker >= range->lowest && marker <= range->highest) || marker != std::floor(marker)))
+        refuse_marker(
+            key, marker, numbers,
+            fmt::format("a whole number from {:.0f} to {:.0f}", range->lowest, range->highest),
+            file);
+      if (!range && digits < 53 && std::isfinite(marker) &&
+          static_cast<double>(static_cast<float>(marker)) != marker)
+        refuse_marker(key, marker, numbers, "one of them", file);
+    }
+}
+
 constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", "interleaved", "planar");
 
 }  // namespace
@@ -79,6 +128,26 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
   sizes.width = static_cast<int>(axes.width);
   sizes.measurements = static_cast<int>(axes.measurements);
   return sizes;
+}
+
+bool is_unsigned(NpyType type) {
+  return type == NpyType::uint8 || type == NpyType::uint16 || type == NpyType::uint32 ||
+         type == NpyType::uint64;
+}
+
+void check_markers(const RawMarkers& markers, NpyType type, const std::string& file) {
+  check_markers(markers, range_of(type), type == NpyType::float32 ? 24 : 53,
+                fmt::format("numbers of type {}", name_of(type)), file);
+}
+
+void check_markers(const RawMarkers& markers, const RawFormat& format, const std::string& file) {
+  check_markers(markers, range_of(format), format.bits == 32 ? 24 : 53,
+                fmt::format("{} numbers of {} bits",
+                            format.numbers == RawNumbers::floats ? "float"
+                            : format.is_signed                   ? "signed"
+                                                                 : "unsigned",
+                            format.bits),
+                file);
 }
 
 std::string_view name_of(RawLayout layout) { return layout_words.of(layout); }

@@ -14,4 +14,12 @@ namespace tofsmith {
 RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
                             const std::string& file);
 
+/// Returns true for types of whole numbers >= 0.
+bool is_unsigned(NpyType type);
+
+/// @throws IoError if a marker is no number of the file's type
+void check_markers(const RawMarkers& markers, NpyType type, const std::string& file);
+/// @throws IoError if a marker is no number of the dump's format
+void check_markers(const RawMarkers& markers, const RawFormat& format, const std::string& file);
+
 }  // namespace tofsmith

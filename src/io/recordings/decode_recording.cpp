@@ -31,7 +31,8 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
                          .layout = request.layout,
                          .max_in_memory = static_cast<std::uint64_t>(1e6 * request.memory_mb),
                          .dataset = request.dataset,
-                         .format = {}};
+                         .format = {},
+                         .marking = table.marking};
   if (!request.raw_format.empty()) options.format = read_raw_format(request.raw_format);
   return RawFramesReader(request.raw, options);
 }
@@ -116,6 +117,7 @@ BufferBytes buffer_bytes(const RawFramesReader& reader, const DecodeTarget& targ
                  (in_rows ? 0.0 : row_planes * height);
   double row =
       (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
+      2.0 * static_cast<double>(reader.marked_row_bytes()) +
       preparation.row_bytes(width, reader.measurements()) + (in_rows ? row_planes : 0.0);
   if (preparation.needs_frames()) whole += row * height, row = 0.0;
   return {whole, row};

@@ -8,6 +8,7 @@
 
 #include "io/image_limits.hpp"
 #include "io/images/raw_dump_reader.hpp"
+#include "io/images/raw_sizes.hpp"
 #include "io/recordings/decode_plan.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -23,11 +24,11 @@ constexpr const char* stream_name = "the stream";
 /// Frames of a stream, one after another.
 class StreamFrames {
  public:
-  StreamFrames(const ReadStream& read, RawFormat format)
+  StreamFrames(const ReadStream& read, RawFormat format, const RawMarking& marking)
       : read_(read), header_(format.header_bytes), bytes_(format.frame_bytes()) {
     format.header_bytes = 0;
     format.frames = 1;
-    frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format));
+    frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format), marking);
   }
 
   /// The raw numbers of the next frame, until the call after; none after the last.
@@ -54,7 +55,9 @@ class StreamFrames {
       frame_->read_rows(0, first, static_cast<int>(rows.end) - first,
                         values.data() + static_cast<std::size_t>(first) * row);
     });
-    return RawView::interleaved(values.data(), f.height, f.width, f.output_measurements());
+    RawView view = RawView::interleaved(values.data(), f.height, f.width, f.output_measurements());
+    view.is_marked = true;
+    return view;
   }
 
   [[noreturn]] void fail(std::size_t found, const std::vector<std::byte>& expected) const {
@@ -116,7 +119,8 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
       .pixel_rays = request.kind == DepthKind::z ? rays_of(request.lens, view) : PixelRays(),
       .undistortion = undistortion_of(request, view)};
 
-  StreamFrames frames(read, format);
+  check_markers(mapped.table().marking.markers, format, source);
+  StreamFrames frames(read, format, mapped.table().marking);
   PreparedFrames input([&] { return frames.next(); }, mapped.table(), preparation_of(request),
                        std::numeric_limits<int>::max());
   DecodedPlanes planes(target.needed_planes(), height, width);

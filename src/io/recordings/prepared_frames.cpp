@@ -23,11 +23,6 @@ int frames_of_mean(const Preparation& preparation, int recorded, int index) {
   return std::min(preparation.group(), recorded - index * preparation.group());
 }
 
-double added(double sum, double value, double clipped) {
-  if (!std::isfinite(value) || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
-  return value >= clipped ? std::numeric_limits<double>::infinity() : sum + value;
-}
-
 RawFrames copy_of(const RawView& raw) {
   RawFrames copy{.frames = 1,
                  .height = raw.height,
@@ -100,38 +95,36 @@ double Preparation::row_bytes_of_sums(int width, int measurements) const {
          (static_cast<double>(sizeof(double)) * measurements + sizeof(float));
 }
 
-void RowSums::start(const RawView& first, std::optional<float> saturation_level) {
+void RowSums::start(const RawView& first, const SaturationLevels& levels) {
   height_ = first.height;
   width_ = first.width;
   measurements_ = first.measurements;
   frames_ = 0;
-  saturation_level_ = saturation_level;
+  levels_ = levels;
   sums_.assign(static_cast<std::size_t>(first.pixels()) * static_cast<std::size_t>(measurements_),
                0.0);
 }
 
 void RowSums::add(const RawView& raw) {
-  const double clipped = saturation_level_ ? static_cast<double>(*saturation_level_)
-                                           : std::numeric_limits<double>::infinity();
   parallel_for(height_, [&](std::int64_t row) {
     const std::int64_t first = row * width_;
     for_each_run(raw, first, width_, [&](const auto* pixel, std::int64_t length, std::int64_t) {
       double* sum = sums_.data() + first * measurements_;
       for (std::int64_t x = 0; x < length; ++x, pixel += raw.column_stride)
         for (int k = 0; k < measurements_; ++k, ++sum)
-          *sum = added(*sum, static_cast<double>(pixel[k * raw.measurement_stride]), clipped);
+          *sum = levels_.added(*sum, static_cast<double>(pixel[k * raw.measurement_stride]));
     });
   });
   ++frames_;
 }
 
 RawView RowSums::means(double averaged) {
-  const double level = saturation_level_.value_or(std::numeric_limits<float>::infinity());
-  for (double& sum : sums_) sum = std::isinf(sum) ? level : sum / frames_;
+  for (double& sum : sums_) sum = levels_.mean(sum, frames_);
   averaged_.assign(static_cast<std::size_t>(height_) * static_cast<std::size_t>(width_),
                    static_cast<float>(averaged * frames_));
   RawView view = RawView::interleaved(sums_.data(), height_, width_, measurements_);
   view.averaged = averaged_.data();
+  view.is_marked = true;
   return view;
 }
 
@@ -150,6 +143,7 @@ std::optional<RawView> PreparedFrames::read() {
   if (raw && stray_light_) {
     stray_light_->remove(*raw, table_, clean_);
     raw = RawView::interleaved(clean_.values.data(), raw->height, raw->width, raw->measurements);
+    raw->is_marked = true;
   }
   if (!raw || preparation_.averaged == 1.0) return raw;
   averaged_.assign(static_cast<std::size_t>(raw->pixels()),
@@ -171,6 +165,7 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
     views.push_back(RawView::interleaved(exposed_[i].values.data(), raw->height, raw->width,
                                          raw->measurements));
     views.back().averaged = raw->averaged;
+    views.back().is_marked = raw->is_marked;
   }
   if (views.empty()) return std::nullopt;
   if (views.size() < frames)  // of a stream: recordings hold whole groups
@@ -200,7 +195,7 @@ std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progr
       preparation_.elsewhere.add(last);
       continue;
     }
-    if (i == 0) sums_.start(last, table_.saturation_level);
+    if (i == 0) sums_.start(last, SaturationLevels(table_));
     sums_.add(last);
   }
   if (!is_elsewhere(last)) return sums_.means(preparation_.averaged);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "decode/shared/saturation_level.hpp"
 #include "io/recordings/read_ahead.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
@@ -51,9 +52,9 @@ struct Preparation {
 /// Sums of the same rows of frames after another.
 class RowSums {
  public:
-  /// @param saturation_level  what is clipped in one frame is clipped in the mean; what is NaN or
-  ///                          infinite in one is NaN
-  void start(const RawView& first, std::optional<float> saturation_level);
+  /// @param levels  numbers that are clipped in one frame are clipped in the mean; numbers that are
+  ///                not finite in one frame are NaN
+  void start(const RawView& first, const SaturationLevels& levels);
   void add(const RawView& raw);
   /// The means, with how many measurements they are of, until the next start().
   /// @param averaged  of how many the numbers of one frame are
@@ -61,7 +62,7 @@ class RowSums {
 
  private:
   int height_ = 0, width_ = 0, measurements_ = 0, frames_ = 0;
-  std::optional<float> saturation_level_;
+  SaturationLevels levels_;
   std::vector<double> sums_;  // interleaved; infinite where clipped
   std::vector<float> averaged_;
 };

@@ -305,6 +305,25 @@ void TableReader::value(std::string_view key, std::vector<double>& target) {
   target = number_list(full(key), *node->as_array());
 }
 
+void TableReader::markers(std::string_view key, std::vector<double>& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) mistyped(full(key), *node, "a list of numbers, such as [65535]");
+  target.clear();
+  for (const toml::node& element : *node->as_array()) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const std::string word = element.value<std::string>().value_or("");
+    if (element.is_floating_point())
+      target.push_back(element.as_floating_point()->get());
+    else if (word == "nan")
+      target.push_back(std::numeric_limits<double>::quiet_NaN());
+    else if (word == "inf" || word == "-inf")
+      target.push_back(word == "inf" ? infinity : -infinity);
+    else
+      target.push_back(finite_number(full(key), element, "a number, nan, inf or -inf"));
+  }
+}
+
 void TableReader::value(std::string_view key, std::vector<int>& target) {
   const toml::node* node = find(key);
   if (!node) return;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -36,6 +37,17 @@ class TableWriter {
   }
   void number_or_word(std::string_view key, double number, std::string_view word, bool is_word) {
     is_word ? value(key, std::string(word)) : value(key, number);
+  }
+  /// Raw numbers; NaN and infinity are written as words. An empty list is left out.
+  void markers(std::string_view key, const std::vector<double>& numbers) {
+    auto list = nlohmann::ordered_json::array();
+    for (const double number : numbers) {
+      if (std::isfinite(number))
+        list.push_back(number);
+      else
+        list.push_back(std::isnan(number) ? "nan" : number > 0.0 ? "inf" : "-inf");
+    }
+    if (!list.empty()) value(key, list);
   }
   template <typename Value, typename Fields>
   void table(std::string_view key, const Value& source, Fields&& fields) {

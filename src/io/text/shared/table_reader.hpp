@@ -101,6 +101,9 @@ class TableReader {
     if (const auto index = index_of_word(key, words.all())) target = static_cast<Enum>(*index);
   }
 
+  /// A list of raw numbers, which may be NaN or infinite: nan, inf, -inf, or these words in quotes.
+  void markers(std::string_view key, std::vector<double>& target);
+
   /// A number, or a list of them.
   void number_or_list(std::string_view key, double& number, std::vector<double>& list);
   /// A number, or `word`, in which case `is_word`.
