@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|gpu|design|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
+#   scripts/packages.sh core|gpu|design|demo|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -18,25 +18,27 @@ packages_core=(
   libfmt-dev
   librandom123-dev    # random streams
 )
+packages_opencl=(ocl-icd-opencl-dev opencl-c-headers)  # its loader; can be left out
 # core and gpu.
-packages_gpu=(
-  "${packages_core[@]}"
-  ocl-icd-opencl-dev opencl-c-headers  # the loader of OpenCL; can be left out
-)
+packages_gpu=("${packages_core[@]}" "${packages_opencl[@]}")
 # core and design: nothing more.
 packages_design=("${packages_core[@]}")
-# All components and the command line.
-packages_build=(
-  "${packages_gpu[@]}"
+# The component report and `tofsmith demo`.
+packages_demo=(
+  "${packages_core[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
   libyaml-cpp-dev     # calibrations of lenses
   libembree-dev       # ray casting
-  libsqlite3-dev      # sweep store
-  libboost-dev        # Asio: generators in the network
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
   zlib1g-dev          # packs it and the pictures
+)
+# All components and the command line.
+packages_build=(
+  "${packages_demo[@]}" "${packages_opencl[@]}"
+  libsqlite3-dev      # sweep store
+  libboost-dev        # Asio: generators in the network
 )
 # The Python package, on top of the library.
 packages_python=(
@@ -119,6 +121,7 @@ packages_of() {
     core) printf '%s\n' "${packages_core[@]}" ;;
     gpu) printf '%s\n' "${packages_gpu[@]}" ;;
     design) printf '%s\n' "${packages_design[@]}" ;;
+    demo) printf '%s\n' "${packages_demo[@]}" ;;
     build) printf '%s\n' "${packages_build[@]}" ;;
     python) printf '%s\n' "${packages_python[@]}" ;;
     lab) printf '%s\n' "${packages_lab[@]}" ;;
@@ -131,7 +134,7 @@ packages_of() {
     arm64) printf '%s\n' "${packages_arm64[@]}" ;;
     package_arm64) printf '%s\n' "${packages_package_arm64[@]}" ;;
     arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
+    *) tofsmith_die "no package group '$1'; there are core, gpu, design, demo, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
   esac
 }
 
@@ -186,9 +189,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "which group? core, gpu, design, demo, build, python, lab, package, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check}"
+    packages_of "${2:?which group? core, gpu, design, demo, build, python, lab, package, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"
