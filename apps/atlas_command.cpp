@@ -13,6 +13,7 @@
 #include "atlas_page.hpp"
 #include "commands.hpp"
 #include "number_checks.hpp"
+#include "session.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/design.hpp"

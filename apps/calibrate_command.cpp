@@ -6,6 +6,7 @@
 
 #include "calibrate_output.hpp"
 #include "commands.hpp"
+#include "session.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 

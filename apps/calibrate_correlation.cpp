@@ -13,6 +13,7 @@
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -20,7 +21,6 @@
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

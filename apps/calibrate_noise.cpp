@@ -6,10 +6,10 @@
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

@@ -6,9 +6,9 @@
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

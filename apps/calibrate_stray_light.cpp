@@ -4,11 +4,11 @@
 
 #include "calibrate_output.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

@@ -5,12 +5,12 @@
 #include "calibrate_output.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "session.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "session.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
@@ -13,8 +14,7 @@
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
-#include "tofsmith/waveforms/waveform_export.hpp"
+#include "tofsmith/waveforms/export_report.hpp"
 
 namespace tofsmith::apps {
 

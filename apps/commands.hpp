@@ -2,9 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "session.hpp"
+namespace CLI {
+class App;
+}
 
 namespace tofsmith::apps {
+
+struct Session;
+
+/// Adds the subcommands of this program: all of them, or `demo` alone (apps/demo/).
+void add_commands(CLI::App& app, Session& session);
 
 /// Each adds one subcommand, in a file of its own. The subcommand's callback does the work and
 /// throws on failure; main() turns exceptions into messages and exit codes.

@@ -10,6 +10,7 @@
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
 #include "scene_source.hpp"
+#include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -22,7 +23,6 @@
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
-#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::apps {
 

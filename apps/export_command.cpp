@@ -4,13 +4,14 @@
 
 #include "commands.hpp"
 #include "number_checks.hpp"
+#include "session.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
+#include "tofsmith/waveforms/export_report.hpp"
 #include "tofsmith/waveforms/write_export.hpp"
 
 namespace tofsmith::apps {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "session.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith::apps {

@@ -20,6 +20,7 @@
 #include "help_pages.hpp"
 #include "interrupt.hpp"
 #include "printed_text.hpp"
+#include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
@@ -166,29 +167,13 @@ int run(int argc, char** argv) {
   app.add_flag("--force", session.force, "overwrite existing output files");
   app.add_option("--threads", session.threads, "threads to use; 0 = every core")
       ->check(CLI::Range(0, 1024));
-  app.footer("Try: tofsmith demo -o out    tofsmith codes    tofsmith design paper-10f0 -o out");
   std::unique_ptr<ThreadLimit> thread_limit;
   app.parse_complete_callback(
       [&] { thread_limit = std::make_unique<ThreadLimit>(session.threads); });
 
-  add_demo_command(app, session);
-  add_cameras_command(app, session);
-  add_codes_command(app, session);
-  add_design_command(app, session);
-  add_atlas_command(app, session);
-  add_evaluate_command(app, session);
-  add_multipath_command(app, session);
-  add_require_command(app, session);
-  add_export_command(app, session);
-  add_upload_command(app, session);
-  add_scene_command(app, session);
-  add_simulate_command(app, session);
-  add_decode_command(app, session);
-  add_report_command(app, session);
-  add_lab_command(app, session);
-  add_sweep_command(app, session);
-  add_calibrate_command(app, session);
-  add_reproduce_command(app, session);
+  add_commands(app, session);
+  if (app.get_subcommands([](const CLI::App*) { return true; }).size() > 1)
+    app.footer("Try: tofsmith demo -o out    tofsmith codes    tofsmith design paper-10f0 -o out");
 
   bool is_done = false;
   try {

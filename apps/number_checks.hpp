@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "session.hpp"
-#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith::apps {
 
@@ -65,16 +64,6 @@ inline CLI::Validator share_or_percentage(double min, double max) {
             return std::string();
           },
           "SHARE"};
-}
-
-/// "3/8" as the third of eight parts; "" is the whole. @throws UsageError
-inline SweepShard parse_shard(const std::string& text) {
-  SweepShard shard;
-  if (text.empty()) return shard;
-  if (!read_number_pair(text, '/', shard.index, shard.count) || shard.broken_rule())
-    throw UsageError(
-        fmt::format("--shard: found {}; expected i/n with i in 1 .. n, such as 3/8", text));
-  return shard;
 }
 
 }  // namespace tofsmith::apps

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "session.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/design_report.hpp"

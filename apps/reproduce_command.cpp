@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "fresh_directory.hpp"
 #include "paper/reproduction_directory.hpp"
+#include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 

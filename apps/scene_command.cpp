@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "fresh_directory.hpp"
 #include "scene_source.hpp"
+#include "session.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/image_file.hpp"

@@ -11,6 +11,7 @@
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "sweep_page.hpp"
+#include "sweep_shard.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/report/page.hpp"

@@ -10,6 +10,7 @@
 #include "help_pages.hpp"
 #include "interrupt.hpp"
 #include "number_checks.hpp"
+#include "session.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"

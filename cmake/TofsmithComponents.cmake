@@ -3,30 +3,30 @@
 # The components: which folders of src/ each is made of, and which others it stands on. Each is a
 # library, an export and a pair of Debian packages; everything else asks here.
 
-set(TOFSMITH_ALL_COMPONENTS core gpu design io lab report sweep)
+set(TOFSMITH_ALL_COMPONENTS core gpu design io report lab sweep)
 
 set(tofsmith_core_folders core code camera scene decode simulate)
 set(tofsmith_gpu_folders gpu)
 set(tofsmith_design_folders design)
 set(tofsmith_io_folders io)
-set(tofsmith_lab_folders waveforms calibrate instrument)
 set(tofsmith_report_folders report)
+set(tofsmith_lab_folders waveforms calibrate instrument)
 set(tofsmith_sweep_folders sweep)
 
 set(tofsmith_core_needs)
 set(tofsmith_gpu_needs core)
 set(tofsmith_design_needs core)
 set(tofsmith_io_needs design)
-set(tofsmith_lab_needs io)
-set(tofsmith_report_needs lab)  # its pages show calibrations and exports
+set(tofsmith_report_needs io)
+set(tofsmith_lab_needs report)  # for the pages of calibrations and exports
 set(tofsmith_sweep_needs io)
 
 set(tofsmith_core_about "codes, cameras, decoding and simulation")
 set(tofsmith_gpu_about "captures, trials, filtering and decoding on devices of OpenCL")
 set(tofsmith_design_about "the search for codes")
 set(tofsmith_io_about "files, images and meshes")
-set(tofsmith_lab_about "calibration, waveform formats and signal generators")
 set(tofsmith_report_about "figures and HTML pages")
+set(tofsmith_lab_about "calibration, waveform formats and signal generators")
 set(tofsmith_sweep_about "sweeps of many conditions")
 
 set(TOFSMITH_COMPONENTS "" CACHE STRING
@@ -43,7 +43,7 @@ foreach(component IN LISTS wanted_components)
   endif()
 endforeach()
 # From the top down: what is needed is wanted, too.
-foreach(component IN ITEMS sweep report lab io design gpu)
+foreach(component IN ITEMS sweep lab report io design gpu)
   if(component IN_LIST wanted_components)
     list(APPEND wanted_components ${tofsmith_${component}_needs})
   endif()

@@ -45,3 +45,17 @@ if(TOFSMITH_HARDEN AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_CXX_COMPILER
   target_link_options(tofsmith_build_options INTERFACE
     "$<${optimized}:LINKER:-z,relro,-z,now,-z,noexecstack>")
 endif()
+
+# Compiles a target at -O1 in optimized builds, which takes two thirds of the time of -O3: for code that
+# runs for a shorter time than it compiles. No level contracts or reorders sums, so results are the same.
+function(tofsmith_compile_fast target)
+  set(options $<$<CXX_COMPILER_ID:GNU,Clang>:-O1>)
+  # At -O1, GCC 12 takes the storage of Eigen's temporaries for used after it was freed.
+  list(APPEND options $<$<CXX_COMPILER_ID:GNU>:-Wno-use-after-free>)
+  get_target_property(type ${target} TYPE)
+  set(scope PRIVATE)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    set(scope INTERFACE)
+  endif()
+  target_compile_options(${target} ${scope} "$<$<CONFIG:Release>:${options}>")
+endfunction()

@@ -11,7 +11,8 @@ endif()
 
 set(objects)
 list(TRANSFORM TOFSMITH_BUILT_COMPONENTS PREPEND tofsmith_ OUTPUT_VARIABLE libraries)
-foreach(target IN LISTS libraries ITEMS tofsmith_paper tofsmith_cli _tofsmith)
+foreach(target IN LISTS libraries ITEMS tofsmith_paper tofsmith_demo_command
+        tofsmith_other_commands tofsmith_cli _tofsmith)
   if(TARGET ${target})
     target_compile_options(${target} PRIVATE -O0 -flto -fno-fat-lto-objects)
     list(APPEND objects "$<FILTER:$<TARGET_OBJECTS:${target}>,EXCLUDE,[.]gch$>")

@@ -3,11 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
-# installs what is missing of the groups named:
+# installs the missing packages of the groups named:
 #
-#   scripts/packages.sh core|gpu|design|build|python|lab|package|wheel|test|docs|benchmark|check|fuzz|arm64 ..
-#                                                     install what is missing
-#   scripts/packages.sh --list GROUP                  print the names, one a line
+#   scripts/packages.sh GROUP ...       install what is missing
+#   scripts/packages.sh --list GROUP    print the names, one per line
+#
+# A group is an array packages_GROUP below.
+# shellcheck disable=SC2034  # groups are looked up by name
 
 # Debian releases on which tofsmith is tested, the newest last.
 tofsmith_releases='bookworm trixie'
@@ -27,25 +29,27 @@ packages_core=(
   libfmt-dev
   librandom123-dev    # random streams
 )
+packages_opencl=(ocl-icd-opencl-dev opencl-c-headers)  # its loader; can be left out
 # core and gpu.
-packages_gpu=(
-  "${packages_core[@]}"
-  ocl-icd-opencl-dev opencl-c-headers  # the loader of OpenCL; can be left out
-)
+packages_gpu=("${packages_core[@]}" "${packages_opencl[@]}")
 # core and design: nothing more.
 packages_design=("${packages_core[@]}")
-# All components and the command line.
-packages_build=(
-  "${packages_gpu[@]}"
+# The component report and `tofsmith demo`.
+packages_demo=(
+  "${packages_core[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
   libyaml-cpp-dev     # calibrations of lenses
   libembree-dev       # ray casting
-  libsqlite3-dev      # sweep store
-  libboost-dev        # Asio: generators in the network
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
   zlib1g-dev          # packs it and the pictures
+)
+# All components and the command line.
+packages_build=(
+  "${packages_demo[@]}" "${packages_opencl[@]}"
+  libsqlite3-dev      # sweep store
+  libboost-dev        # Asio: generators in the network
 )
 # The Python package, on top of the library.
 packages_python=(
@@ -157,25 +161,14 @@ packages_of() {
   list_group "$1" | named_in_release "${release:-${tofsmith_releases##* }}"
 }
 list_group() {
-  case "$1" in
-    core) printf '%s\n' "${packages_core[@]}" ;;
-    gpu) printf '%s\n' "${packages_gpu[@]}" ;;
-    design) printf '%s\n' "${packages_design[@]}" ;;
-    build) printf '%s\n' "${packages_build[@]}" ;;
-    python) printf '%s\n' "${packages_python[@]}" ;;
-    lab) printf '%s\n' "${packages_lab[@]}" ;;
-    package) printf '%s\n' "${packages_package[@]}" ;;
-    wheel) printf '%s\n' "${packages_wheel[@]}" ;;
-    test) printf '%s\n' "${packages_test[@]}" ;;
-    docs) printf '%s\n' "${packages_docs[@]}" ;;
-    benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
-    check) printf '%s\n' "${packages_check[@]}" ;;
-    fuzz) printf '%s\n' "${packages_fuzz[@]}" ;;
-    arm64) printf '%s\n' "${packages_arm64[@]}" ;;
-    package_arm64) printf '%s\n' "${packages_package_arm64[@]}" ;;
-    arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark, check, fuzz and arm64" ;;
-  esac
+  [[ " $(package_groups) " == *" $1 "* ]] ||
+    tofsmith_die "found package group '$1'; expected one of: $(package_groups)"
+  local -n group="packages_$1"
+  printf '%s\n' "${group[@]}"
+}
+# The names of all package groups.
+package_groups() {
+  compgen -A variable packages_ | sed 's/^packages_//; /^by_release$/d' | paste -sd' '
 }
 
 # Those of the packages named on standard input that are not installed.
@@ -249,9 +242,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "no package group is given; expected some of: $(package_groups)"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark or check}"
+    packages_of "${2:-}"
   else
     for group in "$@"; do
       install_packages "$group"

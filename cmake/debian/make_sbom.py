@@ -25,7 +25,7 @@ import sys
 
 # Where the objects of a component are. What reproduces the paper is in both programs.
 OBJECTS = {
-    "tool": ["apps/CMakeFiles/tofsmith_cli.dir/", "src/CMakeFiles/tofsmith_paper.dir/"],
+    "tool": ["apps/CMakeFiles/", "src/CMakeFiles/tofsmith_paper.dir/"],
     "python": ["python/CMakeFiles/_tofsmith.dir/", "src/CMakeFiles/tofsmith_paper.dir/"],
 }
 # Headers of C: they declare what shared libraries hold, and nothing of them is compiled in.

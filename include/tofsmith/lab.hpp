@@ -3,15 +3,18 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::lab: calibration, waveform formats and generators. Includes tofsmith/io.hpp.
+/// All of tofsmith::lab: calibration, waveform formats and generators. Includes
+/// tofsmith/report.hpp.
 
 #include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
 #include "tofsmith/instrument/scpi_session.hpp"
 #include "tofsmith/instrument/upload.hpp"
-#include "tofsmith/io.hpp"
+#include "tofsmith/report.hpp"
+#include "tofsmith/waveforms/export_report.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 #include "tofsmith/waveforms/write_export.hpp"

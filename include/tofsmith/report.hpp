@@ -3,11 +3,10 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::report: figures and pages. Includes tofsmith/lab.hpp.
+/// All of tofsmith::report: figures and pages. Includes tofsmith/io.hpp.
 
-#include "tofsmith/lab.hpp"
+#include "tofsmith/io.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "tofsmith/report/figure.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 #include "tofsmith/report/page.hpp"

@@ -8,8 +8,8 @@
 #include "progress.hpp"
 #include "reports.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::python {
 

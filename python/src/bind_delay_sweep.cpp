@@ -8,10 +8,10 @@
 #include "progress.hpp"
 #include "reports.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/image_file.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::python {
 

@@ -23,7 +23,7 @@ Folders operator+(Folders a, const Folders& b) {
 
 const Folders data_types = {"core", "code", "scene", "camera", "decode", "simulate", "design"};
 const Folders products =
-    data_types + Folders{"gpu", "io", "waveforms", "sweep", "calibrate", "instrument", "report"};
+    data_types + Folders{"gpu", "io", "report", "waveforms", "sweep", "calibrate", "instrument"};
 const Folders all = products + Folders{"paper"};
 
 /// The house: which other folders each folder may include. simulate never includes design: the
@@ -38,11 +38,11 @@ const std::map<std::string, Folders> may_include = {
     {"gpu", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"design", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"io", data_types},
-    {"waveforms", data_types + Folders{"io"}},
     {"sweep", data_types + Folders{"io"}},
-    {"calibrate", data_types + Folders{"io"}},
+    {"report", data_types + Folders{"io"}},
+    {"waveforms", data_types + Folders{"io", "report"}},
+    {"calibrate", data_types + Folders{"io", "report"}},
     {"instrument", data_types + Folders{"io", "waveforms"}},
-    {"report", data_types + Folders{"io", "waveforms", "calibrate"}},
     {"paper", products},
     {"apps", all},
 };
@@ -57,8 +57,8 @@ const std::map<std::string, Component> components = {
     {"gpu", {{"gpu"}, "core"}},
     {"design", {{"design"}, "core"}},
     {"io", {{"io"}, "design"}},
-    {"lab", {{"waveforms", "calibrate", "instrument"}, "io"}},
-    {"report", {{"report"}, "lab"}},
+    {"report", {{"report"}, "io"}},
+    {"lab", {{"waveforms", "calibrate", "instrument"}, "report"}},
     {"sweep", {{"sweep"}, "io"}},
 };
 

@@ -12,7 +12,6 @@
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
 namespace {

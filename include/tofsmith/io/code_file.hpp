@@ -72,6 +72,12 @@ struct CodeFileOptions {
 /// @throws IoError as parse_code_json() and parse_code_npz(), or if the file cannot be read
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout = {});
 
+/// The waveforms of a code as a CSV table with one row per time sample, which read_code() reads
+/// back:
+///   time_s, modulation_1 .. modulation_E (power over average), demodulation_1 .. demodulation_K
+/// A sample is the mean over its cell, so that duties are exact.
+std::string waveforms_to_csv(const CodeSet& code, double fundamental_frequency_hz);
+
 /// A code of exposures from the arrays of others: light (N, K), or one for all exposures (N), and
 /// gates (N, K), in this order or with time along the second axis, and of any scale: the brightest
 /// light gets a mean of 1, and gates above 1 are divided by the largest. Columns as in

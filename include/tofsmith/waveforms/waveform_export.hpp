@@ -144,11 +144,6 @@ inline constexpr std::string_view known_generators =
 /// all where none of them does.
 double fastest_sample_rate_hz(std::string_view format);
 
-/// The waveforms of a code as a table for a waveform generator, one row per time sample:
-///   time_s, modulation_1 .. modulation_E (power over average), demodulation_1 .. demodulation_K
-/// A sample is the mean over its cell, so that duties are exact.
-std::string waveforms_to_csv(const CodeSet& code, double fundamental_frequency_hz);
-
 /// What hardware a code is exported for. What is not given is the camera's generator's, or else as
 /// much as the code has and the format holds.
 struct ExportOptions {

@@ -21,10 +21,10 @@ set_tests_properties(Report.DrawsEveryFigureInABrowser Report.DrawsEveryFigureOn
   PROPERTIES FIXTURES_REQUIRED sample_page SKIP_RETURN_CODE 77 TIMEOUT 300)
 
 if(TOFSMITH_BUILD_APPS)
-  # The demo's own report, as a user gets it.
+  # The report of the program that scripts/demo.sh builds.
   set(demo_directory "${CMAKE_CURRENT_BINARY_DIR}/demo")
   add_test(NAME Report.DemoRuns
-    COMMAND tofsmith_cli demo -o "${demo_directory}" --trials 2000 --force)
+    COMMAND tofsmith_demo demo -o "${demo_directory}" --trials 2000 --force)
   set_tests_properties(Report.DemoRuns PROPERTIES FIXTURES_SETUP demo_report TIMEOUT 300)
   add_test(NAME Report.DrawsEveryFigureOfTheDemoInABrowser
     COMMAND ${browser_test} "${demo_directory}/report.html" --screenshot demo_report.png)

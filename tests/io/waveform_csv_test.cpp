@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/waveforms/waveform_export.hpp"
+#include "tofsmith/io/code_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "report/calibration_page.hpp"
+#include "calibrate/calibration_page.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith {
 

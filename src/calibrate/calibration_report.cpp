@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/instrument_reports.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "report/calibration_page.hpp"
+#include "calibrate/calibration_page.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"

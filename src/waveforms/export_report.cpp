@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/instrument_reports.hpp"
+#include "tofsmith/waveforms/export_report.hpp"
 
 #include <fmt/format.h>
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/calibration_page.hpp"
+#include "calibrate/calibration_page.hpp"
+#include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
-#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith {
 
