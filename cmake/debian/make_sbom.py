@@ -32,7 +32,7 @@ OBJECTS = {
 DECLARATIONS = re.compile(
     r"libc6-dev|linux-libc-dev|libcrypt-dev|libpng-dev|zlib1g-dev|libzip-dev|libhdf5-dev|"
     r"libsqlite3-dev|liblxi-dev|libtirpc-dev|libopenmpi-dev|libfftw3-dev|libpython3\.\d+-dev|"
-    r"opencl-c-headers|python3-numpy")
+    r"opencl-c-headers|python3-numpy|python3-numpy-dev")
 DISTRIBUTION = platform.freedesktop_os_release().get("VERSION_CODENAME", "debian")
 SPDX_NAMES = {"Expat": "MIT", "BSD-2-clause": "BSD-2-Clause", "BSD-3-clause": "BSD-3-Clause"}
 
@@ -54,6 +54,8 @@ def known_licences(copyright_file):
         files = re.match(r"Files: (.*)", paragraph)
         licence = re.search(r"^License: (.*)", paragraph, re.M)
         for name in files[1].split() if files and licence else []:
+            if name == "*":  # tofsmith itself
+                continue
             licences[name] = spdx_licence(licence[1])
     return licences
 
