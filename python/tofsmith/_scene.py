@@ -157,7 +157,8 @@ def lens_dict(lens: Lens) -> dict[str, Any]:
 
 def lens_from(keys: dict[str, Any]) -> Lens:
     """The same back."""
-    return Lens(**{key: tuple(v) if isinstance(v, list) else v for key, v in keys.items()})
+    fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in keys.items()}
+    return Lens(**fields)
 
 
 def centred_lens(width: int, height: int, horizontal_angle_rad: float = pi / 3) -> Lens:

@@ -118,7 +118,7 @@ def calibrate_temperature(
         raise ValueError(f"temperature_c: got {_check.shown(temperature_c)}; needs numbers of shape "
                          "(F,)")
     handle = _tofsmith.calibrate_temperature(
-        _check.frames(frames, "frames"), degrees.tolist(), code_of(code, camera)._handle,
+        _check.frames(frames, "frames"), [float(c) for c in degrees], code_of(code, camera)._handle,
         camera._handle, _check.progress(progress))
     fields = handle.fields()
     for name in ("offset_m_per_c", "signal_per_c", "offset_m_per_c2", "signal_per_c2"):

@@ -91,9 +91,9 @@ def depth_error_curves(
         _tofsmith.curve_figure(
             "Depth error",
             [c[0] for c in curves],
-            [c[1].tolist() for c in curves],
-            [c[2].tolist() for c in curves],
-            [c[3].tolist() for c in curves],
+            [[float(x) for x in c[1]] for c in curves],
+            [[float(x) for x in c[2]] for c in curves],
+            [[float(x) for x in c[3]] for c in curves],
             along,
             "e/s",
         )
@@ -105,7 +105,7 @@ def sweep_map(results: SweepResults, x: str, y: str, *, kind: str = "linear") ->
     that varies, a panel per code."""
     across, up, maps = sweep_maps(results, x, y, kind)
     x_ticks, y_ticks = [f"{v:.4g}" for v in across], [f"{v:.4g}" for v in up]
-    errors_m = [values_mm / 1e3 for values_mm in maps.values()]
+    errors_m = [np.asarray(values_mm / 1e3, np.float64) for values_mm in maps.values()]
     return _figure(_tofsmith.heat_map_figure("Depth error", list(maps), errors_m, x_ticks, y_ticks,
                                              x, y, ""))
 

@@ -201,8 +201,8 @@ def depth_error_map(
     kind = kind_of(listed, kind)
     grids = [error_grid(report, kind) for report in listed]
     values_mm = [1e3 * grid[2] for grid in grids]
-    lowest = min(np.nanmin(np.maximum(v, 1e-6)) for v in values_mm)
-    highest = max(np.nanmax(v) for v in values_mm)
+    lowest = min(float(np.nanmin(np.maximum(v, 1e-6))) for v in values_mm)
+    highest = max(float(np.nanmax(v)) for v in values_mm)
     norm = LogNorm(lowest, max(highest, 1.001 * lowest))
     rows, columns = grid(len(listed))
     figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows)
