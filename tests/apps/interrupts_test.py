@@ -32,6 +32,16 @@ class Interrupts(CommandLineTest):
             time.sleep(0.1)
         self.fail(f"{name} did not appear")
 
+    def wait_for_handler(self, process, number):
+        """Until the process, which may start slowly, handles the signal."""
+        for _ in range(600):
+            with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
+                caught = next(line for line in status if line.startswith("SigCgt:"))
+            if int(caught.split()[1], 16) >> (number - 1) & 1:
+                return
+            time.sleep(0.1)
+        self.fail(f"signal {number} is not handled")
+
     def contents(self):
         return {name: self.bytes_of(name) for name in self.files()
                 if os.path.isfile(self.path(name))}
@@ -40,6 +50,7 @@ class Interrupts(CommandLineTest):
         os.mkfifo(self.path("pipe.npy"))
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             process = self.start("decode", "pipe.npy", "--code", "sinusoid-k4", "-o", "d.npy")
+            self.wait_for_handler(process, number)
             time.sleep(0.3)
             process.send_signal(number)
             out, error = process.communicate(timeout=10)
