@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/shared/text_numbers.hpp"
 #include "session.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
@@ -57,7 +57,7 @@ std::string label_of(const SweepSpec& spec, std::size_t a) {
 /// A letter, digit or dash for each character: the id of a figure.
 std::string figure_id(std::string id) {
   std::ranges::replace_if(
-      id, [](unsigned char c) { return !std::isalnum(c); }, '-');
+      id, [](char c) { return !is_letter_or_digit(c); }, '-');
   return id;
 }
 

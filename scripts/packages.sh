@@ -87,6 +87,7 @@ packages_test=(
   python3-opencv                             # distorts as lenses must
   python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser
+  locales                                    # one with a decimal comma
 )
 # The documentation.
 packages_docs=(

@@ -5,10 +5,11 @@
 # Installs what is missing, builds tofsmith and runs its tests. Ends with a line
 # `N passed, N failed, N skipped`, and fails unless some ran and none failed.
 #
-#   scripts/test.sh [--preset NAME] [--floors core,io,..] [options of ctest]
+#   scripts/test.sh [--preset NAME] [--floors core,io,..] [--locale NAME] [options of ctest]
 #
 #   --preset NAME   a preset of CMakePresets.json: dev (default), asan, tsan
 #   --floors LIST   build and run the unit tests of these folders only
+#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in each process as a host may do
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -17,6 +18,7 @@ source "$root/scripts/packages.sh"
 
 preset=dev
 floors=()
+locale=
 while (($#)); do
   case "$1" in
     -h | --help)
@@ -24,6 +26,7 @@ while (($#)); do
       exit 0
       ;;
     --preset) preset=${2:?a preset} && shift 2 ;;
+    --locale) locale=${2:?a locale} && shift 2 ;;
     --floors) IFS=, read -ra floors <<<"${2:?a list of folders}" && shift 2 ;;
     *) break ;;
   esac
@@ -53,10 +56,19 @@ settings=(-DTOFSMITH_COMPONENTS="$components")
 cmake --log-level=WARNING --preset "$preset" "${settings[@]}"
 cmake --build "$build" --target "${targets[@]}"
 
+in_locale=()
+if [[ -n "$locale" ]]; then
+  [[ -e "$build/locale/$locale/LC_NUMERIC" ]] ||
+    tofsmith_die "found no locale $locale in $build/locale; expected de_DE.UTF-8, from the package locales"
+  cmake --build "$build" --target locale_shim
+  in_locale=(env LOCPATH="$build/locale" LC_ALL="$locale" TOFSMITH_TEST_LOCALE="$locale"
+    LD_PRELOAD="$build/tests/liblocale_shim.so")
+fi
+
 failures="$build/Testing/Temporary/LastTestsFailed.log" # one a line, with those that could not run
 rm -f "$results" "$failures"
 status=0
-ctest --preset "$preset" --parallel "$(nproc)" --output-on-failure --output-junit "$results" "$@" \
+"${in_locale[@]}" ctest --preset "$preset" --parallel "$(nproc)" --output-on-failure --output-junit "$results" "$@" \
   </dev/null || status=$?
 
 [[ -s "$results" ]] || tofsmith_die "ctest wrote no results"

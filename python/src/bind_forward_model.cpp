@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -18,7 +19,8 @@ py::array_t<double> rows_by_depth(const ForwardModel& model, const Doubles& dept
                                   OfDepth of_depth) {
   for (py::ssize_t i = 0; i < depth_bin.size(); ++i)
     if (!std::isfinite(depth_bin.data()[i]))
-      refuse("depth_bin", std::to_string(depth_bin.data()[i]) + " at index " + std::to_string(i),
+      refuse("depth_bin",
+             fmt::format("{:f}", depth_bin.data()[i]) + " at index " + std::to_string(i),
              "finite numbers");
   Eigen::MatrixXd rows(depth_bin.size(), model.measurements());
   for (py::ssize_t i = 0; i < depth_bin.size(); ++i)
@@ -28,7 +30,7 @@ py::array_t<double> rows_by_depth(const ForwardModel& model, const Doubles& dept
 
 void check_light(double signal_e_per_s, double ambient_e_per_s) {
   if (!(std::isfinite(signal_e_per_s) && signal_e_per_s >= 0.0))
-    refuse("signal_e_per_s", std::to_string(signal_e_per_s), "a finite number >= 0");
+    refuse("signal_e_per_s", fmt::format("{:f}", signal_e_per_s), "a finite number >= 0");
   if (!(std::isfinite(ambient_e_per_s) && ambient_e_per_s >= 0.0))
     refuse("ambient_e_per_s", std::to_string(ambient_e_per_s), "a finite number >= 0");
 }

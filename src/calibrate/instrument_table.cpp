@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/shared/enum_words.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -255,13 +256,11 @@ InstrumentTable read_instrument_table(const std::filesystem::path& path, Decimal
 
 double seconds_per_unit(std::string_view column_name) {
   std::string lower(column_name);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(lower, lower.begin(), lower_case);
   // The last word: what stands in brackets or after an underscore.
-  while (!lower.empty() && std::isalpha(static_cast<unsigned char>(lower.back())) == 0)
-    lower.pop_back();
+  while (!lower.empty() && !is_letter(lower.back())) lower.pop_back();
   std::size_t begin = lower.size();
-  while (begin > 0 && std::isalpha(static_cast<unsigned char>(lower[begin - 1])) != 0) --begin;
+  while (begin > 0 && is_letter(lower[begin - 1])) --begin;
   const std::string unit = lower.substr(begin);
   constexpr std::array<std::pair<std::string_view, double>, 8> units{{{"s", 1.0},
                                                                       {"second", 1.0},

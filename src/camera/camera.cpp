@@ -10,6 +10,7 @@
 
 #include "camera/number_checks.hpp"
 #include "camera/shared/actual_code.hpp"
+#include "camera/shared/listed_exposures.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -341,14 +342,7 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
         fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
   if (!camera.sensor.drain)
     if (auto unfilled = unfilled_taps(code, what)) return unfilled;
-  const std::size_t ordered = camera.playback ? camera.playback->order.size() : 0;
-  if (ordered > 0 && ordered != static_cast<std::size_t>(code.exposures()))
-    return broken("number of playback.order", ordered,
-                  fmt::format("must equal the {} exposures of {}", code.exposures(), what));
-  const std::vector<double>& each_s = camera.exposure_s.each_s;
-  if (!each_s.empty() && each_s.size() != static_cast<std::size_t>(code.exposures()))
-    return broken("number of exposure_s", each_s.size(),
-                  fmt::format("must equal the {} exposures of {}", code.exposures(), what));
+  if (auto others = other_exposures_listed(camera, code.exposures(), " of " + what)) return others;
   return pulse_not_generated(code, camera);
 }
 
@@ -385,8 +379,9 @@ std::optional<BrokenRule> taps_beyond_families(const Camera& camera) {
 
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera) {
   if (auto none = why_no_family(name, family_options(camera))) return none;
-  if (auto other = why_other_receiver(make_family(name, family_options(camera)), camera))
-    return other;
+  const CodeSet code = make_family(name, family_options(camera));
+  if (auto other = why_other_receiver(code, camera)) return other;
+  if (camera.sensor.readout == Readout::rows) return why_not_playable(rows_of(code), camera);
   return text_of(taps_beyond_families(camera));
 }
 

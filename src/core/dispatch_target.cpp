@@ -8,8 +8,8 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <cctype>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -17,9 +17,8 @@ namespace tofsmith {
 namespace {
 
 bool same_word(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower_case(x) == lower_case(y); });
 }
 
 }  // namespace

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
+
+#include "core/shared/text_numbers.hpp"
 
 namespace tofsmith {
 
@@ -21,13 +22,9 @@ bool keeps(double value, std::string_view rule) {
     if (there) rule.remove_prefix(beginning.size());
     return there;
   };
-  const auto number = [&rule] {
-    const std::string text(rule);
-    char* end = nullptr;
-    double found = std::strtod(text.c_str(), &end);
-    if (*end == '/') found /= std::strtod(end + 1, &end);
-    rule.remove_prefix(static_cast<std::size_t>(end - text.c_str()));
-    return found;
+  const auto number = [&rule, &drop] {
+    const double found = take_number(rule).value();
+    return drop("/") ? found / take_number(rule).value() : found;
   };
   if (drop("0 or ") && value == 0.0) return true;
   if (drop("finite") && !std::isfinite(value)) return false;

@@ -38,10 +38,12 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
     return broken("number of exposure_s", listed,
                   fmt::format("must equal the {} exposures of playback.order", ordered));
   const bool has_rows = camera.sensor.readout == Readout::rows;
-  const std::size_t exposures = has_rows ? 0 : std::max(listed, ordered);
+  const std::size_t exposures = std::max(listed, ordered);
   const char* const which = listed > 0 ? "number of exposure_s" : "number of playback.order";
+  if (has_rows && exposures > 1)
+    return broken(which, exposures, "must be 1: rows are sums of the light of one exposure");
   const auto measurements = static_cast<int>(exposures) * measurements_per_exposure(camera.sensor);
-  if (exposures > 0 && measurements < (camera.sensor.subtracts() ? 2 : 3))
+  if (exposures > 0 && !has_rows && measurements < (camera.sensor.subtracts() ? 2 : 3))
     return broken(which, exposures,
                   fmt::format("gives {} measurement{}; signal, ambient light and depth are three "
                               "unknowns",

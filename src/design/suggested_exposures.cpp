@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/suggested_exposures.hpp"
 
+#include <algorithm>
+
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
@@ -19,7 +21,8 @@ int useful_harmonics(const Camera& camera) {
 
 std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method) {
   const std::size_t listed = camera.exposure_s.each_s.size();
-  if (listed > 0) return {static_cast<int>(listed)};
+  const std::size_t ordered = camera.playback ? camera.playback->order.size() : 0;
+  if (listed > 0 || ordered > 0) return {static_cast<int>(std::max(listed, ordered))};
   const int taps = camera.sensor.taps;
   if (method == DesignMethod::factorize) return {3, 4, 5};
   if (method == DesignMethod::search) return {1, 2};

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/gpu.hpp"
 
@@ -15,8 +15,7 @@ namespace {
 
 std::string in_small_letters(std::string_view text) {
   std::string small(text);
-  for (char& letter : small)
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  for (char& letter : small) letter = lower_case(letter);
   return small;
 }
 

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <vector>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -34,8 +34,8 @@ int port_in(std::string_view digits, std::string_view text) {
 
 std::string host_in(std::string_view host, std::string_view text) {
   if (host.empty()) reject_address(text, "there is no host");
-  const bool plain = std::ranges::all_of(host, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == ':' || c == '%';
+  const bool plain = std::ranges::all_of(host, [](char c) {
+    return is_letter_or_digit(c) || c == '.' || c == '-' || c == '_' || c == ':' || c == '%';
   });
   if (!plain || host.front() == '-')
     reject_address(text, fmt::format("'{}' is no name or number of a host", host));
@@ -62,10 +62,9 @@ InstrumentAddress host_and_port(std::string_view rest, std::string_view text) {
   return address;
 }
 
-std::string upper_case(std::string_view text) {
+std::string all_upper_case(std::string_view text) {
   std::string upper(text);
-  std::ranges::transform(upper, upper.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  for (char& c : upper) c = upper_case(c);
   return upper;
 }
 
@@ -77,10 +76,8 @@ InstrumentAddress visa_address(std::string_view text) {
     parts.push_back(text.substr(begin, end - begin));
     begin = end + 2;
   }
-  const std::string bus = upper_case(parts.front()), kind = upper_case(parts.back());
-  const bool network =
-      bus.starts_with("TCPIP") &&
-      std::ranges::all_of(bus.substr(5), [](unsigned char c) { return std::isdigit(c) != 0; });
+  const std::string bus = all_upper_case(parts.front()), kind = all_upper_case(parts.back());
+  const bool network = bus.starts_with("TCPIP") && std::ranges::all_of(bus.substr(5), is_digit);
   if (!network) reject_address(text, fmt::format("'{}' is no network", parts.front()));
   InstrumentAddress address;
   address.host = host_in(parts.size() > 1 ? parts[1] : "", text);
@@ -105,7 +102,7 @@ std::string InstrumentAddress::text() const {
 InstrumentAddress parse_instrument_address(std::string_view text) {
   const std::size_t scheme_end = text.find("://");
   if (scheme_end == std::string_view::npos) {
-    const std::string upper = upper_case(text);
+    const std::string upper = all_upper_case(text);
     for (const char* bus : {"TCPIP", "USB", "GPIB", "ASRL"})
       if (upper.starts_with(bus) && upper.find("::") != std::string::npos)
         return visa_address(text);

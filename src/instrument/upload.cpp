@@ -6,10 +6,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <thread>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -167,9 +167,8 @@ const GeneratorModel& identified_model(const InstrumentIdentity& identity, std::
   const GeneratorModel* const model = find_generator_model(identity.model);
   const auto made_by = [&](std::string_view vendor) {
     const std::string_view found = std::string_view(identity.vendor).substr(0, 7);
-    return std::ranges::equal(found, vendor.substr(0, 7), [](unsigned char a, unsigned char b) {
-      return std::toupper(a) == std::toupper(b);
-    });
+    return std::ranges::equal(found, vendor.substr(0, 7),
+                              [](char a, char b) { return upper_case(a) == upper_case(b); });
   };
   const bool known_vendor =
       model != nullptr &&

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+
+#include "core/shared/text_numbers.hpp"
 
 namespace tofsmith::plotly {
 namespace {
@@ -23,7 +24,7 @@ std::vector<Tick> round_multiples(const ValueRange& range) {
   const int count = 1 + static_cast<int>(std::floor(range.high / step + 1e-6 - first));
   for (int i = 0; i < count; ++i) {
     const std::string text = fmt::format("{:.6g}", (first + i) * step);
-    ticks.push_back({std::strtod(text.c_str(), nullptr), text});
+    ticks.push_back({*number_in(text), text});
   }
   return ticks;
 }

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cctype>
 #include <utility>
 
+#include "core/shared/text_numbers.hpp"
 #include "report/html.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -116,8 +116,7 @@ std::string html_of(const CheckedStatementList& list, const Numbering& numbering
 std::string as_url(const std::string& path) {
   std::string url;
   for (const char c : path)
-    url += std::isalnum(static_cast<unsigned char>(c)) ||
-                   std::string_view("-._~/").find(c) != std::string_view::npos
+    url += is_letter_or_digit(c) || std::string_view("-._~/").find(c) != std::string_view::npos
                ? std::string(1, c)
                : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   return url;

@@ -7,10 +7,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 
+#include "core/shared/text_numbers.hpp"
 #include "report/logarithmic_ticks.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -158,7 +158,7 @@ std::vector<double> drawn(const std::vector<Series>& series, std::vector<double>
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;
   // The JSON writer prints the shortest digits that read back the same.
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+  return *number_in(fmt::format("{:.6g}", value));
 }
 
 Json numbers(std::span<const double> values) {

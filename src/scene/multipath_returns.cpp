@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/scene/bounced_light.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
@@ -27,12 +29,12 @@ void validate_pixel(std::span<const MultipathReturn> returns, int row, int colum
             "must not be: the pixel has no direct return");
     require(std::isfinite(distance_m) && distance_m >= before_m, name("distance_m"), distance_m,
             i == 0 ? "must be finite and not nearer than the direct return at " +
-                         std::to_string(before_m) + " m"
+                         fmt::format("{:f}", before_m) + " m"
                    : "must be finite and in order, not nearer than the return before it at " +
-                         std::to_string(before_m) + " m");
+                         fmt::format("{:f}", before_m) + " m");
     require(distance_m - direct_m < range_m, name("distance_m"), distance_m,
-            "must be less than the unambiguous range, " + std::to_string(range_m) +
-                " m, behind the direct return at " + std::to_string(direct_m) + " m");
+            "must be less than the unambiguous range, " + fmt::format("{:f}", range_m) +
+                " m, behind the direct return at " + fmt::format("{:f}", direct_m) + " m");
     before_m = distance_m;
   }
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/multipath_error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -175,7 +177,7 @@ void MultipathErrorOptions::validate(double range_m) const {
   const auto below_range = [range_m](const std::vector<double>& values, const char* field) {
     for (const double value : values)
       require(value < range_m, field, value,
-              "must be > 0 and below the range, " + std::to_string(range_m) + " m");
+              "must be > 0 and below the range, " + fmt::format("{:f}", range_m) + " m");
   };
   for_each_field(*this, [](const auto& field) {
     if constexpr (requires { field.value.empty(); })

@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-int number_in(const char* variable) {
+int environment_number(const char* variable) {
   const char* const value = std::getenv(variable);
   if (value == nullptr) return 0;
   const std::string_view text(value);
@@ -27,10 +27,10 @@ int number_in(const char* variable) {
 }  // namespace
 
 int launched_processes() {
-  if (const int size = number_in("OMPI_COMM_WORLD_SIZE"); size > 0) return size;
+  if (const int size = environment_number("OMPI_COMM_WORLD_SIZE"); size > 0) return size;
   // Under srun, where each step says how many there are of it.
   const bool has_rank = std::getenv("PMIX_RANK") != nullptr;
-  const int size = has_rank ? number_in("SLURM_STEP_NUM_TASKS") : 1;
+  const int size = has_rank ? environment_number("SLURM_STEP_NUM_TASKS") : 1;
   return size > 0 ? size : 1;
 }
 

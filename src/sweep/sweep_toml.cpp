@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/table_reader.hpp"
 #include "sweep/axis_blocks.hpp"
@@ -42,7 +43,7 @@ void check_key(const TableReader& table, const char* field, const std::string& k
 }
 
 /// To twelve digits, so that 0.1 + 0.2 is the 0.3 that a list would say.
-double rounded(double value) { return std::stod(fmt::format("{:.12g}", value)); }
+double rounded(double value) { return *number_in(fmt::format("{:.12g}", value)); }
 
 std::vector<SettingValue> range_values(const TableReader& table, double from, double to,
                                        double step) {
@@ -78,9 +79,8 @@ std::vector<SettingValue> logarithmic_values(const TableReader& table, double fr
 }
 
 bool may_be_value(const std::string& line) {
-  const auto is_of_a_word = [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("+-_./").find(static_cast<char>(c)) != std::string_view::npos;
+  const auto is_of_a_word = [](char c) {
+    return is_letter_or_digit(c) || std::string_view("+-_./").find(c) != std::string_view::npos;
   };
   const bool in_brackets = std::string_view("\"'[{").find(line.front()) != std::string_view::npos;
   return line.size() <= 4096 && (in_brackets || std::ranges::all_of(line, is_of_a_word));

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 
@@ -87,7 +87,7 @@ std::vector<GeneratorModel> make_models() {
 
 std::string upper(std::string_view text) {
   std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (char& c : result) c = upper_case(c);
   return result;
 }
 

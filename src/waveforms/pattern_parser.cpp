@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include "core/shared/bits.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
 #include "waveforms/pattern_memory.hpp"
@@ -20,7 +20,7 @@ constexpr std::size_t max_words = std::size_t{1} << 26;
 
 std::string lower(std::string_view text) {
   std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (char& c : result) c = lower_case(c);
   return result;
 }
 

@@ -8,15 +8,15 @@
 #include <cmath>
 
 #include "camera/shared/actual_code.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {
 
 bool is_name(const std::string& name) {
-  return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) != 0 &&
-         std::ranges::all_of(name,
-                             [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  return !name.empty() && is_letter(name.front()) &&
+         std::ranges::all_of(name, [](char c) { return is_letter_or_digit(c) || c == '_'; });
 }
 
 constexpr int max_periods = 4096;

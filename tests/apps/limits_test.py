@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 """Every command that writes works with little memory, few files, a small stack, and without home,
-temporary folder, locale and a writable root.
+temporary folder and a writable root.
 
     limits_test.py TOFSMITH --figures     peaks of memory on inputs of usual size, under these limits
 """
@@ -26,7 +26,7 @@ LIMITS = {
     resource.RLIMIT_STACK: 256 * 1024,
     resource.RLIMIT_CORE: 0,
 }
-BARE = {"PATH": "/usr/bin:/bin", "TMPDIR": "/nonexistent", "LANG": "xx_XX.UTF-8", "LC_ALL": "xx"}
+BARE = {"PATH": "/usr/bin:/bin", "TMPDIR": "/nonexistent"}
 # On inputs as users have them; each may use the outputs of those before.
 USUAL = """codes hamiltonian-k4 -o c.html
 evaluate hamiltonian-k4 sinusoid-k4 -o e.html

@@ -114,6 +114,13 @@ TEST(RowsModel, RowsAndTapsKeepApart) {
   EXPECT_TRUE(why_no_family("multifrequency-k5", rows));  // its light differs
 }
 
+TEST(RowsModel, WhyNoFamilyCanBeBuiltIsAnswered) {
+  Camera camera = rows_camera();
+  camera.exposure_s.each_s = {0.1, 0.1};
+  EXPECT_EQ(why_no_family("hamiltonian-k4", camera),
+            "number of exposure_s = 2; must equal the 1 exposures of code hamiltonian-k4");
+}
+
 struct BadCamera {
   void (*change)(Camera&);
   const char* field;

@@ -8,6 +8,7 @@
 
 #include "design/atlas/nearest_codes.hpp"
 #include "design/shortest_run.hpp"
+#include "german_locale.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"
 #include "tofsmith/code/families.hpp"
@@ -321,6 +322,12 @@ TEST(Design, WithConstantLightIsRefusedForThatReason) {
   EXPECT_THAT([&] { design(camera, with_effort({}, 0.0)); },
               ThrowsMessage<InvalidArgument>(
                   "light.peak_factor = 1; allows only constant light, which measures no depth"));
+}
+
+TEST(Atlas, ReadsTheSameInEveryLocale) {
+  const GermanLocale locale;
+  EXPECT_EQ(parse_atlas(one_code)[0].code.name(), "atlas-t1-k3-p4-b10-linear");
+  EXPECT_EQ(parse_atlas(one_code)[0].circular_m.standard_error, 0.0005);
 }
 
 }  // namespace

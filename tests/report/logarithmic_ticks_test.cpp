@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/logarithmic_ticks.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "german_locale.hpp"
 
 namespace tofsmith::plotly {
 namespace {
@@ -42,6 +45,13 @@ TEST(LogarithmicTicks, WithinAFactorOfFiveAreMultiplesOfOneStep) {
   ASSERT_EQ(ticks.size(), 5u);
   for (std::size_t i = 0; i < ticks.size(); ++i)
     EXPECT_DOUBLE_EQ(ticks[i].value, 0.01 * (static_cast<double>(i) + 4));
+}
+
+TEST(LogarithmicTicks, AreTheSameInEveryLocale) {
+  const GermanLocale locale;
+  const std::vector<Tick> ticks = logarithmic_ticks({1.25, 1.75});
+  ASSERT_FALSE(ticks.empty());
+  for (const Tick& tick : ticks) EXPECT_EQ(fmt::format("{:.6g}", tick.value), tick.text);
 }
 
 }  // namespace

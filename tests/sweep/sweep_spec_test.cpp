@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "damaged_files.hpp"
+#include "german_locale.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -57,6 +58,12 @@ TEST(SweepSpec, RangesGiveTheValuesThatAListWouldSay) {
   EXPECT_THAT(
       texts(with_axis("key = \"signal_e_per_s\"\nfrom = 1e3\nto = 1e5\ncount = 3\n").axes[0]),
       ElementsAre("1000", "10000", "100000"));
+}
+
+TEST(SweepSpec, RangesGiveTheSameValuesInEveryLocale) {
+  const GermanLocale locale;
+  EXPECT_THAT(texts(with_axis("key = \"exposure_s\"\nfrom = 0.1\nto = 0.3\nstep = 0.1\n").axes[0]),
+              ElementsAre("0.1", "0.2", "0.3"));
 }
 
 TEST(SweepSpec, AFileHoldsAValueALine) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "work_calls.hpp"
 
@@ -16,9 +17,9 @@ namespace {
 
 /// A word as a POSIX shell takes it whole.
 std::string shell_word(const std::string& word) {
-  const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("-_./=:,+@%").find(static_cast<char>(c)) != std::string_view::npos;
+  const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+    return is_letter_or_digit(c) ||
+           std::string_view("-_./=:,+@%").find(c) != std::string_view::npos;
   });
   if (is_plain) return word;
   std::string text = "'";

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <locale>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -62,6 +63,7 @@ namespace detail {
 template <typename Value>
 std::string describe(const Value& value) {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << value;
   return text.str();
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/multipath_decoder.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
@@ -14,7 +16,7 @@
 namespace tofsmith {
 
 void MultipathOptions::validate(double range_m) const {
-  const std::string of_range = " the range, " + std::to_string(range_m) + " m";
+  const std::string of_range = " the range, " + fmt::format("{:f}", range_m) + " m";
   check_fields(*this, "MultipathOptions::");
   require(shortest_delay_m < range_m, "MultipathOptions::shortest_delay_m", shortest_delay_m,
           "must be > 0 and below" + of_range);

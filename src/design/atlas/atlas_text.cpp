@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
+#include "core/shared/text_numbers.hpp"
 #include "design/atlas/atlas_data.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/design.hpp"
@@ -83,20 +85,15 @@ class AtlasLines {
   }
 
  private:
-  /// Whole numbers by from_chars(); others too, which some standard libraries have not for doubles.
   static bool read(std::string_view word, int& value) {
     const char* const end = word.data() + word.size();
     const auto [rest, error] = std::from_chars(word.data(), end, value);
     return error == std::errc() && rest == end && !word.empty();
   }
   static bool read(std::string_view word, double& value) {
-    // strtod() reads more than plain numbers: blanks, hexadecimal, "inf".
-    if (word.empty() || word.find_first_not_of("0123456789.e-+") != std::string_view::npos)
-      return false;
-    const std::string text(word);
-    char* rest = nullptr;
-    value = std::strtod(text.c_str(), &rest);
-    return rest == text.c_str() + text.size() && std::isfinite(value);
+    const std::optional<double> number = number_in(word);
+    value = number.value_or(0.0);
+    return number && std::isfinite(value);
   }
 
   std::string_view rest_, words_;

@@ -10,6 +10,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "camera/shared/listed_exposures.hpp"
 #include "core/shared/random.hpp"
 #include "core/shared/shared_progress.hpp"
 #include "design/chips/best_codes.hpp"
@@ -223,10 +224,7 @@ std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures
   if (camera.operating.uniform_albedo)
     return broken("operating.albedo", "uniform",
                   "must be a number to search codes by their metric");
-  const std::size_t listed = camera.exposure_s.each_s.size();
-  if (listed != 0 && listed != static_cast<std::size_t>(exposures))
-    return broken("number of exposure_s", listed, "must equal the exposures");
-  return std::nullopt;
+  return other_exposures_listed(camera, exposures);
 }
 
 void ChipSearchOptions::validate() const { check_fields(*this, "ChipSearchOptions::"); }

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "camera/shared/listed_exposures.hpp"
 #include "code/shared/family_rules.hpp"
 #include "code/shared/hamiltonian.hpp"
 #include "design/chips/pair_choice.hpp"
@@ -55,12 +56,8 @@ std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Cam
         "number of correlation functions", targets.measurements.size(),
         fmt::format("must be >= {}: there are three unknowns, signal, ambient light and depth",
                     camera.sensor.taps == 2 ? 2 : 3));
-  const std::size_t listed = camera.exposure_s.each_s.size();
-  if (listed != 0 && listed != targets.measurements.size())
-    return broken("number of exposure_s", listed,
-                  fmt::format("must equal the {} exposures of {}", targets.measurements.size(),
-                              targets.name));
-  return std::nullopt;
+  return other_exposures_listed(camera, static_cast<int>(targets.measurements.size()),
+                                " of " + targets.name);
 }
 
 Eigen::MatrixXd target_table(const TargetSet& targets) {

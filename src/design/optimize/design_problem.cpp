@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/shared/listed_exposures.hpp"
 #include "design/shortest_run.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
@@ -132,10 +133,7 @@ std::optional<BrokenRule> why_not_optimizable(const Camera& on, int exposures) {
         fmt::format("is needed to optimize for a camera without band limit, on which shorter "
                     "pulses are always better; try {:.2g}",
                     suggested_shortest_pulse_s(camera)));
-  const std::size_t listed = camera.exposure_s.each_s.size();
-  if (listed != 0 && listed != static_cast<std::size_t>(exposures))
-    return broken("number of exposure_s", listed,
-                  fmt::format("must equal the {} exposures", exposures));
+  if (auto others = other_exposures_listed(camera, exposures)) return others;
   const double shortest = shortest_run_periods(camera);
   if (shortest > 0.0 && runs_per_period(shortest) < min_cells)
     return broken("sensor.shortest_pulse_s", *camera.sensor.shortest_pulse_s,

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <set>
 
+#include "camera/shared/listed_exposures.hpp"
 #include "core/shared/periodic.hpp"
 #include "core/shared/random.hpp"
 #include "design/judge.hpp"
@@ -381,6 +382,7 @@ std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows) {
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
                   "must be > 1 to design rows: light that never changes carries no depth");
+  if (auto others = other_exposures_listed(camera, 1)) return others;
   if (const int highest = camera.samples / min_bins_per_period; highest < (rows + 1) / 2)
     return broken(
         "samples", camera.samples,

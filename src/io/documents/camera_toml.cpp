@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/documents/camera_fields.hpp"
 #include "io/documents/lens_calibration.hpp"
 #include "io/shared/read_file.hpp"
@@ -61,7 +62,7 @@ bool visit_lens_calibration(TableReader& table, Lens& lens) {
 
 namespace {
 
-bool is_part_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+bool is_part_of_name(char c) { return is_letter_or_digit(c) || c == '_'; }
 
 /// Where a field that Camera::validate() names was written, or the key that holds it.
 std::string place_of_field(const std::string& field, const TableReader::Places& places,

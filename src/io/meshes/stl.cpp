@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <string>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/meshes/polygon_soup.hpp"
 #include "io/shared/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
@@ -54,7 +54,7 @@ class TextReader {
       std::string_view line = text.substr(0, text.find('\n'));
       text.remove_prefix(std::min(text.size(), line.size() + 1));
       std::string key(next_word(line));
-      std::ranges::transform(key, key.begin(), [](unsigned char c) { return std::tolower(c); });
+      std::ranges::transform(key, key.begin(), lower_case);
       if (key == "vertex") read_vertex(line);
       if (key == "endloop") end_face();
       if (corners_ > 0 && (key == "outer" || key == "endfacet" || key == "endsolid"))

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -33,14 +33,6 @@ std::vector<TextField> split(std::string_view line) {
     if (at >= line.size()) fields.push_back({"", line.size() + 1});  // a separator ended the line
   }
   return fields;
-}
-
-std::optional<double> number_in(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
 }
 
 bool names_columns(const std::vector<TextField>& fields) {

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -39,13 +39,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::optional<double> finite_number_in(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stopped != end || !std::isfinite(number)) return std::nullopt;
-  return number;
+  const std::optional<double> number = number_in(trimmed(text));
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 }  // namespace tofsmith

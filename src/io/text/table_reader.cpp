@@ -8,10 +8,12 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -43,6 +45,7 @@ std::string one_line(const toml::node& node) {
     return fmt::format("{{ {} }}", inside);
   }
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   node.visit([&](const auto& value) {
     if constexpr (toml::is_value<decltype(value)>) out << value;
   });
@@ -77,11 +80,10 @@ std::optional<std::string> with_quotes(const std::string& setting) {
   const std::size_t begin = setting.find_first_not_of(' ', setting.find('=') + 1);
   if (setting.find('=') == std::string::npos || begin == std::string::npos) return std::nullopt;
   const std::string word = setting.substr(begin);
-  const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return std::isalnum(c) ||
-           std::string_view("_./-").find(static_cast<char>(c)) != std::string_view::npos;
+  const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
+    return is_letter_or_digit(c) || std::string_view("_./-").find(c) != std::string_view::npos;
   });
-  if (!plain || std::isdigit(static_cast<unsigned char>(word[0]))) return std::nullopt;
+  if (!plain || is_digit(word[0])) return std::nullopt;
   return fmt::format("{}\"{}\"", setting.substr(0, begin), word);
 }
 
@@ -165,6 +167,7 @@ std::string describe(const toml::node& node) {
   if (node.is_array()) return "a list";
   if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   node.visit([&](const auto& value) {
     if constexpr (toml::is_value<decltype(value)>) out << value;
   });

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+/// Why a camera that lists exposure times or an order of playback cannot use codes of so many
+/// exposures.
+/// @param whose  " of code NAME", for the message
+inline std::optional<BrokenRule> other_exposures_listed(const Camera& camera, int exposures,
+                                                        const std::string& whose = "") {
+  const std::size_t ordered = camera.playback ? camera.playback->order.size() : 0;
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  const std::string rule = fmt::format("must equal the {} exposures{}", exposures, whose);
+  if (ordered > 0 && ordered != static_cast<std::size_t>(exposures))
+    return broken("number of playback.order", ordered, rule);
+  if (listed > 0 && listed != static_cast<std::size_t>(exposures))
+    return broken("number of exposure_s", listed, rule);
+  return std::nullopt;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace tofsmith {
+
+// Numbers and letters in text, independent of the locale of the process.
+
+/// Removes a decimal number such as "-1.5e3" from the beginning of `text` and returns it. None:
+/// text begins otherwise, or the number is out of range.
+std::optional<double> take_number(std::string_view& text);
+
+/// The number that is all of `text`, which may begin with a plus sign.
+std::optional<double> number_in(std::string_view text);
+
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+constexpr bool is_letter_or_digit(char c) { return is_letter(c) || is_digit(c); }
+constexpr char lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+constexpr char upper_case(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/shared/text_numbers.hpp"
+
+#include <charconv>
+#include <system_error>
+#include <version>
+
+#ifndef __cpp_lib_to_chars
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#endif
+
+namespace tofsmith {
+
+std::optional<double> take_number(std::string_view& text) {
+#ifdef __cpp_lib_to_chars
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return number;
+#else
+  // Emscripten's library lacks the above; its strtod() knows no locale.
+  const std::string_view digits = text.substr(0, text.find_first_not_of("0123456789.e-+"));
+  if (digits.empty() || digits.front() == '+') return std::nullopt;
+  const std::string copy(digits);
+  char* end = nullptr;
+  const double number = std::strtod(copy.c_str(), &end);
+  if (end == copy.c_str() || std::isinf(number)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - copy.c_str()));
+  return number;
+#endif
+}
+
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const std::optional<double> number = take_number(text);
+  return text.empty() ? number : std::nullopt;
+}
+
+}  // namespace tofsmith
