@@ -12,10 +12,10 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "core/shared/text_numbers.hpp"
 #include "session.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
@@ -56,8 +56,10 @@ std::string label_of(const SweepSpec& spec, std::size_t a) {
 
 /// A letter, digit or dash for each character: the id of a figure.
 std::string figure_id(std::string id) {
-  std::ranges::replace_if(
-      id, [](char c) { return !is_letter_or_digit(c); }, '-');
+  constexpr std::string_view letters_and_digits =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+  for (std::size_t i = 0; (i = id.find_first_not_of(letters_and_digits, i)) != std::string::npos;)
+    id[i++] = '-';
   return id;
 }
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "work_calls.hpp"
 
@@ -17,10 +17,9 @@ namespace {
 
 /// A word as a POSIX shell takes it whole.
 std::string shell_word(const std::string& word) {
-  const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-    return is_letter_or_digit(c) ||
-           std::string_view("-_./=:,+@%").find(c) != std::string_view::npos;
-  });
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
+  const bool is_plain = !word.empty() && word.find_first_not_of(plain) == std::string::npos;
   if (is_plain) return word;
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
