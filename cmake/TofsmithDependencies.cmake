@@ -70,10 +70,12 @@ endif()
 set(TOFSMITH_HAS_LXI OFF)
 if(TOFSMITH_HAS_lab)
   find_path(BOOST_ASIO_INCLUDE_DIR boost/asio.hpp REQUIRED)  # headers only
-  pkg_check_modules(LIBLXI IMPORTED_TARGET liblxi)  # VXI-11; can be missing
-  find_library(TIRPC_LIBRARY tirpc)
-  if(LIBLXI_FOUND AND TIRPC_LIBRARY)
-    set(TOFSMITH_HAS_LXI ON)
+  if(TOFSMITH_USE_LXI)
+    pkg_check_modules(LIBLXI IMPORTED_TARGET liblxi)  # VXI-11; can be missing
+    find_library(TIRPC_LIBRARY tirpc)
+    if(LIBLXI_FOUND AND TIRPC_LIBRARY)
+      set(TOFSMITH_HAS_LXI ON)
+    endif()
   endif()
 endif()
 
@@ -108,7 +110,13 @@ if(TOFSMITH_BUILD_PYTHON)
   # Debian's own, for which the packages are: another python3 may come first on PATH. pip names the
   # one it installs for.
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The python3 to build the package for")
-  find_package(Python 3.11 COMPONENTS Interpreter Development.Module NumPy)
+  set(TOFSMITH_PYTHON_ROOT "" CACHE PATH
+      "Unpacked Debian packages with the headers of another python3 and its pybind11, to build for")
+  if(TOFSMITH_PYTHON_ROOT)
+    include(TofsmithOtherPython)
+  else()
+    find_package(Python 3.11 COMPONENTS Interpreter Development.Module NumPy)
+  endif()
   if(Python_FOUND)
     find_package(pybind11)
   endif()
