@@ -1,12 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""pip install --no-build-isolation . : CMake builds the compiled part of the Python package.
+"""pip install --no-build-isolation . : CMake builds the compiled part of the Python package and the
+command line, which is installed inside the package, in _prefix/.
 
-The build directory is build/pip, or that of the environment variable TOFSMITH_CMAKE_BUILD.
+Environment variables:
+TOFSMITH_CMAKE_BUILD    the build directory (build/pip)
+TOFSMITH_CMAKE_OPTIONS  further options for CMake, such as "-DTOFSMITH_USE_MPI=OFF"
 """
 
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -48,7 +52,7 @@ def run_telling_progress(command: list) -> None:
 
 
 class CMakeBuild(build_ext):
-    """Builds the target _tofsmith and puts it where setuptools wants it."""
+    """Builds the extension and the command line and copies them into the package."""
 
     def build_extension(self, extension: Extension) -> None:
         target = Path(self.get_ext_fullpath(extension.name)).resolve()
@@ -56,23 +60,32 @@ class CMakeBuild(build_ext):
         options = {
             "CMAKE_BUILD_TYPE": "Release",
             "TOFSMITH_BUILD_PYTHON": "REQUIRED",
-            "TOFSMITH_BUILD_APPS": "OFF",
+            "TOFSMITH_BUILD_APPS": "ON",
             "TOFSMITH_BUILD_TESTS": "OFF",
             "BUILD_SHARED_LIBS": "OFF",
             "TOFSMITH_UNITY": "ON",  # compiles in a third of the time
             "Python_EXECUTABLE": sys.executable,
         }
         defines = [f"-D{name}={value}" for name, value in options.items()]
+        defines += shlex.split(os.environ.get("TOFSMITH_CMAKE_OPTIONS", ""))
         jobs = ["--parallel"] + ([str(self.parallel)] if self.parallel else [])
         subprocess.run(["cmake", "-S", root, "-B", build, "-G", "Ninja", *defines], check=True)
-        run_telling_progress(["cmake", "--build", build, "--target", "_tofsmith", *jobs])
+        run_telling_progress(["cmake", "--build", build, "--target", "_tofsmith", "tofsmith_cli", *jobs])
+        # Its file name contains the Python version that CMake built it for.
         built = next((build / "python" / "tofsmith").glob("_tofsmith*.so"))
-        target.parent.mkdir(parents=True, exist_ok=True)
-        self.copy_file(str(built), str(target))
+        files = {built: target.with_name(built.name),
+                 build / "apps" / "tofsmith": target.parent / "_prefix" / "bin" / "tofsmith"}
+        lab_page = root / "build-lab" / "lab.html"  # of scripts/lab.sh
+        if lab_page.exists():
+            files[lab_page] = target.parent / "_prefix" / "share" / "tofsmith" / "lab.html"
+        for source, destination in files.items():
+            destination.parent.mkdir(parents=True, exist_ok=True)
+            self.copy_file(str(source), str(destination))
 
 
 setup(
     version=version(),
+    scripts=["python/command/tofsmith"],
     ext_modules=[Extension("tofsmith._tofsmith", sources=[])],
     cmdclass={"build_ext": CMakeBuild},
 )
