@@ -38,30 +38,19 @@ for name in "${names[@]}"; do
 done
 build=$(realpath -m "${directory:-$root/build-arm64}")
 libraries=$build/root
-mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
 release=$(debian_release)
+release=${release:-${tofsmith_releases##* }}
 
 install_packages arm64
 use_debian_tools
 
-# apt with lists, cache and installed packages of its own: what the system has does not count.
-apt_of_arm64() {
-  apt-get -q -y -o APT::Architecture=arm64 -o APT::Architectures=arm64 \
-    -o Dir::Etc::sourcelist="$build/apt/sources.list" -o Dir::Etc::sourceparts=/dev/null \
-    -o Dir::State="$build/apt" -o Dir::State::status="$build/apt/status" -o Dir::Cache="$build/apt" \
-    -o Debug::NoLocking=1 "$@" </dev/null
-}
-
 if [[ ! -e $libraries/complete ]]; then
   echo "Fetching libraries for arm64 into $libraries"
   rm -rf "$build/apt" "$libraries"
-  mkdir -p "$build"/apt/{lists,archives}/partial "$libraries"
-  : >"$build/apt/status"
-  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror ${release:-${tofsmith_releases##* }} main" \
-    >"$build/apt/sources.list"
-  apt_of_arm64 update
+  mkdir -p "$libraries"
+  private_apt "$build/apt" arm64 "$release" update
   mapfile -t packages < <(packages_of arm64_libraries)
-  apt_of_arm64 install --download-only --no-install-recommends "${packages[@]}"
+  private_apt "$build/apt" arm64 "$release" install --download-only --no-install-recommends "${packages[@]}"
   for package in "$build"/apt/archives/*.deb; do dpkg-deb -x "$package" "$libraries"; done
   touch "$libraries/complete"
 fi

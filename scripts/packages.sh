@@ -219,6 +219,21 @@ apt-get install --no-install-recommends ${missing[*]}"
 See its messages above; tofsmith is tested on Debian ($tofsmith_releases)."
 }
 
+# apt-get with lists, cache and installed packages of its own in a folder, so that it can fetch packages
+# of another architecture or release without changing the system.
+private_apt() { # FOLDER ARCHITECTURE RELEASE ARGUMENTS ...
+  local folder=$1 architecture=$2 release=$3
+  shift 3
+  mkdir -p "$folder"/{lists,archives}/partial
+  [[ -e $folder/status ]] || : >"$folder/status"
+  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] ${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian} $release main" \
+    >"$folder/sources.list"
+  apt-get -q -y -o APT::Architecture="$architecture" -o APT::Architectures="$architecture" \
+    -o Dir::Etc::sourcelist="$folder/sources.list" -o Dir::Etc::sourceparts=/dev/null \
+    -o Dir::State="$folder" -o Dir::State::status="$folder/status" -o Dir::Cache="$folder" \
+    -o Debug::NoLocking=1 -o APT::Sandbox::User=root "$@" </dev/null
+}
+
 # A python3, a cmake or libraries of another origin (pyenv, conda) may come first on PATH, and CMake
 # searches beside what it finds there. What we installed is what we use.
 use_debian_tools() {
