@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|gpu|design|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
+#   scripts/packages.sh core|gpu|design|build|python|lab|package|wheel|test|docs|benchmark|check|fuzz|arm64 ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -67,12 +67,18 @@ packages_package=(
   liblxi-dev libtirpc-dev    # generators by VXI-11
   dpkg-dev file              # what a package depends on
 )
+# scripts/wheel.sh: a wheel without MPI, OpenCL and VXI-11.
+packages_wheel=(
+  "${packages_python[@]}"
+  patchelf
+)
 packages_test=(
   "${packages_python[@]}"
   libgtest-dev libgmock-dev
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   pocl-opencl-icd                            # OpenCL on the processor
   python3-pytest mypy                        # the Python package
+  patchelf                                   # wheels
   python3-h5py                               # writes what .h5 readers must read
   python3-opencv                             # distorts as lenses must
   python3-cvxopt                             # an independent solver of the sub-problem
@@ -159,6 +165,7 @@ list_group() {
     python) printf '%s\n' "${packages_python[@]}" ;;
     lab) printf '%s\n' "${packages_lab[@]}" ;;
     package) printf '%s\n' "${packages_package[@]}" ;;
+    wheel) printf '%s\n' "${packages_wheel[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
     docs) printf '%s\n' "${packages_docs[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
@@ -167,7 +174,7 @@ list_group() {
     arm64) printf '%s\n' "${packages_arm64[@]}" ;;
     package_arm64) printf '%s\n' "${packages_package_arm64[@]}" ;;
     arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
+    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark, check, fuzz and arm64" ;;
   esac
 }
 
@@ -242,9 +249,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check}"
+    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

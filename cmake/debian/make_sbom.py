@@ -153,25 +153,30 @@ def package(identifier, name, version, licence, source=None):
     return item
 
 
-def bill_of_materials(arguments):
+def packages_compiled_in(build, component):
+    """The Debian packages that code of a component comes from, with version and source, and the
+    licence of every package that the copyright file names."""
     licences = known_licences(pathlib.Path(__file__).with_name("copyright"))
-    compiled_in = owners(headers_of(arguments.build, arguments.component))
-    if arguments.component == "report":
+    compiled_in = owners(headers_of(build, component))
+    if component == "report":
         version = run("dpkg-query", "-W", "-f=${Version}", "python3-plotly")
         compiled_in["python3-plotly"] = [version, "python-plotly"]
         licences["python3-plotly"] = licences["plotly.js"]
     unknown = [name for name in compiled_in
                if not licence_of(name, licences) and not DECLARATIONS.fullmatch(native(name))]
     if unknown:
-        sys.exit(f"make_sbom.py: {arguments.component} is compiled from headers of "
+        sys.exit(f"make_sbom.py: {component} is compiled from headers of "
                  f"{', '.join(unknown)}; name each in cmake/debian/copyright, with its licence, or "
                  "among the DECLARATIONS of cmake/debian/make_sbom.py")
+    return {name: found for name, found in compiled_in.items() if licence_of(name, licences)}, licences
+
+
+def bill_of_materials(arguments):
+    compiled_in, licences = packages_compiled_in(arguments.build, arguments.component)
     own = package("Package", arguments.name, arguments.version, "Apache-2.0")
     packages, relationships = [own], [("SPDXRef-DOCUMENT", "DESCRIBES", own)]
     for relation, found in (("CONTAINS", compiled_in), ("DEPENDS_ON", owners(libraries_of(arguments.elf)))):
         for name, (version, source) in found.items():
-            if relation == "CONTAINS" and not licence_of(name, licences):
-                continue
             identifier = f"{relation.lower().replace('_', '-')}-{name.replace('+', 'p')}"
             packages.append(package(identifier, name, version,
                                     licence_of(name, licences) or "NOASSERTION", source))
@@ -207,4 +212,5 @@ def main():
     arguments.output.write_text(text)
 
 
-main()
+if __name__ == "__main__":
+    main()
