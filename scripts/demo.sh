@@ -5,7 +5,6 @@
 # Installs what is missing, builds tofsmith, runs its main job and says where the report is.
 #
 #   scripts/demo.sh [-o DIR] [--depth FILE --image FILE] [options of `tofsmith demo`]
-#   scripts/demo.sh --build-only                   builds the command line and runs nothing
 #
 # The output goes to ./demo-output unless -o names another directory.
 set -euo pipefail
@@ -33,8 +32,6 @@ if [[ " $* " == *" -h "* || " $* " == *" --help "* ]]; then
   sed -n '/^# Installs/,/^# The output/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   exit 0
 fi
-build_only=''
-if [[ "${1:-}" == --build-only ]]; then build_only=yes && shift; fi
 output=$(output_directory "$@")
 if [[ -z "$output" ]]; then
   output="$PWD/demo-output"
@@ -62,7 +59,6 @@ cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Rel
   -DTOFSMITH_COMPONENTS=report -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_TESTS=OFF -DTOFSMITH_UNITY=ON \
   -DTOFSMITH_OPTIMIZE_KERNELS_ONLY=ON -DTOFSMITH_TARGETS="$(own_target)"
 cmake --build "$build" --target tofsmith_demo
-[[ -z "$build_only" ]] || exit 0
 
 tofsmith="$build/apps/demo/tofsmith"
 [[ -x "$tofsmith" ]] || tofsmith_die "the build made no $tofsmith"

@@ -54,7 +54,9 @@ if (($#)); then
   case "$1" in
     demo | test | package | docs | lab | wheel) command=("scripts/$1.sh") ;;
     ci) command=(.ci/run) ;;
-    compile) command=(scripts/demo.sh --build-only) ;;
+    compile)
+      command=(bash -c 'scripts/packages.sh build && cmake --preset quick && cmake --build --preset quick')
+      ;;
     run) (($# > 1)) || tofsmith_die "run: no program is given" ;;
     *) tofsmith_die "found command '$1'; expected demo, test, package, docs, lab, wheel, ci, compile or run" ;;
   esac
