@@ -62,8 +62,6 @@ const std::map<std::string, Component> components = {
     {"sweep", {{"sweep"}, "io"}},
 };
 
-constexpr std::size_t max_public_headers = 80;
-
 /// The folder a file lives in: "include/tofsmith/core/x.hpp", "src/core/x.cpp", "apps/x.cpp". A
 /// file directly in include/tofsmith/ gathers others for the user and stands where apps stand.
 std::string folder_of(const std::string& path) {
@@ -219,19 +217,16 @@ TEST(Rooms, NoCircleRunsBetweenTheRoomsOfAFloor) {
   EXPECT_EQ(circle, "");
 }
 
-TEST(PublicHeaders, AreFewAndEachUmbrellaHasThoseOfItsComponent) {
+TEST(PublicHeaders, EachUmbrellaHasThoseOfItsComponent) {
   std::map<std::string, Folders> of_folder;
   std::map<std::string, std::string> umbrellas;
-  std::size_t count = 1;  // version.hpp, which is made
   for (const SourceFile& file : read_sources({"include"})) {
-    ++count;
     const std::string name = file.path.substr(std::string("include/").size());
     if (folder_of(file.path) == "apps")
       for (const std::string& line : file.lines) umbrellas[name] += line + '\n';
     else
       of_folder[folder_of(file.path)].insert(name);
   }
-  EXPECT_LE(count, max_public_headers);
   for (const auto& [name, component] : components) {
     const std::string umbrella = umbrellas["tofsmith/" + name + ".hpp"];
     const std::string below = component.below;
