@@ -38,7 +38,8 @@ void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
   DesignOptions options = with_effort({}, effort);
   options.trials = 1000;
   // Looking for contenders among all standard codes takes seconds.
-  if (index % 16 != 0 || !all_are_tried()) options.baselines = {"sinusoid-k3", "square-k4", "hamiltonian-k4"};
+  if (index % 16 != 0 || !all_are_tried())
+    options.baselines = {"sinusoid-k3", "square-k4", "hamiltonian-k4"};
   try {
     const DesignResult result = design(camera, options);
     EXPECT_EQ(why_not_playable(result.winner().code, camera), std::nullopt);

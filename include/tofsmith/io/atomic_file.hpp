@@ -40,9 +40,9 @@ OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
 /// An output file that appears whole or not at all: everything goes to a hidden file in the same
 /// directory, and commit() renames it. Without commit(), the destructor removes the hidden file
 /// and what was there before stays as it was. The next process that writes there removes the hidden
-/// files of processes that were killed, if it can know: on the same machine since it started, and in
-/// the same container.
-/// A symbolic link as target is followed; a file that is overwritten keeps its permissions.
+/// files of processes that were killed, if it can know: on the same machine since it started, and
+/// in the same container. A symbolic link as target is followed; a file that is overwritten keeps
+/// its permissions.
 class AtomicFile {
  public:
   /// @throws IoError naming `target` if it exists and must not be replaced, is no regular file, or
