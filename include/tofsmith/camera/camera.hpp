@@ -189,6 +189,7 @@ struct Sensor {
   NoiseModel noise = NoiseModel::poisson;  ///< how noise is drawn
   double dark_current_e_per_s = 0.0;       ///< per tap; of rows, of all time bins [e/s], >= 0
   double modulation_contrast = 1.0;        ///< C in (0, 1]; below 1 the taps mix
+  std::vector<double> modulation_contrasts = {};  ///< per exposure or frequency; empty: the above
   /// Relative difference in sensitivity of neighbouring taps (with one tap: of neighbouring
   /// exposures): 1 + m / 2 for the first, third, .., 1 - m / 2 for the others; in (-1, 1).
   double tap_mismatch = 0.0;
@@ -203,6 +204,7 @@ struct Sensor {
   std::optional<double> readout_gap_s;   ///< dark time after each exposure [s], >= 0; none: 0
   std::optional<double> frame_period_s;  ///< from frame to frame [s], > 0; none: no pause
 
+  std::vector<double> contrasts_of(const CodeSet& code) const;  ///< of every exposure, if it fits
   bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
   /// Whether they are differences of light, so that ambient light may cancel, but not its noise.
   bool subtracts() const { return is_signed() || readout == Readout::difference; }
