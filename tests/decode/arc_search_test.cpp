@@ -35,7 +35,7 @@ struct Vectors {
   const double* operator[](int i) const { return &exact[static_cast<std::size_t>(i * rank)]; }
   const float* tile(int first) const { return &plane[static_cast<std::size_t>(first * rank)]; }
 };
-constexpr int tile_size = 64;
+constexpr int tile_pixels = 64;
 
 /// @param deviation       noise of every component, beside directions of length 1
 /// @param relative_error  how far the float vectors are off, as a share of their length
@@ -45,7 +45,7 @@ Vectors noisy_vectors(const DirectionTable& directions, double deviation, int co
   const int rank = directions.rank();
   Vectors vectors{rank, {}, {}, {}};
   vectors.plane.resize(
-      static_cast<std::size_t>((count + tile_size - 1) / tile_size * tile_size * rank));
+      static_cast<std::size_t>((count + tile_pixels - 1) / tile_pixels * tile_pixels * rank));
   for (int i = 0; i < count; ++i) {
     const double scale = std::exp(5.0 * random.normal());
     const auto row = static_cast<std::int32_t>(directions.samples() * random.uniform());
@@ -59,13 +59,13 @@ Vectors noisy_vectors(const DirectionTable& directions, double deviation, int co
     }
     q *= scale;
     wrong *= relative_error * q.norm() / wrong.norm();
-    float* first =
-        &vectors.plane[static_cast<std::size_t>(i / tile_size * tile_size * rank + i % tile_size)];
+    float* first = &vectors.plane[static_cast<std::size_t>(i / tile_pixels * tile_pixels * rank +
+                                                           i % tile_pixels)];
     double square = 0.0;
     for (int j = 0; j < rank; ++j) {
       vectors.exact.push_back(q[j]);
-      first[j * tile_size] = static_cast<float>(q[j] + wrong[j]);
-      square += (q[j] - first[j * tile_size]) * (q[j] - first[j * tile_size]);
+      first[j * tile_pixels] = static_cast<float>(q[j] + wrong[j]);
+      square += (q[j] - first[j * tile_pixels]) * (q[j] - first[j * tile_pixels]);
     }
     vectors.error.push_back(std::nextafter(static_cast<float>(std::sqrt(square)), 1e30f));
   }
@@ -74,9 +74,9 @@ Vectors noisy_vectors(const DirectionTable& directions, double deviation, int co
 
 std::vector<std::int32_t> search_all(const ArcSearch& search, const Vectors& vectors) {
   std::vector<std::int32_t> rows(static_cast<std::size_t>(vectors.count()));
-  for (int first = 0; first < vectors.count(); first += tile_size)
-    search.search(vectors.tile(first), tile_size, &vectors.error[static_cast<std::size_t>(first)],
-                  std::min(tile_size, vectors.count() - first),
+  for (int first = 0; first < vectors.count(); first += tile_pixels)
+    search.search(vectors.tile(first), tile_pixels, &vectors.error[static_cast<std::size_t>(first)],
+                  std::min(tile_pixels, vectors.count() - first),
                   &rows[static_cast<std::size_t>(first)]);
   return rows;
 }
@@ -247,14 +247,14 @@ TEST(ArcSearch, AgreesOnTies) {
     for (int j = 0; j < directions.rank(); ++j) {
       const int value = (j == 0 ? i / 121 : j == 1 ? i / 11 : i) % 11 - 5;
       vectors.exact[static_cast<std::size_t>(i * vectors.rank + j)] = value;
-      vectors.plane[static_cast<std::size_t>(i / tile_size * tile_size * vectors.rank +
-                                             j * tile_size + i % tile_size)] =
+      vectors.plane[static_cast<std::size_t>(i / tile_pixels * tile_pixels * vectors.rank +
+                                             j * tile_pixels + i % tile_pixels)] =
           static_cast<float>(value);
     }
   std::fill(vectors.error.begin(), vectors.error.end(), 0.0f);
   const std::size_t zero = 1331 / 2;  // has no unit vector
   vectors.exact[zero * 3] = 1.0;
-  vectors.plane[zero / tile_size * tile_size * 3 + zero % tile_size] = 1.0f;
+  vectors.plane[zero / tile_pixels * tile_pixels * 3 + zero % tile_pixels] = 1.0f;
   expect_agreement(directions, ArcSearch(directions), vectors);
 }
 
@@ -263,7 +263,7 @@ TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
   const ArcSearch search(directions);
   constexpr float infinity = std::numeric_limits<float>::infinity();
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  const Vectors known = noisy_vectors(directions, 0.0, tile_size, 10);
+  const Vectors known = noisy_vectors(directions, 0.0, tile_pixels, 10);
   const auto expect_none = [&](const Vectors& vectors) {
     for_each_target([&](std::int64_t) {
       for (const std::int32_t row : search_all(search, vectors)) EXPECT_EQ(row, -1);
@@ -287,12 +287,12 @@ TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
 TEST(ArcSearch, LeavesOtherRowsAloneAndTakesAnyStride) {
   const DirectionTable directions = directions_of(random_smooth_curve(6, 500, 11));
   const ArcSearch search(directions);
-  const Vectors vectors = noisy_vectors(directions, 0.1, tile_size, 12);
+  const Vectors vectors = noisy_vectors(directions, 0.1, tile_pixels, 12);
   const std::vector<std::int32_t> expected = search_all(search, vectors);
   constexpr int stride = 37, pixels = 21;
   std::vector<float> plane(6 * stride);
   for (int j = 0; j < 6; ++j)
-    std::copy_n(&vectors.plane[static_cast<std::size_t>(j * tile_size)], pixels,
+    std::copy_n(&vectors.plane[static_cast<std::size_t>(j * tile_pixels)], pixels,
                 &plane[static_cast<std::size_t>(j * stride)]);
   std::vector<std::int32_t> rows(pixels + 1, 77);
   search.search(plane.data(), stride, vectors.error.data(), pixels, rows.data());

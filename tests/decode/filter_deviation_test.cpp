@@ -26,7 +26,7 @@ using Part = std::function<bool(int row, int column)>;
 int from_border(int row, int column) {
   return std::min({row, column, height - 1 - row, width - 1 - column});
 }
-bool is_inside(int row, int column) { return from_border(row, column) >= 13; }
+bool is_inner(int row, int column) { return from_border(row, column) >= 13; }
 bool is_at_border(int row, int column) { return from_border(row, column) < 3; }
 
 /// Depths and predicted deviations of all captures, in bins.
@@ -83,7 +83,7 @@ class FilterDeviation : public testing::TestWithParam<FilterStrength> {
 TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnAFlatPlane) {
   for (const double signal : {3e3, 3e4}) {
     const Repeats repeats(setup, GetParam(), [&](int, int) { return Seen{61.3, signal}; });
-    EXPECT_NEAR(repeats.ratio(is_inside), 1.0, 0.06) << signal;
+    EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.06) << signal;
     EXPECT_NEAR(repeats.ratio(is_at_border), 1.0, 0.08) << signal;
   }
 }
@@ -92,7 +92,7 @@ TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnASlantedPlane) {
   const Repeats repeats(setup, GetParam(), [](int row, int column) {
     return Seen{60.0 + 0.1 * column + 0.04 * row, 1.5e4};
   });
-  EXPECT_NEAR(repeats.ratio(is_inside), 1.0, 0.1);
+  EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.1);
 }
 
 TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOfAnyAlbedo) {
@@ -100,7 +100,7 @@ TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOfAnyAlbedo) {
     const bool is_dark = (row / 3 * 7 + column / 3 * 5) % 4 == 0;
     return Seen{61.3, is_dark ? 8e3 : 4e4};
   });
-  EXPECT_NEAR(repeats.ratio(is_inside), 1.0, 0.07);
+  EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.07);
 }
 
 TEST_P(FilterDeviation, IsAtMostAThirdTooSmallBesideAnEdge) {

@@ -18,7 +18,7 @@ namespace {
 using testing::Each;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float float_infinity = std::numeric_limits<float>::infinity();
 
 Camera converted(Camera camera, int bits, double black_level_dn = 0.0) {
   camera.sensor.adc_bits = bits;
@@ -162,12 +162,13 @@ TEST(RawMarking, MarkersHaveTheirMeaningInEveryDecoder) {
     camera.raw = {.saturated = {32767.0, -32768.0}, .invalid = {-7777.0, 0.5}};
     for (const AnyDecoder& decoder : all_decoders(camera)) {
       expect_only_first_is_measured(decoder, {32767.0f, -32768.0f}, PixelStatus::saturated);
-      expect_only_first_is_measured(decoder, {-7777.0f, 0.5f, nan, infinity}, PixelStatus::invalid);
+      expect_only_first_is_measured(decoder, {-7777.0f, 0.5f, nan, float_infinity},
+                                    PixelStatus::invalid);
     }
     camera.raw = {.saturated = {std::numeric_limits<double>::quiet_NaN()}, .invalid = {}};
     for (const AnyDecoder& decoder : all_decoders(camera)) {
       expect_only_first_is_measured(decoder, {nan}, PixelStatus::saturated);
-      expect_only_first_is_measured(decoder, {infinity}, PixelStatus::invalid);
+      expect_only_first_is_measured(decoder, {float_infinity}, PixelStatus::invalid);
     }
   }
 }

@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float float_infinity = std::numeric_limits<float>::infinity();
 
 /// Frame f of a scene in which an edge moves, one part drifts slowly, and one gets brighter.
 RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int f) {
@@ -41,7 +41,7 @@ void spoil(RawFrames& raw, float saturated, int f) {
       raw.values[i] = i % 4 == 0   ? nan
                       : i % 4 == 1 ? saturated
                       : i % 4 == 2 ? -saturated
-                                   : infinity;
+                                   : float_infinity;
 }
 
 class DeviceFramesOf : public OnDevice {

@@ -23,7 +23,7 @@ namespace {
 using testing::HasSubstr;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float float_infinity = std::numeric_limits<float>::infinity();
 constexpr auto overwrite = OutputPolicy::overwrite;
 
 Image<float> image_of(int height, int width, std::vector<float> pixels) {
@@ -60,7 +60,7 @@ TEST_P(DepthFormat, ReadingUndoesWriting) {
 }
 
 TEST_P(DepthFormat, WhatDidNotReturnIsNan) {
-  write_depth(file_, image_of(1, 4, {0.0f, infinity, nan, 2.0f}), overwrite);
+  write_depth(file_, image_of(1, 4, {0.0f, float_infinity, nan, 2.0f}), overwrite);
   expect_same(read_depth(file_), image_of(1, 4, {nan, nan, nan, 2.0f}));
 }
 
@@ -84,7 +84,7 @@ class FloatFormat : public testing::TestWithParam<std::string> {};
 
 TEST_P(FloatFormat, FloatImagesKeepEveryBit) {
   const TemporaryDirectory directory;
-  const auto image = image_of(2, 2, {0.0f, -0.25f, infinity, nan});
+  const auto image = image_of(2, 2, {0.0f, -0.25f, float_infinity, nan});
   write_float_image(directory / ("a" + GetParam()), image, "offset", overwrite);
   const Image<float> back = read_float_image(directory / ("a" + GetParam()), "offset");
   EXPECT_EQ(std::memcmp(back.pixels.data(), image.pixels.data(), 16), 0);

@@ -10,6 +10,7 @@
 
 #include "paper/surface_figure.hpp"
 #include "report/shared/bar_figure.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 const FigureText some_text{"some-figure", "Some figure"};
 const Axis some_axis{.label = "Depth", .unit = "m"};
 

@@ -11,13 +11,12 @@
 
 #include "core/shared/random.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The integral over shifts for given shares, by brute force.
 double confusion_of(const Eigen::VectorXd& power, const Eigen::VectorXd& shares) {
