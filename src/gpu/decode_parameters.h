@@ -72,6 +72,10 @@ struct OutputParameters {
   int dark_raw, gain_e_per_raw;  ///< of every measurement: pairs of words, a double or high and low
   float lowest, highest;  ///< as SaturationLevels
   int finds_confidence;
+
+  int limits, limit_stride, off_plane, off_plane_count, residual_basis, ambient_direction;
+  float least_variance_share, half_quantile;
+  int finds_residual;
 };
 
 #ifdef __cplusplus

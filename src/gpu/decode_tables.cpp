@@ -155,6 +155,14 @@ OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kerne
   p.gain_e_per_raw = words.add_doubles(gain_e_per_raw, has_doubles);
   p.lowest = levels.lowest;
   p.highest = levels.highest;
+  p.limits = words.add(kernel.limits());
+  p.limit_stride = kernel.limits().stride();
+  p.off_plane = words.add(c.off_plane);
+  p.off_plane_count = c.off_plane_count;
+  p.residual_basis = words.add(c.residual_basis);
+  p.ambient_direction = words.add(c.ambient_direction);
+  p.half_quantile = c.half_quantile;
+  p.least_variance_share = static_cast<float>(least_variance_share);
   return p;
 }
 
@@ -190,6 +198,11 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   define("STATUS_SATURATED", static_cast<int>(PixelStatus::saturated));
   define("STATUS_LOW_SIGNAL", static_cast<int>(PixelStatus::low_signal));
   define("STATUS_AMBIGUOUS", static_cast<int>(PixelStatus::ambiguous));
+  define("STATUS_INCONSISTENT", static_cast<int>(PixelStatus::inconsistent));
+  define("LIMIT_VARIANCE", LimitLayout::variance);
+  define("LIMIT_ERROR", LimitLayout::error);
+  define("LIMIT_ROOT", LimitLayout::root);
+  define("LIMIT_PER_FREEDOM", LimitLayout::per_freedom);
   return options;
 }
 

@@ -15,6 +15,19 @@ inline constexpr int pixels_per_chunk = 128;
 /// Of such log odds the probability is 1 in single precision.
 inline constexpr float sure_log_odds = 18.0f;
 
+/// Variances of measurements below this share of the pixel's largest count as that in residuals.
+inline constexpr double least_variance_share = 1e-4;
+
+/// Positions of the fields of a bin's ResidualModel::Limit, in blocks of four.
+struct LimitLayout {
+  static constexpr int variance = 0;  ///< per signal, per ambient light, and without light
+  static constexpr int error = 3;
+  static constexpr int end_of_bound = 4;
+  static constexpr int root = 4;
+  static constexpr int per_freedom = 5;
+  static constexpr int end = 6, stride = 8;
+};
+
 /// What is the same for all bins.
 struct OutputConstants {
   int samples = 0;
@@ -32,6 +45,12 @@ struct OutputConstants {
   float max_floor_e2 = 0.0f;          // and without light
   float low_signal_sigma2 = 0.0f;
   float min_confidence = 0.0f;
+  bool finds_inconsistent = false;
+  float half_quantile = 0.0f;  // q / 2 of ResidualModel, the largest of all bins
+  int off_plane_count = 0;
+  std::vector<float> off_plane;          // as ResidualModel, direction by direction (count, K)
+  std::vector<float> residual_basis;     // V, then off_plane_noise (K, rank + count)
+  std::vector<float> ambient_direction;  // as ResidualModel (K)
 };
 
 /// Which steps the wanted planes need.
@@ -39,6 +58,7 @@ struct OutputSteps {
   bool ambient = false;
   bool noise = false;
   bool confidence = false;
+  bool residual = false;
   int fields = 0;  // of the records
 };
 
@@ -57,6 +77,10 @@ struct OutputChunk {
   alignas(64) float variance_share[pixels_per_chunk];  // of a single measurement: 1 / averaged
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
+  alignas(64) float residual[pixels_per_chunk];
+  alignas(64) float inconsistent[pixels_per_chunk];  // 1 where a pixel is, else 0
+  alignas(64) std::uint32_t limit_start[pixels_per_chunk];
+  alignas(64) float limit[LimitLayout::stride * pixels_per_chunk];
   alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];
   alignas(64) float second_peak_direction[max_measurements * pixels_per_chunk];
   alignas(64) float record[max_record_fields * pixels_per_chunk];

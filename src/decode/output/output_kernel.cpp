@@ -15,6 +15,7 @@
 
 #include "decode/output/output_noise-inl.hpp"
 #include "decode/output/output_position-inl.hpp"
+#include "decode/output/output_residual-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
@@ -24,8 +25,9 @@ namespace {
 /// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
 template <int Rank>
 HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
-                            const OutputSteps& steps, const std::uint8_t* saturated,
-                            OutputChunk& chunk, const DecodedView& planes) {
+                            const RecordTable& limits, const OutputSteps& steps,
+                            const std::uint8_t* saturated, OutputChunk& chunk,
+                            const DecodedView& planes) {
   const RecordLayout& layout = records.layout;
   const int rank = Rank > 0 ? Rank : layout.rank;
   find_rows(records.records, chunk.bin, chunk.pixels, chunk.start);
@@ -47,7 +49,10 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
     find_confidence(c, records, rank, chunk);
   }
   if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
+  if (steps.residual) find_residual<Rank>(c, records, limits, planes.residual != nullptr, chunk);
+  if (planes.residual) write_values(chunk, chunk.residual, planes.residual);
   if (planes.status) {
+    if (!steps.residual) std::fill_n(chunk.inconsistent, pixels_per_chunk, 0.0f);
     if (!steps.confidence) std::fill_n(chunk.confidence, pixels_per_chunk, 1.0f);
     find_signal_noise(layout, chunk);
     write_status(c, chunk, saturated, planes.status);
@@ -61,8 +66,8 @@ HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t*
 
 template <int Rank>
 HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
-                           const OutputSteps& steps, const MatchedTile& tile,
-                           const DecodedView& planes) {
+                           const RecordTable& limits, const OutputSteps& steps,
+                           const MatchedTile& tile, const DecodedView& planes) {
   OutputChunk chunk;
   for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
     chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
@@ -74,22 +79,22 @@ HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
     if (tile.averaged)
       for (int i = 0; i < chunk.pixels; ++i)
         chunk.variance_share[i] = 1.0f / tile.averaged[first + i];
-    write_chunk<Rank>(records, c, steps, tile.saturated ? tile.saturated + first : nullptr, chunk,
-                      planes.from(static_cast<std::size_t>(first)));
+    write_chunk<Rank>(records, c, limits, steps, tile.saturated ? tile.saturated + first : nullptr,
+                      chunk, planes.from(static_cast<std::size_t>(first)));
   }
 }
 
-void write(const BinRecords& records, const OutputConstants& c, const OutputSteps& steps,
-           const MatchedTile& tile, const DecodedView& planes) {
+void write(const BinRecords& records, const OutputConstants& c, const RecordTable& limits,
+           const OutputSteps& steps, const MatchedTile& tile, const DecodedView& planes) {
   switch (records.layout.rank) {
     case 2:
-      return write_tile<2>(records, c, steps, tile, planes);
+      return write_tile<2>(records, c, limits, steps, tile, planes);
     case 3:
-      return write_tile<3>(records, c, steps, tile, planes);
+      return write_tile<3>(records, c, limits, steps, tile, planes);
     case 4:
-      return write_tile<4>(records, c, steps, tile, planes);
+      return write_tile<4>(records, c, limits, steps, tile, planes);
     default:
-      return write_tile<0>(records, c, steps, tile, planes);
+      return write_tile<0>(records, c, limits, steps, tile, planes);
   }
 }
 
@@ -167,7 +172,8 @@ float with_room_for(double value, int integers) {
 
 OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
                            const DecodeOptions& options, bool only_positions)
-    : records_(table, projection, !only_positions) {
+    : records_(table, projection, !only_positions),
+      limits_(only_positions ? 0 : table.samples(), LimitLayout::stride) {
   const double bin_m = table.row_m();
   const ExpectedNoise noise(table);
   const double ambient2 = projection.ambient.squaredNorm();
@@ -189,11 +195,36 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
   constants_.min_confidence = static_cast<float>(options.min_confidence);
+  if (!only_positions) fill_limits(ResidualModel(table, projection, options), projection);
+}
+
+void OutputKernel::fill_limits(const ResidualModel& residuals,
+                               const AmbientProjection& projection) {
+  const RowMajorMatrix off_plane = residuals.off_plane().transpose();
+  RowMajorMatrix basis(projection.noise_basis.rows(), projection.rank() + off_plane.rows());
+  basis << projection.noise_basis, residuals.off_plane_noise();
+  constants_.off_plane_count = static_cast<int>(off_plane.rows());
+  constants_.off_plane.assign(off_plane.data(), off_plane.data() + off_plane.size());
+  constants_.residual_basis.assign(basis.data(), basis.data() + basis.size());
+  constants_.ambient_direction = in_floats(residuals.ambient_direction());
+  for (std::size_t n = 0; n < residuals.limits().size(); ++n) {
+    const ResidualModel::Limit& limit = residuals.limits()[n];
+    float* const row = limits_.row(static_cast<std::int32_t>(n));
+    row[LimitLayout::variance] = static_cast<float>(limit.of_signal);
+    row[LimitLayout::variance + 1] = static_cast<float>(limit.of_ambient);
+    row[LimitLayout::variance + 2] = static_cast<float>(limit.of_floor);
+    row[LimitLayout::error] = static_cast<float>(limit.error);
+    row[LimitLayout::root] = static_cast<float>(limit.root);
+    row[LimitLayout::per_freedom] = static_cast<float>(limit.per_freedom);
+  }
+  constants_.finds_inconsistent = residuals.half_quantile() > 0.0;
+  constants_.half_quantile = static_cast<float>(residuals.half_quantile());
 }
 
 bool OutputKernel::needs_electrons(const DecodedView& planes) const {
-  return constants_.sees_ambient && (planes.ambient_e_per_s || planes.confidence ||
-                                     planes.predicted_standard_deviation_m || planes.status);
+  return (constants_.sees_ambient && (planes.ambient_e_per_s || planes.confidence ||
+                                      planes.predicted_standard_deviation_m || planes.status)) ||
+         (needs_residuals(planes) && (constants_.sees_ambient || constants_.off_plane_count > 0));
 }
 
 bool OutputKernel::needs_second_peaks(const DecodedView& planes) const {
@@ -204,13 +235,15 @@ void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) con
   const RecordLayout& layout = records_.layout;
   OutputSteps steps;
   steps.confidence = needs_second_peaks(planes);
-  steps.noise = steps.confidence || planes.predicted_standard_deviation_m || planes.status;
+  steps.residual = needs_residuals(planes);
+  steps.noise =
+      steps.confidence || steps.residual || planes.predicted_standard_deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
-  steps.fields = steps.confidence ? layout.end_of_directions()
-                 : steps.noise    ? layout.end_of_noise()
-                 : steps.ambient  ? layout.end_of_light()
-                                  : layout.end_of_depth();
-  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, steps, tile, planes);
+  steps.fields = steps.confidence || steps.residual ? layout.end_of_directions()
+                 : steps.noise                      ? layout.end_of_noise()
+                 : steps.ambient                    ? layout.end_of_light()
+                                                    : layout.end_of_depth();
+  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, limits_, steps, tile, planes);
 }
 
 void OutputKernel::find_positions(const MatchedTile& tile, double* depth_bin) const {

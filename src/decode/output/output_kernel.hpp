@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "decode/output/output_chunk.hpp"
+#include "decode/output/residual_model.hpp"
 #include "decode/search/shared/bin_records.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -48,10 +49,15 @@ class OutputKernel {
 
   const BinRecords& records() const { return records_; }
   const OutputConstants& constants() const { return constants_; }
+  /// One row of LimitLayout per bin.
+  const RecordTable& limits() const { return limits_; }
 
   /// Which rows of a tile these planes need besides `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
   bool needs_second_peaks(const DecodedView& planes) const;
+  bool needs_residuals(const DecodedView& planes) const {
+    return planes.residual || (planes.status && constants_.finds_inconsistent);
+  }
   bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
 
   /// Writes the tile's pixels to the planes that are not null, from their first value on.
@@ -63,8 +69,11 @@ class OutputKernel {
   void find_positions(const MatchedTile& tile, double* depth_bin) const;
 
  private:
+  void fill_limits(const ResidualModel& residuals, const AmbientProjection& projection);
+
   BinRecords records_;
   OutputConstants constants_;
+  RecordTable limits_;
 };
 
 }  // namespace tofsmith

@@ -63,7 +63,8 @@ struct UnwrapDecoder::Plan {
         phases(table, options.largest_other_energy),
         weights(weights_of(phases, table.measurements(), options.weights)),
         unwrapper(phases.frequencies(), weights),
-        model(table, projection) {}
+        model(table, projection),
+        residuals(table, projection, options.status_thresholds) {}
 
   using PerMeasurement = std::array<double, max_measurements>;
   using PerFrequency = std::array<double, max_frequencies>;
@@ -75,6 +76,7 @@ struct UnwrapDecoder::Plan {
   std::vector<double> weights;
   PhaseUnwrapper unwrapper;
   PixelModel model;
+  ResidualModel residuals;
 
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
@@ -174,6 +176,9 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, 
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();
     pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
     pixel.confidence = confidence(phase, wraps, pixel, variance_e2);
+    if (decoded.residual || decoded.status)
+      pixel.residual = residuals.residual(electrons.data(), pixel.estimate,
+                                          Position::at(pixel.depth_row), variance_share);
   }
   store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
 }
