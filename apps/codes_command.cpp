@@ -55,9 +55,10 @@ std::string strip(const Waveform& waveform) {
   return text;
 }
 
-/// Its switching times; a sampled one has none, though its samples step.
+/// Number of switching times, or the kind of a waveform that does not switch.
 std::string edges_text(const Waveform& waveform) {
-  return waveform.is_binary() ? fmt::format("{}", waveform.edges()) : "sampled";
+  if (waveform.is_binary()) return fmt::format("{}", waveform.edges());
+  return waveform.is_sampled() ? "sampled" : "cosines";
 }
 
 std::string counted(int count, std::string_view what) {

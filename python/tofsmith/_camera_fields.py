@@ -89,8 +89,8 @@ class Sensor:
         poisson, or gaussian of the same variance.
     dark_current_e_per_s : float
         Per tap [e/s].
-    modulation_contrast : float
-        C in (0, 1]; below 1 the taps mix.
+    modulation_contrast : float or tuple of float
+        C in (0, 1]; below 1 the taps mix. A tuple: one per exposure or per frequency of the code.
     tap_mismatch : float
         Relative difference in sensitivity of neighbouring taps.
     drain : bool
@@ -116,7 +116,7 @@ class Sensor:
     read_noise_e: float
     noise: str
     dark_current_e_per_s: float
-    modulation_contrast: float
+    modulation_contrast: Union[float, tuple[float, ...]]
     tap_mismatch: float
     drain: bool
     readout: str

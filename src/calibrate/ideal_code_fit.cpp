@@ -38,6 +38,7 @@ Camera unlimited_camera(Camera camera) {
   camera.light.peak_factor = 1e6;
   camera.light.binary = camera.sensor.binary = false;
   camera.sensor.modulation_contrast = 1.0;
+  camera.sensor.modulation_contrasts.clear();
   camera.sensor.tap_mismatch = 0.0;
   camera.exposure_s.each_s.clear();
   camera.playback.reset();

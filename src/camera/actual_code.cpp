@@ -16,7 +16,7 @@ namespace {
 
 Waveform scaled(const Waveform& waveform, double factor) {
   return waveform.is_binary() ? Waveform::binary(waveform.on_intervals(), factor * waveform.level())
-                              : Waveform::sampled(factor * waveform.samples());
+                              : waveform.scaled(0.0, factor);
 }
 
 /// Exposures in the order in which they are played, with their taps as they are read out.

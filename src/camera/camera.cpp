@@ -88,11 +88,14 @@ void validate_sensor(const Sensor& sensor) {
           sensor.tap_mismatch, "must be in (-1, 1)");
   require_not_negative(sensor.read_noise_e, "sensor.read_noise_e");
   require_not_negative(sensor.dark_current_e_per_s, "sensor.dark_current_e_per_s");
-  const double contrast = sensor.modulation_contrast;
-  require(contrast > 0.0 && contrast <= 1.0, "sensor.modulation_contrast", contrast,
-          "must be in (0, 1]");
-  require(contrast == 1.0 || sensor.taps >= 2 || sensor.is_signed(), "sensor.modulation_contrast",
-          contrast, "must be 1 for one tap: contrast mixes taps");
+  std::vector<double> contrasts = sensor.modulation_contrasts;
+  if (contrasts.empty()) contrasts = {sensor.modulation_contrast};
+  for (const double contrast : contrasts) {
+    require(contrast > 0.0 && contrast <= 1.0, "sensor.modulation_contrast", contrast,
+            "must be in (0, 1]");
+    require(contrast == 1.0 || sensor.taps >= 2 || sensor.is_signed(), "sensor.modulation_contrast",
+            contrast, "must be 1 for one tap: contrast mixes taps");
+  }
   if (sensor.full_well_e) require_positive(*sensor.full_well_e, "sensor.full_well_e");
   validate_adc(sensor);
   if (sensor.shortest_pulse_s)
@@ -312,6 +315,24 @@ std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& 
   return std::nullopt;
 }
 
+/// The first exposure of every run of exposures with the same modulation.
+std::vector<int> frequency_starts(const CodeSet& code) {
+  std::vector<int> starts;
+  for (int e = 0; e < code.exposures(); ++e)
+    if (e == 0 || !(code.modulation(e) == code.modulation(e - 1))) starts.push_back(e);
+  return starts;
+}
+
+std::optional<BrokenRule> contrasts_misfit(const CodeSet& code, const Sensor& sensor) {
+  const std::size_t count = sensor.modulation_contrasts.size();
+  const std::size_t frequencies = frequency_starts(code).size();
+  if (count == 0 || count == frequencies || count == static_cast<std::size_t>(code.exposures()))
+    return std::nullopt;
+  return broken("number of sensor.modulation_contrast", count,
+                fmt::format("must equal the {} exposures or the {} frequencies of code {}",
+                            code.exposures(), frequencies, code.name()));
+}
+
 std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& camera) {
   const std::string what = "code " + code.name();
   const bool is_of_rows = camera.sensor.readout == Readout::rows;
@@ -342,11 +363,24 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
         fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
   if (!camera.sensor.drain)
     if (auto unfilled = unfilled_taps(code, what)) return unfilled;
+  if (auto misfit = contrasts_misfit(code, camera.sensor)) return misfit;
   if (auto others = other_exposures_listed(camera, code.exposures(), " of " + what)) return others;
   return pulse_not_generated(code, camera);
 }
 
 }  // namespace
+
+std::vector<double> Sensor::contrasts_of(const CodeSet& code) const {
+  const auto exposures = static_cast<std::size_t>(code.exposures());
+  if (modulation_contrasts.empty()) return std::vector<double>(exposures, modulation_contrast);
+  require(contrasts_misfit(code, *this));
+  if (modulation_contrasts.size() == exposures) return modulation_contrasts;
+  std::vector<double> contrasts(exposures, 0.0);
+  const std::vector<int> starts = frequency_starts(code);
+  for (std::size_t f = 0; f < starts.size(); ++f)
+    std::fill(contrasts.begin() + starts[f], contrasts.end(), modulation_contrasts[f]);
+  return contrasts;
+}
 
 std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera) {
   return text_of(what_does_not_fit(code, camera));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/shared/periodic.hpp"
@@ -102,8 +103,22 @@ double between_corners(const std::vector<double>& corners, const std::vector<dou
 double variation(const Waveform& waveform) {
   if (waveform.is_binary())
     return 2.0 * waveform.level() * static_cast<double>(waveform.on_intervals().size());
+  double sum = 0.0;  // of the variations of all cosines
+  for (Eigen::Index n = 1; n < waveform.coefficients().size(); ++n)
+    sum += 8.0 * static_cast<double>(n) * std::abs(waveform.coefficients()[n]);
+  if (!waveform.is_sampled()) return sum;
   const Eigen::VectorXd& x = waveform.samples();
   return (x - circular_shift(x, 1)).cwiseAbs().sum();
+}
+
+/// The last harmonic that both waveforms have; none: there is no end.
+constexpr int no_end = std::numeric_limits<int>::max();
+int last_harmonic(const Waveform& d, const Waveform& m) {
+  int last = no_end;
+  for (const Waveform* waveform : {&d, &m})
+    if (const auto size = static_cast<int>(waveform->coefficients().size()); size > 0)
+      last = std::min(last, size - 1);
+  return last;
 }
 
 /// The last harmonic of the transfer that counts: all others together are rounding. Harmonic n of a
@@ -112,7 +127,7 @@ int last_that_counts(const Waveform& d, const Waveform& m, const Eigen::VectorXc
   constexpr double rounding = 1e-15;
   const double allowed = rounding * d.mean() * m.mean() / (variation(d) * variation(m));
   double left_out = 0.0;
-  Eigen::Index n = transfer.size() - 1;
+  Eigen::Index n = std::min<Eigen::Index>(transfer.size() - 1, last_harmonic(d, m));
   for (; n > 0; --n) {
     const double larger = std::abs(transfer[n].real()) + std::abs(transfer[n].imag());
     left_out += 2.0 * larger / std::pow(2.0 * std::numbers::pi * static_cast<double>(n), 2);
@@ -124,6 +139,10 @@ int last_that_counts(const Waveform& d, const Waveform& m, const Eigen::VectorXc
 }  // namespace
 
 CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation) {
+  if (const int last = last_harmonic(demodulation, modulation); last < no_end) {
+    harmonics_ = demodulation.harmonics(last).cwiseProduct(modulation.harmonics(last).conjugate());
+    return;
+  }
   const StepFunction d = demodulation.steps(), m = modulation.steps();
   // Every pair of breakpoints is a corner. Where these are too many, they mostly coincide: on a
   // grid that both share.
@@ -192,6 +211,14 @@ double CorrelationFunction::operator()(double u) const {
   const auto after = std::upper_bound(corners_.begin(), corners_.end(), position);
   return between_corners(corners_, values_, static_cast<std::size_t>(after - corners_.begin()) - 1,
                          position);
+}
+
+bool CorrelationFunction::has_corners_at(int points) const {
+  constexpr double rounding = 1e-6;
+  return harmonics_.size() == 0 &&
+         std::all_of(corners_.begin(), corners_.end(), [&](double corner) {
+           return std::abs(corner * points - std::round(corner * points)) <= rounding;
+         });
 }
 
 Eigen::VectorXd CorrelationFunction::table(int points) const {

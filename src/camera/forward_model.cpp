@@ -16,11 +16,12 @@ namespace tofsmith {
 
 namespace {
 
-/// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.
+/// A contrast below 1 mixes the taps of its exposure: C x_j + (1 - C) / t sum_k x_k.
 template <typename Columns>
-void mix_taps(Columns& values, int taps, double contrast) {
-  if (contrast == 1.0) return;
+void mix_taps(Columns& values, int taps, const std::vector<double>& contrasts) {
   for (Eigen::Index first = 0; first < values.cols(); first += taps) {
+    const double contrast = contrasts[static_cast<std::size_t>(first / taps)];
+    if (contrast == 1.0) continue;
     const Eigen::VectorXd mean = values.middleCols(first, taps).rowwise().mean();
     for (Eigen::Index j = first; j < first + taps; ++j)
       values.col(j) = contrast * values.col(j) + (1.0 - contrast) * mean;
@@ -38,12 +39,39 @@ Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
   return sensitivity.transpose().replicate(2, 1).reshaped();  // both signs of an exposure
 }
 
+/// x^2 of a waveform that is not binary.
+Waveform squared(const Waveform& x) {
+  if (x.is_sampled()) return Waveform::sampled(x.samples().array().square());
+  const Eigen::VectorXcd& c = x.coefficients();
+  const Eigen::Index highest = c.size() - 1;
+  const auto at = [&](Eigen::Index n) {
+    if (std::abs(n) > highest) return std::complex<double>(0.0);
+    return n >= 0 ? c[n] : std::conj(c[-n]);
+  };
+  Eigen::VectorXcd product = Eigen::VectorXcd::Zero(2 * highest + 1);
+  for (Eigen::Index n = 0; n <= 2 * highest; ++n)
+    for (Eigen::Index j = -highest; j <= highest; ++j) product[n] += at(j) * at(n - j);
+  product[0] = product[0].real();
+  return Waveform::cosines(std::move(product));
+}
+
+/// a x + b y + c of two waveforms of the same kind.
+Waveform combined(const Waveform& x, double a, const Waveform& y, double b, double c) {
+  if (x.is_sampled())
+    return Waveform::sampled(a * x.samples().array() + b * y.samples().array() + c);
+  Eigen::VectorXcd sum = a * x.coefficients();
+  sum.head(y.coefficients().size()) += b * y.coefficients();
+  sum[0] += c;
+  return Waveform::cosines(std::move(sum));
+}
+
 /// The two taps of a mixer that is driven by x, of the weight w = 2 x - 1: (w^2 + w) / 2 and
 /// (w^2 - w) / 2.
 std::array<Waveform, 2> taps_of_weight(const Waveform& drive) {
   if (drive.is_binary()) return {drive, drive.complement()};
-  const Eigen::ArrayXd x = drive.samples();
-  return {Waveform::sampled(x * (2.0 * x - 1.0)), Waveform::sampled((1.0 - x) * (1.0 - 2.0 * x))};
+  const Waveform square = squared(drive);
+  // x (2 x - 1) and (1 - x) (1 - 2 x) = x (2 x - 1) + 1 - 2 x.
+  return {combined(square, 2.0, drive, -1.0, 0.0), combined(square, 2.0, drive, -3.0, 1.0)};
 }
 
 /// Demodulation functions of the tap values.
@@ -53,6 +81,16 @@ std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> d
   for (const Waveform& drive : demodulation)
     for (Waveform& tap : taps_of_weight(drive)) taps.push_back(std::move(tap));
   return taps;
+}
+
+/// Contrasts in the order of the camera's exposures.
+std::vector<double> played_contrasts(const CodeSet& code, const Camera& camera) {
+  const std::vector<double> of_code = camera.sensor.contrasts_of(code);
+  if (!camera.playback || camera.playback->order.size() != of_code.size()) return of_code;
+  std::vector<double> played;
+  for (const int exposure : camera.playback->order)
+    played.push_back(of_code[static_cast<std::size_t>(exposure)]);
+  return played;
 }
 
 }  // namespace
@@ -81,7 +119,7 @@ double constant_variance_e2_of(const Sensor& sensor) {
 ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     : samples_(code.samples()),
       taps_(code.is_signed() ? 2 : code.taps()),
-      contrast_(camera.sensor.modulation_contrast),
+      contrasts_(played_contrasts(code, camera)),
       sensitivity_(sensitivities(code, camera.sensor)) {
   camera.validate();
   require_fits(code, camera);
@@ -116,7 +154,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     return;
   }
   readout_ = readout_matrix(tap_values, sensor.readout);
-  mix_taps(gain, taps_, contrast_);
+  mix_taps(gain, taps_, contrasts_);
   tap_ambient_gain_ = gain.transpose().cwiseProduct(sensitivity_);
   ambient_gain_ = readout_ * tap_ambient_gain_;
   exposure_s_.resize(measurements());
@@ -150,7 +188,7 @@ Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {
   Eigen::RowVectorXd values(tap_values());
   for (int i = 0; i < tap_values(); ++i)
     values[i] = functions_[static_cast<std::size_t>(i)](depth_bin / samples_);
-  mix_taps(values, taps_, contrast_);
+  mix_taps(values, taps_, contrasts_);
   return signal_gain_ * values.transpose().cwiseProduct(sensitivity_);
 }
 
@@ -183,7 +221,7 @@ Eigen::MatrixXd ForwardModel::tap_correlation_table(int points) const {
   Eigen::MatrixXd table(points, tap_values());
   for (int i = 0; i < tap_values(); ++i)
     table.col(i) = functions_[static_cast<std::size_t>(i)].table(points);
-  mix_taps(table, taps_, contrast_);
+  mix_taps(table, taps_, contrasts_);
   return table * (signal_gain_ * sensitivity_).asDiagonal();
 }
 
@@ -193,6 +231,56 @@ Eigen::MatrixXd ForwardModel::correlation_table(int points) const {
   for (int i = 0; i < measurements(); ++i)
     table.col(i) = signal_gain_ * functions_[static_cast<std::size_t>(i)].table(points);
   return table;
+}
+
+Eigen::VectorXd ForwardModel::harmonic_energies() const {
+  Eigen::VectorXd energy;
+  for (const CorrelationFunction& function : functions_) {
+    const Eigen::VectorXcd& harmonics = function.harmonics();
+    if (harmonics.size() == 0) return {};
+    if (harmonics.size() > energy.size()) {
+      Eigen::VectorXd longer = Eigen::VectorXd::Zero(harmonics.size());
+      longer.head(energy.size()) = energy;
+      energy = std::move(longer);
+    }
+    energy.head(harmonics.size()) += harmonics.cwiseAbs2();
+  }
+  return energy;
+}
+
+std::optional<int> ForwardModel::highest_harmonic() const {
+  constexpr double negligible = 3e-7;
+  const Eigen::VectorXd energy = harmonic_energies();
+  if (energy.size() == 0) return std::nullopt;
+  const double whole = energy.tail(energy.size() - 1).sum();
+  double above = 0.0;
+  Eigen::Index highest = energy.size() - 1;
+  for (; highest > 1; --highest) {
+    above += energy[highest];
+    if (above > negligible * negligible * whole) break;
+  }
+  return static_cast<int>(highest);
+}
+
+int ForwardModel::straight_points_per_bin(int least) const {
+  // A chord of a cosine is off by (2 pi / points per period)^2 / 8 of its amplitude.
+  constexpr double per_period = 96.0, most = 1 << 20;
+  double curvature = 0.0, amplitude = 0.0;
+  const Eigen::VectorXd energy = harmonic_energies();
+  for (Eigen::Index n = 1; n < energy.size(); ++n) {
+    amplitude += std::sqrt(energy[n]);
+    curvature += static_cast<double>(n * n) * std::sqrt(energy[n]);
+  }
+  const double wanted = amplitude > 0.0 ? per_period * std::sqrt(curvature / amplitude) : 0.0;
+  int points_per_bin = least;
+  while (points_per_bin * samples_ < wanted && 2.0 * points_per_bin * samples_ <= most)
+    points_per_bin *= 2;
+  return points_per_bin;
+}
+
+bool ForwardModel::has_corners_at_rows(int rows) const {
+  return std::all_of(functions_.begin(), functions_.end(),
+                     [&](const CorrelationFunction& f) { return f.has_corners_at(rows); });
 }
 
 Eigen::VectorXd ForwardModel::dark_electrons() const {

@@ -57,16 +57,6 @@ Waveform on_points(const Waveform& waveform, int points) {
   return Waveform::binary(std::move(on), waveform.level());
 }
 
-/// The value at the middle of every point.
-Eigen::VectorXd values_at_middles(const Eigen::VectorXd& nominal, int points) {
-  Eigen::VectorXd values(points);
-  for (int j = 0; j < points; ++j) {
-    const double middle = (j + 0.5) / points * static_cast<double>(nominal.size());
-    values[j] = nominal[static_cast<Eigen::Index>(middle + rounding)];
-  }
-  return values;
-}
-
 Eigen::VectorXd rounded_amplitudes(Eigen::VectorXd values, double peak, int bits) {
   const double step = peak / (std::exp2(bits) - 1.0);
   for (double& value : values)
@@ -165,8 +155,8 @@ Waveform generator_table(const Waveform& waveform, const Generator& generator,
           "must be >= 0: a generator's levels run from 0 to the peak");
   const int points = generator.points_in_table(fundamental_frequency_hz);
   if (!waveform.is_binary())
-    return Waveform::sampled(rounded_amplitudes(values_at_middles(waveform.samples(), points),
-                                                waveform.peak(), generator.amplitude_bits));
+    return Waveform::sampled(rounded_amplitudes(waveform.values_at_middles(points), waveform.peak(),
+                                                generator.amplitude_bits));
   if (!generator.edge_grid_s) return on_points(waveform, points);
   const double steps = grid_steps(*generator.edge_grid_s, fundamental_frequency_hz);
   return on_points(on_points(waveform, static_cast<int>(steps)), points);
@@ -178,7 +168,7 @@ Waveform generated(const Waveform& waveform, const Generator& generator,
   const int actual_points = generator.points_per_period(fundamental_frequency_hz);
   if (actual_points == generator.points_in_table(fundamental_frequency_hz)) return table;
   return table.is_binary() ? on_points(table, actual_points)
-                           : Waveform::sampled(values_at_middles(table.samples(), actual_points));
+                           : Waveform::sampled(table.values_at_middles(actual_points));
 }
 
 }  // namespace tofsmith

@@ -40,7 +40,7 @@ CodeSet CodeSet::create(std::string name, int samples, int taps, std::vector<Wav
           "number of demodulation functions", demodulation.size(),
           fmt::format("must be exposures x taps = {} x {}", modulation.size(), taps));
   const auto check_length = [&](const Waveform& w, const char* kind, std::size_t i) {
-    require(w.is_binary() || w.samples().size() == samples, fmt::format("{} {} length", kind, i),
+    require(!w.is_sampled() || w.samples().size() == samples, fmt::format("{} {} length", kind, i),
             w.samples().size(), fmt::format("must equal samples = {}", samples));
   };
   for (std::size_t e = 0; e < modulation.size(); ++e) {
@@ -73,7 +73,7 @@ CodeSet CodeSet::create_rows(std::string name, Waveform light, const Eigen::Matr
   require(samples >= 2, "time bins of the rows", samples, "must be >= 2");
   require(rows.cols() >= 2 && rows.cols() <= max_exposure_rows, "number of rows", rows.cols(),
           fmt::format("must be in [2, {}]", max_exposure_rows));
-  require(light.is_binary() || light.samples().size() == samples, "light length",
+  require(!light.is_sampled() || light.samples().size() == samples, "light length",
           light.samples().size(), fmt::format("must equal the time bins of the rows, {}", samples));
   check_modulation(light, 0);
   require(light.mean() > 0.0, "light mean", light.mean(), "must be > 0");
@@ -149,7 +149,7 @@ CodeSet CodeSet::resampled(int samples) const {
   copy.samples_ = samples;
   for (auto* waveforms : {&copy.modulation_, &copy.demodulation_})
     for (Waveform& w : *waveforms)
-      if (!w.is_binary()) w = Waveform::sampled(w.cell_averages(samples));
+      if (w.is_sampled()) w = Waveform::sampled(w.cell_averages(samples));
   return copy;
 }
 

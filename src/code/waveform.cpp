@@ -49,6 +49,30 @@ void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
   }
 }
 
+/// Values of a sum of cosines at t = (j + offset) / points, j = 0 .. points - 1.
+Eigen::VectorXd values_of(const Eigen::VectorXcd& coefficients, int points, double offset) {
+  // Harmonics above points / 2 fold onto lower ones: exact at these times.
+  Eigen::VectorXcd folded = Eigen::VectorXcd::Zero(points);
+  folded[0] = coefficients[0];
+  for (Eigen::Index n = 1; n < coefficients.size(); ++n) {
+    const std::complex<double> c =
+        coefficients[n] *
+        std::polar(1.0, 2 * pi * wrap(static_cast<double>(n) * offset / points, 1.0));
+    folded[n % points] += c;
+    folded[(points - n % points) % points] += std::conj(c);
+  }
+  const PeriodicTransform transform(points);
+  const Eigen::VectorXcd spectrum = static_cast<double>(points) * folded.head(points / 2 + 1);
+  Eigen::VectorXd values;
+  transform.inverse(spectrum, values);
+  return values;
+}
+
+/// Points per period that resolve a sum of cosines: 64 or more per period of its highest harmonic.
+int resolving_points(const Eigen::VectorXcd& coefficients) {
+  return std::max(256, 64 * static_cast<int>(coefficients.size() - 1));
+}
+
 double on_time(const std::vector<OnInterval>& on) {
   double sum = 0.0;
   for (const OnInterval& interval : on) sum += interval.fall - interval.rise;
@@ -84,6 +108,28 @@ Waveform Waveform::sampled(Eigen::VectorXd samples) {
   return waveform;
 }
 
+Waveform Waveform::cosines(Eigen::VectorXcd coefficients) {
+  constexpr Eigen::Index max_harmonics = 1 << 16;
+  require(coefficients.size() >= 1 && coefficients.size() <= max_harmonics + 1,
+          "number of coefficients", coefficients.size(), "must be in [1, 65537]");
+  for (Eigen::Index n = 0; n < coefficients.size(); ++n)
+    require(std::isfinite(coefficients[n].real()) && std::isfinite(coefficients[n].imag()),
+            fmt::format("coefficient {}", n), "NaN or infinite", "must be finite");
+  require(coefficients[0].imag() == 0.0, "coefficient 0", coefficients[0].imag(),
+          "must be real: it is the mean");
+  Waveform waveform;
+  waveform.coefficients_ = std::move(coefficients);
+  return waveform;
+}
+
+Waveform Waveform::cosine(int frequency, double mean, double amplitude, double phase_rad) {
+  require(frequency >= 1, "frequency", frequency, "must be >= 1");
+  Eigen::VectorXcd coefficients = Eigen::VectorXcd::Zero(frequency + 1);
+  coefficients[0] = mean;
+  coefficients[frequency] = std::polar(0.5 * amplitude, -phase_rad);
+  return cosines(std::move(coefficients));
+}
+
 Waveform Waveform::constant(double level) {
   return level == 0.0 ? binary({}, 1.0) : binary({{0.0, 1.0}}, level);
 }
@@ -106,26 +152,35 @@ Waveform Waveform::binary_from_samples(const Eigen::VectorXd& samples, double le
   return binary(std::move(intervals), level);
 }
 
-double Waveform::mean() const { return is_binary() ? level_ * on_time(on_) : samples_.mean(); }
+double Waveform::mean() const {
+  if (is_binary()) return level_ * on_time(on_);
+  return is_sampled() ? samples_.mean() : coefficients_[0].real();
+}
 
 double Waveform::minimum() const {
-  if (!is_binary()) return samples_.minCoeff();
+  if (is_sampled()) return samples_.minCoeff();
+  if (!is_binary()) return -scaled(0.0, -1.0).peak();
   return on_time(on_) >= 1.0 ? level_ : 0.0;
 }
 
 double Waveform::peak() const {
-  if (!is_binary()) return samples_.maxCoeff();
-  return on_.empty() ? 0.0 : level_;
+  if (is_sampled()) return samples_.maxCoeff();
+  if (is_binary()) return on_.empty() ? 0.0 : level_;
+  const Eigen::VectorXcd varying = coefficients_.tail(coefficients_.size() - 1);
+  if ((varying.array() != 0.0).count() <= 1) return mean() + 2.0 * varying.cwiseAbs().sum();
+  return values_of(coefficients_, resolving_points(coefficients_), 0.0).maxCoeff();
 }
 
 double Waveform::duty() const {
   if (is_binary()) return on_time(on_);
-  const double half = 0.5 * samples_.maxCoeff();
-  return static_cast<double>((samples_.array() > half).count()) /
-         static_cast<double>(samples_.size());
+  const Eigen::VectorXd values =
+      is_sampled() ? samples_ : values_of(coefficients_, resolving_points(coefficients_), 0.5);
+  const double half = 0.5 * values.maxCoeff();
+  return static_cast<double>((values.array() > half).count()) / static_cast<double>(values.size());
 }
 
 int Waveform::edges() const {
+  if (!is_binary() && !is_sampled()) return 0;
   const StepFunction function = steps();
   int count = 0;
   for (std::size_t i = 0; i < function.values.size(); ++i) {
@@ -137,7 +192,16 @@ int Waveform::edges() const {
 
 Eigen::VectorXd Waveform::cell_averages(int samples) const {
   require(samples >= 1, "samples", samples, "must be >= 1");
-  if (!is_binary() && samples_.size() == samples) return samples_;
+  if (samples_.size() == samples) return samples_;
+  if (coefficients_.size() > 0) {
+    // The mean over a cell: sin(x) / x times the value at its middle, x = pi n / samples.
+    Eigen::VectorXcd averaged = coefficients_;
+    for (Eigen::Index n = 1; n < averaged.size(); ++n) {
+      const double x = pi * static_cast<double>(n) / samples;
+      averaged[n] *= std::sin(pi * wrap(static_cast<double>(n) / samples, 2.0)) / x;
+    }
+    return values_of(averaged, samples, 0.5);
+  }
   // Integrate the step function over each cell.
   const StepFunction function = steps();
   Eigen::VectorXd cells = Eigen::VectorXd::Zero(samples);
@@ -169,6 +233,11 @@ Eigen::VectorXcd Waveform::harmonics(int highest) const {
       result[n] = level_ / (2 * pi * n) * std::complex<double>(turns[n].imag(), -turns[n].real());
     return result;
   }
+  if (!is_sampled()) {
+    const Eigen::Index count = std::min(result.size(), coefficients_.size());
+    result.head(count) = coefficients_.head(count);
+    return result;
+  }
   const int size = static_cast<int>(samples_.size());
   Eigen::VectorXcd spectrum;
   PeriodicTransform(size).forward(samples_, spectrum);
@@ -186,10 +255,12 @@ Eigen::VectorXcd Waveform::harmonics(int highest) const {
 StepFunction Waveform::steps() const {
   StepFunction function;
   if (!is_binary()) {
-    const double count = static_cast<double>(samples_.size());
-    for (Eigen::Index n = 0; n < samples_.size(); ++n) {
+    const Eigen::VectorXd values =
+        is_sampled() ? samples_ : cell_averages(resolving_points(coefficients_));
+    const double count = static_cast<double>(values.size());
+    for (Eigen::Index n = 0; n < values.size(); ++n) {
       function.breakpoints.push_back(static_cast<double>(n) / count);
-      function.values.push_back(samples_[n]);
+      function.values.push_back(values[n]);
     }
     return function;
   }
@@ -207,6 +278,27 @@ StepFunction Waveform::steps() const {
   return function;
 }
 
+Waveform Waveform::scaled(double a, double b) const {
+  require(!is_binary(), "waveform", "binary", "must be sampled or a sum of cosines");
+  if (is_sampled()) return sampled(a + b * samples_.array());
+  Eigen::VectorXcd coefficients = b * coefficients_;
+  coefficients[0] += a;
+  return cosines(std::move(coefficients));
+}
+
+Eigen::VectorXd Waveform::values_at_middles(int points) const {
+  require(points >= 1, "points", points, "must be >= 1");
+  require(!is_binary(), "waveform", "binary", "must be sampled or a sum of cosines");
+  if (!is_sampled()) return values_of(coefficients_, points, 0.5);
+  constexpr double rounding = 1e-9;  // of a middle that is the border of two samples
+  Eigen::VectorXd values(points);
+  for (int j = 0; j < points; ++j) {
+    const double middle = (j + 0.5) / points * static_cast<double>(samples_.size());
+    values[j] = samples_[static_cast<Eigen::Index>(middle + rounding)];
+  }
+  return values;
+}
+
 Waveform Waveform::delayed(double periods) const {
   if (is_binary()) {
     std::vector<OnInterval> moved = on_;
@@ -217,6 +309,12 @@ Waveform Waveform::delayed(double periods) const {
     }
     return binary(within_period(std::move(moved)), level_);
   }
+  if (!is_sampled()) {
+    Eigen::VectorXcd moved = coefficients_;
+    for (Eigen::Index n = 1; n < moved.size(); ++n)
+      moved[n] *= std::polar(1.0, -2 * pi * wrap(static_cast<double>(n) * periods, 1.0));
+    return cosines(std::move(moved));
+  }
   const double shift = periods * static_cast<double>(samples_.size());
   require(std::abs(shift - std::round(shift)) < 1e-6, "delay", periods,
           "must be a whole number of samples for a sampled waveform");
@@ -226,7 +324,7 @@ Waveform Waveform::delayed(double periods) const {
 Waveform Waveform::complement() const {
   require(minimum() >= -1e-12 && peak() <= 1.0 + 1e-12, "peak", peak(),
           "a complement needs values in [0, 1]");
-  if (!is_binary()) return sampled(1.0 - samples_.array());
+  if (!is_binary()) return scaled(1.0, -1.0);
   if (on_.empty()) return constant(1.0);
   require(level_ == 1.0, "level", level_, "the complement of a binary waveform needs level 1");
   std::vector<OnInterval> off;
@@ -243,7 +341,8 @@ Waveform Waveform::complement() const {
 
 bool operator==(const Waveform& a, const Waveform& b) {
   return a.on_ == b.on_ && a.level_ == b.level_ && a.samples_.size() == b.samples_.size() &&
-         a.samples_ == b.samples_;
+         a.samples_ == b.samples_ && a.coefficients_.size() == b.coefficients_.size() &&
+         a.coefficients_ == b.coefficients_;
 }
 
 Waveform rectangular_pulse(double duty, double begin) {

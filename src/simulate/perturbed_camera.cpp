@@ -93,14 +93,22 @@ PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& o
   return perturbed;
 }
 
+/// Samples, also of a sum of cosines, which stops being one where it is clipped.
+Eigen::VectorXd sampled_values(const Waveform& waveform) {
+  if (waveform.is_sampled()) return waveform.samples();
+  return waveform.cell_averages(static_cast<int>(waveform.steps().values.size()));
+}
+
 /// Deviations from the mean scaled so that the peak is `factor` times what it was.
 Waveform with_depth_of_modulation(const Waveform& modulation, double factor) {
   const double mean = modulation.mean(), peak = modulation.peak();
   if (mean <= 0.0 || peak <= mean) return modulation;
   const double depth = (factor * peak - mean) / (peak - mean);
-  if (depth <= 0.0) return Waveform::sampled(factor * modulation.samples());  // dimmed
+  if (depth <= 0.0) return modulation.scaled(0.0, factor);  // dimmed
+  if (!modulation.is_sampled() && depth <= 1.0)
+    return modulation.scaled(mean - depth * mean, depth);
   const Eigen::VectorXd samples =
-      (mean + depth * (modulation.samples().array() - mean)).cwiseMax(0.0);
+      (mean + depth * (sampled_values(modulation).array() - mean)).cwiseMax(0.0);
   return Waveform::sampled(samples * (mean / samples.mean()));
 }
 
@@ -124,14 +132,13 @@ Waveform within_power(const Waveform& modulation) {
   if (mean <= 1.0 + 1e-9) return modulation;  // as exactly as a code is checked
   return modulation.is_binary() && !modulation.on_intervals().empty()
              ? Waveform::binary(modulation.on_intervals(), modulation.level() / mean)
-             : Waveform::sampled(modulation.cell_averages(
-                                     std::max(1, static_cast<int>(modulation.samples().size()))) /
-                                 mean);
+         : modulation.is_binary() ? Waveform::constant(1.0)
+                                  : modulation.scaled(0.0, 1.0 / mean);
 }
 
 /// Sampled waveforms as a code of that many samples holds them.
 Waveform on_samples(const Waveform& waveform, int samples) {
-  if (waveform.is_binary() || waveform.samples().size() == samples) return waveform;
+  if (!waveform.is_sampled() || waveform.samples().size() == samples) return waveform;
   return Waveform::sampled(waveform.cell_averages(samples));
 }
 

@@ -24,13 +24,17 @@ void append(std::string& text, double number) {
 }
 
 void append(std::string& text, const Waveform& waveform) {
-  text += waveform.is_binary() ? "binary " : "sampled ";
+  text += waveform.is_binary() ? "binary " : waveform.is_sampled() ? "sampled " : "cosines ";
   append(text, waveform.level());
   for (const OnInterval& interval : waveform.on_intervals()) {
     append(text, interval.rise);
     append(text, interval.fall);
   }
   for (const double sample : waveform.samples()) append(text, sample);
+  for (const std::complex<double> c : waveform.coefficients()) {
+    append(text, c.real());
+    append(text, c.imag());
+  }
   text += '\n';
 }
 

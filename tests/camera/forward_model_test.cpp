@@ -127,6 +127,30 @@ TEST(ForwardModel, ContrastPullsTapsTogether) {
   EXPECT_NEAR(chi.minCoeff(), 0.2, 1e-9);
 }
 
+TEST(ForwardModel, ContrastMayDifferPerExposureOrPerFrequency) {
+  Camera camera = built_in_camera("paper-30x");
+  camera.light.impulse_response = camera.sensor.impulse_response = {};
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  const auto amplitudes = [&](std::vector<double> contrasts) {
+    camera.sensor.modulation_contrasts = std::move(contrasts);
+    const ForwardModel model(build_family("multifrequency-1x3-5x2", camera), camera);
+    return model.correlation_table(480).colwise().maxCoeff().eval();
+  };
+  const Eigen::RowVectorXd full = amplitudes({});
+  const Eigen::RowVectorXd expected =
+      full.cwiseProduct((Eigen::RowVectorXd(5) << 0.9, 0.9, 0.9, 0.4, 0.4).finished());
+  EXPECT_LT((amplitudes({0.9, 0.4}) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((amplitudes({0.9, 0.9, 0.9, 0.4, 0.4}) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  try {
+    amplitudes({0.9, 0.8, 0.7});
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("5 exposures or the 2 frequencies"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(ForwardModel, WithoutADrainEveryElectronGoesToATap) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;

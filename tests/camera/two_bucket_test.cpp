@@ -90,16 +90,10 @@ INSTANTIATE_TEST_SUITE_P(Codes, TwoBuckets,
                            return name;
                          });
 
-TEST(TwoBucketFamilies, ALongWalkSaysHowManySamplesItNeeds) {
+TEST(TwoBucketFamilies, BuildALongWalkOnFewSamples) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
-  try {
-    build_family("hamiltonian-k7", camera);
-    FAIL() << "240 samples cannot hold 126 edges";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("`--set samples=252`"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_EQ(build_family("hamiltonian-k7", camera).samples(), camera.samples);
 }
 
 }  // namespace

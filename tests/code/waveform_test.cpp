@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "core/shared/random.hpp"
 
 namespace tofsmith {
@@ -25,6 +29,30 @@ TEST(Waveform, CellAveragesKeepTheMean) {
     for (const int samples : {7, 60, 241})
       EXPECT_NEAR(w.cell_averages(samples).mean(), w.mean(), 1e-12);
   }
+}
+
+TEST(Waveform, CosinesHaveTheMeansValuesAndHarmonicsOfTheirFormula) {
+  const Waveform w = Waveform::cosine(7, 0.5, 0.3, 0.4);
+  EXPECT_DOUBLE_EQ(w.mean(), 0.5);
+  EXPECT_DOUBLE_EQ(w.peak(), 0.8);
+  EXPECT_DOUBLE_EQ(w.minimum(), 0.2);
+  const auto value = [](double t) {
+    return 0.5 + 0.3 * std::cos(14.0 * std::numbers::pi * t - 0.4);
+  };
+  for (const int points : {5, 14, 240}) {
+    const Eigen::VectorXd middles = w.values_at_middles(points), means = w.cell_averages(points);
+    for (int n = 0; n < points; ++n) {
+      EXPECT_NEAR(middles[n], value((n + 0.5) / points), 1e-12);
+      double mean = 0.0;
+      for (int i = 0; i < 200; ++i) mean += value((n + (i + 0.5) / 200) / points) / 200;
+      EXPECT_NEAR(means[n], mean, 1e-4);
+    }
+  }
+  EXPECT_NEAR(std::abs(w.harmonics(9)[7]), 0.15, 1e-15);
+  EXPECT_EQ(w.harmonics(9)[8], 0.0);
+  const Waveform later = w.delayed(0.1), other = w.complement();
+  EXPECT_NEAR(later.values_at_middles(1)[0], value(0.4), 1e-12);
+  EXPECT_NEAR(other.values_at_middles(1)[0], 1.0 - value(0.5), 1e-12);
 }
 
 TEST(Waveform, HarmonicsAgreeWithFineSamples) {

@@ -75,7 +75,7 @@ Camera every_field_set() {
   camera.sensor.read_noise_e = 0.0;
   camera.sensor.noise = NoiseModel::gaussian;
   camera.sensor.dark_current_e_per_s = 12.5;
-  camera.sensor.modulation_contrast = 0.9;
+  camera.sensor.modulation_contrasts = {0.9, 1.0 / 3};
   camera.sensor.full_well_e = 5e4;
   camera.sensor.adc_bits = 12;
   camera.sensor.gain_e_per_dn = 12.3;
@@ -222,6 +222,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"sensor.modulation_contrast = 0.5",
                 "c.toml:2:30: sensor.modulation_contrast = 0.5; must be 1 for one tap: contrast "
                 "mixes taps"},
+        BadLine{"sensor.taps = 2\nsensor.modulation_contrast = [1, 1.5]",
+                "c.toml:3:30: sensor.modulation_contrast = 1.5; must be in (0, 1]"},
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1 }",
                 "c.toml:2:8: found no lens.cy_px; expected a line such as `cy_px = 239.5`"},
         BadLine{"samples = 8 8",

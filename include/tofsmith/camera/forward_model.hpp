@@ -33,6 +33,11 @@ class CorrelationFunction {
   /// Values at u = j / points, j = 0 .. points - 1.
   Eigen::VectorXd table(int points) const;
 
+  /// Fourier coefficients; empty where corners are stored.
+  const Eigen::VectorXcd& harmonics() const { return harmonics_; }
+  /// Whether a piecewise linear function has all its corners at multiples of 1 / points.
+  bool has_corners_at(int points) const;
+
  private:
   CorrelationFunction() = default;
 
@@ -76,6 +81,15 @@ class ForwardModel {
   Eigen::MatrixXd correlation_table(int points) const;
   /// The same for the tap values, (points, E x taps).
   Eigen::MatrixXd tap_correlation_table(int points) const;
+  /// The highest harmonic that counts: all above together have less than 3e-7 of the amplitude of
+  /// all but the mean. None where a correlation function is piecewise linear.
+  std::optional<int> highest_harmonic() const;
+  /// Points per bin of a table between whose points correlation functions count as straight:
+  /// `least` times a power of two, so that chords are off by 5e-4 of the amplitude or less where
+  /// 2^20 points suffice for that.
+  int straight_points_per_bin(int least) const;
+  /// Whether all correlation functions are piecewise linear with corners at the rows of a table.
+  bool has_corners_at_rows(int rows) const;
   /// Of rows: light in time bin 0, (points). What bin n sees of depth z, bin 0 sees of z - n.
   Eigen::VectorXd time_bin_table(int points) const;
 
@@ -110,14 +124,16 @@ class ForwardModel {
 
  private:
   Eigen::VectorXd tap_correlation(double depth_bin) const;
+  /// Sums over all functions of |c_n|^2, n = 0, 1, ...; empty where one is piecewise linear.
+  Eigen::VectorXd harmonic_energies() const;
   void read_rows(const CodeSet& code, const Waveform& light, const Eigen::VectorXcd& transfer,
                  double moved);
 
   int samples_ = 0;
   int taps_ = 1;
-  double contrast_ = 1.0;
-  Eigen::VectorXd sensitivity_;  // of the tap values; 1 but for tap_mismatch
-  double signal_gain_ = 1.0;     // by the camera's temperature
+  std::vector<double> contrasts_;  // of the exposures
+  Eigen::VectorXd sensitivity_;    // of the tap values; 1 but for tap_mismatch
+  double signal_gain_ = 1.0;       // by the camera's temperature
   double tap_dark_e_per_s_ = 0.0;
   double readout_variance_e2_ = 0.0;             // constant, of a tap value or a row
   std::vector<CorrelationFunction> functions_;   // of the tap values, before taps mix; of the rows

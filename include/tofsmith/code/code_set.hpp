@@ -26,8 +26,9 @@ struct StepFunction {
   std::vector<double> values;
 };
 
-/// One period of a modulation or demodulation function. Binary waveforms are kept as switching
-/// times, which no grid can round; all others as N samples, each held over its cell [n, n + 1)/N.
+/// One period of a modulation or demodulation function. Binary waveforms are stored as switching
+/// times and sums of cosines as Fourier coefficients, both independent of any grid; all other
+/// waveforms as N samples, each held over its cell [n, n + 1)/N.
 class Waveform {
  public:
   /// `level` inside the intervals, 0 elsewhere.
@@ -36,26 +37,35 @@ class Waveform {
   static Waveform binary(std::vector<OnInterval> on, double level = 1.0);
   /// @throws std::invalid_argument if empty or not finite
   static Waveform sampled(Eigen::VectorXd samples);
+  /// x(t) = c_0 + 2 Re sum_n c_n exp(2 pi i n t): a finite sum of cosines.
+  /// @param coefficients  c_0 (real), c_1, ...
+  /// @throws std::invalid_argument if empty, not finite or with more than 2^16 harmonics
+  static Waveform cosines(Eigen::VectorXcd coefficients);
+  /// mean + amplitude cos(2 pi frequency t - phase_rad).
+  static Waveform cosine(int frequency, double mean, double amplitude, double phase_rad);
   /// Never on (level 0) or always on.
   static Waveform constant(double level);
   /// Reads samples as switching times: on where above `threshold` (a fraction of the maximum).
   static Waveform binary_from_samples(const Eigen::VectorXd& samples, double level,
                                       double threshold = 0.5);
 
-  bool is_binary() const { return samples_.size() == 0; }
+  bool is_binary() const { return samples_.size() == 0 && coefficients_.size() == 0; }
+  bool is_sampled() const { return samples_.size() > 0; }
   /// Switching times; empty for a sampled waveform.
   const std::vector<OnInterval>& on_intervals() const { return on_; }
   /// Value while on, of a binary waveform.
   double level() const { return level_; }
-  /// Samples (N); empty for a binary waveform.
+  /// Samples (N); empty unless is_sampled().
   const Eigen::VectorXd& samples() const { return samples_; }
+  /// Fourier coefficients c_0, c_1, ... of a sum of cosines; empty for other waveforms.
+  const Eigen::VectorXcd& coefficients() const { return coefficients_; }
 
   double mean() const;
   double minimum() const;
   double peak() const;
   /// Share of the period in which the waveform is above half its peak; exact for binary ones.
   double duty() const;
-  /// Number of jumps in one period.
+  /// Number of jumps in one period; 0 for a sum of cosines.
   int edges() const;
 
   /// Means over N cells of the period: what a generator with N samples plays. Keeps the mean.
@@ -63,7 +73,13 @@ class Waveform {
   /// Fourier coefficient of the continuous waveform: integral of x(t) exp(-2 pi i n t) over the
   /// unit period.
   Eigen::VectorXcd harmonics(int highest) const;
+  /// The waveform as a step function; for a sum of cosines the averages over 64 or more cells per
+  /// period of its highest harmonic.
   StepFunction steps() const;
+  /// a + b x(t), for a waveform that is not binary.
+  Waveform scaled(double a, double b) const;
+  /// Values at the middles of N equal cells; for a sampled waveform the sample of that cell.
+  Eigen::VectorXd values_at_middles(int points) const;
 
   /// The waveform, arriving `periods` later. A sampled waveform moves by whole samples only.
   /// @throws std::invalid_argument if a sampled waveform would land between samples
@@ -78,6 +94,7 @@ class Waveform {
   std::vector<OnInterval> on_;
   double level_ = 0.0;
   Eigen::VectorXd samples_;
+  Eigen::VectorXcd coefficients_;
 };
 
 /// A single pulse [0, duty) that emits unit mean power: level 1/duty.

@@ -16,7 +16,7 @@ namespace tofsmith {
 struct FamilyOptions {
   int samples = 240;         ///< N
   double peak_factor = 1e9;  ///< p = P_max / P_ave >= 1; a huge value gives the ideal code
-  bool exact_grid = true;    ///< refuse N that would round the code's switching times
+  bool exact_grid = true;    ///< of histogram-kK: reject N that would round its time gates
   void validate() const;
 };
 

@@ -22,7 +22,6 @@ int hamiltonian_length(int measurements);
 
 /// Hamiltonian coding functions: demodulation follows the walk, modulation is one pulse of duty
 /// max(1/p, 1/L), so that the coding curve runs along the edges of the cube.
-/// @throws std::invalid_argument unless N is a multiple of L (with options.exact_grid)
 /// @see Gupta et al., "What are optimal coding functions for time-of-flight imaging?",
 ///      ACM Trans. Graph. 37(2), 2018; Gutierrez-Barragan et al., CVPR 2019, Sec. 4
 CodeSet hamiltonian_code(int measurements, const FamilyOptions& options);

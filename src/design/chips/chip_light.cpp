@@ -15,8 +15,10 @@ std::optional<BrokenRule> why_not_plain(const Camera& camera) {
                   "must be none: codes on a chip clock are searched as exact rectangles");
   if (camera.light.generator || camera.sensor.generator)
     return broken("generator", "given", "must be none: the chip clock is the generator");
-  if (camera.sensor.modulation_contrast != 1.0)
-    return broken("sensor.modulation_contrast", camera.sensor.modulation_contrast,
+  const auto& contrasts = camera.sensor.modulation_contrasts;
+  if (camera.sensor.modulation_contrast != 1.0 || !contrasts.empty())
+    return broken("sensor.modulation_contrast",
+                  contrasts.empty() ? camera.sensor.modulation_contrast : contrasts.front(),
                   "must be 1 to search codes on a chip clock");
   if (camera.sensor.is_signed())
     return broken("sensor.demodulation", "signed",

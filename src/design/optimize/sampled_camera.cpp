@@ -4,23 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "camera/shared/ambient_leak.hpp"
 #include "design/grid_transfer.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 namespace {
 
 /// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.
-Eigen::MatrixXd mixing_matrix(int exposures, int taps, double contrast) {
+Eigen::MatrixXd mixing_matrix(int exposures, int taps, const Sensor& sensor) {
+  const std::vector<double>& each = sensor.modulation_contrasts;
+  require(each.empty() || each.size() == static_cast<std::size_t>(exposures),
+          "number of sensor.modulation_contrast", each.size(),
+          "must be 1 or equal the " + std::to_string(exposures) + " exposures of a design");
   Eigen::MatrixXd mixing = Eigen::MatrixXd::Zero(exposures * taps, exposures * taps);
-  for (int e = 0; e < exposures; ++e)
+  for (int e = 0; e < exposures; ++e) {
+    const double contrast =
+        each.empty() ? sensor.modulation_contrast : each[static_cast<std::size_t>(e)];
     mixing.block(e * taps, e * taps, taps, taps) =
         contrast * Eigen::MatrixXd::Identity(taps, taps) +
         Eigen::MatrixXd::Constant(taps, taps, (1.0 - contrast) / taps);
+  }
   return mixing;
 }
 
@@ -65,7 +74,7 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures, b
   const Eigen::MatrixXd readout = readout_matrix(tap_values, camera.sensor.readout);
   const Eigen::MatrixXd mixing =
       sensitivities(exposures, taps_, camera.sensor.tap_mismatch).asDiagonal() *
-      mixing_matrix(exposures, taps_, camera.sensor.modulation_contrast);
+      mixing_matrix(exposures, taps_, camera.sensor);
   combination_ = readout * mixing;
   shot_combination_ = readout.cwiseAbs() * mixing;
   exposure_s_.resize(measurements());

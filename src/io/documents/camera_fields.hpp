@@ -75,7 +75,8 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("read_noise_e", sensor.read_noise_e);
   table.choice("noise", sensor.noise, noise_models);
   table.value("dark_current_e_per_s", sensor.dark_current_e_per_s);
-  table.value("modulation_contrast", sensor.modulation_contrast);
+  table.number_or_list("modulation_contrast", sensor.modulation_contrast,
+                       sensor.modulation_contrasts);
   table.value("tap_mismatch", sensor.tap_mismatch);
   table.value("full_well_e", sensor.full_well_e);
   table.value("adc_bits", sensor.adc_bits);

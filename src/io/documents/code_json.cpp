@@ -21,10 +21,22 @@ using OrderedJson = nlohmann::ordered_json;
 constexpr std::string_view format_name = "tofsmith-code";
 constexpr int format_version = 1;
 constexpr int max_samples = 65536;    // as a camera's
+constexpr int max_harmonic = 2048;    // as families'
 constexpr int max_measurements = 64;  // as decoders take
 constexpr double tolerance = 1e-9;    // as CodeSet's
 
+/// Harmonics that are not 0, each as [n, Re c_n, Im c_n].
+OrderedJson cosines_to_json(const Eigen::VectorXcd& coefficients) {
+  OrderedJson harmonics = OrderedJson::array();
+  for (Eigen::Index n = 1; n < coefficients.size(); ++n)
+    if (coefficients[n] != 0.0)
+      harmonics.push_back({n, coefficients[n].real(), coefficients[n].imag()});
+  return {{"kind", "cosines"}, {"mean", coefficients[0].real()}, {"harmonics", harmonics}};
+}
+
 OrderedJson waveform_to_json(const Waveform& waveform, bool is_signed = false) {
+  if (!waveform.is_binary() && !waveform.is_sampled())
+    return cosines_to_json((is_signed ? waveform.scaled(-1.0, 2.0) : waveform).coefficients());
   if (!waveform.is_binary()) {
     Eigen::VectorXd samples = waveform.samples();
     if (is_signed) samples = 2.0 * samples.array() - 1.0;
@@ -74,12 +86,35 @@ Waveform read_binary(const JsonReader& json, double highest) {
   }
 }
 
+/// x(t) = mean + 2 Re sum of c_n exp(2 pi i n t).
+/// @param lowest, highest  limits of its values
+Waveform read_cosines(const JsonReader& json, double lowest, double highest) {
+  json.only({"kind", "mean", "harmonics"});
+  Eigen::VectorXcd coefficients(1);
+  coefficients[0] = json.member("mean").number(lowest, highest, tolerance);
+  for (const JsonReader& entry : json.member("harmonics").elements()) {
+    const auto fields = entry.elements(3, "[n, real part, imaginary part]");
+    const int n = fields[0].integer(1, max_harmonic);
+    const Eigen::Index old_size = coefficients.size();
+    if (n >= old_size) {
+      coefficients.conservativeResize(n + 1);
+      coefficients.tail(n + 1 - old_size).setZero();
+    }
+    coefficients[n] = {fields[1].number(), fields[2].number()};
+  }
+  Waveform waveform = Waveform::cosines(std::move(coefficients));
+  if (waveform.minimum() < lowest - tolerance || waveform.peak() > highest + tolerance)
+    json.mistyped(fmt::format("values in [{}, {}]", lowest, highest));
+  return waveform;
+}
+
 /// @param highest  largest value the waveform may take
 Waveform read_waveform(const JsonReader& json, int samples, double highest) {
   const JsonReader kind = json.member("kind");
   if (kind.text() == "binary") return read_binary(json, highest);
   if (kind.text() == "sampled") return read_sampled(json, samples, 0.0, highest);
-  kind.mistyped("\"binary\" or \"sampled\"");
+  if (kind.text() == "cosines") return read_cosines(json, 0.0, highest);
+  kind.mistyped("\"binary\", \"sampled\" or \"cosines\"");
 }
 
 /// The drive of a mixer: of sampled weights, or 1 while the weight is 1 and else 0.
@@ -88,6 +123,7 @@ Waveform read_drive(const JsonReader& json, int samples) {
   if (kind.text() == "sampled")
     return Waveform::sampled(
         (0.5 * (read_sampled(json, samples, -1.0, 1.0).samples().array() + 1.0)).max(0.0).min(1.0));
+  if (kind.text() == "cosines") return read_cosines(json, -1.0, 1.0).scaled(0.5, 0.5);
   return read_waveform(json, samples, 1.0);
 }
 
