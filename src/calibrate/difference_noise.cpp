@@ -77,7 +77,7 @@ FramePair pair_of(const RawFrames& raw, int first) {
 
 /// Light collected in each measurement where the code is at `depth_m`, per signal and second.
 Eigen::VectorXd light_per_signal(const DecodingTable& table, double depth_m) {
-  const double at = depth_m / table.bin_m();
+  const double at = depth_m / table.row_m();
   const double whole = std::floor(at);
   const auto samples = static_cast<Eigen::Index>(table.samples());
   const Eigen::Index n = static_cast<Eigen::Index>(whole) % samples;

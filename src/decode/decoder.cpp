@@ -20,15 +20,19 @@ namespace tofsmith {
 
 namespace {
 
-/// Calls use(tile, first pixel) for pixels [begin, end) of a view, tile by tile.
-template <typename Matcher, typename Use>
-void for_each_tile(const Matcher& matcher, const RawView& raw, IndexRange pixels, bool for_outputs,
-                   const Use& use) {
+/// Calls use(tile, first pixel) for pixels [begin, end) of a view, tile by tile: matched for output
+/// planes, or for bins alone.
+template <typename Use>
+void for_each_tile(const ChordMatcher& matcher, const RawView& raw, IndexRange pixels,
+                   bool for_outputs, const Use& use) {
   PixelTile tile;
   for (std::int64_t first = pixels.begin; first < pixels.end; first += pixels_per_tile) {
     const auto count =
         static_cast<int>(std::min<std::int64_t>(pixels.end - first, pixels_per_tile));
-    matcher.match(raw, first, count, for_outputs, tile);
+    if (for_outputs)
+      matcher.match(raw, first, count, for_outputs, tile);
+    else
+      matcher.match_bins(raw, first, count, tile);
     use(tile, first);
   }
 }
@@ -59,6 +63,11 @@ struct Decoder::Plan {
   OutputKernel outputs;
 
   void write(PixelTile& tile, const float* averaged, const DecodedView& planes) const;
+  /// Bins of the tile's rows.
+  void write_bins(const PixelTile& tile, std::int32_t* bin) const {
+    std::transform(tile.bin, tile.bin + tile.pixels, bin,
+                   [&](std::int32_t row) { return table.nearest_bin(row); });
+  }
 };
 
 Decoder::Decoder(DecodingTable table, const DecodeOptions& options) {
@@ -80,32 +89,31 @@ DecoderParts parts_of(const Decoder& decoder) {
 }
 
 void Decoder::decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const {
-  for_each_tile(plan_->matcher.bins(), column_of(measurements, pixels, this->measurements()),
-                {0, pixels}, false, [&](const PixelTile& tile, std::int64_t first) {
-                  std::copy_n(tile.bin, tile.pixels, bin + first);
-                });
+  for_each_tile(
+      plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels}, false,
+      [&](const PixelTile& tile, std::int64_t first) { plan_->write_bins(tile, bin + first); });
 }
 
 void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                                 double* depth_bin) const {
   const int rank = this->rank();
-  for_each_tile(plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels},
-                true, [&](const PixelTile& tile, std::int64_t first) {
-                  std::array<double, max_measurements> raw;
-                  PlaneVector plane;
-                  for (int i = 0; i < tile.pixels; ++i) {
-                    double& position = depth_bin[first + i];
-                    position = std::numeric_limits<double>::quiet_NaN();
-                    if (tile.bin[i] < 0) continue;
-                    for (int k = 0; k < this->measurements(); ++k)
-                      raw[static_cast<std::size_t>(k)] = tile.raw[k * pixels_per_tile + i];
-                    plan_->matcher.bins().exact().project(raw.data(), plane);
-                    for (int j = 0; j < rank; ++j)
-                      plane.unit[static_cast<std::size_t>(j)] *= plane.length;
-                    position =
-                        plan_->model.refine(plane.unit.data(), tile.bin[i]).in_bins(samples());
-                  }
-                });
+  for_each_tile(
+      plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels}, true,
+      [&](const PixelTile& tile, std::int64_t first) {
+        std::array<double, max_measurements> raw;
+        PlaneVector plane;
+        for (int i = 0; i < tile.pixels; ++i) {
+          double& position = depth_bin[first + i];
+          position = std::numeric_limits<double>::quiet_NaN();
+          if (tile.bin[i] < 0) continue;
+          for (int k = 0; k < this->measurements(); ++k)
+            raw[static_cast<std::size_t>(k)] = tile.raw[k * pixels_per_tile + i];
+          plan_->matcher.bins().exact().project(raw.data(), plane);
+          for (int j = 0; j < rank; ++j) plane.unit[static_cast<std::size_t>(j)] *= plane.length;
+          position = table().in_bins(
+              plan_->model.refine(plane.unit.data(), tile.bin[i]).in_rows(table().samples()));
+        }
+      });
 }
 
 void Decoder::decode(const RawView& stored, const DecodedView& decoded,
@@ -115,7 +123,7 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
   const bool is_bin_enough = decoded.wants_bins_only();
   for_each_block(raw, measurements(), progress, [&](IndexRange block) {
     const auto write_bins = [&](const PixelTile& tile, std::int64_t first) {
-      std::copy_n(tile.bin, tile.pixels, decoded.bin + first);
+      plan_->write_bins(tile, decoded.bin + first);
     };
     if (!is_bin_enough)
       for_each_tile(plan_->matcher, raw, block, true, [&](PixelTile& tile, std::int64_t first) {
@@ -124,7 +132,7 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
       });
     // Planes are those of the best chords: bins that are not beside these come by themselves.
     if (is_bin_enough || (decoded.bin && plan_->matcher.is_coarse()))
-      for_each_tile(plan_->matcher.bins(), raw, block, false, write_bins);
+      for_each_tile(plan_->matcher, raw, block, false, write_bins);
   });
 }
 
@@ -157,6 +165,7 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedV
                  .saturated = saturated.data(),
                  .averaged = averaged},
                 planes);
+  if (planes.bin && table.bins > 0) write_bins(tile, planes.bin);
 }
 
 }  // namespace tofsmith

@@ -10,6 +10,7 @@
 
 #include "decode/search/distinct_directions.hpp"
 #include "decode/shared/saturation_level.hpp"
+#include "decode/table_resolution.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -91,6 +92,7 @@ void DecodingTable::validate() const {
   const float lowest = lower_saturation_level.value_or(-std::numeric_limits<float>::infinity());
   require(lowest < highest, "lower_saturation_level", lowest, "must be below saturation_level");
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
+  require(bins >= 0, "bins", bins, "must not be negative");
   require(correlation_not_decodable(*this));
 }
 
@@ -153,7 +155,9 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   require(model.samples() == camera.samples, "samples of the code", model.samples(),
           "must equal the camera's samples = " + std::to_string(camera.samples));
   DecodingTable table;
-  table.correlation = model.correlation_table(model.samples());
+  const int rows = sufficient_rows(model);
+  table.correlation = model.correlation_table(rows);
+  if (rows != model.samples()) table.bins = model.samples();
   table.ambient_gain = unknown_ambient_gain(model, camera);
   table.exposure_s = model.exposure_s();
   table.dark_electrons = model.dark_electrons();
@@ -168,17 +172,21 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.black_level = Eigen::VectorXd::Zero(table.measurements());
   if (sensor.subtracts()) {
     const Eigen::MatrixXd sums = model.readout().cwiseAbs();
-    table.shot_correlation = model.tap_correlation_table(model.samples()) * sums.transpose();
+    table.shot_correlation = model.tap_correlation_table(rows) * sums.transpose();
     table.shot_ambient_gain = sums * model.tap_ambient_gain();
     table.shot_dark_electrons = sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
     if (sensor.is_signed()) table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
-    return table;
+    return resolved(table);
   }
   table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
-  return table;
+  return resolved(table);
 }
 
 DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double range_m) {
+  return resolved(table_of_rows(correlation, range_m));
+}
+
+DecodingTable table_of_rows(const Eigen::MatrixXd& correlation, double range_m) {
   const Eigen::Index measurements = correlation.cols();
   DecodingTable table;
   table.correlation = correlation;
@@ -215,12 +223,18 @@ void require_exposures(const DecodingTable& table, std::string_view what) {
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {
   table.validate();
   constexpr double equal = 1e-9;  // distance of unit vectors that only rounding tells apart
-  RowMajorMatrix unit = AmbientProjection(table).curve;
-  for (Eigen::Index n = 0; n < unit.rows(); ++n) unit.row(n).normalize();  // zeros stay
+  // Each bin has the direction of the nearest row.
+  const RowMajorMatrix curve = AmbientProjection(table).curve;
+  const Eigen::Index rows = curve.rows(), bins = table.bin_count();
+  RowMajorMatrix unit(bins, curve.cols());
+  for (Eigen::Index n = 0; n < bins; ++n) {
+    unit.row(n) = curve.row((2 * n * rows + bins) / (2 * bins) % rows);
+    unit.row(n).normalize();  // zeros stay
+  }
   const std::vector<std::int32_t> lowest = lowest_alike(unit, equal);
 
   std::vector<AmbiguousDepths> found;
-  for (int n = 0; n < table.samples(); ++n) {
+  for (int n = 0; n < table.bin_count(); ++n) {
     const int first = lowest[static_cast<std::size_t>(n)];
     if (first < n) found.push_back({first, n, first * table.bin_m(), n * table.bin_m()});
   }

@@ -7,6 +7,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "decode/shared/saturation_level.hpp"
+#include "decode/table_resolution.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -150,8 +151,8 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
                                                    : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
-  DecodingTable table = make_decoding_table(measured.correlation * readout.transpose(),
-                                            measured.range_m.value_or(camera.range_m()));
+  DecodingTable table = table_of_rows(measured.correlation * readout.transpose(),
+                                      measured.range_m.value_or(camera.range_m()));
   table.ambient_gain = readout * ambient_gain;
   table.exposure_s = subtracts ? of_pairs(exposure_s, "exposure_s") : exposure_s;
   table.gain_e_per_raw = subtracts ? of_pairs(gain_e_per_raw, "gain_e_per_raw") : gain_e_per_raw;
@@ -163,14 +164,14 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.shot_dark_electrons = taps_read * (sums * dark_e);
   table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
   if (camera.temperature) {
-    warm(*camera.temperature, table.bin_m(), table.correlation);
-    warm(*camera.temperature, table.bin_m(), table.shot_correlation);
+    warm(*camera.temperature, table.row_m(), table.correlation);
+    warm(*camera.temperature, table.row_m(), table.shot_correlation);
   }
   table.correction = measured.correction;
   set_saturation(camera, table);
   // The table's own black level holds for unsigned numbers, too.
   if (measured.black_level.size() > 0) table.marking.unsigned_black_level = 0.0;
-  return table;
+  return resolved(table);
 }
 
 }  // namespace tofsmith

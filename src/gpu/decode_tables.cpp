@@ -166,10 +166,17 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   define("MEASUREMENTS", layout.measurements);
   define("RANK", layout.rank);
   define("RECORD_POINT", layout.point());
-  define("RECORD_LEFT", layout.left());
-  define("RECORD_RIGHT", layout.right());
-  define("RECORD_TURN", layout.turn());
-  define("RECORD_REACH", layout.reach());
+  if (layout.is_smooth) {
+    define("RECORD_SLOPE", layout.slope());
+    define("RECORD_BEND", layout.bend());
+    define("RECORD_ASYMMETRY", layout.asymmetry());
+    define("RECORD_GROWTH", layout.growth());
+  } else {
+    define("RECORD_LEFT", layout.left());
+    define("RECORD_RIGHT", layout.right());
+    define("RECORD_TURN", layout.turn());
+    define("RECORD_REACH", layout.reach());
+  }
   define("RECORD_AMBIENT", layout.ambient());
   define("RECORD_SIGNAL_NOISE", layout.signal_noise());
   define("RECORD_DIRECTION", layout.direction());
@@ -193,8 +200,13 @@ DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses)
   Words words_at(words);
   is_coarse = matcher.is_coarse();
   points = parameters_of(matcher.points(), words_at);
+  if (matcher.has_close_lobes()) {
+    // No lead is proof enough: the decoder chooses the lobes of all pixels.
+    points.way = by_arcs;
+    points.lead = std::numeric_limits<float>::infinity();
+  }
   bins = is_coarse ? parameters_of(matcher.bins(), words_at) : points;
-  if (is_coarse) {
+  if (!matcher.bin_of_point().empty()) {
     points.bins_of_points = words_at.add(matcher.bin_of_point());
     points.points_of_bins = words_at.add(matcher.point_of_bin());
   }

@@ -28,6 +28,7 @@ RawView OpenNumbers::view() const {
 DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles,
                        bool as_trials)
     : outputs_(parts_of(decoder).outputs),
+      bin_count_(decoder.table().bin_count()),
       tables_(decoder, use_doubles && device.info().has_doubles, as_trials && fuses_products()),
       queue_(device),
       match_(queue_.kernel(decode_kernels, tables_.options, "match")),
@@ -90,6 +91,8 @@ void DeviceTile::fetch(const DecodedView& to) const {
   };
   const bool has_best_bins = to.wants_bins_only() || tables_.is_coarse;
   fetch_plane(has_best_bins ? best_bins_ : bins_, to.bin);
+  if (to.bin)
+    for (std::int64_t i = 0; i < raw_.tile().pixels; ++i) to.bin[i] = nearest_bin(to.bin[i]);
   fetch_plane(depth_, to.depth_m);
   fetch_plane(signal_, to.signal_e_per_s);
   fetch_plane(ambient_, to.ambient_e_per_s);
@@ -101,7 +104,7 @@ void DeviceTile::fetch(const DecodedView& to) const {
 void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
   const std::int64_t pixels = raw_.tile().pixels;
   const auto count = static_cast<std::size_t>(pixels);
-  const double samples = outputs_.constants().samples;
+  const double samples = outputs_.constants().samples, bins_per_row = bin_count_ / samples;
   start_list_of_open();
   find_bins(between_bins ? tables_.points : tables_.bins,
             *room(bins_, pixels * std::int64_t{sizeof(std::int32_t)}), nullptr);
@@ -118,7 +121,9 @@ void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
     double at = static_cast<double>(bins_here_[i]) + static_cast<double>(offsets_here_[i]);
     if (at < 0.0) at += samples;
     if (at >= samples) at -= samples;
-    depth_bin[i] = bins_here_[i] < 0 ? -1.0 : at;
+    depth_bin[i] = bins_here_[i] < 0 ? -1.0
+                   : between_bins    ? at * bins_per_row
+                                     : nearest_bin(bins_here_[i]);
   }
 }
 

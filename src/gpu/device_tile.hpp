@@ -78,7 +78,12 @@ class DeviceTile {
   void find_bins(const MatchParameters& parameters, const DeviceMemory& bins,
                  const DeviceMemory* second_peaks) const;
 
+  std::int32_t nearest_bin(std::int32_t row) const {
+    return nearest_bin_of_row(row, outputs_.constants().samples, bin_count_);
+  }
+
   const OutputKernel& outputs_;
+  int bin_count_;
   DecodeTables tables_;
   DeviceQueue queue_;
   DeviceKernel match_, write_, write_offsets_, gather_, scatter_;

@@ -121,7 +121,7 @@ FilterTables::FilterTables(const Filter::Plan& plan, bool fuses)
   p.raw_per_e = tables.add(raw_per_e);
   p.shot_share = tables.add(plan.hidden.shot_share);
   p.samples = plan.samples();
-  p.bins_per_m = static_cast<float>(1.0 / plan.decoder.table().bin_m());
+  p.bins_per_m = static_cast<float>(1.0 / plan.decoder.table().row_m());
   const SaturationLevels levels(plan.decoder.table());
   p.lowest = levels.lowest;
   p.highest = levels.highest;

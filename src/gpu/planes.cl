@@ -77,6 +77,31 @@ struct ChordPoint {
   float inside;  ///< signal, if there is depth
 };
 
+#ifdef RECORD_SLOPE
+/// As refine_on_curve(), of a smooth curve.
+struct ChordPoint best_point(const float* q, Floats record, int bin) {
+  const float at_row = along_record(q, record + RECORD_POINT);
+  const float g = along_record(q, record + RECORD_SLOPE);
+  const float b = along_record(q, record + RECORD_BEND);
+  const float c = along_record(q, record + RECORD_ASYMMETRY);
+  float t = fmin(fmax(-(g / b), -1.0f), 1.0f);
+  for (int step = 0; step < 2; ++step) {
+    const float curvature = (c + c) * t + b;
+    const float rise = t * (t * c + b) + g;
+    if (curvature < 0.0f) t = fmin(fmax(t - rise / curvature, -1.0f), 1.0f);
+  }
+  if (!(b < 0.0f)) t = 0.0f;
+  const float slopes = t * (t * (c * (1.0f / 3.0f)) + b * 0.5f) + g;
+  const float growth = t * record[RECORD_GROWTH + 1] + record[RECORD_GROWTH];
+  const float signal = (t * slopes + at_row) / (t * growth + 1.0f);
+  struct ChordPoint point;
+  point.is_left = t < 0.0f;
+  point.has_depth = bin >= 0 && at_row > 0.0f && signal > 0.0f;
+  point.inside = signal;
+  point.t = point.has_depth ? fabs(t) : 0.0f;
+  return point;
+}
+#else
 struct ChordPoint best_point(const float* q, Floats record, int bin) {
   const float at_bin = along_record(q, record + RECORD_POINT);
   const float to_left = along_record(q, record + RECORD_LEFT);
@@ -94,6 +119,8 @@ struct ChordPoint best_point(const float* q, Floats record, int bin) {
   point.t = point.has_depth ? fmin(rise * reach / point.inside, 1.0f) : 0.0f;
   return point;
 }
+
+#endif
 
 /// How far from its bin each pixel is [bin], -1 .. 1.
 kernel void write_offsets(const struct OutputParameters p, const struct TileParameters tile,

@@ -70,12 +70,23 @@ double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
                           [&](double albedo) { return mae_m(dimmed(point, albedo)); });
 }
 
+namespace {
+
+/// Cells of a period over which depth is averaged.
+int cells_of(const ForwardModel& model) {
+  const int per_bin =
+      model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
+  return per_bin * model.samples();
+}
+
+}  // namespace
+
 CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
                                NoiseInformation information)
     : range_m_(camera.range_m()),
       information_(information),
       constant_variance_e2_(model.constant_variance_e2()),
-      masses_(DepthPrior(camera).masses(cells_per_bin * model.samples())) {
+      masses_(DepthPrior(camera).masses(cells_of(model))) {
   if (model.has_rows()) {
     const int points = 2 * cells_per_bin * model.samples();
     middles_and_slopes(model.correlation_table(points) * model.exposure_s().asDiagonal(), signal_,
@@ -87,8 +98,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
     return;
   }
   const Eigen::MatrixXd tap_table =
-      model.tap_correlation_table(2 * cells_per_bin * model.samples()) *
-      model.tap_exposure_s().asDiagonal();
+      model.tap_correlation_table(2 * cells_of(model)) * model.tap_exposure_s().asDiagonal();
   const Eigen::MatrixXd& readout = model.readout();
   const Eigen::MatrixXd sums = readout.cwiseAbs();
   middles_and_slopes(tap_table * readout.transpose(), signal_, signal_slope_);

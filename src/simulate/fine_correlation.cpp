@@ -9,6 +9,9 @@
 
 namespace tofsmith {
 
+FineCorrelation::FineCorrelation(const ForwardModel& model)
+    : FineCorrelation(model, model.straight_points_per_bin(least_points_per_bin)) {}
+
 FineCorrelation::FineCorrelation(const ForwardModel& model, int points_per_bin)
     : FineCorrelation(
           (require(points_per_bin >= 1, "points_per_bin", points_per_bin, "must be >= 1"),

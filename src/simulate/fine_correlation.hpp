@@ -17,8 +17,12 @@ namespace tofsmith {
 /// and 1/256 of what a decoder's own chords between bins leave.
 class FineCorrelation {
  public:
+  static constexpr int least_points_per_bin = 16;
+
+  /// As many points as ForwardModel::straight_points_per_bin() gives.
+  explicit FineCorrelation(const ForwardModel& model);
   /// @param points_per_bin  table points per bin, >= 1
-  explicit FineCorrelation(const ForwardModel& model, int points_per_bin = 16);
+  FineCorrelation(const ForwardModel& model, int points_per_bin);
   /// The same of any table of tap values, (points, tap values).
   FineCorrelation(const Eigen::MatrixXd& table, int points_per_bin);
 

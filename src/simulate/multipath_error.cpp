@@ -71,7 +71,7 @@ class CellTrials {
 
 RawFrames CellTrials::capture(const CellLight& light, std::uint64_t number,
                               std::vector<double>& true_m) const {
-  constexpr int points_per_bin = 16;
+  const int points_per_bin = model_.straight_points_per_bin(16);
   std::optional<FineCorrelation> tail;
   if (light.is_tail)
     tail.emplace(tap_tail_table(model_, {light.delay_m, light.ratio}, camera_.range_m(),

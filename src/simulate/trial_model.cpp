@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int rows_per_bin_of_codes = 16;
+constexpr int least_rows_per_bin = 16;
 
 TapConversion conversion_of(const Sensor& sensor) {
   TapConversion c{
@@ -46,7 +46,7 @@ TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
 TrialModel::TrialModel(const ForwardModel& model, const Camera& camera, const Eigen::MatrixXd& sums)
     : taps_(static_cast<int>(sums.rows())),
       samples_(model.samples()),
-      rows_per_bin_(rows_per_bin_of_codes),
+      rows_per_bin_(model.straight_points_per_bin(least_rows_per_bin)),
       has_own_shot_noise_(camera.sensor.is_signed()),
       exposure_s_(camera.sensor.is_signed() ? model.exposure_s() : model.tap_exposure_s()),
       ambient_e_(sums * model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain())),
@@ -72,7 +72,7 @@ TrialModel::TrialModel(const ForwardModel& model, const Camera& camera, const Ei
 TrialModel::TrialModel(const ForwardModel& model)
     : taps_(0),
       samples_(model.samples()),
-      rows_per_bin_(rows_per_bin_of_codes),
+      rows_per_bin_(least_rows_per_bin),
       has_own_shot_noise_(false),
       raw_per_e_(model.measurements(), 0),
       raw_at_zero_(Eigen::VectorXd::Zero(model.measurements())),
@@ -81,8 +81,8 @@ TrialModel::TrialModel(const ForwardModel& model)
 
 TrialModel::TrialModel(const DecodingTable& table)
     : taps_(table.measurements()),
-      samples_(table.samples()),
-      rows_per_bin_(1),
+      samples_(table.bin_count()),
+      rows_per_bin_(table.samples() / table.bin_count()),
       has_own_shot_noise_(true),
       exposure_s_(table.exposure_s),
       ambient_e_(exposure_s_.cwiseProduct(table.ambient_gain)),
@@ -93,7 +93,7 @@ TrialModel::TrialModel(const DecodingTable& table)
       raw_per_e_(table.gain_e_per_raw.cwiseInverse().asDiagonal()),
       raw_at_zero_(table.black_level),
       conversion_{.full_well_e = std::numeric_limits<float>::infinity()},
-      records_(samples_, 4 * taps_) {
+      records_(rows(), 4 * taps_) {
   fill_records(table.correlation * exposure_s_.asDiagonal(),
                table.shot() * exposure_s_.asDiagonal());
 }

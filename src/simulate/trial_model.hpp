@@ -33,7 +33,7 @@ struct TapConversion {
 /// mixer, each of whose numbers counts as a tap here.
 class TrialModel {
  public:
-  /// Of a code on a camera, 16 rows per bin.
+  /// Of a code on a camera, 16 rows per bin or more.
   TrialModel(const ForwardModel& model, const Camera& camera);
   /// Of rows: where depths lie. RowTrials draws what they measure.
   explicit TrialModel(const ForwardModel& model);

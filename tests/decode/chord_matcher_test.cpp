@@ -15,7 +15,8 @@
 namespace tofsmith {
 namespace {
 
-/// A smooth curve of random harmonics, seen at so few places that it turns far between them.
+/// A curve of random harmonics, sampled so coarsely that it turns far between rows. A little of the
+/// highest frequency keeps it from being interpolated as a smooth one.
 DecodingTable coarse_table(int measurements, int samples, std::uint64_t seed) {
   const int harmonics = measurements;
   DecodingTable table = make_decoding_table(
@@ -32,6 +33,7 @@ DecodingTable coarse_table(int measurements, int samples, std::uint64_t seed) {
       for (int n = 0; n < samples; ++n)
         of_tap[n] += size * std::cos(2.0 * std::numbers::pi * h * n / samples + phase);
     }
+    for (int n = 0; n < samples; n += 2) of_tap[n] += 1e-3;
     of_tap.array() -= of_tap.minCoeff();
     table.correlation.col(k) = of_tap / of_tap.maxCoeff();
   }

@@ -83,7 +83,7 @@ std::vector<float> between_two_depths(const DecodingTable& table) {
   int first = 0, second = samples / 2;
   for (int a = 0; a < samples; ++a)
     for (int b = a; b < samples; ++b) {
-      const double apart_m = table.bin_m() * std::abs(circular_difference(a, b, samples));
+      const double apart_m = table.row_m() * std::abs(circular_difference(a, b, samples));
       if (apart_m > 3.0 && units.row(a).dot(units.row(b)) > units.row(first).dot(units.row(second)))
         first = a, second = b;
     }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "likelihood_setup.hpp"
 #include "reference_likelihood.hpp"
@@ -54,7 +55,7 @@ TEST_P(LikelihoodOf, IsNeverLessThanTheBestOfADenseGrid) {
       const Eigen::VectorXd y =
           reference.electrons(&raw[static_cast<std::size_t>(i * table.measurements())]);
       const double ambient = reference.sees_ambient() ? image.ambient_e_per_s(0, i) : 0.0;
-      const double found = reference.cost(y, image.depth_m(0, i) / table.bin_m(),
+      const double found = reference.cost(y, image.depth_m(0, i) / table.row_m(),
                                           image.signal_e_per_s(0, i), ambient);
       EXPECT_LE(found, reference.min_cost(y, 4) + 1e-3)
           << "pixel " << i << " at " << point.signal_e_per_s << ", " << point.ambient_e_per_s;
@@ -89,11 +90,13 @@ TEST(LikelihoodDecoder, RecoversDepthSignalAndAmbientWithoutNoise) {
     for (int i = 0; i < 240; ++i) {
       const double at = image.depth_m(0, i) / setup.camera.bin_m();
       EXPECT_LT(std::abs(circular_difference(at, 0.25 * i, 60.0)), 2e-3) << c.code;
-      EXPECT_NEAR(image.signal_e_per_s(0, i), 1e6, 300.0) << c.code;
+      // Chords between the rows of a sinusoid are shorter than the arc.
+      const double tolerance = std::string_view(c.code) == "multifrequency-k5" ? 3000.0 : 300.0;
+      EXPECT_NEAR(image.signal_e_per_s(0, i), 1e6, tolerance) << c.code;
       if (c.readout == Readout::difference)
         EXPECT_TRUE(std::isnan(image.ambient_e_per_s(0, i)));
       else
-        EXPECT_NEAR(image.ambient_e_per_s(0, i), 1e4, 300.0) << c.code;
+        EXPECT_NEAR(image.ambient_e_per_s(0, i), 1e4, tolerance) << c.code;
     }
   }
 }

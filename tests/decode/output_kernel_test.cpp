@@ -69,7 +69,7 @@ TEST(OutputKernel, FindsDepthsBetweenBinsInAnyLight) {
     const Matched matched(table, raw);
     const Outputs outputs = matched.outputs();
     for (std::size_t i = 0; i < matched.pixels(); ++i)
-      ASSERT_LE(off_bins(outputs.depth_m[i], matched.decoding_of(i).depth_bin, table),
+      ASSERT_LE(off_rows(outputs.depth_m[i], matched.decoding_of(i).depth_row, table),
                 samples > 10000 ? 0.1 : 0.02)
           << samples << " samples, pixel " << i;
   }
@@ -91,7 +91,7 @@ TEST(OutputKernel, AddsFractionsToHighBins) {
   const Matched matched(table, raw);
   const Outputs outputs = matched.outputs();
   for (std::size_t i = 0; i < matched.pixels(); ++i)
-    ASSERT_LE(off_bins(outputs.depth_m[i], matched.decoding_of(i).depth_bin, table), 1.5e-3) << i;
+    ASSERT_LE(off_rows(outputs.depth_m[i], matched.decoding_of(i).depth_row, table), 1.5e-3) << i;
 }
 
 TEST(OutputKernel, WrapsDepthsAtTheEndOfTheRange) {
@@ -99,8 +99,8 @@ TEST(OutputKernel, WrapsDepthsAtTheEndOfTheRange) {
   const DecodingTable& table = setup.decoder.table();
   std::vector<float> raw;
   for (int i = -100; i <= 100; ++i)
-    setup.append_expected(raw, 1e5, i < 0 ? table.samples() + i * 0.01 : i * 0.01, 1e2);
-  setup.append_expected(raw, 1e5, table.samples() - 1e-7, 1e2);
+    setup.append_expected(raw, 1e5, i < 0 ? table.bin_count() + i * 0.01 : i * 0.01, 1e2);
+  setup.append_expected(raw, 1e5, table.bin_count() - 1e-7, 1e2);
   expect_agreement(table, raw);
 }
 
@@ -120,7 +120,7 @@ TEST(OutputKernel, NeedsNoContrastEverywhere) {
   for (std::size_t i = 0; i < matched.pixels(); ++i) {
     ASSERT_EQ(std::isnan(outputs.depth_m[i]), std::isnan(expected.depth_m[i])) << i;
     if (std::isnan(expected.depth_m[i])) continue;
-    ASSERT_LE(off_bins(outputs.depth_m[i], matched.decoding_of(i).depth_bin, table), 1e-4) << i;
+    ASSERT_LE(off_rows(outputs.depth_m[i], matched.decoding_of(i).depth_row, table), 1e-4) << i;
   }
 }
 

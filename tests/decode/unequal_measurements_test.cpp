@@ -74,11 +74,11 @@ TEST(UnequalMeasurements, DepthSignalAndAmbientComeBackWithoutNoise) {
     const DepthImage image = decoder.decode(frame_of(raw, table.measurements()));
     for (std::size_t i = 0; i < truth.size(); ++i) {
       ASSERT_NEAR(
-          circular_difference(image.depth_m.pixels[i] / table.bin_m(), truth[i], table.samples()),
-          0.0, 2e-3)
+          circular_difference(image.depth_m.pixels[i] / table.row_m(), truth[i], table.samples()),
+          0.0, 2e-2)
           << seed;
-      ASSERT_NEAR(image.signal_e_per_s.pixels[i], signal, 1e-4 * signal) << seed;
-      ASSERT_NEAR(image.ambient_e_per_s.pixels[i], ambient, 1e-4 * signal) << seed;
+      ASSERT_NEAR(image.signal_e_per_s.pixels[i], signal, 5e-3 * signal) << seed;
+      ASSERT_NEAR(image.ambient_e_per_s.pixels[i], ambient, 5e-3 * signal) << seed;
     }
   }
 }
@@ -135,11 +135,13 @@ TEST(UnequalMeasurements, TheWrongAmbientDirectionWouldShow) {
   std::vector<float> raw;
   for (int n = 0; n < table.samples(); ++n) append_raw(raw, table, 1e5, 1e6, n);
   const auto right = depth_bins_of(Decoder(table), raw), wrong = depth_bins_of(Decoder(equal), raw);
+  const double bins_per_row = static_cast<double>(table.bin_count()) / table.samples();
   double largest = 0.0;
   for (int n = 0; n < table.samples(); ++n) {
     const auto at = static_cast<std::size_t>(n);
-    EXPECT_NEAR(circular_difference(right[at], n, table.samples()), 0.0, 0.05);
-    largest = std::max(largest, std::abs(circular_difference(wrong[at], n, table.samples())));
+    EXPECT_NEAR(circular_difference(right[at], n * bins_per_row, table.bin_count()), 0.0, 0.05);
+    largest = std::max(
+        largest, std::abs(circular_difference(wrong[at], n * bins_per_row, table.bin_count())));
   }
   EXPECT_GT(largest, 1.0);
 }

@@ -149,7 +149,7 @@ class Matched {
     std::array<double, max_measurements> variance_e2;
     const Eigen::VectorXd y = electrons(i), q = plane_of(y);
     const Position position = model_.refine(q.data(), bin_[i]);
-    PixelDecoding decoding{position.in_bins(table_.samples()),
+    PixelDecoding decoding{position.in_rows(table_.samples()),
                            model_.estimate(y.data(), q.data(), position, variance_e2.data()), 1.0};
     if (second_peak_[i] >= 0) {
       const Eigen::VectorXd apart = direction(bin_[i]) - direction(second_peak_[i]);
@@ -231,9 +231,9 @@ class Matched {
   std::vector<std::uint8_t> saturated_;
 };
 
-/// Like depth_bin of the definition, on the circle, in bins.
-inline double off_bins(float depth_m, double depth_bin, const DecodingTable& table) {
-  return std::abs(circular_difference(depth_m / table.bin_m(), depth_bin, table.samples()));
+/// Distance from the row of the definition, on the circle, in rows.
+inline double off_rows(float depth_m, double depth_row, const DecodingTable& table) {
+  return std::abs(circular_difference(depth_m / table.row_m(), depth_row, table.samples()));
 }
 
 inline void expect_near(const std::vector<float>& values, const std::vector<float>& expected,
@@ -275,7 +275,7 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
     other_status += outputs.status[i] != expected.status[i];
     ASSERT_EQ(std::isnan(outputs.depth_m[i]), std::isnan(expected.depth_m[i])) << i;
     if (std::isnan(expected.depth_m[i])) continue;
-    ASSERT_LE(off_bins(outputs.depth_m[i], matched.decoding_of(i).depth_bin, table),
+    ASSERT_LE(off_rows(outputs.depth_m[i], matched.decoding_of(i).depth_row, table),
               float_error_bin)
         << i;
     ASSERT_GE(outputs.depth_m[i], 0.0f);

@@ -58,7 +58,7 @@ void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pi
   const DepthImage after = decode_pixels(decoder, raw);
   const std::vector<double> positions = depth_bins_of(decoder, raw);
   const std::vector<std::int32_t> bins = bins_of(decoder, raw);
-  const int samples = decoder.table().samples();
+  const int samples = decoder.samples();
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_bad = i >= first && i < first + 4;
     EXPECT_EQ(std::isnan(positions[i]), is_bad);

@@ -5,8 +5,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
 
+#include "core/shared/periodic.hpp"
+#include "decode/search/smooth_curve.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
@@ -23,6 +27,14 @@ class ReferenceDecoder {
     for (int n = 0; n < table.samples(); ++n)
       curve_.col(n) =
           without_ambient(table.correlation.row(n).transpose().cwiseProduct(table.exposure_s));
+    if (depth_polynomials(AmbientProjection(table).curve)) {
+      Eigen::VectorXcd one;
+      for (int k = 0; k < table.measurements(); ++k) {
+        PeriodicTransform(table.samples()).forward(curve_.row(k).transpose(), one);
+        if (k == 0) spectrum_.resize(one.size(), table.measurements());
+        spectrum_.col(k) = one / table.samples();
+      }
+    }
     length_ = curve_.colwise().norm();
     for (double& length : length_)
       if (length <= 1e-9 * length_.maxCoeff()) length = 0.0;
@@ -44,8 +56,14 @@ class ReferenceDecoder {
                               : -std::numeric_limits<double>::infinity();
   }
 
+  /// The bin nearest to the best row.
   template <typename Number>
   int bin(const Number* raw) const {
+    return table_.nearest_bin(row(raw));
+  }
+
+  template <typename Number>
+  int row(const Number* raw) const {
     const Eigen::VectorXd left = difference(raw);
     double best = -std::numeric_limits<double>::infinity();
     for (int n = 0; n < table_.samples(); ++n) best = std::max(best, score(left, n));
@@ -54,8 +72,12 @@ class ReferenceDecoder {
     return n;
   }
 
-  /// Score at any depth, on the chords between bins.
+  /// Score at any depth: by trigonometric interpolation of smooth tables, else on the chords.
   double score_at(const Eigen::VectorXd& difference, double depth_bin) const {
+    if (spectrum_.size() > 0) {
+      const Eigen::VectorXd smooth_point = on_smooth_curve(depth_bin);
+      return difference.dot(smooth_point) / smooth_point.norm();
+    }
     const int from = static_cast<int>(depth_bin), to = (from + 1) % table_.samples();
     const double t = depth_bin - from;
     const Eigen::VectorXd point = (1 - t) * curve_.col(from) + t * curve_.col(to);
@@ -79,14 +101,27 @@ class ReferenceDecoder {
   }
 
  private:
+  Eigen::VectorXd on_smooth_curve(double depth_bin) const {
+    const double turn = 2.0 * std::numbers::pi * depth_bin / table_.samples();
+    Eigen::VectorXd point = spectrum_.row(0).real().transpose();
+    const Eigen::Index half = table_.samples() / 2;
+    for (Eigen::Index n = 1; n < spectrum_.rows(); ++n) {
+      const bool is_last = n == half && table_.samples() % 2 == 0;
+      const std::complex<double> at =
+          std::polar(is_last ? 1.0 : 2.0, static_cast<double>(n) * turn);
+      point += (spectrum_.row(n) * at).real().transpose();
+    }
+    return point;
+  }
   Eigen::VectorXd without_ambient(const Eigen::VectorXd& y) const {
     return y - ambient_.dot(y) * ambient_;
   }
 
   DecodingTable table_;
-  Eigen::VectorXd ambient_;  // unit, or zero
-  Eigen::MatrixXd curve_;    // P x (K, N)
-  Eigen::VectorXd length_;   // |P x| (N), 0 without contrast
+  Eigen::VectorXd ambient_;    // unit, or zero
+  Eigen::MatrixXd curve_;      // P x (K, N)
+  Eigen::MatrixXcd spectrum_;  // of a smooth table (N / 2 + 1, K); else empty
+  Eigen::VectorXd length_;     // |P x| (N), 0 without contrast
 };
 
 }  // namespace tofsmith

@@ -189,8 +189,7 @@ struct Sensor {
   NoiseModel noise = NoiseModel::poisson;  ///< how noise is drawn
   double dark_current_e_per_s = 0.0;       ///< per tap; of rows, of all time bins [e/s], >= 0
   double modulation_contrast = 1.0;        ///< C in (0, 1]; below 1 the taps mix
-  /// One C per exposure, or per run of exposures with the same modulation; empty: the above.
-  std::vector<double> modulation_contrasts = {};
+  std::vector<double> modulation_contrasts = {};  ///< per exposure or frequency; empty: the above
   /// Relative difference in sensitivity of neighbouring taps (with one tap: of neighbouring
   /// exposures): 1 + m / 2 for the first, third, .., 1 - m / 2 for the others; in (-1, 1).
   double tap_mismatch = 0.0;
@@ -205,8 +204,7 @@ struct Sensor {
   std::optional<double> readout_gap_s;   ///< dark time after each exposure [s], >= 0; none: 0
   std::optional<double> frame_period_s;  ///< from frame to frame [s], > 0; none: no pause
 
-  /// Contrast of every exposure. @throws std::invalid_argument if modulation_contrasts does not fit
-  std::vector<double> contrasts_of(const CodeSet& code) const;
+  std::vector<double> contrasts_of(const CodeSet& code) const;  ///< of every exposure, if it fits
   bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
   /// Whether they are differences of light, so that ambient light may cancel, but not its noise.
   bool subtracts() const { return is_signed() || readout == Readout::difference; }

@@ -53,7 +53,7 @@ class Decoder {
   const DecodingTable& table() const;
   const DecodeOptions& options() const;
   int measurements() const { return table().measurements(); }
-  int samples() const { return table().samples(); }
+  int samples() const { return table().bin_count(); }
   /// Dimension of the measurements' residual without ambient light, 2 .. K.
   int rank() const;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -109,6 +110,12 @@ struct RawMarking {
 /// Returns the marking of a camera's raw numbers by its converter, full well and special numbers.
 RawMarking raw_marking_of(const Camera& camera);
 
+/// The bin of `bins` in a period nearest to row `row` of `rows`; -1 for -1.
+constexpr std::int32_t nearest_bin_of_row(std::int32_t row, std::int64_t rows, std::int64_t bins) {
+  if (row < 0 || rows == bins) return row;
+  return static_cast<std::int32_t>((2 * row * bins + rows) / (2 * rows) % bins);
+}
+
 /// Everything a decoder needs to know of a code on a camera. Measurements are what leaves the
 /// sensor (K of them: one per tap, or the differences of two-bucket pairs):
 ///   expected electrons  mu_i(z) = T_i (S chi_i(z) + A kappa_i) + dark_i
@@ -132,8 +139,11 @@ struct DecodingTable : MeasurementTable {
   std::optional<float> saturation_level;  ///< raw numbers from here on are clipped; none: no limit
   /// Raw numbers down from here are clipped, for differences; none: no limit.
   std::optional<float> lower_saturation_level = {};
-  RawMarking marking = {};    ///< rules for saturated and invalid numbers as they are stored
-  double range_m = 0.0;       ///< depth of a whole period [m], > 0
+  RawMarking marking = {};  ///< rules for saturated and invalid numbers as they are stored
+  double range_m = 0.0;     ///< depth of a whole period [m], > 0
+  /// N of the bins in which depths are reported; the table has as many rows as its correlation
+  /// functions need. 0: one bin per row.
+  int bins = 0;
   Eigen::MatrixXd whitening;  ///< (K, K), or empty: noise is independent
   /// Of rows: covariance of whitening (electrons - dark), all of it. Empty without whitening.
   RowCovariance covariance;
@@ -146,8 +156,18 @@ struct DecodingTable : MeasurementTable {
   const Eigen::VectorXd& shot_dark() const {
     return shot_dark_electrons.size() > 0 ? shot_dark_electrons : dark_electrons;
   }
+  /// N of the bins in which depths are reported.
+  int bin_count() const { return bins > 0 ? bins : samples(); }
   /// Depth of one bin [m].
-  double bin_m() const { return range_m / samples(); }
+  double bin_m() const { return range_m / bin_count(); }
+  /// Depth from one row to the next [m].
+  double row_m() const { return range_m / samples(); }
+  /// The bin nearest to a row; -1 for -1.
+  std::int32_t nearest_bin(std::int32_t row) const {
+    return nearest_bin_of_row(row, samples(), bin_count());
+  }
+  /// A position in bins of one in rows.
+  double in_bins(double row) const { return bins > 0 ? row * bins / samples() : row; }
 
   /// Whether depths can be distinguished at all: shapes agree, everything is finite, there are 3 to
   /// 64 measurements (2 are enough where ambient light cancels), and the correlation without what
@@ -193,9 +213,10 @@ struct AmbiguousDepths {
 /// Gray codes) have no direction and are left out.
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table);
 
-/// The furthest that a table turns from one bin to the next [rad], jumps (more than 75 degrees, as
-/// where a ramp falls back) left out. Depths between bins are taken to lie on the chords: where
-/// this is more than 10 degrees, the curve between bins may be another.
+/// The largest angle by which a table turns from one row to the next [rad], without jumps (more
+/// than 75 degrees, as where a ramp falls back). 0 for a smooth table, whose course between its
+/// rows is known. For other tables depths between rows are assumed to lie on the chords; above 10
+/// degrees the true curve may differ.
 double furthest_turn_rad(const DecodingTable& table);
 
 /// What constant light adds to the measurements of a measured table.

@@ -43,7 +43,7 @@ class LikelihoodDecoder {
   const DecodingTable& table() const;
   const DecodeOptions& options() const;
   int measurements() const { return table().measurements(); }
-  int samples() const { return table().samples(); }
+  int samples() const { return table().bin_count(); }
 
   /// Decodes one frame on all threads into the caller's planes; as Decoder::decode, but for
   ///   signal and ambient: the most likely ones;

@@ -81,7 +81,7 @@ class MultipathDecoder {
   const DecodingTable& table() const;
   const MultipathOptions& options() const;
   int measurements() const { return table().measurements(); }
-  int samples() const { return table().samples(); }
+  int samples() const { return table().bin_count(); }
 
   /// Decodes one frame on all threads into the caller's planes; as Decoder::decode for single and
   /// unresolved pixels. Where multipath was found

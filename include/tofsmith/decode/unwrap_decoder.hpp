@@ -65,7 +65,7 @@ class UnwrapDecoder {
   const DecodingTable& table() const;
   const UnwrapOptions& options() const;
   int measurements() const { return table().measurements(); }
-  int samples() const { return table().samples(); }
+  int samples() const { return table().bin_count(); }
   /// In multiples of f0, ascending.
   const std::vector<int>& frequencies() const;
   /// w_f of each frequency, scaled to sum 1.

@@ -42,7 +42,7 @@ struct Filter::Plan {
   HiddenSignal hidden;
   bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
 
-  int samples() const { return decoder.samples(); }
+  int samples() const { return decoder.table().samples(); }
   /// The variance that the last window leaves.
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 

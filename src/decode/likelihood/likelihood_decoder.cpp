@@ -111,7 +111,7 @@ double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
   PerMeasurement electrons;
   if (!read(raw, electrons)) return std::numeric_limits<double>::quiet_NaN();
   const MostLikely found = search.most_likely(search.model().pixel(electrons.data()), fall);
-  return search.depth_bin(found.best);
+  return table.in_bins(search.depth_row(found));
 }
 
 void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_share, std::size_t at,
@@ -121,7 +121,7 @@ void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_sha
   if (!read(raw, electrons)) return store_invalid(at, decoded);
   const LikelihoodPixel pixel = search.model().pixel(electrons.data(), variance_share);
   const MostLikely found = search.most_likely(pixel, fall);
-  PixelDecoding decoding{search.depth_bin(found.best), search.model().estimate(pixel, found.best)};
+  PixelDecoding decoding{search.depth_row(found), search.model().estimate(pixel, found.best)};
   if (decoding.estimate.signal_e_per_s > 0.0)
     decoding.confidence = search.confidence(pixel, found, fall);
   store_pixel(table, options, raw, decoding, at, decoded);

@@ -258,7 +258,7 @@ PixelEstimate LikelihoodModel::estimate(const LikelihoodPixel& pixel, const Chor
   result.signal_e_per_s = signal;
   result.ambient_e_per_s = unknowns_ == 3 ? fit.light[2] : std::numeric_limits<double>::quiet_NaN();
   result.signal_standard_deviation_e_per_s = 1.0 / std::sqrt(left_of(information, light));
-  result.depth_standard_deviation_bin = 1.0 / std::sqrt(left_of(information, depth));
+  result.depth_standard_deviation_row = 1.0 / std::sqrt(left_of(information, depth));
   return result;
 }
 

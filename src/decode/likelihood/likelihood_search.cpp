@@ -112,7 +112,46 @@ LikelihoodSearch::LikelihoodSearch(const DecodingTable& table, const AmbientProj
     : scores_(projection),
       correlation_(table, projection),
       model_(table, projection),
-      directions_(projection) {}
+      directions_(projection),
+      is_smooth_(depth_polynomials(projection.curve).has_value()) {}
+
+double LikelihoodSearch::depth_row(const MostLikely& found) const {
+  return wrap(depth_row(found.best) + found.moved, scores_.samples());
+}
+
+/// A chord is as stiff as the table: if the contrast of some measurements is not that of the table,
+/// its best point is drawn towards the middle or the ends, and the noise model of the table does
+/// not apply to the pixel. The weighted squares that five rows explain contain its own curvature.
+double LikelihoodSearch::moved_to_curve(const LikelihoodPixel& pixel, const ChordFit& best,
+                                        const double* weight,
+                                        const std::vector<double>& fall) const {
+  const std::int32_t samples = scores_.samples();
+  const auto at = [&](std::int32_t row) {
+    return std::sqrt(std::max(0.0, fall[static_cast<std::size_t>((row + samples) % samples)]));
+  };
+  std::int32_t row = nearest_bin(depth_row(best), samples);
+  constexpr double max_squares_per_measurement = 10.0;
+  if (squares_beside(pixel, row, weight) <=
+      max_squares_per_measurement * correlation_.measurements())
+    return 0.0;
+  for (int step = 0; step < 2 && std::max(at(row - 1), at(row + 1)) > at(row); ++step)
+    row = (row + (at(row + 1) > at(row - 1) ? 1 : samples - 1)) % samples;
+
+  // Derivatives of the quartic through five rows; its peak by Newton steps.
+  const double f0 = at(row), f1 = at(row + 1), b1 = at(row - 1), f2 = at(row + 2), b2 = at(row - 2);
+  const double first = (8.0 * (f1 - b1) - (f2 - b2)) / 12.0;
+  const double second = (16.0 * (f1 + b1) - (f2 + b2) - 30.0 * f0) / 12.0;
+  const double third = 0.5 * (f2 - b2) - (f1 - b1);
+  const double fourth = f2 + b2 - 4.0 * (f1 + b1) + 6.0 * f0;
+  if (!(second < 0.0)) return 0.0;
+  double peak = 0.0;
+  for (int step = 0; step < 4; ++step) {
+    const double slope = first + peak * (second + peak * (third / 2.0 + peak * fourth / 6.0));
+    peak = std::clamp(peak - slope / second, -1.0, 1.0);
+  }
+
+  return circular_difference(row + peak, depth_row(best), samples);
+}
 
 /// Inverse variances of the measurements at the estimate of zero-mean normalized cross-correlation.
 /// Any depth that explains the pixel has nearly the same ones. False if ambient light alone
@@ -170,18 +209,19 @@ MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
     const bool is_first = result.count == 0;
     const bool is_lower = fit.cost < result.best.cost - tie;
     const bool ties = fit.cost <= result.best.cost + tie;
-    if (is_first || is_lower || (ties && depth_bin(fit) < depth_bin(result.best)))
+    if (is_first || is_lower || (ties && depth_row(fit) < depth_row(result.best)))
       result.best = fit;
     result.followed[result.count++] = fit;
   }
   result.best = model_.fit_near(pixel, result.best, result.weight.data());
+  if (is_smooth_) result.moved = moved_to_curve(pixel, result.best, result.weight.data(), fall);
   return result;
 }
 
 double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLikely& found,
                                     const std::vector<double>& fall) const {
   const std::int32_t samples = scores_.samples();
-  const std::int32_t nearest = nearest_bin(depth_bin(found.best), samples);
+  const std::int32_t nearest = nearest_bin(depth_row(found.best), samples);
   const Lobe lobe = directions_.main_lobe(nearest);
   if (lobe.end - lobe.begin >= samples) return 1.0;
 
@@ -191,7 +231,7 @@ double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLike
       second_peak = n % samples;
   double second_peak_cost = model_.fit(pixel, second_peak, found.weight.data()).cost;
   for (std::size_t i = 0; i < found.count; ++i) {
-    const double above = wrap(depth_bin(found.followed[i]) - lobe.begin, samples);
+    const double above = wrap(depth_row(found.followed[i]) - lobe.begin, samples);
     if (above > lobe.end - 1 - lobe.begin)
       second_peak_cost = std::min(second_peak_cost, found.followed[i].cost);
   }

@@ -41,6 +41,7 @@ inline constexpr std::size_t max_peaks = 16;
 struct MostLikely {
   std::array<double, max_measurements> weight;  ///< first estimate of inverse variances [1/e^2]
   ChordFit best;
+  double moved = 0.0;  ///< of the depth from the best chord's point to that of the curve [rows]
   std::array<ChordFit, max_peaks> followed;
   std::size_t count = 0;  ///< of followed peaks
 };
@@ -53,7 +54,8 @@ class LikelihoodSearch {
   LikelihoodSearch(const DecodingTable& table, const AmbientProjection& projection);
 
   const LikelihoodModel& model() const { return model_; }
-  double depth_bin(const ChordFit& fit) const { return fit.position().in_bins(scores_.samples()); }
+  double depth_row(const ChordFit& fit) const { return fit.position().in_rows(scores_.samples()); }
+  double depth_row(const MostLikely& found) const;
 
   /// No signal and no followed peak where ambient light alone explains the pixel.
   /// @param fall  work space (N); then what every bin explains, DepthScores::weighted_fall
@@ -68,6 +70,8 @@ class LikelihoodSearch {
   class Peaks;
   bool estimate_weights(const LikelihoodPixel& pixel, MostLikely& result) const;
   double squares_beside(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
+  double moved_to_curve(const LikelihoodPixel& pixel, const ChordFit& best, const double* weight,
+                        const std::vector<double>& fall) const;
   Peaks peaks(const LikelihoodPixel& pixel, const double* weight,
               const std::vector<double>& fall) const;
 
@@ -75,6 +79,7 @@ class LikelihoodSearch {
   PixelModel correlation_;
   LikelihoodModel model_;
   DirectionTable directions_;
+  bool is_smooth_;  // so that the curve between rows is known to leave the chords
 };
 
 }  // namespace tofsmith

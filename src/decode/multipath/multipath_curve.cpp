@@ -94,10 +94,10 @@ MultipathCurve::MultipathCurve(const DecodingTable& table, const AmbientProjecti
     : measurements(table.measurements()), sees_ambient(!projection.ambient.isZero(0.0)) {
   const Eigen::VectorXd size = sizes_of_directions(projection);
   span = std::min(max_span, static_cast<int>((size.array() > min_kept * size.maxCoeff()).count()));
-  points_per_bin = (min_points + table.samples() - 1) / table.samples();
-  points = points_per_bin * table.samples();
+  points_per_row = (min_points + table.samples() - 1) / table.samples();
+  points = points_per_row * table.samples();
 
-  const RowMajorMatrix curve = drawn_finer(projection.curve.leftCols(span), points_per_bin);
+  const RowMajorMatrix curve = drawn_finer(projection.curve.leftCols(span), points_per_row);
   coarse = coarse_places(curve);
   fine = as_floats(closed(curve));
   coarse_row = as_floats(thinned(curve, coarse));

@@ -23,7 +23,7 @@ struct MultipathCurve {
   int measurements = 0;
   int span = 0;            ///< dimensions r of the residual without ambient light
   int points = 0;          ///< fine points of a period
-  int points_per_bin = 0;  ///< of the table
+  int points_per_row = 0;  ///< of the table
   int coarse = 0;          ///< places at which pairs are tried first
   bool sees_ambient = false;
   /// Columns that expected measurements are made of: the ambient direction if it is seen, then the

@@ -69,9 +69,9 @@ const DecodingTable& checked(const DecodingTable& table, const MultipathOptions&
   return table;
 }
 
-double on_chord(const RowMajorMatrix& table, double bin, int k) {
-  const auto from = std::min(static_cast<Eigen::Index>(bin), table.rows() - 1);
-  const double t = bin - static_cast<double>(from);
+double on_chord(const RowMajorMatrix& table, double row, int k) {
+  const auto from = std::min(static_cast<Eigen::Index>(row), table.rows() - 1);
+  const double t = row - static_cast<double>(from);
   return (1 - t) * table(from, k) + t * table((from + 1) % table.rows(), k);
 }
 
@@ -169,7 +169,7 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
   delays_ = {static_cast<float>(points_per_m * options.shortest_delay_m),
              static_cast<float>(points_per_m * longest_m)};
   if (later == MultipathKind::tail)
-    gated_tail_ = exponential_average(gated_, options.tail_m / known.bin_m());
+    gated_tail_ = exponential_average(gated_, options.tail_m / known.row_m());
   const double freedom = curve_.span - 2;
   unexplained_chi2_ =
       static_cast<float>(freedom + std::sqrt(options.threshold) * std::sqrt(2 * freedom));
@@ -202,7 +202,7 @@ void MultipathEngine::load(const RawBlock& raw, std::int64_t pixel, float depth_
                            PixelGroup& group) const {
   const int k_count = table().measurements();
   const bool is_valid = std::isfinite(depth_m);
-  const double bin = is_valid ? depth_m / table().bin_m() : 0.0;
+  const double row = is_valid ? depth_m / table().row_m() : 0.0;
   const float* const values = raw.values + pixel * k_count;
   const double share = raw.variance_share(pixel);
   double along = 0.0, own = 0.0;
@@ -212,16 +212,16 @@ void MultipathEngine::load(const RawBlock& raw, std::int64_t pixel, float depth_
     group.variance_e2[k][lane] = static_cast<float>(
         share * std::max(min_variance_e2, std::max(electrons, 0.0) + noise_.floor_variance_e2[k]));
     if (!has_own_shot_noise_) continue;
-    const double x = on_chord(gated_, bin, k);
+    const double x = on_chord(gated_, row, k);
     along += x * electrons;
     own += x * x;
   }
-  group.guess[lane] = static_cast<float>(bin * curve_.points_per_bin);
+  group.guess[lane] = static_cast<float>(row * curve_.points_per_row);
   if (!has_own_shot_noise_) return;
   const double signal = own > 0.0 ? std::max(along / own, 0.0) : 0.0;
   for (int k = 0; k < k_count; ++k)
     group.variance_e2[k][lane] = static_cast<float>(
-        share * std::max(min_variance_e2, signal * on_chord(noise_.shot_gated, bin, k) +
+        share * std::max(min_variance_e2, signal * on_chord(noise_.shot_gated, row, k) +
                                               noise_.floor_variance_e2[k]));
 }
 
@@ -281,16 +281,16 @@ void MultipathEngine::search(Queue& queue, const RawBlock& raw, const DecodedVie
 /// Weighted least squares of ambient light beside both returns.
 double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits& fits,
                                         int lane) const {
-  const double per_bin = 1.0 / curve_.points_per_bin;
-  const double bin = fits.position[lane] * per_bin;
-  double later_bin = bin + fits.delay[lane] * per_bin;
-  if (later_bin >= table().samples()) later_bin -= table().samples();
+  const double per_row = 1.0 / curve_.points_per_row;
+  const double row = fits.position[lane] * per_row;
+  double later_row = row + fits.delay[lane] * per_row;
+  if (later_row >= table().samples()) later_row -= table().samples();
   const RowMajorMatrix& later = kind_ == MultipathKind::tail ? gated_tail_ : gated_;
   double along = 0.0, own = 0.0;
   for (int k = 0; k < table().measurements(); ++k) {
     const double left = group.electrons[k][lane] -
-                        fits.signal_e_per_s[lane] * on_chord(gated_, bin, k) -
-                        fits.second_e_per_s[lane] * on_chord(later, later_bin, k);
+                        fits.signal_e_per_s[lane] * on_chord(gated_, row, k) -
+                        fits.second_e_per_s[lane] * on_chord(later, later_row, k);
     along += left * ambient_[k] / group.variance_e2[k][lane];
     own += ambient_[k] * ambient_[k] / group.variance_e2[k][lane];
   }
@@ -316,7 +316,8 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
     position = posterior.median, deviation = posterior.deviation;
   }
   if (decoded.bin)
-    decoded.bin[at] = nearest_bin(position / curve_.points_per_bin, table().samples());
+    decoded.bin[at] =
+        nearest_bin(table().in_bins(position / curve_.points_per_row), table().bin_count());
   const auto depth_m = static_cast<float>(position * point_m);
   decoded.depth_m[at] = depth_m < static_cast<float>(table().range_m) ? depth_m : 0.0f;
   if (decoded.predicted_standard_deviation_m)

@@ -260,7 +260,7 @@ template <Fitted What, int Span>
 HWY_INLINE Place downhill(const MultipathCurve& curve, const DelayBounds& delays,
                           const White& white, Vector first, Vector second, int max_steps) {
   const Vector zero = hn::Zero(Floats()), one = all(1.0f);
-  const Vector near = all(1e-3f * static_cast<float>(curve.points_per_bin));
+  const Vector near = all(1e-3f * static_cast<float>(curve.points_per_row));
   const Vector reach =
       all(0.7f * static_cast<float>(curve.points) / static_cast<float>(curve.coarse));
   Place best = look<What, Span>(curve, white, first, second);

@@ -168,7 +168,7 @@ float with_room_for(double value, int integers) {
 OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
                            const DecodeOptions& options, bool only_positions)
     : records_(table, projection, !only_positions) {
-  const double bin_m = table.bin_m();
+  const double bin_m = table.row_m();
   const ExpectedNoise noise(table);
   const double ambient2 = projection.ambient.squaredNorm();
   constants_.samples = table.samples();

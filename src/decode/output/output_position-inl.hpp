@@ -27,7 +27,7 @@ HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
 /// side where it is > 0: S = x - v beta / c, t = v / (c S). Of two rising sides the steeper is
 /// best, unless its best point lies past the end of the chord: so it may at a bin that is not the
 /// best one (ChordMatcher).
-HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk) {
+HWY_INLINE void refine_on_chords(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
   const Vector zero = hn::Zero(d);
   for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
@@ -58,6 +58,45 @@ HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk)
     hn::StoreU(hn::IfThenElseZero(has_depth, hn::IfThenElse(is_left, hn::Neg(t), t)), d,
                chunk.offset + i);
   }
+}
+
+/// Maximum of the pixel's own correlation around its row of a smooth curve, as
+/// DepthPolynomials::maximum(), and the signal there,
+///   S = (x + g t + b t^2 / 2 + c t^3 / 3) / (1 + growth t + growth_change t^2),  x = <q, p> /
+///   |p|^2.
+HWY_INLINE void refine_on_curve(const RecordLayout& layout, int rank, OutputChunk& chunk) {
+  const Floats d;
+  const Vector zero = hn::Zero(d), one = all(1.0f), back = all(-1.0f);
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
+    const Vector at_row = along(chunk, rank, layout.point(), i);
+    const Vector g = along(chunk, rank, layout.slope(), i);
+    const Vector b = along(chunk, rank, layout.bend(), i);
+    const Vector c = along(chunk, rank, layout.asymmetry(), i);
+    const auto within = [&](Vector t) { return hn::Min(hn::Max(t, back), one); };
+    Vector t = within(hn::Neg(hn::Div(g, b)));
+    for (int step = 0; step < 2; ++step) {
+      const Vector curvature = product_plus(hn::Add(c, c), t, b);
+      const Vector rise = product_plus(t, product_plus(t, c, b), g);
+      const Vector moved = within(hn::Sub(t, hn::Div(rise, curvature)));
+      t = hn::IfThenElse(hn::Lt(curvature, zero), moved, t);
+    }
+    t = hn::IfThenElseZero(hn::Lt(b, zero), t);
+    const Vector third = hn::Mul(c, all(1.0f / 3.0f));
+    const Vector slopes = product_plus(t, product_plus(t, third, hn::Mul(b, all(0.5f))), g);
+    const Vector growth = product_plus(t, load(chunk.field(layout.growth() + 1), i),
+                                       load(chunk.field(layout.growth()), i));
+    const Vector signal = hn::Div(product_plus(t, slopes, at_row), product_plus(t, growth, one));
+    const Mask has_depth = hn::And(hn::Gt(at_row, zero), hn::Gt(signal, zero));
+    hn::StoreU(hn::IfThenElseZero(has_depth, signal), d, chunk.signal + i);
+    hn::StoreU(hn::IfThenElseZero(has_depth, t), d, chunk.offset + i);
+  }
+}
+
+HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk) {
+  if (layout.is_smooth)
+    refine_on_curve(layout, rank, chunk);
+  else
+    refine_on_chords(layout, rank, chunk);
 }
 
 /// The quarters of chords where the best points lie.

@@ -22,6 +22,7 @@ double dot(const double* a, const double* b, int size) {
 PixelModel::PixelModel(const DecodingTable& table, const AmbientProjection& projection)
     : samples_(table.samples()),
       projection_(projection),
+      polynomials_(depth_polynomials(projection.curve)),
       basis_(projection.basis),
       noise_basis_(projection.noise_basis),
       noise_(table) {
@@ -58,7 +59,29 @@ PixelModel::ChordPoint PixelModel::best_inside(std::int32_t bin, double at_bin,
   return {t, ((1 - t) * at_bin + t * at_next) / std::sqrt(length2)};
 }
 
+PixelModel::Rise PixelModel::rise_at(const double* plane, std::int32_t row) const {
+  return {dot(plane, polynomials_->slope.row(row).data(), rank()),
+          dot(plane, polynomials_->bend.row(row).data(), rank()),
+          dot(plane, polynomials_->asymmetry.row(row).data(), rank())};
+}
+
+/// <q, p> / |p|^2 at a position, from the nearest row.
+double PixelModel::signal_on_curve(const double* plane, const Position& position) const {
+  const bool is_near = position.fraction < 0.5;
+  const std::int32_t row = is_near ? position.bin : next(position.bin);
+  const double t = is_near ? position.fraction : position.fraction - 1.0;
+  const auto [g, b, c] = rise_at(plane, row);
+  return (along(plane, row) / own_[row] + t * (g + t * (b / 2 + t * c / 3))) /
+         (1.0 + t * (polynomials_->growth[row] + t * polynomials_->growth_change[row]));
+}
+
 Position PixelModel::refine(const double* plane, std::int32_t bin) const {
+  if (polynomials_) {
+    const auto [g, b, c] = rise_at(plane, bin);
+    const double t = DepthPolynomials::maximum(g, b, c);
+    if (t >= 1.0) return {next(bin), 0.0};
+    return t < 0.0 ? Position{previous(bin), 1.0 + t} : Position{bin, t};
+  }
   const std::int32_t left = previous(bin);
   const double at_bin = along(plane, bin);
   const ChordPoint before = best_inside(left, along(plane, left), at_bin);
@@ -89,7 +112,8 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   }
 
   const double length2 = dot(point.data(), point.data(), r);
-  result.signal_e_per_s = dot(plane, point.data(), r) / length2;
+  result.signal_e_per_s =
+      polynomials_ ? signal_on_curve(plane, position) : dot(plane, point.data(), r) / length2;
 
   // What signal leaves is ambient light.
   const double* x0 = projection_.gated.row(from).data();
@@ -119,7 +143,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
     weight[j] = slope[j] - turn * point[j];
   const double across2 = dot(weight.data(), weight.data(), r);
   const double slope2 = dot(slope.data(), slope.data(), r);
-  result.depth_standard_deviation_bin =
+  result.depth_standard_deviation_row =
       signal > 0.0 && across2 > parallel_chords * slope2
           ? deviation_along(weight.data(), variance_e2) / (signal * across2)
           : std::numeric_limits<double>::infinity();

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "decode/ambient_projection.hpp"
 #include "decode/expected_noise.hpp"
 #include "decode/search/direction_table.hpp"
+#include "decode/search/smooth_curve.hpp"
 
 namespace tofsmith {
 
@@ -21,7 +23,7 @@ struct Position {
     return {bin, depth_bin - bin};
   }
   /// In [0, samples).
-  double in_bins(int samples) const {
+  double in_rows(int samples) const {
     const double position = bin + fraction;
     return position < samples ? position : position - samples;
   }
@@ -32,7 +34,7 @@ struct PixelEstimate {
   double signal_e_per_s = 0.0;
   double ambient_e_per_s = 0.0;  ///< NaN where it cannot be seen
   double signal_standard_deviation_e_per_s = 0.0;
-  double depth_standard_deviation_bin = 0.0;  ///< infinite where depth has no slope
+  double depth_standard_deviation_row = 0.0;  ///< infinite where depth has no slope
 };
 
 /// The curve P x(z) as chords between bins, and the noise on it.
@@ -50,6 +52,7 @@ class PixelModel {
   /// Best point on the chords left and right of the best bin, for a vector in the plane (rank).
   ///   beta_j = <q, p_j>, Q_jk = <p_j, p_k>; u = Q11 b0 - Q01 b1, v = Q00 b1 - Q01 b0,
   ///   t* = v / (u + v) where both are > 0; else no point of the chord beats its better end.
+  /// On a smooth curve instead the maximum of the pixel's own correlation (DepthPolynomials).
   Position refine(const double* plane, std::int32_t bin) const;
 
   /// Least squares of electrons - dark (K) on x at the position and on ambient light, without
@@ -68,6 +71,12 @@ class PixelModel {
     double fraction = 0.0;
     double score = 0.0;
   };
+  /// <q, slope>, <q, bend> and <q, asymmetry> at a row of a smooth curve.
+  struct Rise {
+    double g, b, c;
+  };
+  Rise rise_at(const double* plane, std::int32_t row) const;
+  double signal_on_curve(const double* plane, const Position& position) const;
   ChordPoint best_inside(std::int32_t bin, double at_bin, double at_next) const;
   std::int32_t next(std::int32_t bin) const { return bin + 1 < samples_ ? bin + 1 : 0; }
   std::int32_t previous(std::int32_t bin) const { return bin > 0 ? bin - 1 : samples_ - 1; }
@@ -75,8 +84,9 @@ class PixelModel {
 
   int samples_;
   AmbientProjection projection_;
-  RowMajorMatrix basis_;        // from electrons, row by row
-  RowMajorMatrix noise_basis_;  // from what has the noise
+  std::optional<DepthPolynomials> polynomials_;  // none: depths lie on chords
+  RowMajorMatrix basis_;                         // from electrons, row by row
+  RowMajorMatrix noise_basis_;                   // from what has the noise
   ExpectedNoise noise_;
   Eigen::VectorXd own_;        // <p_j, p_j>
   Eigen::VectorXd with_next_;  // <p_j, p_{j+1}>

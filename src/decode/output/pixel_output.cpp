@@ -45,14 +45,14 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
   };
   // Rounding to float can land on the end of the range, which is its beginning.
   const bool at_end =
-      static_cast<float>(pixel.depth_bin * table.bin_m()) >= static_cast<float>(table.range_m);
-  if (decoded.bin) decoded.bin[at] = nearest_bin(pixel.depth_bin, table.samples());
-  store(decoded.depth_m, at_end ? 0.0 : pixel.depth_bin * table.bin_m());
+      static_cast<float>(pixel.depth_row * table.row_m()) >= static_cast<float>(table.range_m);
+  if (decoded.bin) decoded.bin[at] = nearest_bin(table.in_bins(pixel.depth_row), table.bin_count());
+  store(decoded.depth_m, at_end ? 0.0 : pixel.depth_row * table.row_m());
   store(decoded.signal_e_per_s, estimate.signal_e_per_s);
   store(decoded.ambient_e_per_s, estimate.ambient_e_per_s);
   store(decoded.confidence, pixel.confidence);
   store(decoded.predicted_standard_deviation_m,
-        estimate.depth_standard_deviation_bin * table.bin_m());
+        estimate.depth_standard_deviation_row * table.row_m());
   if (decoded.status) decoded.status[at] = status_of(table, options, raw, pixel);
 }
 

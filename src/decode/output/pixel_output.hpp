@@ -14,7 +14,7 @@ namespace tofsmith {
 
 /// What a decoder found out about one pixel.
 struct PixelDecoding {
-  double depth_bin = 0.0;  ///< in [0, N)
+  double depth_row = 0.0;  ///< in rows of the table, [0, samples)
   PixelEstimate estimate;
   double confidence = 0.0;  ///< that no far-off depth is the true one
 };

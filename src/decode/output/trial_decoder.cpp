@@ -29,11 +29,19 @@ TrialDecoder::Zncc::Zncc(const DecodingTable& table, const AmbientProjection& pr
                          std::int64_t trials)
     : plane_map(plane_map_of(table, projection)),
       matcher(table, projection, trials < trials_worth_cells(projection.rank(), table.samples())),
-      outputs(table, projection, {}, /*only_positions=*/true) {}
+      outputs(table, projection, {}, /*only_positions=*/true),
+      rows(table.samples()),
+      bins(table.bin_count()) {}
+
+std::int32_t TrialDecoder::Zncc::nearest_bin(std::int32_t row) const {
+  return nearest_bin_of_row(row, rows, bins);
+}
 
 TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights,
                            std::int64_t trials)
-    : measurements_(table.measurements()), samples_(table.samples()) {
+    : measurements_(table.measurements()),
+      samples_(table.bin_count()),
+      bins_per_row_(static_cast<double>(table.bin_count()) / table.samples()) {
   if (method != DecodeMethod::zncc) {
     other_ = make_decoder(method, std::move(table), {}, unwrap_weights);
     return;
@@ -46,7 +54,7 @@ void TrialDecoder::decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin
   if (sub_bin)
     zncc_->matcher.match_plane(tile);
   else
-    zncc_->matcher.bins().match_plane(tile);
+    zncc_->matcher.match_plane_bins(tile);
   positions_of(sub_bin, tile, depth_bin);
 }
 
@@ -58,7 +66,7 @@ void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
     if (sub_bin)
       zncc_->matcher.match(view, 0, count, false, tile);
     else
-      zncc_->matcher.bins().match(view, 0, count, false, tile);
+      zncc_->matcher.match_bins(view, 0, count, tile);
     return positions_of(sub_bin, tile, depth_bin);
   }
   // The slower methods want the measurements of a pixel side by side.
@@ -73,11 +81,15 @@ void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
 }
 
 void TrialDecoder::positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const {
-  if (sub_bin)
-    return zncc_->outputs.find_positions(
-        {.pixels = tile.pixels, .plane = tile.plane, .bin = tile.bin}, depth_bin);
+  if (sub_bin) {
+    zncc_->outputs.find_positions({.pixels = tile.pixels, .plane = tile.plane, .bin = tile.bin},
+                                  depth_bin);
+    for (int i = 0; i < tile.pixels; ++i) depth_bin[i] *= bins_per_row_;
+    return;
+  }
   for (int i = 0; i < tile.pixels; ++i)
-    depth_bin[i] = tile.bin[i] < 0 ? std::numeric_limits<double>::quiet_NaN() : tile.bin[i];
+    depth_bin[i] = tile.bin[i] < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                   : zncc_->nearest_bin(tile.bin[i]);
 }
 
 }  // namespace tofsmith

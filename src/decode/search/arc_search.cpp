@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/arc_search.cpp"
@@ -250,6 +251,58 @@ std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions,
   return lowest.row;
 }
 
+/// Collects blocks of rows with their scores.
+struct MeetScores {
+  const ArcTable& table;
+  const Query& q;
+  float* score;  // of all rows
+  float best = no_score;
+  HWY_INLINE void operator()(std::int32_t block) {
+    Vector most = all(no_score);
+    for (int i = 0; i < block_lanes; i += lanes_of()) {
+      const Vector part = scores<0>(q, table.rows(block) + i);
+      hn::StoreU(part, Floats(), score + block * block_lanes + i);
+      most = hn::Max(most, part);
+    }
+    best = std::max(best, largest(most));
+  }
+};
+
+int near_peaks(const ArcTable& table, const float* unit, float slack, int room,
+               std::int32_t* found) {
+  const Query q{unit, 1, table.rank(), 1.0f};
+  const Margins margins = margins_of(q.rank);
+  const float reach = slack + margins.prune + margins.lead;
+  Walk walk;
+  start_walk<0>(table, q, reach, Anywhere(), walk);
+  refine_walk<0>(table, q, reach, Anywhere(), walk);
+  thread_local std::vector<float> score;
+  const auto rows = static_cast<std::size_t>(table.row_blocks()) * block_lanes;
+  score.assign(rows, no_score);
+  MeetScores meet{table, q, score.data()};
+  for_each_near_rows<0>(table, q, walk, meet);
+
+  const float least = meet.best - reach;
+  const std::int32_t samples = table.samples();
+  int count = 0;
+  for (std::int32_t n = 0; n < samples; ++n) {
+    const float here = score[static_cast<std::size_t>(n)];
+    if (!(here >= least)) continue;
+    const float before = score[static_cast<std::size_t>(n > 0 ? n - 1 : samples - 1)];
+    const float after = score[static_cast<std::size_t>(n + 1 < samples ? n + 1 : 0)];
+    if (here < before || here < after) continue;
+    if (count < room) {
+      found[count++] = n;
+      continue;
+    }
+    std::int32_t* const worst = std::min_element(found, found + room, [&](auto a, auto b) {
+      return score[static_cast<std::size_t>(a)] < score[static_cast<std::size_t>(b)];
+    });
+    if (score[static_cast<std::size_t>(*worst)] < here) *worst = n;
+  }
+  return count;
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
@@ -261,6 +314,7 @@ namespace tofsmith {
 HWY_EXPORT(search);
 HWY_EXPORT(best_position);
 HWY_EXPORT(choose_row);
+HWY_EXPORT(near_peaks);
 
 void ArcSearch::search(const float* plane, int stride, const float* error, int pixels,
                        std::int32_t* row) const {
@@ -270,6 +324,10 @@ void ArcSearch::search(const float* plane, int stride, const float* error, int p
 std::int32_t ArcSearch::best_bin_within(const float* components, std::int32_t begin,
                                         std::int32_t end) const {
   return HWY_DYNAMIC_DISPATCH(best_position)(table_, components, begin, end) % table_.samples();
+}
+
+int ArcSearch::near_peaks(const float* unit, float slack, int room, std::int32_t* found) const {
+  return HWY_DYNAMIC_DISPATCH(near_peaks)(table_, unit, slack, room, found);
 }
 
 std::int32_t ArcSearch::choose(const DirectionTable& directions, const double* unit, int stride,

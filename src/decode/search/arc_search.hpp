@@ -36,6 +36,13 @@ class ArcSearch {
   /// @param components  (rank): one unit vector
   std::int32_t best_bin_within(const float* components, std::int32_t begin, std::int32_t end) const;
 
+  /// Finds local maxima along the rows whose score is within `slack` of the best; if there are more
+  /// than `room`, the best ones.
+  /// @param unit   a unit vector (rank)
+  /// @param found  receives the rows
+  /// @return how many were found
+  int near_peaks(const float* unit, float slack, int room, std::int32_t* found) const;
+
   /// The lowest row whose score is within `tie` of the best, for scores that are sums of
   /// products in double, rounded one by one from the first component to the last.
   /// @param directions  of which this search was made

@@ -8,6 +8,7 @@
 #include "core/shared/whole_vectors.hpp"
 #include "decode/expected_noise.hpp"
 #include "decode/search/direction_table.hpp"
+#include "decode/search/smooth_curve.hpp"
 
 namespace tofsmith {
 
@@ -26,9 +27,12 @@ class RecordBuilder {
   RecordBuilder(const DecodingTable& table, const AmbientProjection& projection)
       : table_(table),
         projection_(projection),
-        layout_{projection.rank(), table.measurements()},
+        polynomials_(depth_polynomials(projection.curve)),
+        layout_{projection.rank(), table.measurements(), polynomials_.has_value()},
         ambient2_(projection.ambient.squaredNorm()),
         noise_(table) {}
+
+  const RecordLayout& layout() const { return layout_; }
 
   /// @param record  of the bin
   /// @param chords  all chords, where they are wanted
@@ -44,8 +48,12 @@ class RecordBuilder {
 
     const std::int32_t samples = table_.samples();
     const std::int32_t before = (n + samples - 1) % samples, after = (n + 1) % samples;
-    fill_side(n, before, record + layout_.left(), record + layout_.turn());
-    fill_side(n, after, record + layout_.right(), record + layout_.turn() + 1);
+    if (polynomials_) {
+      fill_polynomial(n, record);
+    } else {
+      fill_side(n, before, record + layout_.left(), record + layout_.turn());
+      fill_side(n, after, record + layout_.right(), record + layout_.turn() + 1);
+    }
     if (!chords) return;
     const std::int32_t at_bin = ChordLayout::first_row(n) + ChordLayout::at_bin;
     store(depth_noise_at(p, 0.5 * (point(after) - point(before)), shot),
@@ -60,6 +68,14 @@ class RecordBuilder {
   Eigen::VectorXd point(std::int32_t n) const { return projection_.curve.row(n); }
   double ambient_part(std::int32_t n) const {
     return projection_.gated.row(n).dot(projection_.ambient) / ambient2_;
+  }
+
+  void fill_polynomial(std::int32_t n, float* record) const {
+    store(polynomials_->slope.row(n), record + layout_.slope());
+    store(polynomials_->bend.row(n), record + layout_.bend());
+    store(polynomials_->asymmetry.row(n), record + layout_.asymmetry());
+    record[layout_.growth()] = static_cast<float>(polynomials_->growth[n]);
+    record[layout_.growth() + 1] = static_cast<float>(polynomials_->growth_change[n]);
   }
 
   /// One side's `left` or `right`, `turn` and `reach`.
@@ -92,7 +108,7 @@ class RecordBuilder {
     const double across2 = across.squaredNorm();
     if (!(across2 > parallel_chords * slope.squaredNorm()))
       return {0.0, 0.0, std::numeric_limits<double>::infinity()};
-    return noise_along(across * (table_.bin_m() / across2), shot);
+    return noise_along(across * (table_.row_m() / across2), shot);
   }
 
   /// Variance of <weight, q>: per signal, per ambient light, and without light.
@@ -106,6 +122,7 @@ class RecordBuilder {
 
   const DecodingTable& table_;
   const AmbientProjection& projection_;
+  std::optional<DepthPolynomials> polynomials_;
   RecordLayout layout_;
   double ambient2_;  // |a|^2
   ExpectedNoise noise_;
@@ -123,11 +140,15 @@ RecordTable::RecordTable(std::int32_t rows, int fields)
 
 BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection,
                        bool with_chords)
-    : layout{projection.rank(), table.measurements()},
+    : BinRecords(table, projection, with_chords, RecordBuilder(table, projection)) {}
+
+template <typename Builder>
+BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection,
+                       bool with_chords, const Builder& builder)
+    : layout(builder.layout()),
       records(table.samples(), layout.end()),
       chords(ChordLayout::first_row(table.samples()), ChordLayout::fields),
       directions(table.samples(), layout.rank) {
-  const RecordBuilder builder(table, projection);
   // As in the search, bins without contrast repeat the direction of the bin before, the first ones
   // that of the first bin with some.
   std::int32_t current = 0;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decode/search/smooth_curve.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -12,40 +14,15 @@ namespace {
 /// Chords that turn further than coarse_turn_rad are cut into pieces of at most this.
 constexpr double piece_turn_rad = 2.5 * std::numbers::pi / 180.0;
 
-/// Where a bin is as close as this, which the curve passes at no more than half the turn, depth is
-/// far more likely there.
-constexpr double same_direction_rad = 1.0 * std::numbers::pi / 180.0;
-
-bool is_passed_slowly(const Eigen::RowVectorXd& unit, double turn, const RowMajorMatrix& units,
-                      const Eigen::VectorXd& turn_rad) {
-  const Eigen::Index samples = units.rows();
-  const Eigen::VectorXd score = units * unit.transpose();
-  for (Eigen::Index n = 0; n < samples; ++n)
-    if (score[n] > std::cos(same_direction_rad) &&
-        std::max(turn_rad[n], turn_rad[n > 0 ? n - 1 : samples - 1]) <= 0.5 * turn)
-      return true;
-  return false;
-}
-
 double furthest_of(const Eigen::VectorXd& turn_rad) {
   return (turn_rad.array() <= jump_turn_rad).select(turn_rad, 0.0).maxCoeff();
 }
 
 }  // namespace
 
-Eigen::VectorXd turns_of(const RowMajorMatrix& curve) {
-  const Eigen::Index samples = curve.rows();
-  Eigen::VectorXd turn_rad(samples);
-  for (Eigen::Index n = 0; n < samples; ++n) {
-    const auto from = curve.row(n), to = curve.row((n + 1) % samples);
-    const double lengths = from.norm() * to.norm();
-    turn_rad[n] = lengths > 0.0 ? std::acos(std::clamp(from.dot(to) / lengths, -1.0, 1.0)) : 0.0;
-  }
-  return turn_rad;
-}
-
 double furthest_turn_rad(const DecodingTable& table) {
-  return furthest_of(turns_of(AmbientProjection(table).curve));
+  const AmbientProjection projection(table);
+  return depth_polynomials(projection.curve) ? 0.0 : furthest_of(turns_of(projection.curve));
 }
 
 ChordMatcher::Pieces::Pieces(const DecodingTable& table, const AmbientProjection& projection,
@@ -83,27 +60,39 @@ ChordMatcher::Pieces::Pieces(const DecodingTable& table, const AmbientProjection
 
 ChordMatcher::ChordMatcher(const DecodingTable& table, const AmbientProjection& projection,
                            bool for_few)
-    : bins_(table, projection, for_few) {
+    : close_lobes_(CloseLobes::of(projection)),
+      rows_(table, projection, for_few || close_lobes_.has_value()) {
   const Eigen::VectorXd turn_rad = turns_of(projection.curve);
-  if (furthest_of(turn_rad) > coarse_turn_rad)
+  if (furthest_of(turn_rad) > coarse_turn_rad && !depth_polynomials(projection.curve))
     pieces_.emplace(table, projection, turn_rad, for_few);
 }
 
 void ChordMatcher::match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
                          PixelTile& tile) const {
-  if (!pieces_) return bins_.match(view, first, pixels, for_outputs, tile);
-  pieces_->matcher->match(view, first, pixels, for_outputs, tile);
+  points().match(view, first, pixels, for_outputs, tile);
+  choose_lobes(tile);
   to_bins(tile);
 }
 
 void ChordMatcher::match_plane(PixelTile& tile) const {
-  if (!pieces_) return bins_.match_plane(tile);
-  pieces_->matcher->match_plane(tile);
+  points().match_plane(tile);
+  choose_lobes(tile);
   to_bins(tile);
 }
 
+void ChordMatcher::match_bins(const RawView& view, std::int64_t first, int pixels,
+                              PixelTile& tile) const {
+  rows_.match(view, first, pixels, false, tile);
+  choose_lobes(tile);
+}
+
+void ChordMatcher::match_plane_bins(PixelTile& tile) const {
+  rows_.match_plane(tile);
+  choose_lobes(tile);
+}
+
 void ChordMatcher::find_second_peaks(PixelTile& tile) const {
-  if (!pieces_) return bins_.find_second_peaks(tile);
+  if (!pieces_) return rows_.find_second_peaks(tile);
   for (int i = 0; i < tile.pixels; ++i)
     if (tile.bin[i] >= 0)
       tile.bin[i] = pieces_->point_of_bin[static_cast<std::size_t>(tile.bin[i])];
@@ -114,7 +103,12 @@ void ChordMatcher::find_second_peaks(PixelTile& tile) const {
       tile.second_peak[i] = pieces_->bin_of_point[static_cast<std::size_t>(tile.second_peak[i])];
 }
 
+void ChordMatcher::choose_lobes(PixelTile& tile) const {
+  if (close_lobes_) close_lobes_->choose(rows_.directions(), rows_.arcs(), tile);
+}
+
 void ChordMatcher::to_bins(PixelTile& tile) const {
+  if (!pieces_) return;
   for (int i = 0; i < tile.pixels; ++i)
     if (tile.bin[i] >= 0)
       tile.bin[i] = pieces_->bin_of_point[static_cast<std::size_t>(tile.bin[i])];

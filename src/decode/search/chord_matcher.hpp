@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "decode/search/bin_matcher.hpp"
+#include "decode/search/close_lobes.hpp"
 
 namespace tofsmith {
 
@@ -18,24 +19,26 @@ inline constexpr double coarse_turn_rad = 10.0 * std::numbers::pi / 180.0;
 /// Beyond, a table jumps, as a ramp does where it falls back: no pixel is sought between the ends.
 inline constexpr double jump_turn_rad = 75.0 * std::numbers::pi / 180.0;
 
-/// The turn of the curve from each bin to the next [rad], (N); 0 where one of them has no contrast.
-Eigen::VectorXd turns_of(const RowMajorMatrix& curve);
-
-/// The bins beside which pixels' best points on the chords lie. Where a table turns little from bin
-/// to bin those are the best bins. Where it turns far, both ends of the best chord may score worse
-/// than a bin elsewhere: long chords are searched in pieces, and the end next to the best piece is
-/// taken.
+/// Finds the row of the table next to which a pixel's depth lies. Usually this is the row with the
+/// best score. There are two exceptions:
+///   - Parts of a smooth curve come so close to each other that the best row may belong to another
+///     lobe than the best point between rows (CloseLobes).
+///   - A table of unknown course between its rows turns far from row to row, so that both ends of
+///     the best chord may score worse than a row elsewhere. Long chords are searched in pieces, and
+///     the end next to the best piece is taken.
 class ChordMatcher {
  public:
   /// @param for_few  as of BinMatcher
   ChordMatcher(const DecodingTable& table, const AmbientProjection& projection,
                bool for_few = false);
 
-  /// The best bins themselves.
-  const BinMatcher& bins() const { return bins_; }
+  /// Matches all rows.
+  const BinMatcher& bins() const { return rows_; }
+  /// Returns whether choosing the lobe requires the best points between rows.
+  bool has_close_lobes() const { return close_lobes_.has_value(); }
   bool is_coarse() const { return pieces_.has_value(); }
   /// What matches: bins(), or of a coarse table its points.
-  const BinMatcher& points() const { return pieces_ ? *pieces_->matcher : bins_; }
+  const BinMatcher& points() const { return pieces_ ? *pieces_->matcher : rows_; }
   /// Of points of a coarse table: the end of its chord that is closer; and the point of a bin.
   std::span<const std::int32_t> bin_of_point() const {
     return pieces_ ? std::span<const std::int32_t>(pieces_->bin_of_point)
@@ -50,6 +53,9 @@ class ChordMatcher {
   void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
              PixelTile& tile) const;
   void match_plane(PixelTile& tile) const;
+  /// The same without pieces of chords: the best rows, in the best lobes.
+  void match_bins(const RawView& view, std::int64_t first, int pixels, PixelTile& tile) const;
+  void match_plane_bins(PixelTile& tile) const;
   void find_second_peaks(PixelTile& tile) const;
 
  private:
@@ -61,9 +67,11 @@ class ChordMatcher {
     std::vector<std::int32_t> point_of_bin;  ///< (N)
     std::optional<BinMatcher> matcher;
   };
+  void choose_lobes(PixelTile& tile) const;
   void to_bins(PixelTile& tile) const;
 
-  BinMatcher bins_;
+  std::optional<CloseLobes> close_lobes_;
+  BinMatcher rows_;
   std::optional<Pieces> pieces_;
 };
 

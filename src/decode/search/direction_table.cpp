@@ -61,7 +61,10 @@ double DirectionTable::score_between(std::int32_t bin, std::int32_t other) const
 /// tables are walked in strides, at most 1024 of them.
 std::int32_t DirectionTable::fall(std::int32_t bin, std::int32_t step) const {
   constexpr double plateau = 1e-9;
-  const std::int32_t stride = samples_ / 1024 + 1;
+  constexpr double short_step = 0.9;  // a longer stride might pass over a lobe
+  std::int32_t stride = samples_ / 1024 + 1;
+  while (stride > 1 && score_between(bin, (bin + step * stride + samples_) % samples_) < short_step)
+    stride /= 2;
   double last = 1.0;
   for (std::int32_t distance = stride; distance < samples_; distance += stride) {
     const std::int32_t other = (bin + step * distance + samples_) % samples_;

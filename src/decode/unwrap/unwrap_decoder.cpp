@@ -78,7 +78,7 @@ struct UnwrapDecoder::Plan {
 
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
-  double bin_of(const Wraps& wraps) const;
+  double row_of(const Wraps& wraps) const;
   void decode_pixel(const float* raw, double variance_share, std::size_t at,
                     const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
@@ -109,7 +109,8 @@ void UnwrapDecoder::decode_depth_bins(const float* measurements, std::int64_t pi
   for (std::int64_t i = 0; i < pixels; ++i) {
     depth_bin[i] = std::numeric_limits<double>::quiet_NaN();
     if (!plan_->read(measurements + i * this->measurements(), electrons)) continue;
-    depth_bin[i] = plan_->bin_of(plan_->unwrapper.nearest(plan_->phases_of(electrons).data()));
+    const Wraps wraps = plan_->unwrapper.nearest(plan_->phases_of(electrons).data());
+    depth_bin[i] = plan_->table.in_bins(plan_->row_of(wraps));
   }
 }
 
@@ -153,7 +154,7 @@ UnwrapDecoder::Plan::PerFrequency UnwrapDecoder::Plan::phases_of(
   return phase;
 }
 
-double UnwrapDecoder::Plan::bin_of(const Wraps& wraps) const {
+double UnwrapDecoder::Plan::row_of(const Wraps& wraps) const {
   return wrap(wraps.depth * table.samples(), table.samples());
 }
 
@@ -165,13 +166,13 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, 
   const Wraps wraps = unwrapper.nearest(phase.data());
 
   model.project(electrons.data(), plane.data());
-  PixelDecoding pixel{.depth_bin = bin_of(wraps)};
-  pixel.estimate = model.estimate(electrons.data(), plane.data(), Position::at(pixel.depth_bin),
+  PixelDecoding pixel{.depth_row = row_of(wraps)};
+  pixel.estimate = model.estimate(electrons.data(), plane.data(), Position::at(pixel.depth_row),
                                   variance_e2.data(), variance_share);
   if (pixel.estimate.signal_e_per_s > 0.0) {
     PerFrequency share;
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();
-    pixel.estimate.depth_standard_deviation_bin = deviation(share, pixel, variance_e2);
+    pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
     pixel.confidence = confidence(phase, wraps, pixel, variance_e2);
   }
   store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
@@ -185,7 +186,7 @@ double UnwrapDecoder::Plan::deviation(const PerFrequency& factor, const PixelDec
   for (int j = 0; j < phases.count(); ++j) {
     const double f = phases.frequencies()[static_cast<std::size_t>(j)];
     const std::complex<double> back =
-        std::polar(1.0, -turn * f * pixel.depth_bin / table.samples());
+        std::polar(1.0, -turn * f * pixel.depth_row / table.samples());
     const double scaled =
         factor[static_cast<std::size_t>(j)] / (turn * f * pixel.estimate.signal_e_per_s);
     for (int k = 0; k < table.measurements(); ++k)

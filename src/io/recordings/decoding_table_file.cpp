@@ -90,19 +90,19 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   }
 }
 
-/// Says so where a table turns far from bin to bin, with what would not.
+/// A note for a table that turns far from row to row and of which nothing is known between rows.
 std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measured) {
   constexpr double fine_deg = 10.0;
   const double turn_deg = furthest_turn_rad(table) * 180.0 / std::numbers::pi;
   if (!(turn_deg > fine_deg)) return std::nullopt;
   const double times = std::ceil(turn_deg / fine_deg);
   return fmt::format(
-      "N = {}: from bin to bin the code turns by up to {:.0f} degrees, and depths between are "
-      "taken "
-      "to lie on straight lines; {}",
+      "{} rows: from row to row the table turns by up to {:.0f} degrees, and depths between rows "
+      "are "
+      "assumed to lie on straight lines; {}",
       table.samples(), turn_deg,
       is_measured ? "measure it at more delays"
-                  : fmt::format("--set samples={:.0f} does not", times * table.samples()));
+                  : fmt::format("use --set samples={:.0f}", times * table.samples()));
 }
 
 /// The camera with what a user says beyond it.
@@ -122,7 +122,7 @@ std::optional<std::string> ambiguity_note(const DecodingTable& table) {
   std::vector<AmbiguousDepths> pairs = ambiguous_depths(table);
   if (pairs.empty()) return std::nullopt;
   const auto distance_bin = [&](const AmbiguousDepths& pair) {
-    return std::abs(circular_difference(pair.first_bin, pair.second_bin, table.samples()));
+    return std::abs(circular_difference(pair.first_bin, pair.second_bin, table.bin_count()));
   };
   std::stable_sort(pairs.begin(), pairs.end(),
                    [&](const auto& a, const auto& b) { return distance_bin(a) > distance_bin(b); });
@@ -130,7 +130,7 @@ std::optional<std::string> ambiguity_note(const DecodingTable& table) {
   for (std::size_t i = 0; i < std::min(pairs.size(), max_shown); ++i)
     shown.push_back(fmt::format("{:.4g} m as {:.4g} m", pairs[i].second_m, pairs[i].first_m));
   return fmt::format("{} of {} bins look like a nearer one and decode to it: {}{}", pairs.size(),
-                     table.samples(), fmt::join(shown, ", "),
+                     table.bin_count(), fmt::join(shown, ", "),
                      pairs.size() > max_shown ? ", .." : "");
 }
 

@@ -46,11 +46,14 @@ class TrialDecoder {
     PlaneMap plane_map;
     ChordMatcher matcher;
     OutputKernel outputs;
+    int rows, bins;
+    std::int32_t nearest_bin(std::int32_t row) const;
   };
   void positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const;
 
   int measurements_;
   int samples_;
+  double bins_per_row_;
   std::unique_ptr<const Zncc> zncc_;
   std::optional<AnyDecoder> other_;
 };

@@ -39,17 +39,24 @@ class RecordTable {
 
 /// Where the fields of a bin's record begin: who wants little of a pixel reads only the front. With
 /// p the curve at the bin, e the chord to a neighbour and w the unit vector across p in its
-/// direction: e = beta p + c w.
+/// direction: e = beta p + c w. Records of smooth curves hold DepthPolynomials instead of chords.
 struct RecordLayout {
   int rank = 0;
   int measurements = 0;
+  bool is_smooth = false;
 
   constexpr int point() const { return 0; }           ///< p / |p|^2 (rank)
   constexpr int left() const { return rank; }         ///< w to the bin before (rank); 0: no chord
   constexpr int right() const { return 2 * rank; }    ///< w to the next bin (rank)
   constexpr int turn() const { return 3 * rank; }     ///< beta / c, left and right
   constexpr int reach() const { return turn() + 2; }  ///< 1 / c, left and right
-  constexpr int end_of_depth() const { return reach() + 2; }
+
+  constexpr int slope() const { return rank; }          ///< W (rank)
+  constexpr int bend() const { return 2 * rank; }       ///< B (rank)
+  constexpr int asymmetry() const { return 3 * rank; }  ///< C (rank)
+  constexpr int growth() const { return 4 * rank; }     ///< growth and growth_change
+
+  constexpr int end_of_depth() const { return is_smooth ? growth() + 2 : reach() + 2; }
 
   constexpr int ambient() const { return end_of_depth(); }  ///< <x, a> / |a|^2
   constexpr int end_of_light() const { return ambient() + 1; }
@@ -84,7 +91,7 @@ struct ChordLayout {
 
 /// Most fields of a record, a multiple of a block's four.
 inline constexpr int max_record_fields =
-    (RecordLayout{max_measurements, max_measurements}.end() + 3) / 4 * 4;
+    (RecordLayout{max_measurements, max_measurements, true}.end() + 3) / 4 * 4;
 
 /// All that depends on the bin alone, in single precision, computed in double.
 struct BinRecords {
@@ -95,6 +102,11 @@ struct BinRecords {
   RecordTable records;     ///< of every bin
   RecordTable chords;      ///< of every bin
   RecordTable directions;  ///< the records' field `direction` alone
+
+ private:
+  template <typename Builder>
+  BinRecords(const DecodingTable& table, const AmbientProjection& projection, bool with_chords,
+             const Builder& builder);
 };
 
 }  // namespace tofsmith

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/search/close_lobes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tofsmith {
+
+namespace {
+
+/// Lobes that are refined per pixel, at most.
+constexpr int max_lobes = 64;
+/// Rows decide where the curve keeps this many times their distance from itself. The squares of the
+/// offsets of two rows from the best points of their lobes then differ by less than 1 / 25 of the
+/// squared distance of the lobes.
+constexpr double far_apart = 2.5;
+/// Rows for which the distance is examined, at most.
+constexpr Eigen::Index max_examined = 4096;
+
+/// The best score of any row with row n, outside the run around n along which scores fall.
+double best_outside(const Eigen::VectorXd& score, Eigen::Index n) {
+  const Eigen::Index rows = score.size();
+  const auto at = [&](Eigen::Index i) { return score[(i % rows + rows) % rows]; };
+  Eigen::Index right = 1, left = 1;
+  while (right < rows && at(n + right) <= at(n + right - 1)) ++right;
+  while (left < rows - right && at(n - left) <= at(n - left + 1)) ++left;
+  double best = -1.0;
+  for (Eigen::Index i = right; i <= rows - left; ++i) best = std::max(best, at(n + i));
+  return best;
+}
+
+/// The least distance of the curve of unit directions from itself.
+double closest_approach(const RowMajorMatrix& units) {
+  const Eigen::Index step = (units.rows() + max_examined - 1) / max_examined;
+  double best = -1.0;
+  Eigen::VectorXd score;
+  for (Eigen::Index n = 0; n < units.rows(); n += step) {
+    score.noalias() = units * units.row(n).transpose();
+    best = std::max(best, best_outside(score, n));
+  }
+  return std::sqrt(std::max(0.0, 2.0 - 2.0 * best));
+}
+
+/// The largest share of |q| by which a best point can exceed the rows next to it.
+double slack_of(const RowMajorMatrix& units) {
+  const Eigen::Index rows = units.rows();
+  double second_difference = 0.0;
+  for (Eigen::Index n = 0; n < rows; ++n)
+    second_difference = std::max(
+        second_difference,
+        (units.row((n + 1) % rows) - 2.0 * units.row(n) + units.row((n + rows - 1) % rows)).norm());
+  constexpr double margin = 1.1;  // for what differences leave out of the second derivative
+  return margin * second_difference / 8.0;
+}
+
+}  // namespace
+
+std::optional<CloseLobes> CloseLobes::of(const AmbientProjection& projection) {
+  // On a circle, lobes that meet are alike: rows decide, which favours those passed slowly.
+  if (projection.rank() < 3 || !depth_polynomials(projection.curve)) return std::nullopt;
+  const RowMajorMatrix units = projection.curve.rowwise().normalized();
+  const double spacing = turns_of(projection.curve).maxCoeff();
+  if (closest_approach(units) >= far_apart * spacing) return std::nullopt;
+  return CloseLobes(*SmoothCurve::of(projection.curve), slack_of(units));
+}
+
+CloseLobes::CloseLobes(const SmoothCurve& curve, double slack)
+    : slack_(static_cast<float>(slack)),
+      polynomials_(curve),
+      points_(curve.points(0.0)),
+      slopes_(curve.slopes(0.0)) {}
+
+/// The score of the best point around a row, on the cubic through points and slopes of the rows on
+/// both sides, and the row nearest to it.
+double CloseLobes::best_score(const double* unit, std::int32_t row, std::int32_t& nearest) const {
+  using Vector = Eigen::Map<const Eigen::RowVectorXd>;
+  const Vector q(unit, points_.cols());
+  const double t = DepthPolynomials::maximum(q.dot(polynomials_.slope.row(row)),
+                                             q.dot(polynomials_.bend.row(row)),
+                                             q.dot(polynomials_.asymmetry.row(row)));
+  const auto rows = static_cast<std::int32_t>(points_.rows());
+  const std::int32_t from = t < 0.0 ? (row > 0 ? row - 1 : rows - 1) : row;
+  const std::int32_t to = from + 1 < rows ? from + 1 : 0;
+  const double s = t < 0.0 ? 1.0 + t : t;
+  nearest = s < 0.5 ? from : to;
+  const double to_weight = s * s * (3.0 - 2.0 * s), slope_weight = s * (1.0 - s);
+  const auto blend = [&](auto&& use) {
+    return (1.0 - to_weight) * use(points_, from) + to_weight * use(points_, to) +
+           slope_weight * ((1.0 - s) * use(slopes_, from) - s * use(slopes_, to));
+  };
+  double length2 = 0.0;
+  for (Eigen::Index j = 0; j < points_.cols(); ++j) {
+    const double p = blend([&](const RowMajorMatrix& m, std::int32_t n) { return m(n, j); });
+    length2 += p * p;
+  }
+  const double along =
+      blend([&](const RowMajorMatrix& m, std::int32_t n) { return q.dot(m.row(n)); });
+  return along / std::sqrt(length2);
+}
+
+void CloseLobes::choose(const DirectionTable& directions, const ArcSearch& arcs,
+                        PixelTile& tile) const {
+  const int rank = directions.rank();
+  std::array<std::int32_t, max_lobes> lobes;
+  std::array<double, max_measurements> unit;
+  std::array<float, max_measurements> unit_in_float;
+  for (int i = 0; i < tile.pixels; ++i) {
+    if (tile.bin[i] < 0) continue;
+    double length2 = 0.0;
+    for (int j = 0; j < rank; ++j) {
+      const double q = tile.plane[j * pixels_per_tile + i];
+      unit[static_cast<std::size_t>(j)] = q;
+      length2 += q * q;
+    }
+    if (!(length2 > 0.0) || !std::isfinite(length2)) continue;
+    for (int j = 0; j < rank; ++j) {
+      unit[static_cast<std::size_t>(j)] /= std::sqrt(length2);
+      unit_in_float[static_cast<std::size_t>(j)] =
+          static_cast<float>(unit[static_cast<std::size_t>(j)]);
+    }
+    const int count = arcs.near_peaks(unit_in_float.data(), slack_, max_lobes, lobes.data());
+    std::sort(lobes.begin(), lobes.begin() + count);
+    double best = -1.0;
+    for (int lobe = 0; lobe < count; ++lobe) {
+      std::int32_t nearest = 0;
+      const double score = best_score(unit.data(), lobes[static_cast<std::size_t>(lobe)], nearest);
+      if (score > best + tie_tolerance) {
+        best = score;
+        tile.bin[i] = nearest;
+      }
+    }
+  }
+}
+
+}  // namespace tofsmith
