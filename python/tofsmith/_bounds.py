@@ -39,7 +39,10 @@ class CramerRaoBound:
         self._handle = _tofsmith.CramerRaoBound(handle, camera._handle, bool(of_variance_too))
 
     def sigma_m(self, signal_e_per_s: float, ambient_e_per_s: float) -> FloatArray:
-        """Smallest standard deviation [m] at 4 N depths, the middles of cells of 1/4 bin."""
+        """Smallest standard deviation [m] at the middles of equal cells of the range.
+
+        There are 4 cells per bin, or more where the highest harmonics of the code need them.
+        """
         return self._handle.sigma_m(*light_of(signal_e_per_s, ambient_e_per_s))
 
     def mae_m(

@@ -73,22 +73,24 @@ double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
 namespace {
 
 /// Cells of a period over which depth is averaged.
-int cells_of(const ForwardModel& model) {
-  const int per_bin =
-      model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
-  return per_bin * model.samples();
+int cells_of(const ForwardModel& model, std::optional<int> per_bin) {
+  if (!per_bin)
+    per_bin = model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
+  require(*per_bin >= 1, "cells_per_bin", *per_bin, "must be >= 1");
+  return *per_bin * model.samples();
 }
 
 }  // namespace
 
 CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
-                               NoiseInformation information)
+                               NoiseInformation information, std::optional<int> per_bin)
     : range_m_(camera.range_m()),
       information_(information),
-      constant_variance_e2_(model.constant_variance_e2()),
-      masses_(DepthPrior(camera).masses(cells_of(model))) {
+      constant_variance_e2_(model.constant_variance_e2()) {
+  const int cells = cells_of(model, per_bin);
+  masses_ = DepthPrior(camera).masses(cells);
+  const int points = 2 * cells;
   if (model.has_rows()) {
-    const int points = 2 * cells_per_bin * model.samples();
     middles_and_slopes(model.correlation_table(points) * model.exposure_s().asDiagonal(), signal_,
                        signal_slope_);
     covariance_ = row_covariance(model, points);
@@ -98,7 +100,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
     return;
   }
   const Eigen::MatrixXd tap_table =
-      model.tap_correlation_table(2 * cells_of(model)) * model.tap_exposure_s().asDiagonal();
+      model.tap_correlation_table(points) * model.tap_exposure_s().asDiagonal();
   const Eigen::MatrixXd& readout = model.readout();
   const Eigen::MatrixXd sums = readout.cwiseAbs();
   middles_and_slopes(tap_table * readout.transpose(), signal_, signal_slope_);

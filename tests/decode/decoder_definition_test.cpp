@@ -52,6 +52,8 @@ TEST_P(PlanesOfCode, AgreeWithTheirDefinition) {
     setup.decoder.decode(RawView::interleaved(raw.data(), 1, static_cast<int>(matched.pixels()),
                                               setup.decoder.measurements()),
                          outputs.view());
+    for (std::size_t i = 0; i < matched.pixels(); ++i)
+      ASSERT_EQ(outputs.bin[i], table.nearest_bin(expected.bin[i])) << i;
     expect_definition(outputs, matched);
     expect_close_confidence(outputs.confidence, expected.confidence);
   });

@@ -19,6 +19,7 @@ void expect_agreement(const DecodingTable& table, const std::vector<float>& raw)
   const Matched matched(table, raw);
   for_each_target([&] {
     const Outputs outputs = matched.outputs();
+    EXPECT_EQ(outputs.bin, matched.expected().bin);  // rows
     expect_definition(outputs, matched);
     expect_near(outputs.confidence, matched.expected().confidence, 0.0, 5e-3, "confidence");
   });

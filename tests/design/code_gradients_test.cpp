@@ -111,7 +111,7 @@ TEST(CodeGradients, ValuesAreThoseOfTheLibrary) {
       }
       const OperatingPoint points[] = {{1e5, 1e4}, {1e4, 0.0}};
       const Eigen::MatrixXd deviation_m = setting.steps.depth_deviation_m(setting.table, points);
-      const CramerRaoBound bound(model, camera);
+      const CramerRaoBound bound(model, camera, NoiseInformation::mean, 4);
       for (int l = 0; l < 2; ++l)
         EXPECT_TRUE(deviation_m.col(l).isApprox(bound.sigma_m(points[l]), 1e-8));
     }
@@ -185,7 +185,8 @@ TEST(CodeGradients, DepthsThatFillNoVectorAreBoundedAlike) {
     const CodeGradients steps(camera, odd, exposures);
     const MeasurementTable table = steps.measure(modulation, demodulation);
     const CramerRaoBound bound(
-        ForwardModel(CodeSet::create("code", odd, 1, of_light, of_sensor), camera), camera);
+        ForwardModel(CodeSet::create("code", odd, 1, of_light, of_sensor), camera), camera,
+        NoiseInformation::mean, 4);
     const OperatingPoint points[] = {{1e5, 1e4}, {0.0, 1e4}};
     const Eigen::MatrixXd deviation_m = steps.depth_deviation_m(table, points);
     ASSERT_EQ(deviation_m.rows(), 4 * odd);

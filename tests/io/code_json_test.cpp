@@ -137,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "/exposures says"},
         BadMember{"/modulation/0", 3, "c.json: /modulation/0: found 3; expected an object"},
         BadMember{"/modulation/0/kind", "square",
-                  "c.json: /modulation/0/kind: found \"square\"; expected \"binary\" or "
-                  "\"sampled\""},
+                  "c.json: /modulation/0/kind: found \"square\"; expected \"binary\", "
+                  "\"sampled\" or \"cosines\""},
         BadMember{"/modulation/0/levle", 1,
                   "c.json: /modulation/0: unknown member \"levle\"; did you mean \"level\"?"},
         BadMember{"/modulation/0/level", 0,

@@ -35,7 +35,7 @@ DesignOptions options() {
   DesignOptions options = small_options();
   options.target = targets_of(build_family("square-k3", camera()));
   options.target->name = "../a/b \xc3\xbc<script>";
-  options.baselines->push_back("hamiltonian-k9");
+  options.baselines->push_back("histogram-k4");  // of rows, which this camera does not read
   return options;
 }
 

@@ -194,7 +194,7 @@ class CodeGradients {
                                            std::span<const double> true_bin,
                                            std::span<const double> weight) const;
 
-  /// CramerRaoBound::sigma_m() of a table [m] (4 N, points).
+  /// CramerRaoBound::sigma_m() of a table with 4 cells per bin [m] (4 N, points).
   Eigen::MatrixXd depth_deviation_m(const MeasurementTable& table,
                                     std::span<const OperatingPoint> points) const;
   /// Gradient of sum by_deviation o depth_deviation_m(): by the table, and signal_e_per_s and

@@ -89,12 +89,14 @@ enum class NoiseInformation {
 /// @see docs/bounds.md
 class CramerRaoBound {
  public:
-  /// Depths at the middle of cells of 1/4 bin; slopes are means over a cell.
-  /// @param camera  the one `model` was made with
+  /// Depths are the middles of equal cells; slopes are means over a cell.
+  /// @param camera         the one `model` was made with
+  /// @param cells_per_bin  none: 4, or as many more as the highest harmonics need
   CramerRaoBound(const ForwardModel& model, const Camera& camera,
-                 NoiseInformation information = NoiseInformation::mean);
+                 NoiseInformation information = NoiseInformation::mean,
+                 std::optional<int> cells_per_bin = std::nullopt);
 
-  /// Smallest standard deviation [m] at each of the 4 N depths: the root of the depth entry of the
+  /// Smallest standard deviation [m] at the depth of each cell: the root of the depth entry of the
   /// inverse Fisher matrix over (depth, S, A), variance mu_i + constant variance. Infinite where
   /// depth cannot be separated from signal and ambient.
   Eigen::VectorXd sigma_m(const OperatingPoint& point) const;
@@ -108,7 +110,7 @@ class CramerRaoBound {
  private:
   double range_m_;
   NoiseInformation information_;
-  // Electrons per unit of S (4 N, K) and of A (K), of measurements and of the light they are made
+  // Electrons per unit of S (cells, K) and of A (K), of measurements and of the light they are made
   // of; slopes per period.
   Eigen::MatrixXd signal_, signal_slope_, shot_signal_, shot_signal_slope_;
   Eigen::VectorXd ambient_, shot_ambient_;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "tofsmith/core/units.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -73,8 +75,8 @@ CloseLobes::CloseLobes(const SmoothCurve& curve, double slack)
       slopes_(curve.slopes(0.0)) {}
 
 /// The score of the best point around a row, on the cubic through points and slopes of the rows on
-/// both sides, and the row nearest to it.
-double CloseLobes::best_score(const double* unit, std::int32_t row, std::int32_t& nearest) const {
+/// both sides.
+double CloseLobes::best_score(const double* unit, std::int32_t row) const {
   using Vector = Eigen::Map<const Eigen::RowVectorXd>;
   const Vector q(unit, points_.cols());
   const double t = DepthPolynomials::maximum(q.dot(polynomials_.slope.row(row)),
@@ -84,7 +86,6 @@ double CloseLobes::best_score(const double* unit, std::int32_t row, std::int32_t
   const std::int32_t from = t < 0.0 ? (row > 0 ? row - 1 : rows - 1) : row;
   const std::int32_t to = from + 1 < rows ? from + 1 : 0;
   const double s = t < 0.0 ? 1.0 + t : t;
-  nearest = s < 0.5 ? from : to;
   const double to_weight = s * s * (3.0 - 2.0 * s), slope_weight = s * (1.0 - s);
   const auto blend = [&](auto&& use) {
     return (1.0 - to_weight) * use(points_, from) + to_weight * use(points_, to) +
@@ -123,14 +124,18 @@ void CloseLobes::choose(const DirectionTable& directions, const ArcSearch& arcs,
     const int count = arcs.near_peaks(unit_in_float.data(), slack_, max_lobes, lobes.data());
     std::sort(lobes.begin(), lobes.begin() + count);
     double best = -1.0;
+    std::int32_t chosen = tile.bin[i];
     for (int lobe = 0; lobe < count; ++lobe) {
-      std::int32_t nearest = 0;
-      const double score = best_score(unit.data(), lobes[static_cast<std::size_t>(lobe)], nearest);
+      const std::int32_t row = lobes[static_cast<std::size_t>(lobe)];
+      const double score = best_score(unit.data(), row);
       if (score > best + tie_tolerance) {
         best = score;
-        tile.bin[i] = nearest;
+        chosen = row;
       }
     }
+    // Single precision may find a peak one row off; the best row is exact.
+    if (std::abs(circular_difference(chosen, tile.bin[i], directions.samples())) > 1)
+      tile.bin[i] = chosen;
   }
 }
 

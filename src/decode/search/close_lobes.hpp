@@ -20,13 +20,13 @@ class CloseLobes {
   /// closer to itself than 2.5 times the distance between rows.
   static std::optional<CloseLobes> of(const AmbientProjection& projection);
 
-  /// Replaces the best row of every pixel in the tile by the row next to its best point. Pixels
-  /// without a row (-1) keep none.
+  /// Replaces the best row of every pixel in the tile by the best row of the lobe with the best
+  /// point. Pixels without a row (-1) keep none.
   void choose(const DirectionTable& directions, const ArcSearch& arcs, PixelTile& tile) const;
 
  private:
   CloseLobes(const SmoothCurve& curve, double slack);
-  double best_score(const double* unit, std::int32_t row, std::int32_t& nearest) const;
+  double best_score(const double* unit, std::int32_t row) const;
 
   float slack_;
   DepthPolynomials polynomials_;
