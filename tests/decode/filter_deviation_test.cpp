@@ -51,8 +51,8 @@ struct Repeats {
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
           depth.back().push_back(std::remainder(
-              image.depth_m(y, x) / table.row_m() - scene(y, x).depth_bin, table.samples()));
-          deviation.back().push_back(image.predicted_standard_deviation_m(y, x) / table.row_m());
+              image.depth_m(y, x) / table.bin_m() - scene(y, x).depth_bin, table.bin_count()));
+          deviation.back().push_back(image.predicted_standard_deviation_m(y, x) / table.bin_m());
         }
     }
   }

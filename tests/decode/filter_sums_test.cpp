@@ -189,7 +189,7 @@ std::vector<double> errors_on_balls(double signal, const std::vector<FilterOptio
       for (int x = 0; x < 128; ++x)
         if (outside(y, x) < 1.0) {
           sum += std::abs(
-              std::remainder(image.depth_m(y, x) / table.row_m() - depth(y, x), table.samples()));
+              std::remainder(image.depth_m(y, x) / table.bin_m() - depth(y, x), table.bin_count()));
           ++count;
         }
     errors.push_back(sum / count);
@@ -226,7 +226,7 @@ TEST(FilterSums, InBrightLightSlantedPlanesHaveNoBiasFarFromEdges) {
     setup.decoder.decode(filtered.view(), DecodedView::of(image));
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const double error = image.depth_m(y, x) / table.row_m() - depth(y, x);
+        const double error = image.depth_m(y, x) / table.bin_m() - depth(y, x);
         sum[static_cast<std::size_t>(y * width + x)] += error;
         squares[static_cast<std::size_t>(y * width + x)] += error * error;
       }

@@ -43,7 +43,7 @@ DepthImage decoded(const Decoder& decoder, const FilteredFrame& filtered) {
 }
 
 double bin_error(const DecodingTable& table, float depth_m, double depth_bin) {
-  return std::remainder(depth_m / table.row_m() - depth_bin, table.samples());
+  return std::remainder(depth_m / table.bin_m() - depth_bin, table.bin_count());
 }
 
 FilterOptions options_of(FilterStrength strength) { return FilterOptions::of(strength); }
@@ -208,7 +208,7 @@ TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
   const DepthImage alone = setup.decoder.decode(flat);
   double sigma = 0.0;
   for (const float s : alone.predicted_standard_deviation_m.pixels) sigma += s / 1024;
-  const double step = 5 * sigma / table.row_m();
+  const double step = 5 * sigma / table.bin_m();
   const auto depth = [&](int column) { return column < 40 ? 80.0 : 80.0 + step; };
   const RawFrames raw = frame_seen(table, 64, 80, [&](int, int column) {
     return Seen{depth(column), 3e4};

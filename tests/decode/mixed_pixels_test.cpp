@@ -108,7 +108,7 @@ TEST(MixedPixels, ALittleLightOfAnotherSurfaceIsFoundThoughTheDepthIsThatOfOne) 
              }));
   int found = 0;
   for (int y = 0; y < height; ++y) {
-    EXPECT_NEAR(image.depth_m(y, edge) / setup.decoder.table().row_m(), 70.0, 0.48) << y;
+    EXPECT_NEAR(image.depth_m(y, edge) / setup.decoder.table().bin_m(), 70.0, 0.48) << y;
     found += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
   }
   EXPECT_GE(found, height * 9 / 10);
@@ -130,7 +130,7 @@ TEST(MixedPixels, SnappedDepthIsThatOfAPixelNearby) {
           is_neighbours |= image.depth_m(y, edge) == before.depth_m(y + dy, edge + dx);
     EXPECT_TRUE(is_neighbours) << y;
     // The near surface gives more light.
-    EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().row_m(), 0.2) << y;
+    EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
   }
 }
 
@@ -236,7 +236,7 @@ TEST(MixedPixels, ThoseFoundBeforeStayAndAreOfNoSurface) {
     for (int y = 0; y < height; ++y) {
       EXPECT_EQ(image.status(y, edge), PixelStatus::mixed) << y;
       if (mixed != MixedPixels::snap) continue;
-      EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().row_m(), 0.2) << y;
+      EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
     }
   }
   unfiltered.mixed = Image<std::uint8_t>(3, 4, 0);

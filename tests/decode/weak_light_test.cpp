@@ -90,8 +90,8 @@ TEST(WeakLight, FromFiveDeviationsOfSignalOnDeviationIsTheSpreadOfDepth) {
     for (std::size_t i = 0; i < pixels; ++i) {
       if (image.status.pixels[i] != PixelStatus::ok) continue;
       const double error =
-          std::remainder(image.depth_m.pixels[i] / table.row_m() - depth_bin, table.samples()) *
-          table.row_m();
+          std::remainder(image.depth_m.pixels[i] / table.bin_m() - depth_bin, table.bin_count()) *
+          table.bin_m();
       const double deviation = image.predicted_standard_deviation_m.pixels[i];
       if (std::abs(error) > 4 * deviation) continue;  // in another lobe
       squares += std::pow(error / deviation, 2), ++count;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "decode/output/shared/decoder_parts.hpp"
 #include "device_setup.hpp"
 #include "random_codes.hpp"
 #include "rows_setup.hpp"
@@ -68,9 +69,10 @@ void expect_what_the_decoder_gives(const Device& device, const DecodingTable& ta
   std::int64_t left = 0;
   const Outputs all = decoded(on_device, view, left);
   expect_alike(device.info(), options.use_doubles, all, expected, brightest);
-  EXPECT_LT(static_cast<double>(left - 2 * odd_pixels),
-            largest_share_left * static_cast<double>(usual_pixels))
-      << "little was done on the device";
+  if (!parts_of(decoder).matcher.has_close_lobes())  // else the decoder chooses the lobes
+    EXPECT_LT(static_cast<double>(left - 2 * odd_pixels),
+              largest_share_left * static_cast<double>(usual_pixels))
+        << "little was done on the device";
   const Outputs bins = decoded(on_device, view, left, 1);
   expect_only(bins, expected, 1);
 }

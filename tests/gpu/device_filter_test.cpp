@@ -17,7 +17,7 @@ using DeviceFiltering = OnDevice;
 /// Surfaces that slant, an edge, a dark part, and one where depth begins anew; dim and bright.
 RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
                             std::uint64_t seed = 1) {
-  const double samples = table.samples();
+  const double samples = table.bin_count();
   return frame_by_pixel(
       table.measurements(), height, width, seed,
       [&](int y, int x, RandomStream& random, std::vector<float>& raw) {

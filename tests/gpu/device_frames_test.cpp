@@ -21,7 +21,7 @@ constexpr float float_infinity = std::numeric_limits<float>::infinity();
 
 /// Frame f of a scene in which an edge moves, one part drifts slowly, and one gets brighter.
 RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int f) {
-  const double samples = table.samples();
+  const double samples = table.bin_count();
   return frame_by_pixel(
       table.measurements(), height, width, static_cast<std::uint64_t>(f + 1),
       [&](int y, int x, RandomStream& random, std::vector<float>& raw) {

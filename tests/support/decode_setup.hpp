@@ -44,13 +44,14 @@ inline Camera camera_with(const std::string& name, int taps = 1,
   return camera;
 }
 
-/// Noisy raw numbers of a pixel (K), from the chords of the decoder's table, appended.
+/// Noisy raw numbers of a pixel (K), from the chords between rows of the decoder's table, appended.
 inline void append_noisy_pixel(const DecodingTable& table, double signal, double ambient,
                                double depth_bin, RandomStream& random, std::vector<float>& raw) {
   const auto& shot = table.shot();
   const auto &kappa = table.shot_ambient(), &shot_dark = table.shot_dark();
-  const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
-  const double t = depth_bin - from;
+  const double row = depth_bin * table.samples() / table.bin_count();
+  const int from = static_cast<int>(row), to = (from + 1) % table.samples();
+  const double t = row - from;
   for (int k = 0; k < table.measurements(); ++k) {
     const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
     const double shot_chi = (1 - t) * shot(from, k) + t * shot(to, k);
@@ -69,7 +70,7 @@ inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal
   raw.reserve(static_cast<std::size_t>(pixels * table.measurements()));
   RandomStream random(seed, 0);
   for (int i = 0; i < pixels; ++i) {
-    const double depth_bin = table.samples() * random.uniform();
+    const double depth_bin = table.bin_count() * random.uniform();
     append_noisy_pixel(table, signal, ambient, depth_bin, random, raw);
   }
   return raw;
