@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include <pybind11/complex.h>
 #include <pybind11/stl.h>
 
 #include "arrays.hpp"
@@ -83,10 +84,20 @@ void bind_waveform(py::module_& module) {
       .def_static("binary", &binary)
       .def_static("sampled",
                   [](const Doubles& samples) { return Waveform::sampled(to_vector(samples)); })
+      .def_static("cosines",
+                  [](const std::vector<std::complex<double>>& c) {
+                    return Waveform::cosines(Eigen::Map<const Eigen::VectorXcd>(
+                        c.data(), static_cast<Eigen::Index>(c.size())));
+                  })
       .def("is_binary", &Waveform::is_binary)
       .def("on_intervals", [](const Waveform& w) { return adopt(on_intervals(w)); })
       .def("level", &Waveform::level)
       .def("samples", [](const Waveform& w) { return adopt(Eigen::VectorXd(w.samples())); })
+      .def("coefficients",
+           [](const Waveform& w) {
+             const Eigen::VectorXcd& c = w.coefficients();
+             return adopt(std::vector<std::complex<double>>(c.begin(), c.end()));
+           })
       .def("mean", &Waveform::mean)
       .def("peak", &Waveform::peak)
       .def("duty", &Waveform::duty)

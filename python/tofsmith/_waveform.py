@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _check, _tofsmith
@@ -13,14 +14,14 @@ from ._check import FloatArray
 class Waveform:
     """One period of a modulation or demodulation function. Immutable.
 
-    Binary waveforms are kept as switching times, which no grid can round; all others as N samples,
-    each held over its cell [n, n + 1) / N.
+    Binary waveforms are stored as switching times and sums of cosines as Fourier coefficients, both
+    independent of any grid; all others as N samples, each held over its cell [n, n + 1) / N.
     """
 
     _handle: _tofsmith.Waveform
 
     def __init__(self) -> None:
-        raise TypeError("Waveform: use Waveform.binary(on_intervals) or Waveform.sampled(samples)")
+        raise TypeError("Waveform: use Waveform.binary(), Waveform.cosines() or Waveform.sampled()")
 
     @classmethod
     def _of(cls, handle: _tofsmith.Waveform) -> Waveform:
@@ -51,6 +52,22 @@ class Waveform:
         """Values (N,), each held over a cell of the period."""
         return cls._of(_tofsmith.Waveform.sampled(_check.finite_array(samples, "samples", "(N,)")))
 
+    @classmethod
+    def cosines(cls, coefficients: npt.ArrayLike) -> Waveform:
+        """x(t) = c_0 + 2 Re sum_n c_n exp(2 pi i n t), t in periods.
+
+        Parameters
+        ----------
+        coefficients : array_like of complex, shape (harmonics + 1,)
+            c_0 (real), c_1, ...
+
+        Raises
+        ------
+        ValueError
+        """
+        c = np.atleast_1d(np.asarray(coefficients, np.complex128))
+        return cls._of(_tofsmith.Waveform.cosines(c))
+
     @property
     def is_binary(self) -> bool:
         return self._handle.is_binary()
@@ -67,8 +84,13 @@ class Waveform:
 
     @property
     def samples(self) -> FloatArray:
-        """Samples (N,) of a waveform that is not binary; else (0,)."""
+        """Samples (N,) of a waveform that is neither binary nor a sum of cosines; else (0,)."""
         return self._handle.samples()
+
+    @property
+    def coefficients(self) -> npt.NDArray[np.complex128]:
+        """Fourier coefficients c_0, c_1, ... of a sum of cosines; else (0,)."""
+        return self._handle.coefficients()
 
     @property
     def mean(self) -> float:
@@ -104,5 +126,10 @@ class Waveform:
         return isinstance(other, Waveform) and self._handle.is_equal(other._handle)
 
     def __repr__(self) -> str:
-        kind = "binary" if self.is_binary else f"{len(self.samples)} samples"
+        if self.is_binary:
+            kind = "binary"
+        elif len(self.coefficients):
+            kind = f"cosines up to harmonic {len(self.coefficients) - 1}"
+        else:
+            kind = f"{len(self.samples)} samples"
         return f"<Waveform: {kind}, duty {self.duty:.4g}, peak {self.peak:.4g}, {self.edges} edges>"

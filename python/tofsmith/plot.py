@@ -110,6 +110,8 @@ def _steps(waveform: Waveform) -> tuple[FloatArray, FloatArray]:
     switching times, not by means over cells."""
     if not waveform.is_binary:
         samples = waveform.samples
+        if not len(samples):  # cosines
+            samples = waveform.cell_averages(100 * len(waveform.coefficients))
         return samples, np.arange(len(samples) + 1) / len(samples)
     on = waveform.on_intervals
     over = on[on[:, 1] > 1]  # the end of the period

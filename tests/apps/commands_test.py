@@ -113,7 +113,8 @@ class Commands(CommandLineTest):
             for key in ("exposures", "taps", "measurements", "coding_curve_rank"):
                 self.assertEqual(figures[0][key], figures[1][key], (code, key))
             self.assertAlmostEqual(figures[0]["coding_curve_length"],
-                                   figures[1]["coding_curve_length"], 6)
+                                   figures[1]["coding_curve_length"],
+                                   3 if code == "sinusoid-k4" else 6)  # in steps in the file
         self.write("odd.csv", "modulation_1,modulation_2,demodulation_1\n1,1,1\n1,1,0\n")
         self.refuse(["evaluate", "odd.csv"], "odd.csv", "found 2 columns modulation_1 .. and 1 demod")
         self.write("odd.csv", "modulation_1,light\n1,1\n1,1\n")

@@ -4,6 +4,7 @@
 and leaves no file behind."""
 
 import json
+import math
 import os
 import unittest
 
@@ -158,17 +159,27 @@ class Refusals(CommandLineTest):
         code["demodulation"] = [code["demodulation"][0]] * 3
         self.write("c.code.json", json.dumps(code))
         self.refuse(["evaluate", "c.code.json"], "rank", ">= 2")
-        self.refuse(["design", "--method", "factorize", "--set", "samples=1000", "-o", "d"],
-                    "samples = 1000")
 
     def code(self, name="sinusoid-k3"):
         """A code as its file says it; the file is gone."""
         self.do("codes", name, "-o", "made.code.json", "--force", "--camera", "paper-10f0")
         return json.loads(self.bytes_of("made.code.json"))
 
+    def sampled_code(self):
+        """sinusoid-k3 as samples at the middles of 240 cells."""
+        code = self.code()
+        for waveform in code["modulation"] + code["demodulation"]:
+            values = [waveform["mean"] + 2 * sum(
+                re * math.cos(2 * math.pi * n * (cell + 0.5) / 240)
+                - im * math.sin(2 * math.pi * n * (cell + 0.5) / 240)
+                for n, re, im in waveform["harmonics"]) for cell in range(240)]
+            waveform.clear()
+            waveform.update(kind="sampled", values=[min(max(v, 0), 2) for v in values])
+        return code
+
     def test_code_files(self):
         def refuse(change, *words, name="sinusoid-k3"):
-            code = self.code(name)
+            code = self.sampled_code() if name == "sampled" else self.code(name)
             change(code)
             self.write("c.code.json", json.dumps(code))
             self.refuse(["evaluate", "c.code.json", "--trials", "1000"], "c.code.json", *words)
@@ -177,11 +188,17 @@ class Refusals(CommandLineTest):
             def change(code):
                 code[kind][0]["values"][at] = new
             return change
-        refuse(value("demodulation", 3, float("nan")), "c.code.json:1:")
-        refuse(value("demodulation", 3, 1.5), "demodulation", "1.5")
-        refuse(value("demodulation", 3, -0.5), "demodulation", "-0.5")
-        refuse(value("modulation", 3, "one"), "modulation")
-        refuse(lambda c: c["modulation"][0]["values"].pop(), "239", "240")
+
+        def harmonics(of, new):
+            return lambda c: c[of][0].update(harmonics=new)
+        refuse(value("demodulation", 3, float("nan")), "c.code.json:1:", name="sampled")
+        refuse(value("demodulation", 3, 1.5), "demodulation", "1.5", name="sampled")
+        refuse(value("demodulation", 3, -0.5), "demodulation", "-0.5", name="sampled")
+        refuse(value("modulation", 3, "one"), "modulation", name="sampled")
+        refuse(lambda c: c["modulation"][0]["values"].pop(), "239", "240", name="sampled")
+        refuse(harmonics("modulation", [[1, 0.5]]), "/modulation/0/harmonics/0", "imaginary part")
+        refuse(harmonics("modulation", [[0, 0.5, 0]]), "/modulation/0/harmonics/0/0", "found 0")
+        refuse(harmonics("demodulation", [[1, 0.5, 0]]), "/demodulation/0", "values in [0, 1]")
         refuse(lambda c: c["modulation"].pop(), "modulation")
         refuse(lambda c: c.pop("samples"), "samples")
         refuse(lambda c: c.update(samples=-1), "samples")

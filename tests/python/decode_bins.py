@@ -38,6 +38,8 @@ def random_table(rng):
             swing = rng.normal(size=measurements) / harmonic
             table += swing * np.cos(harmonic * phase[:, None]
                                     + rng.uniform(0, 2 * np.pi, measurements))
+        # Noise, so that the table is decoded row by row and not interpolated.
+        table += rng.normal(scale=1e-4, size=table.shape)
     elif kind == "chips":
         light, sensor = rng.integers(0, 2, (2, samples, measurements))
         light[0], sensor[0] = 1, 1

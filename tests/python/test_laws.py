@@ -125,6 +125,13 @@ def test_codes_survive_arrays_files_and_pickles(camera, tmp_path):
     assert two.taps == 2 and np.allclose(two.demodulation.reshape(120, 4, 2).sum(axis=2), 1)
     waveform = ts.Waveform.binary([[0.25, 0.5]], 4.0)
     assert waveform.mean == 1.0 and waveform.delayed(0.25).on_intervals.tolist() == [[0.5, 0.75]]
+    assert not len(waveform.coefficients)
+    cosines = ts.Waveform.cosines([0.5, 0.1, 0.05j])  # minus sines of twice the frequency
+    assert cosines.mean == 0.5 and not cosines.is_binary and not len(cosines.samples)
+    assert cosines.coefficients.tolist() == [0.5, 0.1, 0.05j]
+    middle = (np.arange(1000) + 0.5) / 1000
+    expected = 0.5 + 0.2 * np.cos(2 * np.pi * middle) - 0.1 * np.sin(4 * np.pi * middle)
+    assert np.allclose(cosines.cell_averages(1000), expected, atol=1e-5)
 
 
 def test_rows_of_one_exposure_have_correlated_noise():
