@@ -69,10 +69,11 @@ void expect_what_the_decoder_gives(const Device& device, const DecodingTable& ta
   std::int64_t left = 0;
   const Outputs all = decoded(on_device, view, left);
   expect_alike(device.info(), options.use_doubles, all, expected, brightest);
-  if (!parts_of(decoder).matcher.has_close_lobes())  // else the decoder chooses the lobes
+  if (!parts_of(decoder).matcher.has_close_lobes()) {  // else the decoder chooses the lobes
     EXPECT_LT(static_cast<double>(left - 2 * odd_pixels),
               largest_share_left * static_cast<double>(usual_pixels))
         << "little was done on the device";
+  }
   const Outputs bins = decoded(on_device, view, left, 1);
   expect_only(bins, expected, 1);
 }
