@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
@@ -54,19 +55,30 @@ struct Decoder::Plan {
         options(options_),
         model(table, projection),
         matcher(table, projection),
-        outputs(table, projection, options) {}
+        outputs(table, projection, options) {
+    if (table.samples() == table.bin_count()) return;
+    for (std::int32_t row = 0; row < table.samples(); ++row)
+      bin_of_row.push_back(table.nearest_bin(row));
+  }
 
   DecodingTable table;
   DecodeOptions options;
   PixelModel model;
   ChordMatcher matcher;
   OutputKernel outputs;
+  std::vector<std::int32_t> bin_of_row;  // empty: bins are rows
 
   void write(PixelTile& tile, const float* averaged, const DecodedView& planes) const;
-  /// Bins of the tile's rows.
+  /// Writes the bins of the tile's rows.
   void write_bins(const PixelTile& tile, std::int32_t* bin) const {
-    std::transform(tile.bin, tile.bin + tile.pixels, bin,
-                   [&](std::int32_t row) { return table.nearest_bin(row); });
+    if (bin_of_row.empty()) {
+      std::copy_n(tile.bin, tile.pixels, bin);
+      return;
+    }
+    for (int i = 0; i < tile.pixels; ++i) {
+      const std::int32_t row = tile.bin[i];
+      bin[i] = row < 0 ? row : bin_of_row[static_cast<std::size_t>(row)];
+    }
   }
 };
 
@@ -165,7 +177,7 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedV
                  .saturated = saturated.data(),
                  .averaged = averaged},
                 planes);
-  if (planes.bin && table.bins > 0) write_bins(tile, planes.bin);
+  if (planes.bin && !bin_of_row.empty()) write_bins(tile, planes.bin);
 }
 
 }  // namespace tofsmith

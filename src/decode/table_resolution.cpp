@@ -26,24 +26,25 @@ constexpr double widest_turn_rad = 15.0 * std::numbers::pi / 180.0;
 /// How many times as many rows a smooth table needs.
 int resolving_factor(const DecodingTable& table) {
   const RowMajorMatrix curve = AmbientProjection(table).curve;
-  if (curve.cols() < 2 || !SmoothCurve::of(curve)) return 1;
+  if (curve.cols() < 2) return 1;
+  const std::optional<SmoothCurve> smooth = SmoothCurve::of(curve);
+  if (!smooth) return 1;
   const int most = std::max(1, max_rows / table.samples());
   const auto limited = [&](double factor) {
     return static_cast<int>(std::clamp(std::ceil(factor - 1e-9), 1.0, static_cast<double>(most)));
   };
   // The error falls with the third power of the spacing.
-  const auto factor_of = [&](const RowMajorMatrix& rows) {
-    const double factor = static_cast<double>(rows.rows()) / table.samples();
-    const double error_m = interpolation_error(rows) * table.row_m() / factor;
-    return factor * std::max(std::cbrt(error_m / depth_accuracy_m(table.range_m)),
-                             turns_of(rows).maxCoeff() / widest_turn_rad);
+  const auto factor_of = [&](const SmoothCurve& at, double rows_per_row) {
+    const double error_m = interpolation_error(at) * table.row_m() / rows_per_row;
+    return rows_per_row * std::max(std::cbrt(error_m / depth_accuracy_m(table.range_m)),
+                                   turns_of(at.points(0.0)).maxCoeff() / widest_turn_rad);
   };
-  double factor = factor_of(curve);
+  const double factor = factor_of(*smooth, 1.0);
   if (factor <= 1.0) return 1;
-  // Differences of few rows tell little of a curve that turns far between them.
+  // Few rows of a curve that turns far between them tell little of the error with more.
   constexpr int finer = 4;
-  factor = factor_of(interpolated(curve, finer));
-  return limited(factor);
+  const std::optional<SmoothCurve> fine = SmoothCurve::of(interpolated(curve, finer));
+  return limited(fine ? factor_of(*fine, finer) : factor);
 }
 
 /// Columns at `factor` times as many rows, by linear interpolation.

@@ -146,10 +146,13 @@ void add_zero_error_at_p30(Reproduction& result, const ReproduceContext& context
     const CodeSet code = build_family(family, camera);
     const TargetSet targets = ideal_targets(family, camera);
     double residual = 0.0;
-    for (int i = 0; i < code.measurements(); ++i)
-      residual = std::max(residual,
-                          residual_rms({code.modulation_of(i), code.demodulation(i)},
-                                       targets.measurements[static_cast<std::size_t>(i)], camera));
+    for (int i = 0; i < code.measurements(); ++i) {
+      const Eigen::VectorXd& target = targets.measurements[static_cast<std::size_t>(i)].samples;
+      const auto bins = static_cast<int>(target.size());
+      const Eigen::VectorXd own =
+          correlation_table({code.modulation_of(i), code.demodulation(i)}, camera, bins);
+      residual = std::max(residual, (own - target).norm() / std::sqrt(static_cast<double>(bins)));
+    }
     add(family, "own waveforms", residual, code.peak());
   }
   result.findings.push_back({worst < 1e-6 ? Verdict::holds : Verdict::fails,

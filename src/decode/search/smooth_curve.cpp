@@ -168,16 +168,17 @@ std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve) {
   return DepthPolynomials(*smooth);
 }
 
-double interpolation_error(const RowMajorMatrix& curve) {
-  const Eigen::Index rows = curve.rows();
-  const RowMajorMatrix units = curve.rowwise().normalized();
-  const Eigen::VectorXd turn2 = turns_of(curve).cwiseAbs2();
-  const double least = 0.25 * turn2.mean();  // the curve may all but stop
+double interpolation_error(const SmoothCurve& curve) {
+  const DepthPolynomials polynomials(curve);
+  const Eigen::ArrayXd turn2 = turns_of(curve.points(0.0)).array().square();
+  const Eigen::ArrayXd curvature = turn2.max(0.25 * turn2.mean());  // the curve may all but stop
   double largest = 0.0;
-  for (Eigen::Index n = 0; n < rows; ++n) {
-    const auto at = [&](Eigen::Index i) { return units.row((n + rows + i) % rows); };
-    const double fourth = (at(-2) - 4.0 * at(-1) + 6.0 * at(0) - 4.0 * at(1) + at(2)).norm();
-    largest = std::max(largest, fourth / (192.0 * std::max(turn2[n], least)));
+  for (const double offset : {-0.5, -0.25, 0.25, 0.5}) {  // where the quadratic is furthest off
+    const RowMajorMatrix points = curve.points(offset);
+    const RowMajorMatrix derivative =
+        polynomials.slope + offset * polynomials.bend + offset * offset * polynomials.asymmetry;
+    const Eigen::ArrayXd left = points.cwiseProduct(derivative).rowwise().sum();
+    largest = std::max(largest, (left.abs() / curvature).maxCoeff());
   }
   return largest;
 }

@@ -63,6 +63,6 @@ struct DepthPolynomials {
 std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve);
 
 /// Largest error of such a maximum, for pixels on the curve [rows].
-double interpolation_error(const RowMajorMatrix& curve);
+double interpolation_error(const SmoothCurve& curve);
 
 }  // namespace tofsmith

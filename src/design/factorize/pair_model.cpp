@@ -12,28 +12,6 @@
 
 namespace tofsmith {
 
-namespace {
-
-constexpr int points_per_bin = 8;
-
-/// The target at `points_per_bin` points per bin: exact where its waveforms are known, else linear
-/// between bins.
-Eigen::VectorXd fine_target_of(const CorrelationTarget& target) {
-  const Eigen::Index bins = target.samples.size();
-  if (target.ideal)
-    return CorrelationFunction(target.ideal->demodulation, target.ideal->modulation)
-        .table(static_cast<int>(points_per_bin * bins));
-  Eigen::VectorXd fine(points_per_bin * bins);
-  for (Eigen::Index j = 0; j < fine.size(); ++j) {
-    const Eigen::Index bin = j / points_per_bin;
-    const double share = static_cast<double>(j % points_per_bin) / points_per_bin;
-    fine[j] = (1.0 - share) * target.samples[bin] + share * target.samples[(bin + 1) % bins];
-  }
-  return fine;
-}
-
-}  // namespace
-
 PairModel::PairModel(const CorrelationTarget& target, const Camera& camera)
     : target_(target),
       camera_(camera),
@@ -42,8 +20,7 @@ PairModel::PairModel(const CorrelationTarget& target, const Camera& camera)
       binary_modulation_(camera.light.binary),
       binary_demodulation_(camera.sensor.binary),
       transform_(static_cast<int>(target.samples.size())),
-      reversed_target_(target.samples.size()),
-      fine_target_(fine_target_of(target)) {
+      reversed_target_(target.samples.size()) {
   const Eigen::Index size = target.samples.size();
   for (Eigen::Index n = 0; n < size; ++n) reversed_target_[n] = target.samples[(size - n) % size];
   target_spectrum_ = spectrum(target.samples);
@@ -102,8 +79,17 @@ double PairModel::residual_rms(const WaveformPair& nominal) const {
       camera_.band_limited()
           ? CorrelationFunction(pair.demodulation, pair.modulation, camera_.transfer(4 * samples()))
           : CorrelationFunction(pair.demodulation, pair.modulation);
-  const Eigen::VectorXd values = function.table(static_cast<int>(fine_target_.size()));
-  return (values - fine_target_).norm() / std::sqrt(static_cast<double>(values.size()));
+  constexpr int points_per_bin = 8;
+  const Eigen::VectorXd values = function.table(points_per_bin * samples());
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < values.size(); ++j) {
+    const Eigen::Index bin = j / points_per_bin;
+    const double share = static_cast<double>(j % points_per_bin) / points_per_bin;
+    const double target = (1.0 - share) * target_.samples[bin] +
+                          share * target_.samples[(bin + 1) % target_.samples.size()];
+    sum += (values[j] - target) * (values[j] - target);
+  }
+  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 }  // namespace tofsmith

@@ -46,8 +46,8 @@ class PairModel {
                       const Eigen::VectorXcd& demodulation) const;
   /// The same from samples.
   double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;
-  /// rms over depth for waveforms of any kind, sampled at 8 points per bin. Switching times enter
-  /// exactly, and so does a target whose waveforms are known; others are linear between bins. Of what the camera's
+  /// rms over depth for waveforms of any kind: switching times enter exactly, the target is linear
+  /// between bins, and the difference is sampled at 8 points per bin. Of what the camera's
   /// generators make of the pair, where it has any; infinite where that is no light.
   double residual_rms(const WaveformPair& pair) const;
 
@@ -62,7 +62,6 @@ class PairModel {
   bool binary_modulation_, binary_demodulation_;
   PeriodicTransform transform_;
   Eigen::VectorXd reversed_target_;
-  Eigen::VectorXd fine_target_;
   Eigen::VectorXcd target_spectrum_;
   Eigen::VectorXcd grid_transfer_;  // G / N
 };
