@@ -284,7 +284,8 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   EXPECT_LE(other_status, 5 + static_cast<int>(matched.pixels()) / 500);
   const double brightest_e_per_s = matched.brightest_e_per_s();
   expect_near(outputs.signal, expected.signal, 2e-6, 1e-6 * brightest_e_per_s, "signal");
-  expect_near(outputs.ambient, expected.ambient, 2e-6, 1e-6 * brightest_e_per_s, "ambient");
+  // Where the best row is not the nearest, the kernel extrapolates the signal a little from it.
+  expect_near(outputs.ambient, expected.ambient, 2e-6, 4e-6 * brightest_e_per_s, "ambient");
   expect_similar(outputs.deviation_m, expected.deviation_m);
 }
 
