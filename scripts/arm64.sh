@@ -38,8 +38,7 @@ for name in "${names[@]}"; do
 done
 build=$(realpath -m "${directory:-$root/build-arm64}")
 libraries=$build/root
-release=$(debian_release)
-release=${release:-${tofsmith_releases##* }}
+release=$(this_or_newest_release)
 
 install_packages arm64
 use_debian_tools

@@ -155,12 +155,15 @@ named_in_release() {
     { print ($1 in name) ? name[$1] : $1 }'
 }
 
-# The packages of one group by their names in this release, otherwise in the newest one, one a line.
-packages_of() {
+# The Debian release of this machine, or the newest one on which tofsmith is tested.
+this_or_newest_release() {
   local release
   release=$(debian_release)
-  list_group "$1" | named_in_release "${release:-${tofsmith_releases##* }}"
+  printf '%s' "${release:-${tofsmith_releases##* }}"
 }
+
+# The packages of one group by their names in that release, one a line.
+packages_of() { list_group "$1" | named_in_release "$(this_or_newest_release)"; }
 list_group() {
   [[ " $(package_groups) " == *" $1 "* ]] ||
     tofsmith_die "found package group '$1'; expected one of: $(package_groups)"

@@ -26,7 +26,7 @@ if [[ "${1:-}" == --here ]]; then here=yes && shift; fi
 components=("$@")
 ((${#components[@]})) || components=(core design)
 mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
-release=$(debian_release)
+release=$(this_or_newest_release)
 
 # Built, tested, installed and consumed by a project of its own; $1 is the sources, $2 the build, $3
 # the component, $4 the label of the tests to run, or all.
@@ -51,7 +51,7 @@ for component in "${components[@]}"; do
     place=$(mktemp -d)
     trap 'umount "$place/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' EXIT
     echo "Making a Debian root for $component in $place"
-    debootstrap --variant=minbase "${release:-${tofsmith_releases##* }}" "$place" "$mirror" >/dev/null
+    debootstrap --variant=minbase "$release" "$place" "$mirror" >/dev/null
     mount --bind /proc "$place/proc"
     chroot "$place" env DEBIAN_FRONTEND=noninteractive \
       apt-get -q -y install --no-install-recommends "${packages[@]}" >/dev/null
