@@ -50,8 +50,8 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                               measurements, measurements == 1 ? "" : "s"));
   if (options.method == DesignMethod::atlas && (exposures > 0 || camera.sensor.taps > 2)) {
     constexpr const char* none =
-        "no known code of so many measures depth on this camera; a design with an effort above 0 "
-        "searches for one";
+        "the atlas has no such code that measures depth on this camera; a design with an effort "
+        "above 0 searches for one";
     return exposures > 0 ? broken(which, exposures, none)
                          : broken("sensor.taps", camera.sensor.taps, none);
   }
