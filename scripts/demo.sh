@@ -38,18 +38,6 @@ if [[ -z "$output" ]]; then
   set -- -o "$output" "$@"
 fi
 
-# Compiles vector kernels for this machine's instruction set only.
-own_target() {
-  local flags target=SSE4
-  flags=" $(grep -m 1 '^flags' /proc/cpuinfo || true) "
-  if [[ "$flags" == *" avx512bw "* && "$flags" == *" avx512vl "* ]]; then
-    target=AVX3
-  elif [[ "$flags" == *" avx2 "* && "$flags" == *" fma "* ]]; then
-    target=AVX2
-  fi
-  printf '%s' "$target"
-}
-
 install_packages demo
 use_debian_tools
 

@@ -155,6 +155,20 @@ named_in_release() {
     { print ($1 in name) ? name[$1] : $1 }'
 }
 
+# The widest vector instructions of this machine, as TOFSMITH_TARGETS takes them.
+own_target() {
+  local flags target=SSE4
+  flags=" $(grep -m 1 '^flags' /proc/cpuinfo || true) "
+  if [[ "$flags" == *" avx512bw "* && "$flags" == *" avx512vl "* ]]; then
+    target=AVX3
+  elif [[ "$flags" == *" avx2 "* && "$flags" == *" fma "* ]]; then
+    target=AVX2
+  elif [[ "$(uname -m)" == aarch64 ]]; then
+    target=NEON
+  fi
+  printf '%s' "$target"
+}
+
 # The Debian release of this machine, or the newest one on which tofsmith is tested.
 this_or_newest_release() {
   local release

@@ -52,6 +52,7 @@ if ((${#floors[@]})); then
 fi
 echo "Building tofsmith and its tests in $build"
 settings=(-DTOFSMITH_COMPONENTS="$components")
+[[ "$preset" == dev ]] || settings+=(-DTOFSMITH_TARGETS="$(own_target)") # the others take too long
 [[ -z "$components" ]] || settings+=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
 cmake --log-level=WARNING --preset "$preset" "${settings[@]}"
 cmake --build "$build" --target "${targets[@]}"

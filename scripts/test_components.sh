@@ -64,7 +64,7 @@ for component in "${components[@]}"; do
   else
     install_packages "$component"
     use_debian_tools
-    settings=()
+    settings=(-DTOFSMITH_TARGETS="$(own_target)" -DTOFSMITH_OPTIMIZE_KERNELS_ONLY=ON)
     for package in "${forbidden[@]}"; do settings+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"); done
     bash -c "$steps" steps "$root" "$root/build-$component" "$component" install "${settings[@]}"
   fi
