@@ -85,6 +85,8 @@ if [[ ! -d "$place" ]]; then
     tofsmith_die "debootstrap failed; its messages are in $log"
   mv "$place.part" "$place"
 fi
+# As the installer of Debian writes it: browsers and their drivers talk to each other by this name.
+[[ -e "$place/etc/hosts" ]] || printf '127.0.0.1\tlocalhost\n::1\tlocalhost\n' >"$place/etc/hosts"
 # How this system reaches the mirror.
 cp /etc/resolv.conf "$place/etc/resolv.conf"
 apt-config dump 2>/dev/null | grep -E '^Acquire::(https?::|Check-|Retries|ForceIPv)' \
