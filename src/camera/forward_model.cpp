@@ -85,7 +85,7 @@ std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> d
 
 /// Contrasts in the order of the camera's exposures.
 std::vector<double> played_contrasts(const CodeSet& code, const Camera& camera) {
-  const std::vector<double> of_code = camera.sensor.contrasts_of(code);
+  std::vector<double> of_code = camera.sensor.contrasts_of(code);
   if (!camera.playback || camera.playback->order.size() != of_code.size()) return of_code;
   std::vector<double> played;
   for (const int exposure : camera.playback->order)
