@@ -162,7 +162,6 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedV
       for (int i = 0; i < tile.pixels; ++i)
         if (levels.clip(tile.raw[k * pixels_per_tile + i]))
           saturated[static_cast<std::size_t>(i)] = 1;
-  if (outputs.needs_second_peaks(planes)) matcher.find_second_peaks(tile);
   if (outputs.needs_electrons(planes))
     for (int k = 0; k < model.measurements(); ++k)
       for (int i = 0; i < tile.pixels; ++i) {
@@ -173,7 +172,6 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedV
                  .plane = tile.plane,
                  .electrons = tile.raw,
                  .bin = tile.bin,
-                 .second_peak = tile.second_peak,
                  .saturated = saturated.data(),
                  .averaged = averaged},
                 planes);

@@ -4,8 +4,8 @@
 // and numbers.cl and ahead of planes.cl, with what PixelStatus means and where the fields of records
 // stand.
 //
-// `match` finds the bins that single precision proves. Pixels that it leaves open, or whose second
-// peak hangs on rounding, go into a list, and the host decodes them.
+// `match` finds the bins that single precision proves. Pixels that it leaves open go into a list,
+// and the host decodes them.
 #define NO_VALUE as_float(0x7fc00000)  // the not-a-number of the host
 #define UNPROVEN (-2)
 #define BLOCK 16       // lanes of ArcTable
@@ -109,26 +109,6 @@ int search_arcs(const struct MatchParameters* p, Floats tables, const float* q, 
   return ints_at(tables, p->bins_of_rows)[window * HALF_BLOCK + found];
 }
 
-/// Best bin in [begin, end), modulo N, for the vector of a pixel: BinMatcher::second_peak_of().
-int best_bin_within(const struct MatchParameters* p, Floats tables, const float* q, int begin,
-                    int end) {
-  float square = 0.0f, unit[RANK];
-  for (int j = 0; j < RANK; ++j) square += q[j] * q[j];
-  const float scale = square > 0.0f ? 1.0f / sqrt(square) : 0.0f;
-  for (int j = 0; j < RANK; ++j) unit[j] = q[j] * scale;
-  float best = -INFINITY;
-  int found = -1;
-  for (int position = begin; position < end; ++position) {
-    const int row = position < p->samples ? position : position - p->samples;
-    Floats direction = tables + p->rows + row / BLOCK * (RANK + 1) * BLOCK + row % BLOCK;
-    float score = unit[0] * direction[BLOCK];
-    for (int j = 1; j < RANK; ++j) score = score + unit[j] * direction[(j + 1) * BLOCK];
-    found = score > best ? row : found;
-    best = fmax(score, best);
-  }
-  return found;
-}
-
 // ---- By angle, as circle_search.cpp.
 
 #if RANK == 2
@@ -215,9 +195,7 @@ int search_list(const struct MatchParameters* p, Floats tables, const float* q, 
   return best - second > 2.0f * margin ? leader : UNPROVEN;
 }
 
-/// @param second_peak  what the cell says of it; UNPROVEN where another cell is too near
-int search_cells(const struct MatchParameters* p, Floats tables, const float* q, float error,
-                 int* second_peak) {
+int search_cells(const struct MatchParameters* p, Floats tables, const float* q, float error) {
   float largest = fabs(q[0]), signed_largest = q[0];
   int axis = 0;
   for (int j = 1; j < RANK; ++j)
@@ -236,13 +214,11 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
   const float slip = error * scale * 4.1f + rounding_of_place;
   int cell = axis + axis + (signed_largest < 0.0f ? 1 : 0), cut = 0;
   float place[SIDES];
-  bool is_near_border = false;
   for (int s = 0; s < SIDES; ++s) {
     const float shifted = (axis > s ? q[s] : q[s + 1]) * scale - 0.5f;
     const float index = clamp(shifted + middle, TO_WHOLE, TO_WHOLE + sides - 1.0f);
     const float within = shifted - (index - middle);
     place[s] = within + within;
-    is_near_border = is_near_border || fabs(place[s]) > 1.0f - rounding_of_place;
     const int fine = as_int(index) & ((1 << bits) - 1);
     cut = (cut << p->cut_bits) + (fine & ((1 << p->cut_bits) - 1));
     cell = (cell << p->root_bits) + (fine >> p->cut_bits);
@@ -261,7 +237,6 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
   }
 #endif
   Ints record = ints_at(tables, p->cells) + 4 * cell;
-  *second_peak = is_near_border ? UNPROVEN : record[3] & 0xffff;
 
   float size = 0.0f;
   for (int j = 0; j < RANK; ++j) size += fabs(q[j]);
@@ -296,66 +271,30 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
 }
 #endif
 
-// ---- Second peaks, as second_peak_search.hpp.
-
-#define UNKNOWN (-3)
-
-/// Out of the main lobe of `bin` where its edge has passed it; UNKNOWN where it is further inside.
-int moved_out(const struct MatchParameters* p, Ints lobe, int second_peak) {
-  const int length = lobe[1] - lobe[0];
-  if (length >= p->samples) return -1;
-  if (second_peak < 0) return UNKNOWN;
-  int after = second_peak - lobe[0];
-  if (after >= p->samples) after -= p->samples;
-  if (after < 0) after += p->samples;
-  if (after >= length) return second_peak;
-  const int edge = p->samples / 120 + 1;
-  if (length - after <= edge) return lobe[1] < p->samples ? lobe[1] : lobe[1] - p->samples;
-  if (after < edge) return lobe[0] > 0 ? lobe[0] - 1 : lobe[0] - 1 + p->samples;
-  return UNKNOWN;
-}
-
 // ---- From pixels to bins, as BinMatcher and ChordMatcher.
 
-/// @param wants_second_peaks  whether second_peak is filled
 /// @param open    pixels that the host decodes, one after another, `opened` of them
 kernel void match(const struct MatchParameters p, const struct TileParameters tile, Floats tables,
-                  global const uchar* raw_numbers, int wants_second_peaks, global int* bins,
-                  global int* second_peaks, global int* opened, global int* open) {
+                  global const uchar* raw_numbers, global int* bins, global int* opened,
+                  global int* open) {
   const int pixel = (int)get_global_id(0);
   if (pixel >= tile.pixels) return;
   float raw[MEASUREMENTS], q[RANK];
   const float error = vector_of(&p.projection, &tile, tables, raw_numbers, pixel, raw, q);
   bool is_number = true;
   for (int k = 0; k < MEASUREMENTS; ++k) is_number = is_number && isfinite(raw[k]);
-  int bin = UNPROVEN, second_peak = UNPROVEN;
-  if (!is_number && tile.number != raw_rounded) bin = second_peak = -1;
+  int bin = UNPROVEN;
+  if (!is_number && tile.number != raw_rounded) bin = -1;
   const float largest = largest_of(q);
   if (is_number && largest > 1e-12f && largest < 1e12f) {
     if (p.way == by_arcs) bin = search_arcs(&p, tables, q, error);
 #if RANK == 2
     if (p.way == by_angle) bin = search_circle(&p, tables, q, error);
 #elif RANK == 3 || RANK == 4
-    if (p.way == by_cells) bin = search_cells(&p, tables, q, error, &second_peak);
+    if (p.way == by_cells) bin = search_cells(&p, tables, q, error);
 #endif
-    if (bin >= 0 && p.points_of_bins >= 0) bin = ints_at(tables, p.bins_of_points)[bin];
-    if (bin >= 0 && wants_second_peaks) {
-      const int point = p.points_of_bins >= 0 ? ints_at(tables, p.points_of_bins)[bin] : bin;
-      Ints lobe = ints_at(tables, p.lobes) + 2 * point;
-      if (p.way == by_angle)
-        second_peak = ints_at(tables, p.second_peaks)[point];
-      else if (p.way == by_arcs)
-        second_peak = lobe[1] - lobe[0] < p.samples ? UNKNOWN : -1;
-      else if (second_peak != UNPROVEN)
-        second_peak = moved_out(&p, lobe, second_peak == 0xffff ? -1 : second_peak);
-      if (second_peak == UNKNOWN)
-        second_peak = best_bin_within(&p, tables, q, lobe[1], lobe[0] + p.samples);
-      if (second_peak >= 0 && p.points_of_bins >= 0)
-        second_peak = ints_at(tables, p.bins_of_points)[second_peak];
-    }
+    if (bin >= 0 && p.bins_of_points >= 0) bin = ints_at(tables, p.bins_of_points)[bin];
   }
   bins[pixel] = bin;
-  if (wants_second_peaks) second_peaks[pixel] = second_peak;
-  if (bin == UNPROVEN || (wants_second_peaks && second_peak == UNPROVEN))
-    open[atomic_inc(opened)] = pixel;
+  if (bin == UNPROVEN) open[atomic_inc(opened)] = pixel;
 }

@@ -41,18 +41,17 @@ struct MatchParameters {
   struct ProjectionParameters projection;
   int way;  ///< SearchWay
   int samples;
-  int lobes;  ///< of every bin: begin, end
 
   int rows, row_blocks, windows, window_count, window_radii, bins_of_rows;  ///< as ArcTable
   float lead, tie;                                                          ///< as Margins
 
-  int pieces, resolution, second_peaks;  ///< as CircleSearch
+  int pieces, resolution;  ///< as CircleSearch
   float margin, overlap;
 
   int root_bits, cut_bits, roots, cells, lists, directions, steps, units, bins;  ///< CellSearchView
   float fit_unit, slack_unit, steepest_fit, rounding, reach;
 
-  int bins_of_points, points_of_bins;  ///< as ChordMatcher
+  int bins_of_points;  ///< as ChordMatcher
 };
 
 /// As OutputConstants and the tables that go with them.
@@ -61,13 +60,12 @@ struct OutputParameters {
   int samples;
   float bin_m, bin_high_m, bin_low_m, range_m;
   int sees_ambient;
-  int ambient_weights, basis, shot_ambient, floor_noise;
-  float max_shot, max_shot_ambient, max_floor_e2;
-  float low_signal_sigma2, min_confidence, sure_log_odds, min_variance_e2;
+  int ambient_weights;
+  float typical_ambient, typical_floor_e2;
+  float low_signal_sigma2, sure_lead;
 
   int records, record_stride;
   int chords, chord_blocks, chord_quarters;
-  int second_peak_directions, direction_stride;
 
   int dark_raw, gain_e_per_raw;  ///< of every measurement: pairs of words, a double or high and low
   float lowest, highest;  ///< as SaturationLevels

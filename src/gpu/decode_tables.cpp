@@ -55,7 +55,6 @@ void add_circle(const CircleSearch& circle, Words& words, MatchParameters& p) {
   p.way = by_angle;
   p.pieces = words.add(circle.pieces());
   p.resolution = circle.resolution();
-  p.second_peaks = words.add(circle.second_peaks());
   p.margin = circle.margin();
   p.overlap = CirclePiece::overlap;
 }
@@ -98,16 +97,10 @@ void add_arcs(const ArcTable& arcs, const DirectionTable& directions, Words& wor
 
 MatchParameters parameters_of(const BinMatcher& matcher, Words& words) {
   const DirectionTable& directions = matcher.directions();
-  std::vector<std::int32_t> lobes;
-  for (std::int32_t n = 0; n < directions.samples(); ++n) {
-    lobes.push_back(directions.main_lobe(n).begin);
-    lobes.push_back(directions.main_lobe(n).end);
-  }
   MatchParameters p{};
   p.projection = parameters_of(matcher.projection(), words);
   p.samples = directions.samples();
-  p.lobes = words.add(lobes);
-  p.bins_of_points = p.points_of_bins = -1;
+  p.bins_of_points = -1;
   add_arcs(matcher.arcs().table(), directions, words, p);
   if (const auto* circle = std::get_if<CircleSearch>(&matcher.search()))
     add_circle(*circle, words, p);
@@ -134,23 +127,15 @@ OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kerne
   p.range_m = c.range_m;
   p.sees_ambient = c.sees_ambient ? 1 : 0;
   p.ambient_weights = words.add(c.ambient_weight);
-  p.basis = words.add(c.basis);
-  p.shot_ambient = words.add(c.shot_ambient);
-  p.floor_noise = words.add(c.floor_noise_e2);
-  p.max_shot = c.max_shot;
-  p.max_shot_ambient = c.max_shot_ambient;
-  p.max_floor_e2 = c.max_floor_e2;
+  p.typical_ambient = c.typical_ambient;
+  p.typical_floor_e2 = c.typical_floor_e2;
   p.low_signal_sigma2 = c.low_signal_sigma2;
-  p.min_confidence = c.min_confidence;
-  p.sure_log_odds = sure_log_odds;
-  p.min_variance_e2 = static_cast<float>(min_variance_e2);
+  p.sure_lead = sure_lead;
   p.records = words.add(records.records);
   p.record_stride = records.records.stride();
   p.chords = words.add(records.chords);
   p.chord_blocks = ChordLayout::blocks;
   p.chord_quarters = ChordLayout::quarters;
-  p.second_peak_directions = words.add(records.directions);
-  p.direction_stride = records.directions.stride();
   p.dark_raw = words.add_doubles(dark_raw, has_doubles);
   p.gain_e_per_raw = words.add_doubles(gain_e_per_raw, has_doubles);
   p.lowest = levels.lowest;
@@ -179,8 +164,7 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   }
   define("RECORD_AMBIENT", layout.ambient());
   define("RECORD_SIGNAL_NOISE", layout.signal_noise());
-  define("RECORD_DIRECTION", layout.direction());
-  define("RECORD_SHOT", layout.shot());
+  define("RECORD_BOUND", layout.bound());
   define("CHORD_FIELDS", ChordLayout::fields);
   define("CHORD_DEPTH_NOISE", ChordLayout::depth_noise);
   define("CHORD_AMBIENT", ChordLayout::ambient);
@@ -189,7 +173,6 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   define("STATUS_NO_RETURN", static_cast<int>(PixelStatus::no_return));
   define("STATUS_SATURATED", static_cast<int>(PixelStatus::saturated));
   define("STATUS_LOW_SIGNAL", static_cast<int>(PixelStatus::low_signal));
-  define("STATUS_AMBIGUOUS", static_cast<int>(PixelStatus::ambiguous));
   return options;
 }
 
@@ -208,7 +191,6 @@ DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses)
   bins = is_coarse ? parameters_of(matcher.bins(), words_at) : points;
   if (!matcher.bin_of_point().empty()) {
     points.bins_of_points = words_at.add(matcher.bin_of_point());
-    points.points_of_bins = words_at.add(matcher.point_of_bin());
   }
   outputs = parameters_of(decoder, kernel, matcher.bins().exact().scale(), has_doubles, words_at);
   outputs.projection = points.projection;

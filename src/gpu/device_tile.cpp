@@ -42,7 +42,7 @@ DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_do
 }
 
 std::int64_t DeviceTile::bytes_per_pixel() const {
-  constexpr std::int64_t words = 11;  // averaged, bins, second peaks, open ones, planes
+  constexpr std::int64_t words = 10;  // averaged, bins, open ones, planes
   return 4 * (outputs_.records().layout.measurements + words);
 }
 
@@ -51,10 +51,9 @@ const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, RawNumber numbe
   return raw_;
 }
 
-void DeviceTile::find_bins(const MatchParameters& parameters, const DeviceMemory& bins,
-                           const DeviceMemory* second_peaks) const {
-  queue_.run(match_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
-             second_peaks ? 1 : 0, &bins, second_peaks, &opened_, &open_);
+void DeviceTile::find_bins(const MatchParameters& parameters, const DeviceMemory& bins) const {
+  queue_.run(match_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(), &bins,
+             &opened_, &open_);
 }
 
 void DeviceTile::start_list_of_open() {
@@ -67,17 +66,15 @@ void DeviceTile::decode(const DecodedView& wanted) {
   const std::int64_t of_words = raw_.tile().pixels * std::int64_t{sizeof(std::int32_t)};
   start_list_of_open();
   if (wanted.bin && (wanted.wants_bins_only() || tables_.is_coarse))
-    find_bins(tables_.bins, *room(best_bins_, of_words), nullptr);
+    find_bins(tables_.bins, *room(best_bins_, of_words));
   if (wanted.wants_bins_only()) return;
 
   room(bins_, of_words);
-  const DeviceMemory* second_peaks =
-      outputs_.needs_second_peaks(wanted) ? room(second_peaks_, of_words) : nullptr;
-  find_bins(tables_.points, bins_, second_peaks);
+  find_bins(tables_.points, bins_);
   OutputParameters parameters = tables_.outputs;
-  parameters.finds_confidence = second_peaks ? 1 : 0;
+  parameters.finds_confidence = outputs_.needs_confidence(wanted) ? 1 : 0;
   queue_.run(write_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
-             raw_.averaged(), &bins_, second_peaks, room_for(wanted.depth_m, depth_),
+             raw_.averaged(), &bins_, &opened_, &open_, room_for(wanted.depth_m, depth_),
              room_for(wanted.signal_e_per_s, signal_), room_for(wanted.ambient_e_per_s, ambient_),
              room_for(wanted.confidence, confidence_),
              room_for(wanted.predicted_standard_deviation_m, deviation_),
@@ -107,7 +104,7 @@ void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
   const double samples = outputs_.constants().samples, bins_per_row = bin_count_ / samples;
   start_list_of_open();
   find_bins(between_bins ? tables_.points : tables_.bins,
-            *room(bins_, pixels * std::int64_t{sizeof(std::int32_t)}), nullptr);
+            *room(bins_, pixels * std::int64_t{sizeof(std::int32_t)}));
   offsets_here_.assign(count, 0.0f);
   if (between_bins) {
     room(depth_, pixels * std::int64_t{sizeof(float)});
@@ -129,8 +126,8 @@ void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
 
 void DeviceTile::release() {
   raw_.release();
-  for (DeviceMemory* memory : {&bins_, &best_bins_, &second_peaks_, &open_, &some_numbers_, &depth_,
-                               &signal_, &ambient_, &confidence_, &deviation_, &status_})
+  for (DeviceMemory* memory : {&bins_, &best_bins_, &open_, &some_numbers_, &depth_, &signal_,
+                               &ambient_, &confidence_, &deviation_, &status_})
     *memory = DeviceMemory();
 }
 

@@ -75,8 +75,7 @@ class DeviceTile {
     return plane ? room(memory, raw_.tile().pixels * std::int64_t{sizeof(Value)}) : nullptr;
   }
   void start_list_of_open();
-  void find_bins(const MatchParameters& parameters, const DeviceMemory& bins,
-                 const DeviceMemory* second_peaks) const;
+  void find_bins(const MatchParameters& parameters, const DeviceMemory& bins) const;
 
   std::int32_t nearest_bin(std::int32_t row) const {
     return nearest_bin_of_row(row, outputs_.constants().samples, bin_count_);
@@ -89,7 +88,7 @@ class DeviceTile {
   DeviceKernel match_, write_, write_offsets_, gather_, scatter_;
   DeviceMemory words_;  // of the tables
   DeviceRaw raw_;
-  DeviceMemory bins_, best_bins_, second_peaks_, opened_, open_, some_numbers_;
+  DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
   std::vector<std::int32_t> bins_here_;
   std::vector<float> offsets_here_;
   DeviceMemory depth_, signal_, ambient_, confidence_, deviation_, status_;

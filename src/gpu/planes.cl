@@ -26,48 +26,19 @@ float variance_of(float signal, float ambient, Floats noise) {
   return fmax(signal * noise[0] + (ambient * noise[1] + noise[2]), 0.0f);
 }
 
-/// 1 / (1 + exp(-x)) at x in [0, 80].
-float logistic(float x) {
-  const float power = x * -1.44269504f;
-  const float whole = rint(power), rest = power - whole;
-  float series = rest * 1.54035304e-4f + 1.33335581e-3f;
-  series = rest * series + 9.61812911e-3f;
-  series = rest * series + 5.55041087e-2f;
-  series = rest * series + 0.240226507f;
-  series = rest * series + 0.693147181f;
-  series = rest * series + 1.0f;
-  const float two_to_whole = as_float(((int)whole + 127) << 23);
-  return 1.0f / (series * two_to_whole + 1.0f);
-}
-
-/// Probability of the bin against its second peak.
-float confidence_of(const struct OutputParameters* p, Floats tables, const float* q, Floats record,
-                    int second_peak, float signal, float ambient, float share) {
-  if (second_peak < 0 || !(signal > 0.0f)) return 1.0f;
-  Floats other = tables + p->second_peak_directions + (second_peak + 1) * p->direction_stride;
-  float score = 0.0f, lead = 0.0f, square = 0.0f, apart[RANK];
-  for (int j = 0; j < RANK; ++j) {
-    const float best = record[RECORD_DIRECTION + j];
-    apart[j] = best - other[j];
-    score = best * q[j] + score;
-    lead = apart[j] * q[j] + lead;
-    square = apart[j] * apart[j] + square;
-  }
-  const float product = fmax(lead, 0.0f) * score;
-  const float max_noise =
-      signal * p->max_shot + (ambient * p->max_shot_ambient + p->max_floor_e2);
-  if (product >= p->sure_log_odds * (max_noise * share)) return 1.0f;
-  float variance = 0.0f;
-  for (int k = 0; k < MEASUREMENTS; ++k) {
-    float weight = 0.0f;
-    for (int j = 0; j < RANK; ++j)
-      weight = apart[j] * tables[p->basis + k * RANK + j] + weight;
-    const float without_signal =
-        ambient * tables[p->shot_ambient + k] + tables[p->floor_noise + k];
-    const float noise = signal * record[RECORD_SHOT + k] + without_signal;
-    variance = weight * weight * fmax(noise, p->min_variance_e2) + variance;
-  }
-  return logistic(fmin(product * square / (variance * share), p->sure_log_odds));
+/// Returns true if the confidence is proven to be 1, as is_sure() in output_noise-inl.hpp.
+bool is_sure(const struct OutputParameters* p, const float* q, Floats record, float signal,
+             float ambient, float share) {
+  Floats bound = record + RECORD_BOUND;
+  float square = 0.0f;
+  for (int j = 0; j < RANK; ++j) square = q[j] * q[j] + square;
+  const float score = along_record(q, record + RECORD_POINT) * bound[0];
+  const float across2 = fmax(square - score * score, 0.0f);
+  const float other = score * bound[1] + sqrt(across2) * bound[2];
+  const float lead = square - other * other - across2;
+  const float variance =
+      signal * bound[3] + (ambient * p->typical_ambient + p->typical_floor_e2);
+  return other < score && lead >= p->sure_lead * (variance * share);
 }
 
 /// Best point on the chords left and right of a bin.
@@ -137,10 +108,11 @@ kernel void write_offsets(const struct OutputParameters p, const struct TilePara
   offsets[pixel] = point.is_left ? -point.t : point.t;
 }
 
-/// Planes that are null are not wanted. Pixels without proven bin are left to the host.
+/// Planes that are null are not wanted. Pixels without a proven bin are left to the host, and so are
+/// those whose confidence is not proven to be 1.
 kernel void write_planes(const struct OutputParameters p, const struct TileParameters tile,
                          Floats tables, global const uchar* raw_numbers, Floats averaged,
-                         global const int* bins, global const int* second_peaks,
+                         global const int* bins, global int* opened, global int* open,
                          global float* depth_m, global float* signal_e_per_s,
                          global float* ambient_e_per_s, global float* confidences,
                          global float* deviation_m, global uchar* status) {
@@ -183,14 +155,12 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     const float variance = variance_of(signal, noisy_ambient, chord + CHORD_DEPTH_NOISE);
     deviation_m[pixel] = has_depth ? sqrt(variance * share) / signal : NO_VALUE;
   }
-  float confidence = 1.0f;
-  if (p.finds_confidence)
-    confidence = confidence_of(&p, tables, q, record, second_peaks[pixel], signal, noisy_ambient,
-                               share);
-  if (confidences) confidences[pixel] = has_depth ? confidence : NO_VALUE;
+  if (p.finds_confidence && has_depth && !is_sure(&p, q, record, signal, noisy_ambient, share))
+    open[atomic_inc(opened)] = pixel;
+  if (confidences) confidences[pixel] = has_depth ? 1.0f : NO_VALUE;
   if (status) {
     const float noise = variance_of(signal, noisy_ambient, record + RECORD_SIGNAL_NOISE) * share;
-    uchar value = confidence < p.min_confidence ? STATUS_AMBIGUOUS : STATUS_OK;
+    uchar value = STATUS_OK;
     if (signal * signal < p.low_signal_sigma2 * noise) value = STATUS_LOW_SIGNAL;
     if (!has_depth) value = STATUS_NO_RETURN;
     for (int k = 0; k < MEASUREMENTS; ++k)

@@ -300,49 +300,5 @@ TEST(ArcSearch, LeavesOtherRowsAloneAndTakesAnyStride) {
   EXPECT_EQ(rows.back(), 77);
 }
 
-/// Looks at all bins of [begin, end) in turn, in single precision without fusing.
-std::int32_t best_of_all(const DirectionTable& directions, const float* components,
-                         std::int32_t begin, std::int32_t end) {
-  std::int32_t best = -1;
-  float highest = 0.0f;
-  for (std::int32_t n = begin; n < end; ++n) {
-    const std::int32_t row = n % directions.samples();
-    float score = components[0] * static_cast<float>(directions.direction(row, 0));
-    for (int j = 1; j < directions.rank(); ++j) {
-      const float product = components[j] * static_cast<float>(directions.direction(row, j));
-      score += product;
-    }
-    if (best >= 0 && score <= highest) continue;
-    best = row;
-    highest = score;
-  }
-  return best;
-}
-
-TEST(ArcSearch, FindsTheSameRivalAsASearchOfAllBins) {
-  for (const auto& directions :
-       {directions_of("hamiltonian-k8", 252, 1000), directions_of("gray-k4", 240, 1000),
-        directions_of("hamiltonian-k8", 252, 5000),
-        directions_of(with_gaps(twice_around(random_smooth_curve(5, 40, 13)))),
-        directions_of(random_smooth_curve(2, 9, 14))}) {
-    const ArcSearch search(directions);
-    const Vectors vectors = noisy_vectors(directions, 0.2, vectors_per_level / 2, 15);
-    RandomStream random(16, 0);
-    const int samples = directions.samples();
-    for (int i = 0; i < vectors.count(); ++i) {
-      const std::vector<double> unit = unit_of(vectors[i], vectors.rank);
-      const std::vector<float> components(unit.begin(), unit.end());
-      const auto begin = static_cast<std::int32_t>(2 * samples * random.uniform());
-      const std::int32_t longest = std::min(samples, 2 * samples - begin);
-      const auto end = begin + 1 + static_cast<std::int32_t>((longest - 1) * random.uniform());
-      const std::int32_t expected = best_of_all(directions, components.data(), begin, end);
-      for_each_target([&](std::int64_t) {
-        ASSERT_EQ(search.best_bin_within(components.data(), begin, end), expected)
-            << begin << " " << end;
-      });
-    }
-  }
-}
-
 }  // namespace
 }  // namespace tofsmith

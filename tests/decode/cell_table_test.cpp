@@ -20,15 +20,9 @@ constexpr int vectors = 500;
 /// A table with all that it is made of.
 struct Cells {
   explicit Cells(DirectionTable table)
-      : directions(std::move(table)),
-        arcs(directions),
-        second_peaks(directions, arcs),
-        distinct(directions),
-        cells(distinct, second_peaks) {}
+      : directions(std::move(table)), distinct(directions), cells(distinct) {}
 
   DirectionTable directions;
-  ArcSearch arcs;
-  SecondPeakSearch second_peaks;
   DistinctDirections distinct;
   CellTable cells;
 };

@@ -18,8 +18,8 @@ struct Case {
   int samples = 240;
 };
 
-/// The search may know a second peak for pixels nearby instead of the pixel's own, or one that
-/// float scores take for the best.
+/// The vector of a pixel in single precision and the noise at a bin instead of between bins change
+/// confidence a little.
 void expect_close_confidence(const std::vector<float>& confidence,
                              const std::vector<float>& expected) {
   double sum = 0.0;

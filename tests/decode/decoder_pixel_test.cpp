@@ -105,10 +105,9 @@ TEST(Decoder, APixelBetweenTwoDepthsIsAmbiguous) {
 }
 
 TEST(Decoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
-  // The main lobe is up to 2 m wide on each side.
   for (const char* code : {"hamiltonian-k5", "pulsed-multifrequency-k5"})
-    expect_right_as_often_as_said(DecodeSetup(code, camera_with("paper-10f0")), {1e3, 2e3, 4e3},
-                                  1e4, 2.0, 0.06);
+    expect_right_as_often_as_said(DecodeSetup(code, camera_with("paper-10f0")),
+                                  {1.25e2, 2.5e2, 5e2, 1e3, 2e3, 4e3, 8e3}, 1e4, 0.06);
 }
 
 struct NoiseCase {

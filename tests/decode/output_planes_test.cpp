@@ -85,11 +85,10 @@ TEST(OutputKernel, NeedsOnlyWhatThePlanesTake) {
   std::vector<float> depth_m(100);
   const DecodedView planes{.depth_m = depth_m.data()};
   EXPECT_FALSE(matched.kernel().needs_electrons(planes));
-  EXPECT_FALSE(matched.kernel().needs_second_peaks(planes));
+  EXPECT_FALSE(matched.kernel().needs_confidence(planes));
   EXPECT_FALSE(matched.kernel().needs_saturation(planes));
   MatchedTile tile = matched.tile(0);
   tile.electrons = nullptr;
-  tile.second_peak = nullptr;
   tile.saturated = nullptr;
   matched.kernel().write(tile, planes);
   EXPECT_TRUE(same(depth_m, matched.outputs().depth_m));

@@ -72,18 +72,30 @@ TEST(WeakLight, WithoutLightSignalStandsOutAsOftenAsTheLengthOfTheCurveSays) {
   }
 }
 
-TEST(WeakLight, ACodeOfOneLobeIsNeverInAnother) {
-  const DecodeSetup setup("sinusoid-k4", camera_with("paper-10f0"));
-  const DepthImage image = captured(setup, 0.0);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const float confidence = image.confidence.pixels[i];
-    ASSERT_TRUE(std::isnan(confidence) || confidence == 1.0f) << confidence;
+TEST(WeakLight, WithoutLightNoDepthIsTrusted) {
+  for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"}) {
+    const DecodeSetup setup(code, camera_with("paper-10f0"));
+    const DepthImage image = captured(setup, 0.0);
+    double sum = 0.0;
+    int count = 0, ok = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const float confidence = image.confidence.pixels[i];
+      if (std::isnan(confidence)) continue;
+      sum += confidence;
+      ++count;
+      ok += image.status.pixels[i] == PixelStatus::ok;
+    }
+    // The main lobe is a tenth of the range.
+    EXPECT_LT(sum / count, 0.35) << code;
+    EXPECT_LT(ok, 2e-3 * pixels) << code;
   }
 }
 
 TEST(WeakLight, FromFiveDeviationsOfSignalOnDeviationIsTheSpreadOfDepth) {
+  DecodeOptions options;
+  options.min_confidence = 0.0;  // noise may move a depth out of the main lobe
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"}) {
-    const DecodeSetup setup(code, camera_with("paper-10f0"));
+    const DecodeSetup setup(code, camera_with("paper-10f0"), options);
     const DecodingTable& table = setup.decoder.table();
     const DepthImage image = captured(setup, signal_of(table, 5.0));
     double squares = 0.0, count = 0.0;

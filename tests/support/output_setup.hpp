@@ -91,6 +91,7 @@ class Matched {
         projection_(table),
         directions_(projection_),
         model_(table, projection_),
+        posterior_(table, projection_),
         kernel_(table, projection_, options),
         scale_(table),
         raw_(raw),
@@ -99,7 +100,6 @@ class Matched {
     plane_.resize(tiles * rank() * tile_size);
     electrons_.resize(tiles * k_count() * tile_size);
     bin_.assign(tiles * tile_size, std::numeric_limits<std::int32_t>::max());
-    second_peak_ = bin_;
     saturated_.resize(bin_.size());
     for (std::size_t i = 0; i < pixels_; ++i) match(i);
   }
@@ -112,12 +112,8 @@ class Matched {
   const OutputKernel& kernel() const { return kernel_; }
 
   MatchedTile tile(std::size_t first) const {
-    return {static_cast<int>(std::min(pixels_ - first, tile_size)),
-            &plane_[first * rank()],
-            &electrons_[first * k_count()],
-            &bin_[first],
-            &second_peak_[first],
-            &saturated_[first]};
+    return {static_cast<int>(std::min(pixels_ - first, tile_size)), &plane_[first * rank()],
+            &electrons_[first * k_count()], &bin_[first], &saturated_[first]};
   }
 
   void write(const DecodedView& planes) const {
@@ -151,12 +147,8 @@ class Matched {
     const Position position = model_.refine(q.data(), bin_[i]);
     PixelDecoding decoding{position.in_rows(table_.samples()),
                            model_.estimate(y.data(), q.data(), position, variance_e2.data()), 1.0};
-    if (second_peak_[i] >= 0) {
-      const Eigen::VectorXd apart = direction(bin_[i]) - direction(second_peak_[i]);
-      const double expected_lead = 0.5 * direction(bin_[i]).dot(q) * apart.squaredNorm();
-      decoding.confidence = confidence_of(apart.dot(q), expected_lead,
-                                          model_.deviation_along(apart.data(), variance_e2.data()));
-    }
+    if (decoding.estimate.signal_e_per_s > 0.0)
+      decoding.confidence = posterior_.probability(q.data(), variance_e2.data(), bin_[i]);
     return decoding;
   }
 
@@ -180,19 +172,16 @@ class Matched {
     return u;
   }
   /// The first of those that tie.
-  std::int32_t best_bin(const Eigen::VectorXd& q, std::int32_t begin, std::int32_t end) const {
+  std::int32_t best_bin(const Eigen::VectorXd& q) const {
     const auto has_contrast = [this](std::int32_t bin) {
       return !projection_.curve.row(bin).isZero(0.0);
     };
     double best = -std::numeric_limits<double>::infinity();
-    for (std::int32_t n = begin; n < end; ++n)
-      if (has_contrast(n % table_.samples()))
-        best = std::max(best, direction(n % table_.samples()).dot(q));
-    for (std::int32_t n = begin; n < end; ++n) {
-      const std::int32_t bin = n % table_.samples();
-      if (has_contrast(bin) && direction(bin).dot(q) >= best - tie_tolerance * q.norm()) return bin;
-    }
-    return begin;
+    for (std::int32_t n = 0; n < table_.samples(); ++n)
+      if (has_contrast(n)) best = std::max(best, direction(n).dot(q));
+    for (std::int32_t n = 0; n < table_.samples(); ++n)
+      if (has_contrast(n) && direction(n).dot(q) >= best - tie_tolerance * q.norm()) return n;
+    return 0;
   }
 
   void match(std::size_t i) {
@@ -209,12 +198,7 @@ class Matched {
       return (table_.saturation_level && value >= *table_.saturation_level) ||
              (table_.lower_saturation_level && value <= *table_.lower_saturation_level);
     });
-    bin_[i] = second_peak_[i] = -1;
-    if (!y.allFinite()) return;
-    bin_[i] = best_bin(q, 0, table_.samples());
-    const Lobe lobe = directions_.main_lobe(bin_[i]);
-    if (lobe.end - lobe.begin < table_.samples())
-      second_peak_[i] = best_bin(q, lobe.end, lobe.begin + table_.samples());
+    bin_[i] = y.allFinite() ? best_bin(q) : -1;
   }
 
   DecodingTable table_;
@@ -222,12 +206,13 @@ class Matched {
   AmbientProjection projection_;
   DirectionTable directions_;
   PixelModel model_;
+  LobePosterior posterior_;
   OutputKernel kernel_;
   RawScale scale_;
   std::vector<float> raw_;
   std::size_t pixels_;
   std::vector<float> plane_, electrons_;
-  std::vector<std::int32_t> bin_, second_peak_;
+  std::vector<std::int32_t> bin_;
   std::vector<std::uint8_t> saturated_;
 };
 
@@ -264,7 +249,7 @@ inline void expect_similar(const std::vector<float>& deviations,
   EXPECT_LE(others, 0.02 * finite);
 }
 
-/// All but bins and confidence, whose second peak may be another.
+/// Compares all planes but bins, and confidence, which differs more in single precision.
 inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   const DecodingTable& table = matched.table();
   const Outputs expected = matched.expected();

@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "decode/output/lobe_posterior.hpp"
 #include "decode_setup.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
@@ -92,7 +93,7 @@ void expect_negative_signal_is_no_return() {
   for (int n = 0; n < 20; ++n) correlation.row(n) << 0.0, 1.0, 0.02 * n;
   const AnyDecoder decoder(make_decoding_table(correlation, 10.0));
   EXPECT_EQ(decode_pixels(decoder, {100.0f, 0.0f, 50.0f}).status(0, 0), PixelStatus::no_return);
-  EXPECT_EQ(decode_pixels(decoder, {0.0f, 100.0f, 20.0f}).status(0, 0), PixelStatus::ok);
+  EXPECT_EQ(decode_pixels(decoder, {0.0f, 1e6f, 2e5f}).status(0, 0), PixelStatus::ok);
 }
 
 /// What estimates of pixels say, over noise of one depth.
@@ -142,15 +143,18 @@ void for_each_confidence(const Setup& setup, double signal, double ambient, cons
   }
 }
 
-/// In each class of confidence, as many pixels are right, to within `far_m`, as say so.
+/// In each class of confidence, the mean confidence is the share of pixels whose depth is right to
+/// within the half width of the main lobe.
+/// @param signals  evenly spaced on a logarithmic scale, from hardly any light on
 template <typename Setup>
 void expect_right_as_often_as_said(const Setup& setup, const std::vector<double>& signals,
-                                   double ambient, double far_m, double tolerance) {
+                                   double ambient, double tolerance) {
+  const double far_m = max_lobe_share * setup.camera.range_m();
   constexpr int classes = 5;
   std::array<RunningStatistics, classes> said, right;
   for (const double signal : signals)
     for_each_confidence(setup, signal, ambient, [&](double confidence, double error_m) {
-      const auto at = static_cast<std::size_t>((confidence - 0.5) * 2 * classes);
+      const auto at = static_cast<std::size_t>(confidence * classes);
       said[std::min<std::size_t>(at, classes - 1)].add(confidence);
       right[std::min<std::size_t>(at, classes - 1)].add(error_m < far_m);
     });

@@ -64,12 +64,13 @@ class Decoder {
   ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
   ///     variance, averaged over a quarter of the chord), carried through the least squares over
   ///     (z, S, A) that z_hat solves;
-  ///   confidence: probability of the best bin b against the second peak s, the best bin outside
-  ///   the
-  ///     main lobe, which is the run of bins around the best along which the code's own score falls
-  ///     (1 if nothing is outside): of equal odds before, the log odds are <d, q> <b, q> |d|^2 / v
-  ///     with d = b - s their directions and v the variance of <d, q> at the best bin. The second
-  ///     peak may be that of a vector nearby;
+  ///   confidence: posterior probability that the depth lies in the main lobe, against all other
+  ///     places of the curve. All depths are equally likely a priori, the ambient light may have
+  ///     any value, and the signal has a prior proportional to 1/S from a tenth of its standard
+  ///     deviation upwards; the noise is that at the best bin. The main lobe is the run of bins
+  ///     around the best one along which the code's own score falls, at most 5 % of the range on
+  ///     either side. Confidence is 1 where a bound proves that about 1e-5 at most is left for
+  ///     other places;
   ///   status: as PixelStatus says, low_signal by the noise at the best bin. The residual of a
   ///     pixel, without ambient light, counts as 0, and the pixel as no_return,
   ///     below 1e-12 of sum_i |y'_i|.
@@ -81,9 +82,8 @@ class Decoder {
   /// @param decoded  planes of the same height and width; only those that are not null are written,
   ///                 and each has the same values whichever others are
   /// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
-  /// @note the same bits for any number of threads and any layout of the raw numbers; also on every
-  ///       processor, but for confidence, and with it the status ambiguous, where the second peak
-  ///       near the border of a cell of the search may be that of either side
+  /// @note the same bits for any number of threads and any layout of the raw numbers, and on every
+  ///       processor
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;

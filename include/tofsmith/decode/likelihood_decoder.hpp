@@ -50,8 +50,8 @@ class LikelihoodDecoder {
   ///   predicted standard deviation: from the Fisher information on (z, S, A) of the expected
   ///   values
   ///     at the estimate; A >= 0 is not counted as knowledge, so that less may be seen in the dark;
-  ///   confidence: posterior probability against the best depth outside the main lobe,
-  ///     1 / (1 + exp(-lead / 2)), lead the difference of their costs (1 if nothing is outside).
+  ///   confidence: posterior probability of the main lobe around the most likely depth, with the
+  ///     noise at the first estimate of the depth.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;

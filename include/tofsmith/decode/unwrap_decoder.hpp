@@ -73,8 +73,8 @@ class UnwrapDecoder {
 
   /// Decodes one frame on all threads into the caller's planes; as Decoder::decode, but for
   ///   predicted standard deviation: noise at the estimate, carried through phases and weights;
-  ///   confidence: probability of the chosen wraps against the best ones whose depth is more than
-  ///     half a wrap of the highest frequency away (1 if there are none).
+  ///   confidence: posterior probability of the main lobe around the depth of the chosen wraps,
+  ///     from all measurements.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;

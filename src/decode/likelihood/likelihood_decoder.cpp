@@ -122,8 +122,7 @@ void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_sha
   const LikelihoodPixel pixel = search.model().pixel(electrons.data(), variance_share);
   const MostLikely found = search.most_likely(pixel, fall);
   PixelDecoding decoding{search.depth_row(found), search.model().estimate(pixel, found.best)};
-  if (decoding.estimate.signal_e_per_s > 0.0)
-    decoding.confidence = search.confidence(pixel, found, fall);
+  if (decoding.estimate.signal_e_per_s > 0.0) decoding.confidence = search.confidence(pixel, found);
   store_pixel(table, options, raw, decoding, at, decoded);
 }
 

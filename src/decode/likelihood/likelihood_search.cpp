@@ -112,8 +112,8 @@ LikelihoodSearch::LikelihoodSearch(const DecodingTable& table, const AmbientProj
     : scores_(projection),
       correlation_(table, projection),
       model_(table, projection),
-      directions_(projection),
-      is_smooth_(depth_polynomials(projection.curve).has_value()) {}
+      is_smooth_(depth_polynomials(projection.curve).has_value()),
+      posterior_(table, projection) {}
 
 double LikelihoodSearch::depth_row(const MostLikely& found) const {
   return wrap(depth_row(found.best) + found.moved, scores_.samples());
@@ -202,40 +202,29 @@ MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
 
   const Peaks found = peaks(pixel, result.weight.data(), fall);
   const double max_squares = squares_ratio * std::max(found.begin()->squares, 0.0) + squares_lead;
+  bool is_first = true;
   for (const Peak& peak : found) {
     if (peak.squares > max_squares) break;
     const ChordFit fit = model_.fit_around(pixel, peak.bin, result.weight.data());
     const double tie = cost_tie * std::max(1.0, std::abs(result.best.cost));
-    const bool is_first = result.count == 0;
     const bool is_lower = fit.cost < result.best.cost - tie;
     const bool ties = fit.cost <= result.best.cost + tie;
     if (is_first || is_lower || (ties && depth_row(fit) < depth_row(result.best)))
       result.best = fit;
-    result.followed[result.count++] = fit;
+    is_first = false;
   }
   result.best = model_.fit_near(pixel, result.best, result.weight.data());
   if (is_smooth_) result.moved = moved_to_curve(pixel, result.best, result.weight.data(), fall);
   return result;
 }
 
-double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLikely& found,
-                                    const std::vector<double>& fall) const {
-  const std::int32_t samples = scores_.samples();
-  const std::int32_t nearest = nearest_bin(depth_row(found.best), samples);
-  const Lobe lobe = directions_.main_lobe(nearest);
-  if (lobe.end - lobe.begin >= samples) return 1.0;
-
-  std::int32_t second_peak = lobe.end % samples;
-  for (std::int32_t n = lobe.end; n < lobe.begin + samples; ++n)
-    if (fall[static_cast<std::size_t>(n % samples)] > fall[static_cast<std::size_t>(second_peak)])
-      second_peak = n % samples;
-  double second_peak_cost = model_.fit(pixel, second_peak, found.weight.data()).cost;
-  for (std::size_t i = 0; i < found.count; ++i) {
-    const double above = wrap(depth_row(found.followed[i]) - lobe.begin, samples);
-    if (above > lobe.end - 1 - lobe.begin)
-      second_peak_cost = std::min(second_peak_cost, found.followed[i].cost);
-  }
-  return probability_of(0.5 * std::max(second_peak_cost - found.best.cost, 0.0));
+double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLikely& found) const {
+  std::array<double, max_measurements> plane, variance_e2;
+  correlation_.project(pixel.electrons, plane.data());
+  for (int k = 0; k < correlation_.measurements(); ++k)
+    variance_e2[static_cast<std::size_t>(k)] = 1.0 / found.weight[static_cast<std::size_t>(k)];
+  return posterior_.confidence(plane.data(), variance_e2.data(),
+                               nearest_bin(depth_row(found), scores_.samples()));
 }
 
 }  // namespace tofsmith

@@ -7,7 +7,7 @@
 
 #include "decode/ambient_projection.hpp"
 #include "decode/likelihood/likelihood_model.hpp"
-#include "decode/search/direction_table.hpp"
+#include "decode/output/lobe_posterior.hpp"
 
 namespace tofsmith {
 
@@ -37,13 +37,11 @@ class DepthScores {
 /// Most peaks over bins that are followed to the least cost beside them.
 inline constexpr std::size_t max_peaks = 16;
 
-/// The most likely light of a pixel, and what followed peaks it won against.
+/// The most likely light of a pixel.
 struct MostLikely {
   std::array<double, max_measurements> weight;  ///< first estimate of inverse variances [1/e^2]
   ChordFit best;
   double moved = 0.0;  ///< of the depth from the best chord's point to that of the curve [rows]
-  std::array<ChordFit, max_peaks> followed;
-  std::size_t count = 0;  ///< of followed peaks
 };
 
 /// Finds the most likely depth among all. A peak may be missed whose likelihood, by the weights of
@@ -60,10 +58,8 @@ class LikelihoodSearch {
   /// No signal and no followed peak where ambient light alone explains the pixel.
   /// @param fall  work space (N); then what every bin explains, DepthScores::weighted_fall
   MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall) const;
-  /// Posterior probability against the best followed peak outside the main lobe, and the best bin
-  /// there.
-  double confidence(const LikelihoodPixel& pixel, const MostLikely& found,
-                    const std::vector<double>& fall) const;
+  /// Posterior probability of the main lobe around the most likely depth.
+  double confidence(const LikelihoodPixel& pixel, const MostLikely& found) const;
 
  private:
   struct Peak;
@@ -78,8 +74,8 @@ class LikelihoodSearch {
   DepthScores scores_;
   PixelModel correlation_;
   LikelihoodModel model_;
-  DirectionTable directions_;
   bool is_smooth_;  // so that the curve between rows is known to leave the chords
+  LobePosterior posterior_;
 };
 
 }  // namespace tofsmith

@@ -12,9 +12,6 @@ namespace tofsmith {
 
 /// Pixels whose records lie side by side in the work space.
 inline constexpr int pixels_per_chunk = 128;
-/// Of such log odds the probability is 1 in single precision.
-inline constexpr float sure_log_odds = 18.0f;
-
 /// What is the same for all bins.
 struct OutputConstants {
   int samples = 0;
@@ -24,12 +21,10 @@ struct OutputConstants {
   float range_m = 0.0f;
   bool sees_ambient = false;
   std::vector<float> ambient_weight;  // a / |a|^2 (K)
-  std::vector<float> basis;           // V (K, rank)
   std::vector<float> shot_ambient;    // variance per ambient light (K)
   std::vector<float> floor_noise_e2;  // variance without light (K)
-  float max_shot = 0.0f;              // the largest variance per signal
-  float max_shot_ambient = 0.0f;      // per ambient light
-  float max_floor_e2 = 0.0f;          // and without light
+  float typical_ambient = 0.0f;       // typical_variance() per ambient light
+  float typical_floor_e2 = 0.0f;      // and without light
   float low_signal_sigma2 = 0.0f;
   float min_confidence = 0.0f;
 };
@@ -48,17 +43,14 @@ struct OutputChunk {
   const float* plane = nullptr;      // as in the tile
   const float* electrons = nullptr;  // as in the tile
   alignas(64) std::int32_t bin[pixels_per_chunk];
-  alignas(64) std::int32_t second_peak[pixels_per_chunk];
-  alignas(64) std::uint32_t start[pixels_per_chunk];              // of the bins' records
-  alignas(64) std::uint32_t second_peak_start[pixels_per_chunk];  // of the second peaks' directions
-  alignas(64) float signal[pixels_per_chunk];                     // > 0 where there is a depth
-  alignas(64) float offset[pixels_per_chunk];  // of depth from the bin, in bins: in [-1, 1]
+  alignas(64) std::uint32_t start[pixels_per_chunk];  // of the bins' records
+  alignas(64) float signal[pixels_per_chunk];         // > 0 where there is a depth
+  alignas(64) float offset[pixels_per_chunk];         // of depth from the bin, in bins: in [-1, 1]
   alignas(64) float ambient[pixels_per_chunk];
   alignas(64) float variance_share[pixels_per_chunk];  // of a single measurement: 1 / averaged
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
   alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];
-  alignas(64) float second_peak_direction[max_measurements * pixels_per_chunk];
   alignas(64) float record[max_record_fields * pixels_per_chunk];
 
   const float* field(int f) const { return record + f * pixels_per_chunk; }

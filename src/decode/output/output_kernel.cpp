@@ -24,8 +24,9 @@ namespace {
 /// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
 template <int Rank>
 HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
-                            const OutputSteps& steps, const std::uint8_t* saturated,
-                            OutputChunk& chunk, const DecodedView& planes) {
+                            const LobePosterior& posterior, const OutputSteps& steps,
+                            const std::uint8_t* saturated, OutputChunk& chunk,
+                            const DecodedView& planes) {
   const RecordLayout& layout = records.layout;
   const int rank = Rank > 0 ? Rank : layout.rank;
   find_rows(records.records, chunk.bin, chunk.pixels, chunk.start);
@@ -42,10 +43,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
   if (planes.ambient_e_per_s) write_ambient(c, chunk, planes.ambient_e_per_s);
   if (planes.predicted_standard_deviation_m)
     write_depth_noise(chunk, planes.predicted_standard_deviation_m);
-  if (steps.confidence) {
-    find_rows(records.directions, chunk.second_peak, chunk.pixels, chunk.second_peak_start);
-    find_confidence(c, records, rank, chunk);
-  }
+  if (steps.confidence) find_confidence(c, records, posterior, rank, chunk);
   if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
   if (planes.status) {
     if (!steps.confidence) std::fill_n(chunk.confidence, pixels_per_chunk, 1.0f);
@@ -61,35 +59,35 @@ HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t*
 
 template <int Rank>
 HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
-                           const OutputSteps& steps, const MatchedTile& tile,
-                           const DecodedView& planes) {
+                           const LobePosterior& posterior, const OutputSteps& steps,
+                           const MatchedTile& tile, const DecodedView& planes) {
   OutputChunk chunk;
   for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
     chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
     copy_rows(tile.bin + first, chunk.pixels, chunk.bin);
-    if (steps.confidence) copy_rows(tile.second_peak + first, chunk.pixels, chunk.second_peak);
     chunk.plane = tile.plane + first;
     chunk.electrons = tile.electrons ? tile.electrons + first : nullptr;
     std::fill_n(chunk.variance_share, pixels_per_chunk, 1.0f);
     if (tile.averaged)
       for (int i = 0; i < chunk.pixels; ++i)
         chunk.variance_share[i] = 1.0f / tile.averaged[first + i];
-    write_chunk<Rank>(records, c, steps, tile.saturated ? tile.saturated + first : nullptr, chunk,
+    write_chunk<Rank>(records, c, posterior, steps,
+                      tile.saturated ? tile.saturated + first : nullptr, chunk,
                       planes.from(static_cast<std::size_t>(first)));
   }
 }
 
-void write(const BinRecords& records, const OutputConstants& c, const OutputSteps& steps,
-           const MatchedTile& tile, const DecodedView& planes) {
+void write(const BinRecords& records, const OutputConstants& c, const LobePosterior& posterior,
+           const OutputSteps& steps, const MatchedTile& tile, const DecodedView& planes) {
   switch (records.layout.rank) {
     case 2:
-      return write_tile<2>(records, c, steps, tile, planes);
+      return write_tile<2>(records, c, posterior, steps, tile, planes);
     case 3:
-      return write_tile<3>(records, c, steps, tile, planes);
+      return write_tile<3>(records, c, posterior, steps, tile, planes);
     case 4:
-      return write_tile<4>(records, c, steps, tile, planes);
+      return write_tile<4>(records, c, posterior, steps, tile, planes);
     default:
-      return write_tile<0>(records, c, steps, tile, planes);
+      return write_tile<0>(records, c, posterior, steps, tile, planes);
   }
 }
 
@@ -178,17 +176,26 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   constants_.range_m = static_cast<float>(table.range_m);
   constants_.sees_ambient = ambient2 > 0.0;
   if (constants_.sees_ambient) constants_.ambient_weight = in_floats(projection.ambient / ambient2);
-  const RowMajorMatrix basis = projection.noise_basis;
-  constants_.basis.assign(basis.data(), basis.data() + basis.size());
   constants_.shot_ambient = in_floats(noise.shot_ambient);
   constants_.floor_noise_e2 = in_floats(noise.floor_variance_e2);
-  constants_.max_shot = static_cast<float>(std::max(0.0, noise.shot_gated.maxCoeff()));
-  constants_.max_shot_ambient = static_cast<float>(std::max(0.0, noise.shot_ambient.maxCoeff()));
-  constants_.max_floor_e2 =
-      static_cast<float>(std::max(min_variance_e2, noise.floor_variance_e2.maxCoeff()));
+  constants_.typical_ambient =
+      static_cast<float>(typical_variance(projection.noise_basis, noise.shot_ambient));
+  constants_.typical_floor_e2 = static_cast<float>(
+      std::max(min_variance_e2, typical_variance(projection.noise_basis, noise.floor_variance_e2)));
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
   constants_.min_confidence = static_cast<float>(options.min_confidence);
+  if (only_positions) return;
+  posterior_.emplace(table, projection);
+  for (std::int32_t n = 0; n < table.samples(); ++n) {
+    float* const fields = records_.records.row(n) + records_.layout.bound();
+    const LobeBound& bound = posterior_->bound(n);
+    fields[0] = static_cast<float>(projection.curve.row(n).norm());
+    fields[1] = static_cast<float>(bound.cosine);
+    fields[2] = static_cast<float>(bound.sine);
+    fields[3] = static_cast<float>(
+        typical_variance(projection.noise_basis, noise.shot_gated.row(n).transpose()));
+  }
 }
 
 bool OutputKernel::needs_electrons(const DecodedView& planes) const {
@@ -196,21 +203,21 @@ bool OutputKernel::needs_electrons(const DecodedView& planes) const {
                                      planes.predicted_standard_deviation_m || planes.status);
 }
 
-bool OutputKernel::needs_second_peaks(const DecodedView& planes) const {
+bool OutputKernel::needs_confidence(const DecodedView& planes) const {
   return planes.confidence || (planes.status && constants_.min_confidence > 0.0f);
 }
 
 void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) const {
   const RecordLayout& layout = records_.layout;
   OutputSteps steps;
-  steps.confidence = needs_second_peaks(planes);
+  steps.confidence = needs_confidence(planes);
   steps.noise = steps.confidence || planes.predicted_standard_deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
-  steps.fields = steps.confidence ? layout.end_of_directions()
+  steps.fields = steps.confidence ? layout.end_of_bound()
                  : steps.noise    ? layout.end_of_noise()
                  : steps.ambient  ? layout.end_of_light()
                                   : layout.end_of_depth();
-  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, steps, tile, planes);
+  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, *posterior_, steps, tile, planes);
 }
 
 void OutputKernel::find_positions(const MatchedTile& tile, double* depth_bin) const {

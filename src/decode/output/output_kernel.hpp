@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "decode/output/lobe_posterior.hpp"
 #include "decode/output/output_chunk.hpp"
 #include "decode/search/shared/bin_records.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
@@ -16,13 +18,11 @@ namespace tofsmith {
 /// first `pixels` does not matter. Rows that the wanted planes do not need (see OutputKernel) may
 /// be null.
 struct MatchedTile {
-  int pixels = 0;                     ///< at most pixels_per_tile
-  const float* plane = nullptr;       ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 where
-                                      ///< the residual without ambient light is rounding
-  const float* electrons = nullptr;   ///< without dark ones [e], [K][pixels_per_tile]
-  const std::int32_t* bin = nullptr;  ///< of the best score; -1 for an invalid pixel
-  const std::int32_t* second_peak =
-      nullptr;                              ///< best bin outside the main lobe; -1 if there is none
+  int pixels = 0;                           ///< at most pixels_per_tile
+  const float* plane = nullptr;             ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 where
+                                            ///< the residual without ambient light is rounding
+  const float* electrons = nullptr;         ///< without dark ones [e], [K][pixels_per_tile]
+  const std::int32_t* bin = nullptr;        ///< of the best score; -1 for an invalid pixel
   const std::uint8_t* saturated = nullptr;  ///< 1 where a measurement is clipped, else 0
   const float* averaged = nullptr;          ///< as in RawView, of the first pixel on
 };
@@ -35,9 +35,8 @@ struct MatchedTile {
 ///     quarter of the chord: less than 1 % off on average, more where the noise of bright pixels
 ///     vanishes at a bin; negative noise of single measurements, which no light makes, is cut off
 ///     in the sum only;
-///   - confidence takes measurement noise of the best bin, and the logistic function from a formula
-///     that errs by less than 2e-7; log odds of more than 18 with the most noise there can be are
-///     certain.
+///   - confidence uses the noise at the best bin. It is 1 where LobeBound proves that other places
+///     have a posterior probability of about 1e-5 at most; only other pixels need LobePosterior.
 /// A plane's values do not depend on which others are wanted, on the pixels beside it, or on the
 /// processor: products and sums are rounded one by one.
 class OutputKernel {
@@ -51,7 +50,7 @@ class OutputKernel {
 
   /// Which rows of a tile these planes need besides `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
-  bool needs_second_peaks(const DecodedView& planes) const;
+  bool needs_confidence(const DecodedView& planes) const;
   bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
 
   /// Writes the tile's pixels to the planes that are not null, from their first value on.
@@ -65,6 +64,7 @@ class OutputKernel {
  private:
   BinRecords records_;
   OutputConstants constants_;
+  std::optional<LobePosterior> posterior_;  // none: only positions
 };
 
 }  // namespace tofsmith

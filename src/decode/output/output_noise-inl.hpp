@@ -9,6 +9,9 @@
 #define TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
 #endif
 
+#include "decode/expected_noise.hpp"
+#include "decode/output/lobe_posterior.hpp"
+#include "decode/output/output_position-inl.hpp"
 #include "decode/output/shared/output_vectors-inl.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 
@@ -54,99 +57,76 @@ HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_devi
   }
 }
 
-/// 1 / (1 + exp(-x)) at x in [0, 80], to 2e-7.
-HWY_INLINE Vector logistic(Vector x) {
-  const Indices di;
-  const Vector power = hn::Mul(x, all(-1.44269504f));
-  const Vector whole = hn::Round(power), rest = hn::Sub(power, whole);
-  Vector series = product_plus(rest, all(1.54035304e-4f), all(1.33335581e-3f));
-  series = product_plus(rest, series, all(9.61812911e-3f));
-  series = product_plus(rest, series, all(5.55041087e-2f));
-  series = product_plus(rest, series, all(0.240226507f));
-  series = product_plus(rest, series, all(0.693147181f));
-  series = product_plus(rest, series, all(1.0f));
-  const auto exponent = hn::Add(hn::ConvertTo(di, whole), hn::Set(di, 127));
-  const Vector two_to_whole = hn::BitCast(Floats(), hn::ShiftLeft<23>(exponent));
-  return hn::Div(all(1.0f), product_plus(series, two_to_whole, all(1.0f)));
-}
-
-/// How far the best bin leads its second peak.
-struct Lead {
-  Vector score;   ///< of the best bin, <b, q>
-  Vector lead;    ///< <d, q>, with d the difference of both directions
-  Vector square;  ///< |d|^2
-};
-
-/// Leaves the difference of directions of bins and second peaks instead of the second peaks'.
-HWY_INLINE Lead lead_of(const RecordLayout& layout, int rank, OutputChunk& chunk, int i) {
+/// Returns where the confidence of pixels is proven to be 1. With c = <q, u_b>, q across u_b of
+/// length r and the score of other places at most s = cosine c + sine r (LobeBound), these have a
+/// chi-square larger by (|q|^2 - s^2 - r^2) / v.
+HWY_INLINE Mask is_sure(const OutputConstants& c, const RecordLayout& layout, int rank,
+                        const OutputChunk& chunk, int i) {
   const Floats d;
-  Vector score = hn::Zero(d), lead = score, square = score;
+  const float* const bound = chunk.field(layout.bound());
+  Vector square = hn::Zero(d);
   for (int j = 0; j < rank; ++j) {
-    float* const second_peak = chunk.second_peak_direction + j * pixels_per_chunk + i;
-    const Vector best = load(chunk.field(layout.direction() + j), i);
     const Vector q = load(chunk.plane + j * pixels_per_tile, i);
-    const Vector apart = hn::Sub(best, load(second_peak, 0));
-    hn::StoreU(apart, d, second_peak);
-    score = product_plus(best, q, score);
-    lead = product_plus(apart, q, lead);
-    square = product_plus(apart, apart, square);
+    square = product_plus(q, q, square);
   }
-  return {score, hn::Max(lead, hn::Zero(d)), square};
+  const Vector score = hn::Mul(along(chunk, rank, layout.point(), i), load(bound, i));
+  const Vector across2 = hn::Max(hn::Sub(square, hn::Mul(score, score)), hn::Zero(d));
+  const Vector other =
+      product_plus(score, load(bound + pixels_per_chunk, i),
+                   hn::Mul(hn::Sqrt(across2), load(bound + 2 * pixels_per_chunk, i)));
+  const Vector lead = hn::Sub(hn::Sub(square, hn::Mul(other, other)), across2);
+  const Vector variance = product_plus(
+      load(chunk.signal, i), load(bound + 3 * pixels_per_chunk, i),
+      product_plus(noisy_ambient(chunk, i), all(c.typical_ambient), all(c.typical_floor_e2)));
+  const Vector least = hn::Mul(all(sure_lead), hn::Mul(variance, load(chunk.variance_share, i)));
+  return hn::And(hn::Lt(other, score), hn::Ge(lead, least));
 }
 
-/// Noise of the lead: sum_k (V d)_k^2 v_k.
-HWY_INLINE Vector lead_variance(const OutputConstants& c, const RecordLayout& layout, int rank,
-                                const OutputChunk& chunk, int i) {
-  const Vector signal = load(chunk.signal, i), ambient = noisy_ambient(chunk, i);
-  Vector variance = hn::Zero(Floats());
-  for (int k = 0; k < layout.measurements; ++k) {
-    const float* const basis = c.basis.data() + k * rank;
-    Vector weight = hn::Zero(Floats());
-    for (int j = 0; j < rank; ++j)
-      weight = product_plus(load(chunk.second_peak_direction + j * pixels_per_chunk, i),
-                            all(basis[j]), weight);
-    const Vector without_signal =
-        product_plus(ambient, all(c.shot_ambient.data()[k]), all(c.floor_noise_e2.data()[k]));
-    const Vector noise =
-        product_plus(signal, load(chunk.field(layout.shot() + k), i), without_signal);
-    variance = product_plus(hn::Mul(weight, weight),
-                            hn::Max(noise, all(static_cast<float>(min_variance_e2))), variance);
+/// Posterior probability of the main lobe of pixel i.
+inline float posterior_of(const OutputConstants& c, const BinRecords& records,
+                          const LobePosterior& posterior, int rank, const OutputChunk& chunk,
+                          int i) {
+  const float* const record = records.records.row(chunk.bin[i]);
+  const float* const bound = record + records.layout.bound();
+  const float lit = chunk.signal[i], dim = std::max(chunk.ambient[i], 0.0f);
+  float q[max_measurements] = {}, score = 0.0f;
+  for (int j = 0; j < rank; ++j) {
+    q[j] = chunk.plane[j * pixels_per_tile + i];
+    score += q[j] * record[records.layout.point() + j];
   }
-  return variance;
+  const float variance = lit * bound[3] + (dim * c.typical_ambient + c.typical_floor_e2);
+  if (posterior.is_sure(q, score * bound[0], sure_lead * (variance * chunk.variance_share[i]),
+                        chunk.bin[i]))
+    return 1.0f;
+
+  double plane[max_measurements], variance_e2[max_measurements];
+  std::copy_n(q, rank, plane);
+  const double signal = lit, ambient = dim;
+  const float* const shot = record + records.layout.shot();
+  for (int k = 0; k < records.layout.measurements; ++k)
+    variance_e2[k] =
+        chunk.variance_share[i] *
+        std::max(min_variance_e2, signal * shot[k] + ambient * c.shot_ambient.data()[k] +
+                                      c.floor_noise_e2.data()[k]);
+  return static_cast<float>(posterior.probability(plane, variance_e2, chunk.bin[i]));
 }
 
-/// Probability of the bin against its second peak, as confidence_of(): lead score |d|^2 / variance
-/// are the log odds. For most leads they are such that the probability is 1 as a float even with
-/// the most noise there can be: the noise of others alone is computed.
-HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records, int rank,
-                                OutputChunk& chunk) {
+/// Confidence of pixels with a depth: for most of them it is proven to be 1.
+HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records,
+                                const LobePosterior& posterior, int rank, OutputChunk& chunk) {
   const Floats d;
-  const RecordLayout& layout = records.layout;
-  const Vector zero = hn::Zero(d), one = all(1.0f);
   for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
-    gather(records.directions.data(), chunk.second_peak_start + i, 0, rank,
-           chunk.second_peak_direction + i);
-    const Lead found = lead_of(layout, rank, chunk, i);
-    const Vector product = hn::Mul(found.lead, found.score);
-    const Vector max_noise = product_plus(
-        load(chunk.signal, i), all(c.max_shot),
-        product_plus(noisy_ambient(chunk, i), all(c.max_shot_ambient), all(c.max_floor_e2)));
-    const Vector share = load(chunk.variance_share, i);
-    const Mask is_sure = hn::Ge(product, hn::Mul(all(sure_log_odds), hn::Mul(max_noise, share)));
-    const auto has_second_peak =
-        hn::Gt(hn::LoadU(Indices(), chunk.second_peak + i), hn::Set(Indices(), -1));
-    const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_second_peak), hn::Not(is_sure)),
-                                 hn::Gt(load(chunk.signal, i), zero));
-    Vector confidence = one;
-    if (!hn::AllFalse(d, is_open)) {
-      gather(records.records.data(), chunk.start + i, layout.shot(), layout.end(),
-             chunk.record + i);
-      const Vector variance = hn::Mul(lead_variance(c, layout, rank, chunk, i), share);
-      const Vector log_odds =
-          hn::Min(hn::Div(hn::Mul(product, found.square), variance), all(sure_log_odds));
-      confidence = hn::IfThenElse(is_open, logistic(log_odds), confidence);
-    }
-    hn::StoreU(confidence, d, chunk.confidence + i);
+    const Vector one = all(1.0f);
+    hn::StoreU(one, d, chunk.confidence + i);
+    const Mask has_depth = hn::Gt(load(chunk.signal, i), hn::Zero(d));
+    const Mask is_open = hn::AndNot(is_sure(c, records.layout, rank, chunk, i), has_depth);
+    if (hn::AllFalse(d, is_open)) continue;
+    alignas(64) float open[pixels_per_chunk];
+    hn::StoreU(hn::IfThenElseZero(is_open, one), d, open);
+    const int end = std::min(lanes_of(d), chunk.pixels - i);
+    for (int lane = 0; lane < end; ++lane)
+      if (open[lane] != 0.0f)
+        chunk.confidence[i + lane] = posterior_of(c, records, posterior, rank, chunk, i + lane);
   }
 }
 

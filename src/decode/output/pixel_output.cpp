@@ -77,11 +77,6 @@ void require_frame(const RawView& raw, int measurements) {
 
 double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
-double confidence_of(double lead, double expected_lead, double deviation) {
-  if (deviation == 0.0) return 1.0;
-  return probability_of(2.0 * std::max(lead, 0.0) * expected_lead / (deviation * deviation));
-}
-
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,
                     const std::function<void(IndexRange pixels)>& work, std::int64_t block_pixels) {
   require_frame(raw, measurements);

@@ -32,9 +32,6 @@ void require_measurements(const RawView& raw, int measurements);
 
 /// Probability of what has these log odds.
 double probability_of(double log_odds);
-/// Probability of the best of two depths by how far it leads the other: with normal noise of this
-/// deviation the lead is of mean +-expected_lead, whichever of them is the true one.
-double confidence_of(double lead, double expected_lead, double deviation);
 
 /// As many as fast decoders take at a time; slow ones take fewer, so that progress can stop them.
 inline constexpr std::int64_t usual_block_pixels = 16384;

@@ -123,8 +123,8 @@ void search_rows(const ArcTable& table, const float* plane, int stride, const fl
       q[count++] = {plane + i, stride, rank, length};
     }
     const auto slack = [&](int k) { return margins.prune * q[k].length + 2.0f * error[pixel[k]]; };
-    for (int k = 0; k < count; ++k) start_walk<Rank>(table, q[k], slack(k), Anywhere(), walk[k]);
-    for (int k = 0; k < count; ++k) refine_walk<Rank>(table, q[k], slack(k), Anywhere(), walk[k]);
+    for (int k = 0; k < count; ++k) start_walk<Rank>(table, q[k], slack(k), walk[k]);
+    for (int k = 0; k < count; ++k) refine_walk<Rank>(table, q[k], slack(k), walk[k]);
     for (int k = 0; k < count; ++k) meet_near_rows<Rank>(table, q[k], walk[k], leaders[k]);
     for (int k = 0; k < count; ++k)
       row[pixel[k]] = prove<Rank>(table, q[k], leaders[k], margins, error[pixel[k]]);
@@ -147,48 +147,6 @@ void search(const ArcTable& table, const float* plane, int stride, const float* 
     default:
       return search_rows<0>(table, plane, stride, error, pixels, row);
   }
-}
-
-/// The best position in every lane.
-struct MeetPositions {
-  const ArcTable& table;
-  const Query& q;
-  Within within;
-  Vector best;
-  IndexVector position;
-  HWY_INLINE void operator()(std::int32_t block) {
-    const std::int32_t row = block * block_lanes;
-    if (!within.meets(row) && !within.meets(row + within.samples)) return;
-    const Floats d;
-    for (int i = 0; i < block_lanes; i += lanes_of()) {
-      const float* directions = table.rows(block) + block_lanes + i;
-      Vector score = hn::Mul(all(q[0]), hn::Load(d, directions));
-      for (int j = 1; j < q.rank; ++j)
-        score = hn::Add(score, hn::Mul(all(q[j]), hn::Load(d, directions + j * block_lanes)));
-      const std::int32_t first = block * block_lanes + i;
-      score = within(score, first, 1);
-      const auto here = within.positions(first, 1);
-      const auto is_lower = hn::RebindMask(d, hn::Lt(here, position));
-      const auto leads = hn::Or(hn::Gt(score, best), hn::And(hn::Eq(score, best), is_lower));
-      position = hn::IfThenElse(hn::RebindMask(Indices(), leads), here, position);
-      best = hn::Max(best, score);
-    }
-  }
-};
-
-std::int32_t best_position(const ArcTable& table, const float* components, std::int32_t begin,
-                           std::int32_t end) {
-  const Query q{components, 1, table.rank(), 1.0f};
-  const Margins margins = margins_of(q.rank);
-  const Within within{begin, end, table.samples()};
-  Walk walk;
-  start_walk<0>(table, q, margins.prune + margins.lead, within, walk);
-  refine_walk<0>(table, q, margins.prune + margins.lead, within, walk);
-  MeetPositions meet{table, q, within, all(no_score), hn::Set(Indices(), end)};
-  for_each_near_rows<0>(table, q, walk, meet);
-  const Indices di;
-  const auto of_best = hn::RebindMask(di, hn::Eq(meet.best, all(largest(meet.best))));
-  return hn::GetLane(hn::MinOfLanes(di, hn::IfThenElse(of_best, meet.position, hn::Set(di, end))));
 }
 
 /// Scores of 8 rows in double.
@@ -240,8 +198,8 @@ std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions,
   const Margins margins = margins_of(q.rank);
   const float slack = margins.prune + margins.lead + 1.01f * static_cast<float>(tie);
   Walk walk;
-  start_walk<0>(table, q, slack, Anywhere(), walk);
-  refine_walk<0>(table, q, slack, Anywhere(), walk);
+  start_walk<0>(table, q, slack, walk);
+  refine_walk<0>(table, q, slack, walk);
 
   DoubleScores scores{directions, unit, stride, {}};
   MeetBest best{scores, -2.0};
@@ -274,8 +232,8 @@ int near_peaks(const ArcTable& table, const float* unit, float slack, int room,
   const Margins margins = margins_of(q.rank);
   const float reach = slack + margins.prune + margins.lead;
   Walk walk;
-  start_walk<0>(table, q, reach, Anywhere(), walk);
-  refine_walk<0>(table, q, reach, Anywhere(), walk);
+  start_walk<0>(table, q, reach, walk);
+  refine_walk<0>(table, q, reach, walk);
   thread_local std::vector<float> score;
   const auto rows = static_cast<std::size_t>(table.row_blocks()) * block_lanes;
   score.assign(rows, no_score);
@@ -312,18 +270,12 @@ HWY_AFTER_NAMESPACE();
 namespace tofsmith {
 
 HWY_EXPORT(search);
-HWY_EXPORT(best_position);
 HWY_EXPORT(choose_row);
 HWY_EXPORT(near_peaks);
 
 void ArcSearch::search(const float* plane, int stride, const float* error, int pixels,
                        std::int32_t* row) const {
   HWY_DYNAMIC_DISPATCH(search)(table_, plane, stride, error, pixels, row);
-}
-
-std::int32_t ArcSearch::best_bin_within(const float* components, std::int32_t begin,
-                                        std::int32_t end) const {
-  return HWY_DYNAMIC_DISPATCH(best_position)(table_, components, begin, end) % table_.samples();
 }
 
 int ArcSearch::near_peaks(const float* unit, float slack, int room, std::int32_t* found) const {

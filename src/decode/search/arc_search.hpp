@@ -31,11 +31,6 @@ class ArcSearch {
   void search(const float* plane, int stride, const float* error, int pixels,
               std::int32_t* row) const;
 
-  /// Bin with the best score in [begin, end), begin >= 0, end <= 2 N, modulo N: the lowest position
-  /// of those that tie. Products and sums are rounded one by one: best_bin_within() says the same.
-  /// @param components  (rank): one unit vector
-  std::int32_t best_bin_within(const float* components, std::int32_t begin, std::int32_t end) const;
-
   /// Finds local maxima along the rows whose score is within `slack` of the best; if there are more
   /// than `room`, the best ones.
   /// @param unit   a unit vector (rank)

@@ -64,34 +64,6 @@ struct Walk {
   float threshold;                            // bounds below it are passed over
 };
 
-/// All rows count.
-struct Anywhere {
-  HWY_INLINE Vector operator()(Vector score, std::int32_t, std::int32_t) const { return score; }
-};
-
-/// Rows at the positions [begin, end), modulo N, count.
-struct Within {
-  std::int32_t begin, end, samples;
-  HWY_INLINE bool meets(std::int32_t block_begin) const {
-    return block_begin < end && block_begin + block_lanes > begin;
-  }
-  /// Positions of rows first, first + step, ..; those that do not count are -1.
-  HWY_INLINE IndexVector positions(std::int32_t first, std::int32_t step) const {
-    const Indices d;
-    const auto row = hn::Min(hn::Add(hn::Mul(hn::Iota(d, 0), hn::Set(d, step)), hn::Set(d, first)),
-                             hn::Set(d, samples - 1));
-    const auto least = hn::Set(d, begin), none = hn::Set(d, -1);
-    const auto position =
-        hn::IfThenElse(hn::Lt(row, least), hn::Add(row, hn::Set(d, samples)), row);
-    const auto in_time = hn::IfThenElse(hn::Lt(position, hn::Set(d, end)), position, none);
-    return hn::IfThenElse(hn::Lt(position, least), none, in_time);
-  }
-  HWY_INLINE Vector operator()(Vector score, std::int32_t first, std::int32_t step) const {
-    const auto counts = hn::Gt(positions(first, step), hn::Set(Indices(), -1));
-    return hn::IfThenElse(hn::RebindMask(Floats(), counts), score, all(no_score));
-  }
-};
-
 /// A threshold at or below 0 would need negative scores in its bounds: nothing is passed over.
 HWY_INLINE float threshold_of(float best, float slack) {
   return best > slack ? best - slack : no_score;
@@ -122,14 +94,13 @@ HWY_INLINE std::uint32_t near_in_block(const float* block, const float* score, c
   return by_start | by_end >> 1;
 }
 
-template <int Rank, typename Where>
-HWY_INLINE Vector score_knots(const KnotLevel& level, int b, const Query& q, const Where& where,
-                              Vector best, float* score) {
+template <int Rank>
+HWY_INLINE Vector score_knots(const KnotLevel& level, int b, const Query& q, Vector best,
+                              float* score) {
   for (int i = 0; i < block_lanes; i += lanes_of()) {
     const Vector part = scores<Rank>(q, level.block(b) + i);
     hn::Store(part, Floats(), score + i);
-    best = hn::Max(
-        best, where(part, (b * arcs_per_block + i) * level.rows_per_arc(), level.rows_per_arc()));
+    best = hn::Max(best, part);
   }
   return best;
 }
@@ -140,14 +111,13 @@ HWY_INLINE const KnotLevel& first_level(const ArcTable& table) {
 }
 
 /// Looks at all knots of the first level.
-template <int Rank, typename Where>
-HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, const Where& where,
-                           Walk& walk) {
+template <int Rank>
+HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, Walk& walk) {
   HWY_ALIGN float score[max_bundle_blocks * block_lanes];
   const KnotLevel& level = first_level(table);
   Vector best = all(no_score);
   for (int b = 0; b < level.blocks(); ++b)
-    best = score_knots<Rank>(level, b, q, where, best, score + b * block_lanes);
+    best = score_knots<Rank>(level, b, q, best, score + b * block_lanes);
   walk.threshold = threshold_of(largest(best), slack);
   for (int b = 0; b < level.blocks(); ++b) {
     const std::uint64_t bits =
@@ -166,27 +136,25 @@ HWY_INLINE void for_each_near(const ArcTable& table, const Walk& walk, Visit& vi
     }
 }
 
-template <int Rank, typename Where>
+template <int Rank>
 struct BestKnot {
   const ArcTable& table;
   const Query& q;
-  const Where& where;
   float (&most)[block_lanes];
   HWY_INLINE void operator()(std::int32_t bundle) {
     HWY_ALIGN float score[block_lanes];
     const Vector best = hn::Load(Floats(), most);
-    hn::Store(score_knots<Rank>(table.arcs(), bundle, q, where, best, score), Floats(), most);
+    hn::Store(score_knots<Rank>(table.arcs(), bundle, q, best, score), Floats(), most);
   }
 };
 
 /// Raises the threshold by the knots of the arcs in all bundles that are near.
-template <int Rank, typename Where>
-HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, const Where& where,
-                            Walk& walk) {
+template <int Rank>
+HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, Walk& walk) {
   if (is_flat(table)) return;
   HWY_ALIGN float most[block_lanes];
   hn::Store(all(no_score), Floats(), most);
-  BestKnot<Rank, Where> best{table, q, where, most};
+  BestKnot<Rank> best{table, q, most};
   for_each_near(table, walk, best);
   walk.threshold = std::max(walk.threshold, threshold_of(largest(hn::Load(Floats(), most)), slack));
 }
@@ -213,7 +181,7 @@ struct OfBundle {
   Visit& visit;
   HWY_INLINE void operator()(std::int32_t bundle) {
     HWY_ALIGN float score[block_lanes];
-    score_knots<Rank>(table.arcs(), bundle, q, Anywhere(), all(no_score), score);
+    score_knots<Rank>(table.arcs(), bundle, q, all(no_score), score);
     std::uint32_t bits = near_in_block<Rank>(table.arcs().block(bundle), score, q, threshold);
     for (; bits != 0; bits &= bits - 1)
       visit_arc(table, bundle * arcs_per_block + std::countr_zero(bits), visit);

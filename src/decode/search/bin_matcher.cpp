@@ -34,17 +34,15 @@ BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& proj
                        bool for_few)
     : directions_(projection),
       arcs_(directions_),
-      second_peaks_(directions_, arcs_),
       distinct_(directions_),
       search_(make_search(for_few)),
       projection_(table, projection, min_distance()),
       exact_(table, projection) {}
 
 BinMatcher::Search BinMatcher::make_search(bool for_few) const {
-  if (CircleSearch::serves(distinct_))
-    return Search(std::in_place_type<CircleSearch>, distinct_, second_peaks_);
+  if (CircleSearch::serves(distinct_)) return Search(std::in_place_type<CircleSearch>, distinct_);
   if (!for_few && CellTable::serves(distinct_))
-    return Search(std::in_place_type<CellSearch>, distinct_, second_peaks_);
+    return Search(std::in_place_type<CellSearch>, distinct_);
   return {};
 }
 
@@ -58,14 +56,14 @@ double BinMatcher::min_distance() const {
 void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
                        PixelTile& tile) const {
   projection_.project(view, first, pixels, for_outputs, tile);
-  if (search(for_outputs, tile)) return;
+  if (search(tile)) return;
   for (int i = 0; i < pixels; ++i)
     if (tile.bin[i] < 0) decide(view, first, i, tile);
 }
 
 void BinMatcher::match_plane(PixelTile& tile) const {
   std::fill_n(tile.error, whole_vectors(tile.pixels), 0.0f);
-  if (search(false, tile)) return;
+  if (search(tile)) return;
   for (int i = 0; i < tile.pixels; ++i) {
     if (tile.bin[i] >= 0) continue;
     std::array<double, max_measurements> unit;
@@ -76,10 +74,9 @@ void BinMatcher::match_plane(PixelTile& tile) const {
 }
 
 /// @returns whether all bins are proven
-bool BinMatcher::search(bool wants_second_peaks, PixelTile& tile) const {
+bool BinMatcher::search(PixelTile& tile) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);
-  if (const auto* cells = std::get_if<CellSearch>(&search_))
-    return cells->search(wants_second_peaks, tile);
+  if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->search(tile);
   arcs_.search(tile.plane, pixels_per_tile, tile.error, tile.pixels, tile.bin);
   bool all_proven = true;
   for (int i = 0; i < tile.pixels; ++i) {
@@ -88,30 +85,6 @@ bool BinMatcher::search(bool wants_second_peaks, PixelTile& tile) const {
     all_proven = all_proven && is_proven;
   }
   return all_proven;
-}
-
-void BinMatcher::find_second_peaks(PixelTile& tile) const {
-  const auto* circle = std::get_if<CircleSearch>(&search_);
-  const bool has_cells = std::holds_alternative<CellSearch>(search_);
-  for (int i = 0; i < tile.pixels; ++i) {
-    std::int32_t& second_peak = tile.second_peak[i];
-    if (tile.bin[i] < 0)
-      second_peak = -1;
-    else if (circle)
-      second_peak = circle->second_peak(tile.bin[i]);
-    else if (has_cells)
-      second_peak = second_peaks_.moved_out(tile.bin[i], CellRecord::second_peak_in(second_peak));
-    else
-      second_peak = SecondPeakSearch::unknown;
-    if (second_peak == SecondPeakSearch::unknown) second_peak = second_peak_of(tile, i);
-  }
-}
-
-/// The second peak of one pixel, for its own vector.
-std::int32_t BinMatcher::second_peak_of(const PixelTile& tile, int pixel) const {
-  std::array<float, max_measurements> unit;
-  normalized(tile, pixel, directions_.rank(), unit);
-  return second_peaks_.second_peak(tile.bin[pixel], unit.data());
 }
 
 /// Whether single precision tells where a pixel is. No search proves the bin of one that is not.

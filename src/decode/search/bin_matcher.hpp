@@ -5,6 +5,7 @@
 #include <optional>
 #include <variant>
 
+#include "decode/search/arc_search.hpp"
 #include "decode/search/cell_search.hpp"
 #include "decode/search/circle_search.hpp"
 #include "decode/search/exact_projection.hpp"
@@ -17,7 +18,7 @@ namespace tofsmith {
 class BinMatcher {
  public:
   /// @param for_few  for so few pixels that proving a table of cells would take longer than they do
-  ///                 without one; its second peaks are those of the pixels' own vectors
+  ///                 without one
   BinMatcher(const DecodingTable& table, const AmbientProjection& projection, bool for_few = false);
   BinMatcher(const BinMatcher&) = delete;
   BinMatcher& operator=(const BinMatcher&) = delete;
@@ -39,24 +40,18 @@ class BinMatcher {
   /// The same for vectors that already lie in the tile's plane and are what they are: exact. Bins
   /// are -1 where one is not finite.
   void match_plane(PixelTile& tile) const;
-  /// Completes `second_peak` of a matched tile: what the search found with the bin (rank 3 and 4:
-  /// for the centre of the cell; rank 2: for the bin's own direction) if it is outside the main
-  /// lobe of the pixel's bin, else the best for the pixel's own vector.
-  void find_second_peaks(PixelTile& tile) const;
 
  private:
-  bool search(bool wants_second_peaks, PixelTile& tile) const;
+  bool search(PixelTile& tile) const;
   bool is_precise(const PixelTile& tile, int pixel) const;
   void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
   std::int32_t choose(const double* unit, double tie) const;
-  std::int32_t second_peak_of(const PixelTile& tile, int pixel) const;
 
   Search make_search(bool for_few) const;
   double min_distance() const;
 
   DirectionTable directions_;
   ArcSearch arcs_;
-  SecondPeakSearch second_peaks_;
   DistinctDirections distinct_;
   Search search_;
   TileProjection projection_;

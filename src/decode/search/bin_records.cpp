@@ -147,20 +147,9 @@ BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& proj
                        bool with_chords, const Builder& builder)
     : layout(builder.layout()),
       records(table.samples(), layout.end()),
-      chords(ChordLayout::first_row(table.samples()), ChordLayout::fields),
-      directions(table.samples(), layout.rank) {
-  // As in the search, bins without contrast repeat the direction of the bin before, the first ones
-  // that of the first bin with some.
-  std::int32_t current = 0;
-  while (projection.curve.row(current).isZero(0.0)) ++current;
-  for (std::int32_t n = 0; n < table.samples(); ++n) {
-    if (!projection.curve.row(n).isZero(0.0)) current = n;
-    store(projection.curve.row(current).normalized(), directions.row(n));
-  }
-  for (std::int32_t n = 0; n < table.samples(); ++n) {
+      chords(ChordLayout::first_row(table.samples()), ChordLayout::fields) {
+  for (std::int32_t n = 0; n < table.samples(); ++n)
     builder.fill(n, records.row(n), with_chords ? &chords : nullptr);
-    std::copy_n(directions.row(n), layout.rank, records.row(n) + layout.direction());
-  }
 }
 
 }  // namespace tofsmith

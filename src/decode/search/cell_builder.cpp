@@ -44,10 +44,8 @@ CellBox CellBox::child(int part, int rank) const {
   return box;
 }
 
-CellBuilder::CellBuilder(const DistinctDirections& directions, const SecondPeakSearch& second_peaks,
-                         double fit_unit)
+CellBuilder::CellBuilder(const DistinctDirections& directions, double fit_unit)
     : directions_(&directions),
-      second_peaks_(&second_peaks),
       rank_(directions.rank()),
       corner_count_(1 << (directions.rank() - 1)),
       count_(directions.count()),
@@ -95,19 +93,19 @@ void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& c
 
   // The best in the middle, and at every corner, rule out most others.
   const auto corner_count = static_cast<std::size_t>(corner_count_);
-  std::array<std::size_t, max_corners + 1> second_peaks{};
+  std::array<std::size_t, max_corners + 1> leaders{};
   double best_sum = -1e300;
   for (std::size_t k = 0; k < scores_.size(); ++k) {
     double sum = 0.0;
     for (std::size_t i = 0; i < corner_count; ++i) {
-      if (scores_[k][i] > scores_[second_peaks[i + 1]][i]) second_peaks[i + 1] = k;
+      if (scores_[k][i] > scores_[leaders[i + 1]][i]) leaders[i + 1] = k;
       sum += scores_[k][i];
     }
     if (sum <= best_sum) continue;
     best_sum = sum;
-    second_peaks[0] = k;
+    leaders[0] = k;
   }
-  const auto last = second_peaks.begin() + corner_count_ + 1;
+  const auto last = leaders.begin() + corner_count_ + 1;
   const auto loses_to = [&](const Scores& own, const Scores& other) {
     for (std::size_t i = 0; i < corner_count; ++i)
       if (!(own[i] - other[i] < -certain_loss)) return false;
@@ -115,7 +113,7 @@ void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& c
   };
   kept.clear();
   for (std::size_t k = 0; k < scores_.size(); ++k)
-    if (std::none_of(second_peaks.begin(), last,
+    if (std::none_of(leaders.begin(), last,
                      [&](std::size_t m) { return m != k && loses_to(scores_[k], scores_[m]); }))
       kept.push_back(candidates[k]);
 }
@@ -145,15 +143,14 @@ void CellBuilder::runs(const CellBox& box, const std::vector<std::int32_t>& winn
   for (std::size_t k = goes_on ? front + 1 : 0; k < winners.size();) {
     const std::size_t end = end_of_group(k);
     const bool is_last = end + 1 == winners.size();
-    split(box, corners, winners[k], goes_on && is_last ? winners[front] + count_ : winners[end],
-          found);
+    split(corners, winners[k], goes_on && is_last ? winners[front] + count_ : winners[end], found);
     k = end + 1;
   }
 }
 
 /// Cuts the directions first .. last, twice around, where the score may dip between its neighbours.
-void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t first,
-                        std::int32_t last, std::vector<CellRecord>& found) {
+void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t last,
+                        std::vector<CellRecord>& found) {
   const auto corner_count = static_cast<std::size_t>(corner_count_);
   leads_.clear();
   Scores own = scores_at(corners, around(first));
@@ -170,8 +167,6 @@ void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t
     run.length = static_cast<std::uint16_t>(end - begin);
     fit(corners, std::span(leads_).subspan(static_cast<std::size_t>(begin - first), run.length),
         run);
-    const std::int32_t bin = second_peak(box, run);
-    if (bin >= 0) run.second_peak = static_cast<std::uint16_t>(bin);
     found.push_back(run);
   };
   std::int32_t begin = first;
@@ -265,24 +260,6 @@ double CellBuilder::slack(const Corners& corners, std::span<const Scores> leads,
     });
   }
   return largest;
-}
-
-/// The best bin outside the main lobe of the run's winner, for the centre of the box.
-std::int32_t CellBuilder::second_peak(const CellBox& box, const CellRecord& run) const {
-  const Eigen::Map<const Eigen::VectorXd> centre(box.centre.data(), rank_);
-  std::int32_t winner = 0;
-  double highest = -1e300;
-  for (std::int32_t i = 0; i <= run.length; ++i) {
-    const double score = directions_->unit.row(around(run.first + i)).dot(centre);
-    if (score <= highest) continue;
-    highest = score;
-    winner = around(run.first + i);
-  }
-  std::array<float, max_cell_rank> unit{};
-  for (int j = 0; j < rank_; ++j)
-    unit[static_cast<std::size_t>(j)] = static_cast<float>(centre[j] / centre.norm());
-  return second_peaks_->second_peak(directions_->bin[static_cast<std::size_t>(winner)],
-                                    unit.data());
 }
 
 }  // namespace tofsmith

@@ -9,7 +9,6 @@
 
 #include "decode/search/cell_table.hpp"
 #include "decode/search/distinct_directions.hpp"
-#include "decode/search/second_peak_search.hpp"
 
 namespace tofsmith {
 
@@ -31,8 +30,7 @@ struct CellBox {
 class CellBuilder {
  public:
   /// @param fit_unit  of the records' fits
-  CellBuilder(const DistinctDirections& directions, const SecondPeakSearch& second_peaks,
-              double fit_unit);
+  CellBuilder(const DistinctDirections& directions, double fit_unit);
 
   /// Those of `candidates` that can win somewhere in a box, ascending.
   void winners(const CellBox& box, const std::vector<std::int32_t>& candidates,
@@ -57,14 +55,12 @@ class CellBuilder {
   Corners corners_of(const CellBox& box) const;
   Scores scores_at(const Corners& corners, std::int32_t n) const;
   std::int32_t around(std::int32_t n) const { return n < count_ ? n : n - count_; }
-  void split(const CellBox& box, const Corners& corners, std::int32_t first, std::int32_t last,
+  void split(const Corners& corners, std::int32_t first, std::int32_t last,
              std::vector<CellRecord>& found);
   void fit(const Corners& corners, std::span<const Scores> leads, CellRecord& run) const;
   double slack(const Corners& corners, std::span<const Scores> leads, const CellRecord& run) const;
-  std::int32_t second_peak(const CellBox& box, const CellRecord& run) const;
 
   const DistinctDirections* directions_;
-  const SecondPeakSearch* second_peaks_;
   int rank_;
   int corner_count_;
   std::int32_t count_;

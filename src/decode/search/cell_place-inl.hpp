@@ -174,8 +174,8 @@ HWY_INLINE int list(IndexVector pixel, hn::Mask<Indices> mask, std::int32_t* lis
 /// The bins of pixels whose cell proves them, and where to begin in the run of the others, which
 /// are listed; so are pixels with several runs.
 template <int Rank>
-HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_second_peaks,
-                        PixelTile& pixels, Scratch& scratch) {
+HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixels,
+                        Scratch& scratch) {
   const Floats d;
   const Indices di;
   const int lanes = lanes_of(d);
@@ -196,7 +196,6 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_secon
                fit23 = hn::BitCast(di, words[2]), beside = hn::BitCast(di, words[3]);
     // Of rank 3 the slack stands in place of the fourth fit.
     auto slack = high_number(fit23);
-    if (wants_second_peaks) hn::Store(beside, di, pixels.second_peak + i);
     if (Rank == 4) slack = high_number(beside);
     auto x = hn::MulAdd(high_number(fit01), hn::Load(d, scratch.place[0] + i), low_number(fit01));
     x = hn::MulAdd(low_number(fit23), hn::Load(d, scratch.place[1] + i), x);

@@ -136,7 +136,7 @@ HWY_INLINE void search_lists(const CellSearchView& view, PixelTile& pixels, Scra
 
 /// @returns whether all pixels are proven
 template <int Rank>
-bool search_tile(const CellSearchView& view, bool wants_second_peaks, PixelTile& pixels) {
+bool search_tile(const CellSearchView& view, PixelTile& pixels) {
   const int lanes = lanes_of();
   const int padded = rounded_up(pixels.pixels, lanes);
   Scratch scratch;
@@ -145,7 +145,7 @@ bool search_tile(const CellSearchView& view, bool wants_second_peaks, PixelTile&
     enter_roots(view, padded, scratch);
     place_in_roots(view, padded, scratch);
   }
-  predict<Rank>(view, padded, wants_second_peaks, pixels, scratch);
+  predict<Rank>(view, padded, pixels, scratch);
   scratch.all_proven = true;
   if (scratch.unproven_count > 0) search_runs<Rank>(view, pixels, scratch);
   if (scratch.lists > 0) search_lists<Rank>(view, pixels, scratch);
@@ -155,9 +155,8 @@ bool search_tile(const CellSearchView& view, bool wants_second_peaks, PixelTile&
   return scratch.all_proven;
 }
 
-bool search(const CellSearchView& view, bool wants_second_peaks, PixelTile& pixels) {
-  return view.rank == 3 ? search_tile<3>(view, wants_second_peaks, pixels)
-                        : search_tile<4>(view, wants_second_peaks, pixels);
+bool search(const CellSearchView& view, PixelTile& pixels) {
+  return view.rank == 3 ? search_tile<3>(view, pixels) : search_tile<4>(view, pixels);
 }
 
 }  // namespace
@@ -186,8 +185,8 @@ std::vector<float> twice_around(const RowMajorMatrix& rows, std::int32_t begin) 
 
 }  // namespace
 
-CellSearch::CellSearch(const DistinctDirections& directions, const SecondPeakSearch& second_peaks)
-    : table_(directions, second_peaks), bin_(directions.bin), unit_(directions.unit) {
+CellSearch::CellSearch(const DistinctDirections& directions)
+    : table_(directions), bin_(directions.bin), unit_(directions.unit) {
   const std::int32_t count = directions.count();
   RowMajorMatrix step(count, directions.rank());
   for (std::int32_t n = 0; n < count; ++n)
@@ -234,9 +233,7 @@ std::int32_t CellSearch::choose(const double* unit, double tie) const {
   return bin_[static_cast<std::size_t>(lowest)];
 }
 
-bool CellSearch::search(bool wants_second_peaks, PixelTile& tile) const {
-  return HWY_DYNAMIC_DISPATCH(search)(view_, wants_second_peaks, tile);
-}
+bool CellSearch::search(PixelTile& tile) const { return HWY_DYNAMIC_DISPATCH(search)(view_, tile); }
 
 }  // namespace tofsmith
 #endif

@@ -33,7 +33,7 @@ struct CellSearchView {
 class CellSearch {
  public:
   /// @param directions  with CellTable::serves(directions)
-  CellSearch(const DistinctDirections& directions, const SecondPeakSearch& second_peaks);
+  explicit CellSearch(const DistinctDirections& directions);
 
   const CellTable& table() const { return table_; }
   const CellSearchView& view() const { return view_; }
@@ -45,10 +45,8 @@ class CellSearch {
 
   /// Fills bin of a tile from plane and error: -1 where single precision does not prove that it
   /// beats all others by more than ties need (see TileProjection).
-  /// @param wants_second_peaks  whether `second_peak` is filled too, with what
-  /// CellRecord::second_peak_in() reads
   /// @returns whether all are proven
-  bool search(bool wants_second_peaks, PixelTile& tile) const;
+  bool search(PixelTile& tile) const;
   /// The lowest bin whose score ties with the best, in double arithmetic.
   /// @param unit  (rank) of length 1
   /// @param tie   by how much scores may differ: up to max_proven_residual tie_tolerance

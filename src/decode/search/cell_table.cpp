@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "decode/search/cell_builder.hpp"
@@ -101,11 +102,11 @@ CellRecord CellRecord::list(std::uint32_t begin, std::uint32_t count) {
 
 bool CellTable::serves(const DistinctDirections& directions) {
   return (directions.rank() == 3 || directions.rank() == 4) &&
-         directions.bin.back() < CellRecord::no_second_peak &&
+         directions.bin.back() < std::numeric_limits<std::uint16_t>::max() &&
          directions.count() <= max_cell_directions;
 }
 
-CellTable::CellTable(const DistinctDirections& directions, const SecondPeakSearch& second_peaks)
+CellTable::CellTable(const DistinctDirections& directions)
     : rank_(directions.rank()),
       root_bits_(root_bits_for(rank_, directions.count())),
       cut_bits_(cut_bits_for(rank_, directions.count())),
@@ -116,7 +117,7 @@ CellTable::CellTable(const DistinctDirections& directions, const SecondPeakSearc
   std::iota(all.begin(), all.end(), 0);
   parallel_for(faces * parts, [&](std::int64_t i) {
     const int face = static_cast<int>(i) / parts, part = static_cast<int>(i) % parts;
-    CellBuilder builder(directions, second_peaks, fit_unit_);
+    CellBuilder builder(directions, fit_unit_);
     std::array<std::size_t, max_cell_rank> index{};
     for (int s = 0; s < sides; ++s) index[static_cast<std::size_t>(s)] = part >> s & 1;
     split(builder, rank_, face, CellBox::face(face).child(part, rank_), root_bits_ - 1, index, all,
@@ -140,7 +141,7 @@ CellTable::CellTable(const DistinctDirections& directions, const SecondPeakSearc
 
   std::vector<Runs> runs(cells);
   parallel_for_blocks(static_cast<std::int64_t>(roots.size()), 64, [&](IndexRange block) {
-    CellBuilder builder(directions, second_peaks, fit_unit_);
+    CellBuilder builder(directions, fit_unit_);
     for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
          ++i) {
       const std::size_t first = roots_[i] >> 1;

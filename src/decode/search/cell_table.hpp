@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "decode/search/distinct_directions.hpp"
-#include "decode/search/second_peak_search.hpp"
 
 namespace tofsmith {
 
@@ -19,7 +18,6 @@ inline constexpr std::int32_t max_cell_directions = 16384;
 /// A run of neighbouring directions that may win in a cell of the sphere, among which the score has
 /// one peak; or, for a cell with several such runs or without a useful fit, where its records are.
 struct CellRecord {
-  static constexpr std::uint16_t no_second_peak = 0xffff;
   static constexpr std::int16_t no_proof = 0x7fff;
   static constexpr std::uint16_t several = 0x8000;
   static constexpr double slack_unit = 1.0 / 16384;
@@ -31,8 +29,7 @@ struct CellRecord {
   /// Winner after first, as a real number: x = [0] + sum_s [s] t_s, in units of the table. Cells of
   /// rank 3 hold their slack in the last one.
   std::array<std::int16_t, max_cell_rank> fit{};
-  std::uint16_t second_peak =
-      no_second_peak;  ///< bin that scores best outside the main lobe, at the centre
+  std::uint16_t unused = 0;  ///< fills the record
   /// In units of slack_unit: x is right wherever it is further than this from half-way between two
   /// directions; no_proof (only in lists): nowhere.
   std::int16_t slack = no_proof;
@@ -42,11 +39,6 @@ struct CellRecord {
   std::uint32_t list_begin() const;
   std::uint32_t list_length() const { return length & (several - 1u); }
   static CellRecord list(std::uint32_t begin, std::uint32_t count);
-  /// The second peak in a record's last word; -1 where there is none.
-  static std::int32_t second_peak_in(std::int32_t word) {
-    const std::int32_t second_peak = word & 0xffff;
-    return second_peak == no_second_peak ? -1 : second_peak;
-  }
 };
 static_assert(sizeof(CellRecord) == 16);
 
@@ -59,7 +51,7 @@ class CellTable {
  public:
   static bool serves(const DistinctDirections& directions);
   /// @param directions  with serves(directions)
-  CellTable(const DistinctDirections& directions, const SecondPeakSearch& second_peaks);
+  explicit CellTable(const DistinctDirections& directions);
 
   int rank() const { return rank_; }
   /// Roots along a side of a face are 2^root_bits; the cells of a cut one 2^cut_bits.

@@ -32,7 +32,6 @@ ChordMatcher::Pieces::Pieces(const DecodingTable& table, const AmbientProjection
   const auto samples = static_cast<std::int32_t>(curve.rows());
   std::vector<Eigen::RowVectorXd> points;
   for (std::int32_t n = 0; n < samples; ++n) {
-    point_of_bin.push_back(static_cast<std::int32_t>(points.size()));
     points.push_back(curve.row(n));
     bin_of_point.push_back(n);
     const double turn = turn_rad[n];
@@ -89,18 +88,6 @@ void ChordMatcher::match_bins(const RawView& view, std::int64_t first, int pixel
 void ChordMatcher::match_plane_bins(PixelTile& tile) const {
   rows_.match_plane(tile);
   choose_lobes(tile);
-}
-
-void ChordMatcher::find_second_peaks(PixelTile& tile) const {
-  if (!pieces_) return rows_.find_second_peaks(tile);
-  for (int i = 0; i < tile.pixels; ++i)
-    if (tile.bin[i] >= 0)
-      tile.bin[i] = pieces_->point_of_bin[static_cast<std::size_t>(tile.bin[i])];
-  pieces_->matcher->find_second_peaks(tile);
-  to_bins(tile);
-  for (int i = 0; i < tile.pixels; ++i)
-    if (tile.second_peak[i] >= 0)
-      tile.second_peak[i] = pieces_->bin_of_point[static_cast<std::size_t>(tile.second_peak[i])];
 }
 
 void ChordMatcher::choose_lobes(PixelTile& tile) const {

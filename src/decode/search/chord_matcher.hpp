@@ -39,13 +39,9 @@ class ChordMatcher {
   bool is_coarse() const { return pieces_.has_value(); }
   /// What matches: bins(), or of a coarse table its points.
   const BinMatcher& points() const { return pieces_ ? *pieces_->matcher : rows_; }
-  /// Of points of a coarse table: the end of its chord that is closer; and the point of a bin.
+  /// Of points of a coarse table: the end of its chord that is closer.
   std::span<const std::int32_t> bin_of_point() const {
     return pieces_ ? std::span<const std::int32_t>(pieces_->bin_of_point)
-                   : std::span<const std::int32_t>();
-  }
-  std::span<const std::int32_t> point_of_bin() const {
-    return pieces_ ? std::span<const std::int32_t>(pieces_->point_of_bin)
                    : std::span<const std::int32_t>();
   }
 
@@ -56,7 +52,6 @@ class ChordMatcher {
   /// The same without pieces of chords: the best rows, in the best lobes.
   void match_bins(const RawView& view, std::int64_t first, int pixels, PixelTile& tile) const;
   void match_plane_bins(PixelTile& tile) const;
-  void find_second_peaks(PixelTile& tile) const;
 
  private:
   /// A curve with points between the bins of long chords.
@@ -64,7 +59,6 @@ class ChordMatcher {
     Pieces(const DecodingTable& table, const AmbientProjection& projection,
            const Eigen::VectorXd& turn_rad, bool for_few);
     std::vector<std::int32_t> bin_of_point;  ///< the end of its chord that is closer
-    std::vector<std::int32_t> point_of_bin;  ///< (N)
     std::optional<BinMatcher> matcher;
   };
   void choose_lobes(PixelTile& tile) const;

@@ -98,8 +98,7 @@ bool CircleSearch::serves(const DistinctDirections& directions) {
   return directions.rank() == 2 && directions.bin.back() <= 0xffff;
 }
 
-CircleSearch::CircleSearch(const DistinctDirections& directions,
-                           const SecondPeakSearch& second_peaks) {
+CircleSearch::CircleSearch(const DistinctDirections& directions) {
   std::vector<std::int32_t> order(static_cast<std::size_t>(directions.count()));
   std::iota(order.begin(), order.end(), 0);
   const auto angle_of = [&](std::int32_t n) {
@@ -121,14 +120,6 @@ CircleSearch::CircleSearch(const DistinctDirections& directions,
   // Scores that tie are closer to a border than this; c moves by no more than twice the angle.
   margin_ = static_cast<float>(rounding + 20 * tie_tolerance / min_gap_);
   cut_into_pieces();
-  second_peak_of_bin_.assign(static_cast<std::size_t>(directions.bin.back()) + 1, -1);
-  for (std::size_t i = 0; i < bin_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const std::array<float, 2> unit = {static_cast<float>(unit_(row, 0)),
-                                       static_cast<float>(unit_(row, 1))};
-    second_peak_of_bin_[static_cast<std::size_t>(bin_[i])] =
-        second_peaks.second_peak(bin_[i], unit.data());
-  }
 }
 
 void CircleSearch::cut_into_pieces() {

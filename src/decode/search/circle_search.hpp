@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "decode/search/distinct_directions.hpp"
-#include "decode/search/second_peak_search.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
 
 namespace tofsmith {
@@ -29,21 +28,15 @@ class CircleSearch {
  public:
   static bool serves(const DistinctDirections& directions);
   /// @param directions  with serves(directions)
-  CircleSearch(const DistinctDirections& directions, const SecondPeakSearch& second_peaks);
+  explicit CircleSearch(const DistinctDirections& directions);
 
-  /// As CellSearch::search, without second peaks.
+  /// As CellSearch::search.
   bool search(PixelTile& tile) const;
-  /// As PixelTile::second_peak, for the direction of a bin.
-  std::int32_t second_peak(std::int32_t bin) const {
-    return second_peak_of_bin_[static_cast<std::size_t>(bin)];
-  }
   /// Of the four sides, one after another; as many of each.
   std::span<const CirclePiece> pieces() const { return pieces_; }
   int resolution() const { return resolution_; }
   /// By how much c must be off a border.
   float margin() const { return margin_; }
-  /// By bin; of bins that are never the best one -1.
-  std::span<const std::int32_t> second_peaks() const { return second_peak_of_bin_; }
   /// As CellSearch::choose, for any `tie`.
   std::int32_t choose(const double* unit, double tie) const;
   /// Between neighbours on the circle [rad].
@@ -57,7 +50,6 @@ class CircleSearch {
 
   int resolution_ = 0;  // pieces of a side
   std::vector<CirclePiece> pieces_;
-  std::vector<std::int32_t> second_peak_of_bin_;
   std::vector<double> angle_;      // of the distinct directions, ascending
   std::vector<double> border_;     // angle half-way to the next one
   std::vector<std::int32_t> bin_;  // of the same

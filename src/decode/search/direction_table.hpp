@@ -25,13 +25,6 @@ inline constexpr double max_proven_error = 8e-6;
 /// nor of one with more than this in |P y'| / |q|.
 inline constexpr double max_proven_residual = 32.0;
 
-/// Bins around one bin along which the code's own score falls: [begin, end), begin may be negative
-/// and end past N, modulo N. Longest possible: N.
-struct Lobe {
-  std::int32_t begin = 0;
-  std::int32_t end = 0;
-};
-
 /// Unit directions of a code's curve, laid out for search. There is one row per bin, and a last
 /// block is filled up. Bins without contrast have no direction: their rows repeat that of another
 /// bin, so that no score of theirs is new.
@@ -56,20 +49,12 @@ class DirectionTable {
   /// Of every row, filled up to a whole block.
   std::span<const std::int32_t> bins_by_row() const { return bin_of_row_; }
 
-  const Lobe& main_lobe(std::int32_t bin) const {
-    return main_lobes_[static_cast<std::size_t>(bin)];
-  }
-
  private:
-  double score_between(std::int32_t bin, std::int32_t other) const;
-  std::int32_t fall(std::int32_t bin, std::int32_t step) const;
-
   int samples_ = 0;
   int rank_ = 0;
   std::size_t stride_ = 0;  // of a block
   std::vector<std::int32_t> bin_of_row_;
   std::vector<double> directions_;
-  std::vector<Lobe> main_lobes_;
 };
 
 }  // namespace tofsmith

@@ -2,21 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/unwrap/phase_unwrapper.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 PhaseUnwrapper::PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights)
     : frequencies_(std::move(frequencies)),
       weights_(std::move(weights)),
-      whole_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)),
-      highest_(*std::max_element(frequencies_.begin(), frequencies_.end())) {
+      whole_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)) {
   TOFSMITH_ASSERT_EQ(frequencies_.size(), weights_.size());
   TOFSMITH_ASSERT_LE(count(), max_frequencies);
 }
@@ -54,15 +51,6 @@ Wraps PhaseUnwrapper::nearest(const double* phase) const {
     if (wraps.distance < best.distance) best = wraps;
   });
   return best;
-}
-
-std::optional<Wraps> PhaseUnwrapper::second_best(const double* phase, const Wraps& best) const {
-  std::optional<Wraps> found;
-  for_each_choice(phase, [&](const Wraps& wraps) {
-    if (std::abs(circular_difference(wraps.depth, best.depth, 1.0)) * highest_ <= 0.5) return;
-    if (!found || wraps.distance < found->distance) found = wraps;
-  });
-  return found;
 }
 
 }  // namespace tofsmith

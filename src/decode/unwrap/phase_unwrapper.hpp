@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 namespace tofsmith {
@@ -26,14 +25,11 @@ class PhaseUnwrapper {
   PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights);
 
   int count() const { return static_cast<int>(frequencies_.size()); }
-  int highest() const { return highest_; }
   double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
 
   /// The choice of least weighted distance, of all there are.
   /// @param phase  (count) [periods of the frequency]
   Wraps nearest(const double* phase) const;
-  /// The best choice whose depth is more than half a wrap of the highest frequency from `best`.
-  std::optional<Wraps> second_best(const double* phase, const Wraps& best) const;
 
  private:
   template <typename Use>
@@ -42,7 +38,6 @@ class PhaseUnwrapper {
   std::vector<int> frequencies_;
   std::vector<double> weights_;
   double whole_weight_ = 0.0;
-  int highest_ = 0;
 };
 
 }  // namespace tofsmith

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/shared/enum_words.hpp"
+#include "decode/output/lobe_posterior.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/search/nearest_bins.hpp"
@@ -63,7 +64,8 @@ struct UnwrapDecoder::Plan {
         phases(table, options.largest_other_energy),
         weights(weights_of(phases, table.measurements(), options.weights)),
         unwrapper(phases.frequencies(), weights),
-        model(table, projection) {}
+        model(table, projection),
+        posterior(table, projection) {}
 
   using PerMeasurement = std::array<double, max_measurements>;
   using PerFrequency = std::array<double, max_frequencies>;
@@ -75,6 +77,7 @@ struct UnwrapDecoder::Plan {
   std::vector<double> weights;
   PhaseUnwrapper unwrapper;
   PixelModel model;
+  LobePosterior posterior;
 
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
@@ -83,8 +86,6 @@ struct UnwrapDecoder::Plan {
                     const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
-  double confidence(const PerFrequency& phase, const Wraps& best, const PixelDecoding& pixel,
-                    const PerMeasurement& variance_e2) const;
 };
 
 UnwrapDecoder::UnwrapDecoder(DecodingTable table, const UnwrapOptions& options) {
@@ -173,7 +174,8 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, 
     PerFrequency share;
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();
     pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
-    pixel.confidence = confidence(phase, wraps, pixel, variance_e2);
+    pixel.confidence = posterior.confidence(plane.data(), variance_e2.data(),
+                                            nearest_bin(pixel.depth_row, table.samples()));
   }
   store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
 }
@@ -198,26 +200,6 @@ double UnwrapDecoder::Plan::deviation(const PerFrequency& factor, const PixelDec
     variance += effect[i] * effect[i] * variance_e2[i];
   }
   return std::sqrt(variance);
-}
-
-/// Moving the candidates by d_f raises the distance by sum_f w_f (d_f - d) (2 z_f + d_f - d), d the
-/// weighted mean of d_f: linear in the measured z_f, with factors 2 w_f (d_f - d), and of
-/// sum_f w_f (d_f - d)^2 without noise.
-double UnwrapDecoder::Plan::confidence(const PerFrequency& phase, const Wraps& best,
-                                       const PixelDecoding& pixel,
-                                       const PerMeasurement& variance_e2) const {
-  const std::optional<Wraps> second_best = unwrapper.second_best(phase.data(), best);
-  if (!second_best) return 1.0;
-  PerFrequency factor;
-  double expected_lead = 0.0;
-  for (std::size_t j = 0; j < weights.size(); ++j) {
-    const double moved =
-        (second_best->candidate[j] - best.candidate[j]) - (second_best->depth - best.depth);
-    factor[j] = 2 * weights[j] * moved;
-    expected_lead += weights[j] * moved * moved;
-  }
-  return confidence_of(second_best->distance - best.distance, expected_lead,
-                       deviation(factor, pixel, variance_e2));
 }
 
 }  // namespace tofsmith

@@ -65,11 +65,13 @@ struct RecordLayout {
   constexpr int signal_noise() const { return end_of_light(); }
   constexpr int end_of_noise() const { return signal_noise() + 3; }
 
-  constexpr int direction() const { return end_of_noise(); }  ///< p / |p| (rank)
-  constexpr int end_of_directions() const { return direction() + rank; }
+  /// |p|, then cosine and sine of LobeBound and typical_variance() per signal: OutputKernel fills
+  /// them where confidence is wanted.
+  constexpr int bound() const { return end_of_noise(); }
+  constexpr int end_of_bound() const { return bound() + 4; }
 
   /// Variance of the measurements per signal (K): begins a block.
-  constexpr int shot() const { return (end_of_directions() + 3) / 4 * 4; }
+  constexpr int shot() const { return (end_of_bound() + 3) / 4 * 4; }
   constexpr int end() const { return shot() + measurements; }
 };
 
@@ -99,9 +101,8 @@ struct BinRecords {
   BinRecords(const DecodingTable& table, const AmbientProjection& projection, bool with_chords);
 
   RecordLayout layout;
-  RecordTable records;     ///< of every bin
-  RecordTable chords;      ///< of every bin
-  RecordTable directions;  ///< the records' field `direction` alone
+  RecordTable records;  ///< of every bin
+  RecordTable chords;   ///< of every bin
 
  private:
   template <typename Builder>

@@ -23,9 +23,6 @@ struct PixelTile {
   alignas(64) float error[pixels_per_tile];
   /// Best bin, in [0, N); -1 where not (yet) known.
   alignas(64) std::int32_t bin[pixels_per_tile];
-  /// Bin of the best score outside the main lobe, for the vector of the pixel or one near it; -1
-  /// where there is none.
-  alignas(64) std::int32_t second_peak[pixels_per_tile];
 };
 
 }  // namespace tofsmith

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decode/ambient_projection.hpp"
+
+namespace tofsmith {
+
+class NoiseMetric;
+
+/// Half width of the main lobe as a share of the range: 5 %.
+inline constexpr double max_lobe_share = 0.05;
+
+/// Extent of the main lobe of a row: from `left` before it to `right` after it [rows].
+struct MainLobe {
+  double left = 0.0;
+  double right = 0.0;
+};
+
+/// Test that proves a confidence of 1 without a sum over the curve. With c = <q, u_b> for the
+/// direction u_b of the row, every place outside the main lobe scores at most
+///   cosine c + sine sqrt(|q|^2 - c^2)
+/// up to the margins in LobePosterior::bound().
+struct LobeBound {
+  double cosine = 1.0;
+  double sine = 0.0;
+};
+
+/// Lead in chi-square that proves a confidence of 1: about 1e-5 at most is left for other places.
+inline constexpr float sure_lead = 20.0f;
+
+/// Variance of single components of q = V^T y' with covariance C = V^T diag(v) V, a little above
+/// the mean: mean + (standard deviation) / 2 of its eigenvalues.
+double typical_variance(const Eigen::MatrixXd& noise_basis, const Eigen::VectorXd& variance);
+
+/// Nodes are processed in blocks of 16, whatever the length of vectors, so that sums have the same
+/// bits on every processor.
+inline constexpr int nodes_per_block = 16;
+
+/// Posterior probability that the depth lies in the main lobe around a row, against all other
+/// places of the curve. All depths are equally likely a priori, ambient light may have any value,
+/// and signal has a log-uniform prior (proportional to 1/S) from a tenth of its standard deviation
+/// upwards. With Gaussian noise of covariance C and c(z) = <q, p(z)>_C / |p(z)|_C, the signal in
+/// units of its standard deviation, the integral over the signal is
+///   p(z) = integral from 0.1 to infinity of exp(c t - t^2 / 2) / t dt.
+///
+/// The main lobe ends where the score of the row's own measurements stops falling, and at 5 % of
+/// the range on either side. Lobes of a smooth curve may be narrow compared with the rows of the
+/// table, so it is interpolated; `places` are the interpolated rows.
+class LobePosterior {
+ public:
+  LobePosterior(const DecodingTable& table, const AmbientProjection& projection);
+
+  MainLobe main_lobe(std::int32_t row) const;
+  const LobeBound& bound(std::int32_t row) const { return bounds_[static_cast<std::size_t>(row)]; }
+
+  /// Returns true if the best score next to the row leads every place outside its main lobe by
+  /// enough that confidence is 1: where LobeBound does not prove it, a look at all places often
+  /// does.
+  /// @param plane          q (rank)
+  /// @param score          <q, u_b> of the row
+  /// @param least_lead_e2  sure_lead, times the variance
+  bool is_sure(const float* plane, float score, float least_lead_e2, std::int32_t row) const;
+
+  /// @param plane        q (rank)
+  /// @param variance_e2  of every measurement (K)
+  /// @return in [0, 1], the same bits on every processor
+  /// @note thread-safe; allocates nothing in most cases
+  double probability(const double* plane, const double* variance_e2, std::int32_t row) const;
+  /// probability(), or 1 where is_sure() proves it.
+  double confidence(const double* plane, const double* variance_e2, std::int32_t row) const;
+
+  /// Points of the curve at most `step` radians apart, cut out of the chords between places.
+  struct Nodes {
+    double step = 0.0;
+    int count = 0;
+    int stride = 0;                ///< count, rounded up to whole blocks
+    std::vector<float> direction;  ///< unit vectors (rank, stride); 0 without contrast
+    std::vector<float> centre;     ///< of the part of the range that a node represents [place]
+    std::vector<float> width;      ///< of that part [place]; 0 in the filling
+  };
+
+ private:
+  /// Steps between nodes.
+  static constexpr double coarse_step_rad = 0.08, fine_step_rad = 0.02;
+  Nodes make_nodes(double step) const;
+  /// The same as MainLobe, in whole places.
+  struct Lobe {
+    std::int32_t left = 0;
+    std::int32_t right = 0;
+  };
+  double half_way(double from, double to) const;
+  const Lobe& lobe(std::int32_t row) const { return lobes_[static_cast<std::size_t>(row)]; }
+  float score_beside(const float* plane, float score, std::int32_t row) const;
+  void find_lobes();
+  void find_bounds();
+  void find_bounds(std::int32_t begin, std::int32_t end, Eigen::RowVectorXf& score);
+  double sum_over_nodes(const Nodes& nodes, const NoiseMetric& noise, std::int32_t row) const;
+  double sum_over_chords(const NoiseMetric& noise, std::int32_t row) const;
+
+  std::int32_t rows_;
+  int rank_;
+  int places_per_row_;
+  std::int32_t places_;
+  RowMajorMatrix curve_;        // p (places, rank)
+  RowMajorMatrix unit_;         // p / |p|; 0 without contrast
+  RowMajorMatrix noise_basis_;  // V (K, rank)
+  Eigen::VectorXd turn_rad_;    // from each place to the next; infinite where there is no chord
+  std::vector<Lobe> lobes_;     // of rows
+  std::vector<LobeBound> bounds_;
+  Nodes coarse_, fine_;
+};
+
+}  // namespace tofsmith

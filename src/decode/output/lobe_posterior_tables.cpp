@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What LobePosterior tabulates of a curve: lobes, nodes and bounds.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/shared/whole_vectors.hpp"
+#include "decode/output/lobe_posterior.hpp"
+#include "decode/search/chord_matcher.hpp"
+#include "decode/search/smooth_curve.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Beyond the neighbourhood of the lobe's ends, the bound asks for a lead 1.5 times as large, which
+/// makes up for the length of the curve.
+constexpr double far_sine = 1.22;
+
+/// Places of a smooth curve are this close, so that chords between them stay within 5e-5 rad of it.
+constexpr double place_turn_rad = 0.02;
+constexpr int max_places = 1 << 18;
+
+int places_per_row(const RowMajorMatrix& curve) {
+  if (!depth_polynomials(curve)) return 1;
+  const double places = std::ceil(turns_of(curve).maxCoeff() / place_turn_rad);
+  const auto most = std::max<Eigen::Index>(1, max_places / curve.rows());
+  return static_cast<int>(std::clamp(places, 1.0, static_cast<double>(most)));
+}
+
+}  // namespace
+
+LobePosterior::LobePosterior(const DecodingTable& table, const AmbientProjection& projection)
+    : rows_(table.samples()),
+      rank_(projection.rank()),
+      places_per_row_(places_per_row(projection.curve)),
+      places_(rows_ * places_per_row_),
+      curve_(places_per_row_ > 1 ? RowMajorMatrix(interpolated(projection.curve, places_per_row_))
+                                 : projection.curve),
+      unit_(curve_.rowwise().normalized()),
+      noise_basis_(projection.noise_basis),
+      turn_rad_(turns_of(curve_)) {
+  const auto has_contrast = [&](std::int32_t n) { return !curve_.row(n).isZero(0.0); };
+  for (std::int32_t n = 0; n < places_; ++n) {
+    const std::int32_t next = n + 1 < places_ ? n + 1 : 0;
+    if (turn_rad_[n] > jump_turn_rad || has_contrast(n) != has_contrast(next))
+      turn_rad_[n] = std::numeric_limits<double>::infinity();
+  }
+  coarse_ = make_nodes(coarse_step_rad);
+  fine_ = make_nodes(fine_step_rad);
+  find_lobes();
+  find_bounds();
+}
+
+MainLobe LobePosterior::main_lobe(std::int32_t row) const {
+  return {(lobe(row).left + 0.5) / places_per_row_, (lobe(row).right + 0.5) / places_per_row_};
+}
+
+/// As many places on either side as the score of the row's own measurements falls.
+void LobePosterior::find_lobes() {
+  constexpr double plateau = 1e-9;
+  const auto longest =
+      std::max<std::int32_t>(1, static_cast<std::int32_t>(max_lobe_share * places_));
+  const auto fall = [&](std::int32_t place, std::int32_t step) {
+    double last = 1.0;
+    for (std::int32_t distance = 1; distance <= longest; ++distance) {
+      const std::int32_t other = (place + step * distance + places_) % places_;
+      const double score = unit_.row(place).dot(unit_.row(other));
+      if (score > last + plateau) return distance - 1;
+      last = score;
+    }
+    return longest;
+  };
+  lobes_.resize(static_cast<std::size_t>(rows_));
+  parallel_for_blocks(rows_, 256, [&](IndexRange rows) {
+    for (auto n = static_cast<std::int32_t>(rows.begin); n < rows.end; ++n)
+      lobes_[static_cast<std::size_t>(n)] = {fall(n * places_per_row_, -1),
+                                             fall(n * places_per_row_, +1)};
+  });
+}
+
+LobePosterior::Nodes LobePosterior::make_nodes(double step) const {
+  Nodes nodes{.step = step};
+  std::vector<double> place;
+  std::vector<Eigen::RowVectorXd> unit;
+  double turned = std::numeric_limits<double>::infinity();
+  for (std::int32_t n = 0; n < places_; ++n) {
+    const std::int32_t next = n + 1 < places_ ? n + 1 : 0;
+    const double turn = turn_rad_[n];
+    if (turned + turn > step) {  // also at both ends of a jump
+      place.push_back(n);
+      unit.emplace_back(unit_.row(n));
+      turned = 0.0;
+    }
+    turned += turn;
+    if (!(turn > step) || std::isinf(turn)) continue;
+    const int pieces = static_cast<int>(std::ceil(turn / step));
+    for (int i = 1; i < pieces; ++i) {
+      const double t = static_cast<double>(i) / pieces;
+      place.push_back(n + t);
+      unit.emplace_back(((1 - t) * curve_.row(n) + t * curve_.row(next)).normalized());
+    }
+    turned = std::numeric_limits<double>::infinity();
+  }
+  nodes.count = static_cast<int>(place.size());
+  nodes.stride = rounded_up(nodes.count, nodes_per_block);
+  const auto stride = static_cast<std::size_t>(nodes.stride);
+  nodes.direction.assign(stride * static_cast<std::size_t>(rank_), 0.0f);
+  nodes.centre.assign(stride, 0.0f);
+  nodes.width.assign(stride, 0.0f);
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const double before = i > 0 ? place[i - 1] : place.back() - places_;
+    const double after = i + 1 < place.size() ? place[i + 1] : place.front() + places_;
+    const double begin = half_way(before, place[i]), end = half_way(place[i], after);
+    nodes.centre[i] = static_cast<float>(0.5 * (begin + end));
+    nodes.width[i] = static_cast<float>(end - begin);
+    for (int j = 0; j < rank_; ++j)
+      nodes.direction[static_cast<std::size_t>(j) * stride + i] = static_cast<float>(unit[i][j]);
+  }
+  return nodes;
+}
+
+/// The place between two others before which half of the turn between them lies, so that a node
+/// represents the whole of a run of places with the same direction.
+double LobePosterior::half_way(double from, double to) const {
+  const auto part = [&](std::int32_t n) {
+    const double turn = turn_rad_[((n % places_) + places_) % places_];
+    return std::min(turn, std::numbers::pi) * (std::min(to, n + 1.0) - std::max(from, 1.0 * n));
+  };
+  const auto first = static_cast<std::int32_t>(std::floor(from));
+  double whole = 0.0, before = 0.0;
+  for (std::int32_t n = first; n < to; ++n) whole += part(n);
+  if (whole > 0.0)
+    for (std::int32_t n = first; n < to; ++n) {
+      const double here = part(n), start = std::max(from, 1.0 * n);
+      if (before + here >= 0.5 * whole)
+        return start + (std::min(to, n + 1.0) - start) * (0.5 * whole - before) / here;
+      before += here;
+    }
+  return 0.5 * (from + to);
+}
+
+/// Scores of all nodes are found once per block of rows, so that fine tables take no longer.
+void LobePosterior::find_bounds() {
+  constexpr double most_products = 5e8;
+  const double products = static_cast<double>(rows_) * coarse_.stride * rank_;
+  const auto rows_per_block = static_cast<std::int32_t>(std::ceil(products / most_products));
+  bounds_.resize(static_cast<std::size_t>(rows_));
+  parallel_for_blocks((rows_ + rows_per_block - 1) / rows_per_block, 16, [&](IndexRange blocks) {
+    Eigen::RowVectorXf score(coarse_.stride);
+    for (auto block = static_cast<std::int32_t>(blocks.begin); block < blocks.end; ++block)
+      find_bounds(block * rows_per_block, std::min((block + 1) * rows_per_block, rows_), score);
+  });
+}
+
+/// The sine of the smallest angle to places outside the main lobe. Far places count with a margin
+/// for the distance between nodes and to the middle row of the block, and as if they were closer;
+/// see far_sine.
+void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::RowVectorXf& score) {
+  const Nodes& nodes = coarse_;
+  const double reach = max_lobe_share * places_, half_range = 0.5 * places_;
+  const auto angle_of = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); };
+  const auto sine_of = [](double angle) {
+    return std::sin(std::clamp(angle, 0.0, 0.5 * std::numbers::pi));
+  };
+  const auto score_of = [&](std::int32_t from, std::int32_t to) {
+    return unit_.row(from).dot(unit_.row((to % places_ + places_) % places_));
+  };
+  const std::int32_t middle = (begin + end) / 2 * places_per_row_;
+
+  // The part of the curve that belongs to the lobes of all rows.
+  std::int32_t left = places_, right = places_;
+  for (std::int32_t n = begin; n < end; ++n) {
+    left = std::min(left, lobe(n).left + middle - n * places_per_row_);
+    right = std::min(right, lobe(n).right + n * places_per_row_ - middle);
+  }
+  const double edge =
+      std::max(score_of(middle, middle - left - 1), score_of(middle, middle + right + 1));
+  score.setZero();
+  for (int j = 0; j < rank_; ++j)
+    score +=
+        static_cast<float>(unit_(middle, j)) *
+        Eigen::Map<const Eigen::RowVectorXf>(
+            nodes.direction.data() + static_cast<std::ptrdiff_t>(j) * nodes.stride, nodes.stride);
+  double far = -1.0;
+  for (int i = 0; i < nodes.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    double after = static_cast<double>(nodes.centre[at]) - middle;
+    if (after > half_range) after -= places_;
+    if (after < -half_range) after += places_;
+    const double beyond = after > 0.0 ? after - right : -after - left;
+    if (beyond < 0.5 * static_cast<double>(nodes.width[at])) continue;
+    // Next to the lobe the curve moves on away from the row; its edge is the closest place.
+    if (beyond <= reach && score[i] <= edge) continue;
+    far = std::max(far, static_cast<double>(score[i]));
+  }
+
+  for (std::int32_t n = begin; n < end; ++n) {
+    const std::int32_t place = n * places_per_row_;
+    const double own_edge = std::max(score_of(place, place - lobe(n).left - 1),
+                                     score_of(place, place + lobe(n).right + 1));
+    const double margin =
+        0.5 * nodes.step + (end - begin > 1 ? angle_of(score_of(place, middle)) : 0.0);
+    const double sine =
+        std::min(sine_of(angle_of(own_edge)), sine_of(angle_of(far) - margin) / far_sine);
+    bounds_[static_cast<std::size_t>(n)] = {std::sqrt(1.0 - sine * sine), sine};
+  }
+}
+
+}  // namespace tofsmith
