@@ -238,7 +238,8 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option(
           "--outputs", arguments->planes,
           "planes to write: depth,signal,ambient,confidence,deviation,status (by default as "
-          "many as OUTPUT holds), bin, averaged (measurements added); of two-return and tail also "
+          "many as OUTPUT holds), bin, averaged (measurements added), residual (chi-square per "
+          "degree of freedom); of two-return and tail also "
           "delay, ratio and returns (0 "
           "none, 1 single, 2 two, 3 unresolved); others are not computed")
       ->delimiter(',')
@@ -292,6 +293,17 @@ void add_decode_command(CLI::App& app, Session& session) {
   command
       ->add_option("--min-confidence", arguments->options.min_confidence,
                    "pixels below are marked ambiguous")
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_option("--false-alarm-rate", arguments->options.false_alarm_rate,
+                   "share of consistent pixels that are marked inconsistent; 0: no pixel is")
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_option("--model-error-percent", arguments->options.model_error_percent,
+                   "error of the camera model, such as wiggling, that is not marked inconsistent, "
+                   "in percent of the signal's part of the measurements")
       ->capture_default_str()
       ->group(for_experts);
   command

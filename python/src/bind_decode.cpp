@@ -73,7 +73,9 @@ BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
       .word("method", method, parse_decode_method)
       .word("unwrap_weights", weights, parse_unwrap_weights)
       .value("low_signal_sigma", options.low_signal_sigma)
-      .value("min_confidence", options.min_confidence);
+      .value("min_confidence", options.min_confidence)
+      .value("false_alarm_rate", options.false_alarm_rate)
+      .value("model_error_percent", options.model_error_percent);
   const MultipathOptions multipath =
       multipath_options(reader.table("multipath"), "multipath", table.range_m);
   reader.finish();
@@ -96,6 +98,7 @@ class Planes {
     take(arrays, "confidence", view_.confidence);
     take(arrays, "predicted_standard_deviation_m", view_.predicted_standard_deviation_m);
     take(arrays, "status", view_.status);
+    take(arrays, "residual", view_.residual);
     take(arrays, "delay_m", view_.delay_m);
     take(arrays, "ratio", view_.ratio);
     take(arrays, "returns", view_.returns);

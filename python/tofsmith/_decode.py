@@ -53,6 +53,11 @@ class Decoder:
         low_signal below so many standard deviations of the signal (3).
     min_confidence : float, optional
         ambiguous below this probability (0.9).
+    false_alarm_rate : float, optional
+        Share of consistent pixels that are marked inconsistent (0.001); 0 disables the status.
+    model_error_percent : float, optional
+        Error of the camera model that is not marked inconsistent, in percent of the signal's part
+        of the measurements (0).
     unwrap_weights : {"variance", "frequency"}, optional
         Of unwrap.
     device : str, optional
@@ -86,6 +91,8 @@ class Decoder:
         method: str = "zncc",
         low_signal_sigma: Optional[float] = None,
         min_confidence: Optional[float] = None,
+        false_alarm_rate: Optional[float] = None,
+        model_error_percent: Optional[float] = None,
         unwrap_weights: Optional[str] = None,
         multipath: Optional[Mapping[str, Any]] = None,
         device: str = "cpu",
@@ -99,6 +106,8 @@ class Decoder:
             "method": method,
             "low_signal_sigma": low_signal_sigma,
             "min_confidence": min_confidence,
+            "false_alarm_rate": false_alarm_rate,
+            "model_error_percent": model_error_percent,
             "unwrap_weights": unwrap_weights,
             "multipath": None if multipath is None else dict(multipath),
             "device": device,
@@ -272,8 +281,8 @@ class Decoder:
             The array of an .npz or data set of an .h5; "": the one called "raw", or the only one.
         outputs : iterable of str, optional
             Planes to write, others are not computed: depth, signal, ambient, confidence, deviation,
-            status, bin, averaged (of how many measurements numbers are the mean); of two-return
-            and tail also delay, ratio, returns. None: as many of the usual ones as `output` holds.
+            status, bin, averaged (of how many measurements numbers are the mean), residual (chi-square
+            per degree of freedom); of two-return and tail also delay, ratio, returns. None: as many of the usual ones as `output` holds.
         kind : {"radial", "z"}
             Distance along the ray, or along the optical axis of the camera's lens (without one: of
             a view 60 degrees wide); .ply and .pcd hold points either way.

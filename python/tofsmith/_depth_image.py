@@ -17,8 +17,8 @@ from ._notebook import depth_picture
 
 
 class PixelStatus(IntEnum):
-    """What became of a pixel; where several apply, the first of invalid, saturated, no_return,
-    low_signal, ambiguous. mixed is said only where mixed pixels are looked for."""
+    """Outcome of a pixel; if several apply, the first of invalid, saturated, no_return, low_signal,
+    inconsistent, ambiguous. mixed occurs only where mixed pixels are searched for."""
 
     ok = 0
     invalid = 1
@@ -27,6 +27,7 @@ class PixelStatus(IntEnum):
     low_signal = 4
     ambiguous = 5
     mixed = 6
+    inconsistent = 7
 
 
 class ReturnStatus(IntEnum):
@@ -47,12 +48,14 @@ plane_types: dict[str, type[np.generic]] = {
     "confidence": np.float32,
     "predicted_standard_deviation_m": np.float32,
     "status": np.uint8,
+    "residual": np.float32,
     "delay_m": np.float32,
     "ratio": np.float32,
     "returns": np.uint8,
 }
 multipath_planes = ("delay_m", "ratio", "returns")
-usual_planes = tuple(p for p in plane_types if p != "bin" and p not in multipath_planes)
+usual_planes = tuple(
+    p for p in plane_types if p not in ("bin", "residual") and p not in multipath_planes)
 
 
 #: Words that recordings and `tofsmith decode --outputs` have for some of them.
@@ -82,6 +85,9 @@ class DepthImage:
         Of depth around the right peak [m].
     status : ndarray of uint8
         PixelStatus.
+    residual : ndarray of float32
+        Chi-square per degree of freedom of the measurements around the decoded light; NaN if the
+        code leaves no degree of freedom.
     bin : ndarray of int32
         The best bin in [0, N); -1 where a measurement is NaN or infinite.
     delay_m, ratio : ndarray of float32
@@ -96,6 +102,7 @@ class DepthImage:
     confidence: Optional[npt.NDArray[np.float32]] = None
     predicted_standard_deviation_m: Optional[npt.NDArray[np.float32]] = None
     status: Optional[npt.NDArray[np.uint8]] = None
+    residual: Optional[npt.NDArray[np.float32]] = None
     bin: Optional[npt.NDArray[np.int32]] = None
     delay_m: Optional[npt.NDArray[np.float32]] = None
     ratio: Optional[npt.NDArray[np.float32]] = None

@@ -89,7 +89,8 @@ std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
                                                const DecodingTable& table,
                                                const Progress& progress) {
   validate(frames, reference);
-  const Decoder decoder(table);
+  // Errors of the model, which calibration is to find, must not drop pixels.
+  const Decoder decoder(table, {.false_alarm_rate = 0.0});
   const double all = static_cast<double>(frames.pixels_per_frame()) * frames.frames;
   const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(all / max_compared))));
   const ProgressParts parts(progress, static_cast<std::size_t>(frames.frames));

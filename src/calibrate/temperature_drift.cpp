@@ -89,7 +89,8 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
   cold.temperature.reset();
   const DecodingTable table = make_decoding_table(ForwardModel(code, cold), cold);
   const double range_m = table.range_m;
-  const Decoder decoder(table);
+  // Errors of the model must not drop pixels.
+  const Decoder decoder(table, {.false_alarm_rate = 0.0});
   const auto count = static_cast<std::size_t>(frames.frames);
   const ProgressParts parts(progress, count);
   std::vector<DepthImage> images;

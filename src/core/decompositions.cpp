@@ -3,6 +3,7 @@
 #include "core/shared/decompositions.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <memory>
@@ -39,6 +40,18 @@ Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
   return Eigen::LDLT<Eigen::MatrixXd>(matrix).solve(right);
+}
+
+Eigen::MatrixXd complement_of(const Eigen::MatrixXd& columns) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  const Eigen::MatrixXd q = qr.householderQ();
+  return q.rightCols(columns.rows() - qr.rank());
+}
+
+double least_eigenvalue(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .minCoeff();
 }
 
 }  // namespace tofsmith

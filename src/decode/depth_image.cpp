@@ -12,13 +12,13 @@ namespace {
 
 constexpr EnumWords<PixelStatus, all_pixel_statuses.size()> pixel_status_words(
     "PixelStatus", "status", "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous",
-    "mixed");
+    "mixed", "inconsistent");
 
 }  // namespace
 
 bool DecodedView::wants_bins_only() const {
   return bin && !depth_m && !signal_e_per_s && !ambient_e_per_s && !confidence &&
-         !predicted_standard_deviation_m && !status && !delay_m && !ratio && !returns;
+         !predicted_standard_deviation_m && !status && !residual && !delay_m && !ratio && !returns;
 }
 
 DecodedView DecodedView::of(DepthImage& image) {
@@ -27,7 +27,8 @@ DecodedView DecodedView::of(DepthImage& image) {
           .ambient_e_per_s = image.ambient_e_per_s.pixels.data(),
           .confidence = image.confidence.pixels.data(),
           .predicted_standard_deviation_m = image.predicted_standard_deviation_m.pixels.data(),
-          .status = image.status.pixels.data()};
+          .status = image.status.pixels.data(),
+          .residual = image.residual.pixels.data()};
 }
 
 DecodedView DecodedView::from(std::size_t pixel) const {
@@ -39,6 +40,7 @@ DecodedView DecodedView::from(std::size_t pixel) const {
           later(confidence),
           later(predicted_standard_deviation_m),
           later(status),
+          later(residual),
           later(delay_m),
           later(ratio),
           later(returns)};

@@ -70,6 +70,11 @@ struct OutputParameters {
   int dark_raw, gain_e_per_raw;  ///< of every measurement: pairs of words, a double or high and low
   float lowest, highest;  ///< as SaturationLevels
   int finds_confidence;
+
+  int limits, limit_stride, off_plane, off_plane_count, residual_basis, ambient_direction;
+  int shot_ambient, floor_noise;
+  float least_shot, least_shot_ambient, least_floor_e2, half_quantile;
+  int finds_residual;
 };
 
 #ifdef __cplusplus

@@ -140,6 +140,18 @@ OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kerne
   p.gain_e_per_raw = words.add_doubles(gain_e_per_raw, has_doubles);
   p.lowest = levels.lowest;
   p.highest = levels.highest;
+  p.limits = words.add(kernel.limits());
+  p.limit_stride = kernel.limits().stride();
+  p.off_plane = words.add(c.off_plane);
+  p.off_plane_count = c.off_plane_count;
+  p.residual_basis = words.add(c.residual_basis);
+  p.ambient_direction = words.add(c.ambient_direction);
+  p.half_quantile = c.half_quantile;
+  p.shot_ambient = words.add(c.shot_ambient);
+  p.floor_noise = words.add(c.floor_noise_e2);
+  p.least_shot = c.least_shot;
+  p.least_shot_ambient = c.least_shot_ambient;
+  p.least_floor_e2 = c.least_floor_e2;
   return p;
 }
 
@@ -173,6 +185,11 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   define("STATUS_NO_RETURN", static_cast<int>(PixelStatus::no_return));
   define("STATUS_SATURATED", static_cast<int>(PixelStatus::saturated));
   define("STATUS_LOW_SIGNAL", static_cast<int>(PixelStatus::low_signal));
+  define("STATUS_INCONSISTENT", static_cast<int>(PixelStatus::inconsistent));
+  define("LIMIT_VARIANCE", LimitLayout::variance);
+  define("LIMIT_ERROR", LimitLayout::error);
+  define("LIMIT_ROOT", LimitLayout::root);
+  define("LIMIT_PER_FREEDOM", LimitLayout::per_freedom);
   return options;
 }
 

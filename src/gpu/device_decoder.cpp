@@ -163,6 +163,7 @@ void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
   const std::size_t count = open.size();
   DepthImage image(1, static_cast<int>(count));
   std::vector<std::int32_t> bin(count);
+  image.residual = image.depth_m;
   DecodedView here = DecodedView::of(image);
   here.bin = bin.data();
   const auto only_wanted = [](auto*& from, const auto* to) {
@@ -176,6 +177,7 @@ void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
     use(here.confidence, decoded.confidence);
     use(here.predicted_standard_deviation_m, decoded.predicted_standard_deviation_m);
     use(here.status, decoded.status);
+    use(here.residual, decoded.residual);
   };
   for_each_plane(only_wanted);
   decoder.decode(numbers, here);

@@ -42,7 +42,7 @@ DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_do
 }
 
 std::int64_t DeviceTile::bytes_per_pixel() const {
-  constexpr std::int64_t words = 10;  // averaged, bins, open ones, planes
+  constexpr std::int64_t words = 11;  // averaged, bins, open ones, planes
   return 4 * (outputs_.records().layout.measurements + words);
 }
 
@@ -73,12 +73,13 @@ void DeviceTile::decode(const DecodedView& wanted) {
   find_bins(tables_.points, bins_);
   OutputParameters parameters = tables_.outputs;
   parameters.finds_confidence = outputs_.needs_confidence(wanted) ? 1 : 0;
+  parameters.finds_residual = outputs_.needs_residuals(wanted) ? 1 : 0;
   queue_.run(write_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
              raw_.averaged(), &bins_, &opened_, &open_, room_for(wanted.depth_m, depth_),
              room_for(wanted.signal_e_per_s, signal_), room_for(wanted.ambient_e_per_s, ambient_),
              room_for(wanted.confidence, confidence_),
              room_for(wanted.predicted_standard_deviation_m, deviation_),
-             room_for(wanted.status, status_));
+             room_for(wanted.status, status_), room_for(wanted.residual, residual_));
 }
 
 void DeviceTile::fetch(const DecodedView& to) const {
@@ -96,6 +97,7 @@ void DeviceTile::fetch(const DecodedView& to) const {
   fetch_plane(confidence_, to.confidence);
   fetch_plane(deviation_, to.predicted_standard_deviation_m);
   fetch_plane(status_, to.status);
+  fetch_plane(residual_, to.residual);
 }
 
 void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
@@ -127,7 +129,7 @@ void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
 void DeviceTile::release() {
   raw_.release();
   for (DeviceMemory* memory : {&bins_, &best_bins_, &open_, &some_numbers_, &depth_, &signal_,
-                               &ambient_, &confidence_, &deviation_, &status_})
+                               &ambient_, &confidence_, &deviation_, &status_, &residual_})
     *memory = DeviceMemory();
 }
 

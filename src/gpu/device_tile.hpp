@@ -91,7 +91,7 @@ class DeviceTile {
   DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
   std::vector<std::int32_t> bins_here_;
   std::vector<float> offsets_here_;
-  DeviceMemory depth_, signal_, ambient_, confidence_, deviation_, status_;
+  DeviceMemory depth_, signal_, ambient_, confidence_, deviation_, status_, residual_;
 };
 
 }  // namespace tofsmith

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// From bins to planes, as src/decode/output/output_position-inl.hpp and output_noise-inl.hpp.
+// From bins to planes, as src/decode/output/output_position-inl.hpp, output_noise-inl.hpp and
+// output_residual-inl.hpp.
 
 /// <q, vector> with a vector of the record.
 float along_record(const float* q, Floats vector) {
@@ -93,6 +94,150 @@ struct ChordPoint best_point(const float* q, Floats record, int bin) {
 
 #endif
 
+#define LEAST_FLOAT 1.17549435e-38f
+
+float less_square(float a, float b, float c) {
+  const float share = b / fmax(c, LEAST_FLOAT);
+  return a - share * b;
+}
+
+#ifdef RECORD_SLOPE
+void normalize_in_plane(float* vector, float square) {
+  const float scale = 1.0f / sqrt(fmax(square, LEAST_FLOAT));
+  for (int j = 0; j < RANK; ++j) vector[j] *= scale;
+}
+
+/// As find_tangent(), of a smooth curve. @return whether the pixel is on the side of the row before
+bool find_tangent(const float* q, Floats record, float t, float* direction, float* slope) {
+  float own = 0.0f, own_slope = 0.0f;
+  for (int j = 0; j < RANK; ++j) {
+    const float w = record[RECORD_SLOPE + j], b = record[RECORD_BEND + j];
+    const float c = record[RECORD_ASYMMETRY + j];
+    slope[j] = t * (t * c + b) + w;
+    direction[j] = t * (t * (t * (c * (1.0f / 3.0f)) + b * 0.5f) + w) + record[RECORD_POINT + j];
+    own = direction[j] * direction[j] + own;
+    own_slope = slope[j] * slope[j] + own_slope;
+  }
+  normalize_in_plane(direction, own);
+  normalize_in_plane(slope, own_slope);
+  return t < 0.0f;
+}
+#else
+/// As find_chord(). @return whether the chord is the left one
+bool find_tangent(const float* q, Floats record, float t, float* direction, float* slope) {
+  const float to_left = along_record(q, record + RECORD_LEFT),
+              to_right = along_record(q, record + RECORD_RIGHT);
+  const bool is_left = t < 0.0f || (t == 0.0f && fabs(to_left) >= fabs(to_right));
+  for (int j = 0; j < RANK; ++j) {
+    direction[j] = record[RECORD_POINT + j] * record[RECORD_BOUND];
+    slope[j] = record[(is_left ? RECORD_LEFT : RECORD_RIGHT) + j];
+  }
+  return is_left;
+}
+#endif
+
+/// Components of a pixel's vector along the plane and off it that the light found leaves.
+/// @return the sum of their squares
+float unexplained(const struct OutputParameters* p, Floats tables, const float* raw, const float* q,
+                  const float* direction, const float* slope, float* component) {
+  float score = q[0] * direction[0], rise = q[0] * slope[0], square = 0.0f;
+  for (int j = 1; j < RANK; ++j) {
+    score = q[j] * direction[j] + score;
+    rise = q[j] * slope[j] + rise;
+  }
+  for (int j = 0; j < RANK; ++j) {
+    const float along_slope = rise * slope[j];
+    const float found = score * direction[j] + along_slope;
+    component[j] = q[j] - found;
+    square = component[j] * component[j] + square;
+  }
+  for (int m = 0; m < p->off_plane_count; ++m) {
+    Floats weight = tables + p->off_plane + m * MEASUREMENTS;
+    float rest = electrons_of(p, tables, raw[0], 0) * weight[0];
+    for (int k = 1; k < MEASUREMENTS; ++k)
+      rest = electrons_of(p, tables, raw[k], k) * weight[k] + rest;
+    component[RANK + m] = rest;
+    square = rest * rest + square;
+  }
+  return square;
+}
+
+/// Chi-square of the weighted fit of ambient light, signal and depth.
+float weighted_squares(const struct OutputParameters* p, Floats tables, Floats record,
+                       Floats beside, float t, float signal, float ambient, const float* component,
+                       const float* direction, const float* slope) {
+  const float least =
+      signal * p->least_shot + (ambient * p->least_shot_ambient + p->least_floor_e2);
+  const float rest = 1.0f - t;
+  const int components = RANK + p->off_plane_count;
+  float aa = 0.0f, ax = 0.0f, as = 0.0f, ar = 0.0f, xx = 0.0f, xs = 0.0f, xr = 0.0f, ss = 0.0f,
+        sr = 0.0f, rr = 0.0f;
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const float shot_beside = t * beside[RECORD_SHOT + k];
+    const float shot = rest * record[RECORD_SHOT + k] + shot_beside;
+    const float without_signal =
+        ambient * tables[p->shot_ambient + k] + tables[p->floor_noise + k];
+    const float variance = fmax(signal * shot + without_signal, least);
+    Floats basis = tables + p->residual_basis + k * components;
+    float x = 0.0f, s = 0.0f, r = 0.0f;
+    for (int j = 0; j < RANK; ++j) {
+      x = direction[j] * basis[j] + x;
+      s = slope[j] * basis[j] + s;
+    }
+    for (int j = 0; j < components; ++j) r = component[j] * basis[j] + r;
+    const float a = tables[p->ambient_direction + k], weight = 1.0f / variance;
+    const float by_a = weight * a, by_x = weight * x, by_s = weight * s, by_r = weight * r;
+    aa = by_a * a + aa;
+    ax = by_a * x + ax;
+    as = by_a * s + as;
+    ar = by_a * r + ar;
+    xx = by_x * x + xx;
+    xs = by_x * s + xs;
+    xr = by_x * r + xr;
+    ss = by_s * s + ss;
+    sr = by_s * r + sr;
+    rr = by_r * r + rr;
+  }
+  if (p->sees_ambient) {
+    const float of_x = ax / aa, of_s = as / aa;
+    xx = xx - of_x * ax;
+    xs = xs - of_x * as;
+    xr = xr - of_x * ar;
+    ss = ss - of_s * as;
+    sr = sr - of_s * ar;
+    rr = less_square(rr, ar, aa);
+  }
+  const float of_s = xs / fmax(xx, LEAST_FLOAT);
+  ss = ss - of_s * xs;
+  sr = sr - of_s * xr;
+  rr = less_square(rr, xr, xx);
+  return fmax(less_square(rr, sr, ss), 0.0f);
+}
+
+/// Returns true for an inconsistent pixel. Writes chi-square per degree of freedom unless null.
+bool find_residual(const struct OutputParameters* p, Floats tables, const float* raw,
+                   const float* q, Floats record, int bin, float offset, float signal,
+                   float ambient, float share, float* residual) {
+  float component[MEASUREMENTS], direction[RANK], slope[RANK];
+  const bool is_left = find_tangent(q, record, offset, direction, slope);
+  const float square = unexplained(p, tables, raw, q, direction, slope, component);
+  Floats limit = tables + p->limits + (bin + 1) * p->limit_stride;
+  const float bound = variance_of(signal, ambient, limit + LIMIT_VARIANCE) * share;
+  const float from_noise = sqrt(bound), error = signal * limit[LIMIT_ERROR];
+  const float longest = from_noise + fmin(error, error * error * p->half_quantile / from_noise);
+  const bool is_open = square > longest * longest;
+  if (!is_open && !residual) return false;
+  int next = bin + (is_left ? -1 : 1);
+  if (next < 0) next = p->samples - 1;
+  if (next >= p->samples) next = 0;
+  Floats beside = tables + p->records + (next + 1) * p->record_stride;
+  const float chi2 = weighted_squares(p, tables, record, beside, fabs(offset), signal, ambient,
+                                      component, direction, slope) /
+                     share;
+  if (residual) *residual = chi2 * limit[LIMIT_PER_FREEDOM];
+  return is_open && sqrt(chi2 * bound) > limit[LIMIT_ROOT] * longest;
+}
+
 /// How far from its bin each pixel is [bin], -1 .. 1.
 kernel void write_offsets(const struct OutputParameters p, const struct TileParameters tile,
                           Floats tables, global const uchar* raw_numbers,
@@ -115,7 +260,8 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
                          global const int* bins, global int* opened, global int* open,
                          global float* depth_m, global float* signal_e_per_s,
                          global float* ambient_e_per_s, global float* confidences,
-                         global float* deviation_m, global uchar* status) {
+                         global float* deviation_m, global uchar* status,
+                         global float* residuals) {
   const int pixel = (int)get_global_id(0);
   if (pixel >= tile.pixels) return;
   const int bin = bins[pixel];
@@ -141,7 +287,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   Floats chord = tables + p.chords +
                  ((bin + 1) * p.chord_blocks + p.chord_quarters + steps) * CHORD_FIELDS;
   float ambient = 0.0f;
-  if (p.sees_ambient && (ambient_e_per_s || confidences || deviation_m || status)) {
+  if (p.sees_ambient && (ambient_e_per_s || confidences || deviation_m || status || residuals)) {
     float sum = electrons_of(&p, tables, raw[0], 0) * tables[p.ambient_weights];
     for (int k = 1; k < MEASUREMENTS; ++k)
       sum = electrons_of(&p, tables, raw[k], k) * tables[p.ambient_weights + k] + sum;
@@ -158,9 +304,17 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   if (p.finds_confidence && has_depth && !is_sure(&p, q, record, signal, noisy_ambient, share))
     open[atomic_inc(opened)] = pixel;
   if (confidences) confidences[pixel] = has_depth ? 1.0f : NO_VALUE;
+  bool is_inconsistent = false;
+  if (p.finds_residual) {
+    float residual = NO_VALUE;
+    is_inconsistent =
+        find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient, share,
+                      residuals ? &residual : 0);
+    if (residuals) residuals[pixel] = has_depth ? residual : NO_VALUE;
+  }
   if (status) {
     const float noise = variance_of(signal, noisy_ambient, record + RECORD_SIGNAL_NOISE) * share;
-    uchar value = STATUS_OK;
+    uchar value = is_inconsistent ? STATUS_INCONSISTENT : STATUS_OK;
     if (signal * signal < p.low_signal_sigma2 * noise) value = STATUS_LOW_SIGNAL;
     if (!has_depth) value = STATUS_NO_RETURN;
     for (int k = 0; k < MEASUREMENTS; ++k)

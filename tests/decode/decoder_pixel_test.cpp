@@ -92,13 +92,14 @@ std::vector<float> between_two_depths(const DecodingTable& table) {
 }
 
 TEST(Decoder, APixelBetweenTwoDepthsIsAmbiguous) {
-  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-30x"));
+  const DecodeOptions any_residual{.false_alarm_rate = 0.0};
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-30x"), any_residual);
   const std::vector<float> raw = between_two_depths(setup.decoder.table());
   const DepthImage image = decode_pixels(setup.decoder, raw);
   EXPECT_EQ(image.status(0, 0), PixelStatus::ambiguous);
   EXPECT_LT(image.confidence(0, 0), 0.9f);
   EXPECT_TRUE(std::isfinite(image.depth_m(0, 0)));
-  DecodeOptions trusting;
+  DecodeOptions trusting = any_residual;
   trusting.min_confidence = 0.0;
   const DecodeSetup trusting_setup("hamiltonian-k5", camera_with("paper-30x"), trusting);
   EXPECT_EQ(decode_pixels(trusting_setup.decoder, raw).status(0, 0), PixelStatus::ok);

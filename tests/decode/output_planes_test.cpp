@@ -73,6 +73,7 @@ TEST(OutputKernel, WritesNothingPastATile) {
       std::copy_n(whole.confidence.begin(), pixels, expected.confidence.begin());
       std::copy_n(whole.deviation_m.begin(), pixels, expected.deviation_m.begin());
       std::copy_n(whole.status.begin(), pixels, expected.status.begin());
+      std::copy_n(whole.residual.begin(), pixels, expected.residual.begin());
       expect_same(outputs, expected);
     });
   }
@@ -99,7 +100,7 @@ TEST(OutputKernel, APlaneDoesNotDependOnWhichOthersAreWanted) {
   const Matched matched(setup.decoder.table(),
                         pixels_at_all_light_levels(setup.decoder.table(), 67));
   const Outputs all = matched.outputs();
-  for (unsigned planes = 0; planes < 128; ++planes) {
+  for (unsigned planes = 0; planes < 256; ++planes) {
     Outputs some(matched.pixels());
     matched.write(some.view(planes));
     SCOPED_TRACE(planes);

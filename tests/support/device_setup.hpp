@@ -56,6 +56,7 @@ inline void expect_alike(const DeviceInfo& info, bool uses_doubles, const Output
   expect_near(a.ambient, b.ambient, brightest_e_per_s);
   expect_near(a.confidence, b.confidence, 1.0);
   expect_near(a.deviation_m, b.deviation_m, 0.0);
+  expect_near(a.residual, b.residual, 1.0);
 }
 
 }  // namespace tofsmith

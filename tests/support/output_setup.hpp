@@ -32,19 +32,20 @@ struct Outputs {
         ambient(pixels, -7.0f),
         confidence(pixels, -7.0f),
         deviation_m(pixels, -7.0f),
+        residual(pixels, -7.0f),
         status(pixels, static_cast<PixelStatus>(77)) {}
 
   /// @param planes  bit p: whether plane p of the view is wanted
-  DecodedView view(unsigned planes = 127) {
+  DecodedView view(unsigned planes = 255) {
     const auto wanted = [planes](unsigned p, auto& plane) {
       return planes >> p & 1u ? plane.data() : nullptr;
     };
     return {wanted(0, bin),        wanted(1, depth_m),     wanted(2, signal), wanted(3, ambient),
-            wanted(4, confidence), wanted(5, deviation_m), wanted(6, status)};
+            wanted(4, confidence), wanted(5, deviation_m), wanted(6, status), wanted(7, residual)};
   }
 
   std::vector<std::int32_t> bin;
-  std::vector<float> depth_m, signal, ambient, confidence, deviation_m;
+  std::vector<float> depth_m, signal, ambient, confidence, deviation_m, residual;
   std::vector<PixelStatus> status;
 };
 
@@ -63,6 +64,7 @@ inline void expect_same(const Outputs& a, const Outputs& b) {
   EXPECT_TRUE(same(a.ambient, b.ambient));
   EXPECT_TRUE(same(a.confidence, b.confidence));
   EXPECT_TRUE(same(a.deviation_m, b.deviation_m));
+  EXPECT_TRUE(same(a.residual, b.residual));
   EXPECT_EQ(a.status, b.status);
 }
 
@@ -79,6 +81,7 @@ inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes
   EXPECT_TRUE(same(some.confidence, expected(4).confidence));
   EXPECT_TRUE(same(some.deviation_m, expected(5).deviation_m));
   EXPECT_EQ(some.status, expected(6).status);
+  EXPECT_TRUE(same(some.residual, expected(7).residual));
 }
 
 /// A code's kernel, and pixels matched to bins in plain double arithmetic.
@@ -92,6 +95,7 @@ class Matched {
         directions_(projection_),
         model_(table, projection_),
         posterior_(table, projection_),
+        residuals_(table, projection_, options),
         kernel_(table, projection_, options),
         scale_(table),
         raw_(raw),
@@ -149,6 +153,7 @@ class Matched {
                            model_.estimate(y.data(), q.data(), position, variance_e2.data()), 1.0};
     if (decoding.estimate.signal_e_per_s > 0.0)
       decoding.confidence = posterior_.probability(q.data(), variance_e2.data(), bin_[i]);
+    decoding.residual = residuals_.residual(y.data(), decoding.estimate, position, 1.0);
     return decoding;
   }
 
@@ -207,6 +212,7 @@ class Matched {
   DirectionTable directions_;
   PixelModel model_;
   LobePosterior posterior_;
+  ResidualModel residuals_;
   OutputKernel kernel_;
   RawScale scale_;
   std::vector<float> raw_;
@@ -232,10 +238,10 @@ inline void expect_near(const std::vector<float>& values, const std::vector<floa
 }
 
 /// Noise is that of the middle of a quarter of a chord, and differs much within it only where a
-/// bright pixel's shot noise vanishes.
-inline void expect_similar(const std::vector<float>& deviations,
-                           const std::vector<float>& expected) {
-  expect_near(deviations, expected, 1.0, 0.0, "deviation");
+/// bright pixel's shot noise vanishes. The slope of residuals at a bin is that of one side.
+inline void expect_similar(const std::vector<float>& deviations, const std::vector<float>& expected,
+                           double others_share = 0.02) {
+  expect_near(deviations, expected, 1.0, 0.0, "deviation or residual");
   double sum = 0.0;
   int finite = 0, others = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -246,7 +252,7 @@ inline void expect_similar(const std::vector<float>& deviations,
     others += share > 0.1;
   }
   EXPECT_LE(sum, 0.01 * finite);
-  EXPECT_LE(others, 0.02 * finite);
+  EXPECT_LE(others, others_share * finite);
 }
 
 /// Compares all planes but bins, and confidence, which differs more in single precision.
@@ -272,6 +278,11 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   // Where the best row is not the nearest, the kernel extrapolates the signal a little from it.
   expect_near(outputs.ambient, expected.ambient, 2e-6, 4e-6 * brightest_e_per_s, "ambient");
   expect_similar(outputs.deviation_m, expected.deviation_m);
+  const auto plus_one = [](std::vector<float> values) {
+    for (float& value : values) value += 1.0f;
+    return values;
+  };
+  expect_similar(plus_one(outputs.residual), plus_one(expected.residual), 0.03);
 }
 
 }  // namespace tofsmith

@@ -21,6 +21,11 @@ struct DecodeOptions {
   double low_signal_sigma = 3.0;
   /// ambiguous below this probability that the main lobe is the right one; in [0, 1].
   double min_confidence = 0.9;
+  /// Share of consistent pixels that are marked inconsistent; in [0, 1). 0 disables the status.
+  double false_alarm_rate = 1e-3;
+  /// Model error to tolerate on top of the noise, such as the wiggling of an uncalibrated camera
+  /// [% of the signal's part of the measurements, root mean square]; in [0, 100].
+  double model_error_percent = 0.0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -28,7 +33,9 @@ struct DecodeOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
   return std::tuple(Field("low_signal_sigma", o.low_signal_sigma, "finite and >= 0"),
-                    Field("min_confidence", o.min_confidence, "in [0, 1]"));
+                    Field("min_confidence", o.min_confidence, "in [0, 1]"),
+                    Field("false_alarm_rate", o.false_alarm_rate, "in [0, 1)"),
+                    Field("model_error_percent", o.model_error_percent, "in [0, 100]"));
 }
 
 /// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out
@@ -71,9 +78,11 @@ class Decoder {
   ///     around the best one along which the code's own score falls, at most 5 % of the range on
   ///     either side. Confidence is 1 where a bound proves that about 1e-5 at most is left for
   ///     other places;
-  ///   status: as PixelStatus says, low_signal by the noise at the best bin. The residual of a
-  ///     pixel, without ambient light, counts as 0, and the pixel as no_return,
-  ///     below 1e-12 of sum_i |y'_i|.
+  ///   residual: chi-square per degree of freedom of the measurements around the decoded light;
+  ///   status: see PixelStatus; inconsistent if the residual exceeds the chi-square quantile of
+  ///     false_alarm_rate by more than model_error_percent explains, low_signal by the noise at the
+  ///     best bin. What remains of a pixel without ambient light counts as 0, and the pixel as
+  ///     no_return, below 1e-12 of sum_i |y'_i|.
   /// All but bins is computed in single precision: depth errs by about 1e-7 / (angle between
   /// neighbour bins) of a bin, signal and ambient light by about 1e-6 of the brightest measurement.
   /// Pixels that are invalid or have no return are NaN in all planes of floats; the bin is -1 for

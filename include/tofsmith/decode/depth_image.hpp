@@ -15,8 +15,8 @@ namespace tofsmith {
 struct DecodingTable;
 struct DepthCorrection;
 
-/// What became of a pixel. Where several apply, the first in the order invalid, saturated,
-/// no_return, low_signal, ambiguous is given. Decoders never say mixed: mark_mixed_pixels() does.
+/// Outcome of a pixel. If several apply, the first of invalid, saturated, no_return, low_signal,
+/// inconsistent, ambiguous is reported. Only mark_mixed_pixels() sets mixed.
 enum class PixelStatus : std::uint8_t {
   ok = 0,
   invalid = 1,     ///< a measurement is NaN or infinite: no depth
@@ -25,13 +25,15 @@ enum class PixelStatus : std::uint8_t {
   low_signal = 4,  ///< the signal does not stand out of its noise
   ambiguous = 5,   ///< another depth, far from this one, explains the pixel almost as well
   mixed = 6,  ///< sees two surfaces at an edge: the depth is that of neither, or of a neighbour
+  inconsistent = 7,  ///< no depth explains the measurements within their noise
 };
 
 inline constexpr std::array all_pixel_statuses = {
-    PixelStatus::ok,         PixelStatus::invalid,   PixelStatus::no_return, PixelStatus::saturated,
-    PixelStatus::low_signal, PixelStatus::ambiguous, PixelStatus::mixed};
+    PixelStatus::ok,        PixelStatus::invalid,     PixelStatus::no_return,
+    PixelStatus::saturated, PixelStatus::low_signal,  PixelStatus::ambiguous,
+    PixelStatus::mixed,     PixelStatus::inconsistent};
 
-/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous", "mixed".
+/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous", "mixed", "inconsistent".
 std::string_view name_of(PixelStatus status);
 
 /// How many returns a pixel shows. It stands beside PixelStatus, which says whether the depth of a
@@ -59,6 +61,7 @@ struct DepthImage {
   Image<float> confidence;       ///< that no far-off depth is the true one, in [0, 1]
   Image<float> predicted_standard_deviation_m;  ///< of depth around the right peak [m]
   Image<PixelStatus> status;
+  Image<float> residual;  ///< as DecodedView::residual; empty unless the caller gives it a size
 
   DepthImage() = default;
   DepthImage(int height, int width);
@@ -76,13 +79,16 @@ struct DecodedView {
   float* confidence = nullptr;       ///< in [0, 1]
   float* predicted_standard_deviation_m = nullptr;  ///< [m]
   PixelStatus* status = nullptr;
+  /// Chi-square per degree of freedom of the measurements around the decoded depth, signal and
+  /// ambient light: 1 on average. NaN where the code leaves no degree of freedom.
+  float* residual = nullptr;
   // Of decoders of several returns; others leave them as they are.
   float* delay_m = nullptr;  ///< as the planes of MultipathImage
   float* ratio = nullptr;
   ReturnStatus* returns = nullptr;
 
   bool wants_bins_only() const;
-  /// All planes of an image; no bins.
+  /// All planes of an image that have a size; no bins.
   static DecodedView of(DepthImage& image);
   /// The same planes from a later pixel on.
   DecodedView from(std::size_t pixel) const;

@@ -36,19 +36,20 @@ enum class DecodedPlane {
   returns,     ///< ReturnStatus, uint8
   bin,         ///< of zncc the one that scores best, of others the nearest; int32
   averaged,    ///< of how many measurements a pixel's numbers are the mean, in variance; float
+  residual,    ///< chi-square per degree of freedom, float
 };
 
 inline constexpr std::array all_decoded_planes = {
-    DecodedPlane::depth,     DecodedPlane::signal, DecodedPlane::ambient, DecodedPlane::confidence,
-    DecodedPlane::deviation, DecodedPlane::status, DecodedPlane::delay,   DecodedPlane::ratio,
-    DecodedPlane::returns,   DecodedPlane::bin,    DecodedPlane::averaged};
+    DecodedPlane::depth,     DecodedPlane::signal, DecodedPlane::ambient,  DecodedPlane::confidence,
+    DecodedPlane::deviation, DecodedPlane::status, DecodedPlane::delay,    DecodedPlane::ratio,
+    DecodedPlane::returns,   DecodedPlane::bin,    DecodedPlane::averaged, DecodedPlane::residual};
 
 /// "depth", "signal", ..: the word of the enumerator, which arrays of .npz files have too.
 std::string_view name_of(DecodedPlane plane);
 /// @throws std::invalid_argument for any other word
 DecodedPlane parse_decoded_plane(std::string_view name);
 /// The planes that are written unless others are asked for: depth to status; of decoders of several
-/// returns also delay, ratio and returns. Not bin and averaged.
+/// returns also delay, ratio and returns. Not bin, averaged and residual.
 std::vector<DecodedPlane> usual_planes(bool multipath = false);
 
 /// Which distance is written as depth.

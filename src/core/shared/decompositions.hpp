@@ -34,4 +34,10 @@ Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
 /// The X with A X = right, for a symmetric A that is not negative.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
+/// Orthonormal basis of the orthogonal complement of these columns, which may be dependent.
+Eigen::MatrixXd complement_of(const Eigen::MatrixXd& columns);
+
+/// The least eigenvalue of a symmetric matrix.
+double least_eigenvalue(const Eigen::MatrixXd& matrix);
+
 }  // namespace tofsmith

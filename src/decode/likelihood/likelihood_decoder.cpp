@@ -25,12 +25,17 @@ struct LikelihoodDecoder::Plan {
   /// @param white  whitened(table_)
   Plan(DecodingTable table_, const DecodeOptions& options_, const DecodingTable& white,
        const AmbientProjection& projection)
-      : table(std::move(table_)), options(options_), scale(table), search(white, projection) {}
+      : table(std::move(table_)),
+        options(options_),
+        scale(table),
+        search(white, projection),
+        residuals(white, projection, options) {}
 
   DecodingTable table;
   DecodeOptions options;
   RawScale scale;
   LikelihoodSearch search;
+  ResidualModel residuals;
 
   bool read(const float* raw, PerMeasurement& electrons) const;
   std::vector<double> work_space() const {
@@ -122,7 +127,12 @@ void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_sha
   const LikelihoodPixel pixel = search.model().pixel(electrons.data(), variance_share);
   const MostLikely found = search.most_likely(pixel, fall);
   PixelDecoding decoding{search.depth_row(found), search.model().estimate(pixel, found.best)};
-  if (decoding.estimate.signal_e_per_s > 0.0) decoding.confidence = search.confidence(pixel, found);
+  if (decoding.estimate.signal_e_per_s > 0.0) {
+    decoding.confidence = search.confidence(pixel, found);
+    if (decoded.residual || decoded.status)
+      decoding.residual = residuals.residual(electrons.data(), decoding.estimate,
+                                             Position::at(decoding.depth_row), variance_share);
+  }
   store_pixel(table, options, raw, decoding, at, decoded);
 }
 

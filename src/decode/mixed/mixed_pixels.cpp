@@ -104,9 +104,10 @@ class Surroundings {
   bool was_mixed(std::size_t i) const { return status_[i] == PixelStatus::mixed; }
   /// Whether it may be mixed at all.
   bool is_decoded(std::size_t i) const {
-    return was_mixed(i) || (std::isfinite(depth_[i]) && (status_[i] == PixelStatus::ok ||
-                                                         status_[i] == PixelStatus::low_signal ||
-                                                         status_[i] == PixelStatus::ambiguous));
+    return was_mixed(i) ||
+           (std::isfinite(depth_[i]) &&
+            (status_[i] == PixelStatus::ok || status_[i] == PixelStatus::low_signal ||
+             status_[i] == PixelStatus::inconsistent || status_[i] == PixelStatus::ambiguous));
   }
 
   /// The surfaces around a pixel, largest first; none if there are not two.
@@ -143,8 +144,9 @@ class Surroundings {
 
  private:
   bool is_usable(std::size_t i) const {
-    return status_[i] == PixelStatus::ok && std::isfinite(depth_[i]) &&
-           std::isfinite(deviation_[i]);
+    // Errors of the camera model make pixels inconsistent, but leave surfaces.
+    return (status_[i] == PixelStatus::ok || status_[i] == PixelStatus::inconsistent) &&
+           std::isfinite(depth_[i]) && std::isfinite(deviation_[i]);
   }
 
   /// A pixel's slope between its neighbours on both sides: the mean of both steps or, where they
@@ -279,7 +281,7 @@ bool read_electrons(const RawView& raw, const RawScale& scale, int row, int x,
 void drop(const DecodedView& decoded, std::size_t i) {
   for (float* plane :
        {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s, decoded.confidence,
-        decoded.predicted_standard_deviation_m, decoded.delay_m, decoded.ratio})
+        decoded.predicted_standard_deviation_m, decoded.residual, decoded.delay_m, decoded.ratio})
     if (plane) plane[i] = std::numeric_limits<float>::quiet_NaN();
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/shared/chi_square.hpp"
 #include "core/shared/decompositions.hpp"
 #include "core/shared/exponential_average.hpp"
 #include "decode/multipath/multipath_support.hpp"
@@ -297,6 +298,23 @@ double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits&
   return own > 0.0 ? along / own : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Replaces the residual of the single return by that of two returns, and the status inconsistent
+/// if two returns explain the pixel.
+void MultipathEngine::store_residual(double chi2, float confidence, std::size_t at,
+                                     const DecodedView& decoded) const {
+  const int unknowns = kind_ == MultipathKind::tail ? 3 : 4;  // without ambient light
+  const int freedom = curve_.span - unknowns;
+  if (decoded.residual)
+    decoded.residual[at] =
+        freedom > 0 ? static_cast<float>(chi2 / freedom) : std::numeric_limits<float>::quiet_NaN();
+  if (!decoded.status || decoded.status[at] != PixelStatus::inconsistent) return;
+  const DecodeOptions& thresholds = options_.status_thresholds;
+  if (freedom > 0 && chi2 > chi_square_quantile_of_tail(thresholds.false_alarm_rate, freedom))
+    return;
+  decoded.status[at] =
+      confidence < thresholds.min_confidence ? PixelStatus::ambiguous : PixelStatus::ok;
+}
+
 /// What one return did not explain, with or without a second.
 void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits,
                             int lane, const DecodedView& decoded) const {
@@ -327,10 +345,10 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
   if (decoded.signal_e_per_s) decoded.signal_e_per_s[at] = fits.signal_e_per_s[lane];
   if (decoded.ambient_e_per_s)
     decoded.ambient_e_per_s[at] = static_cast<float>(ambient_e_per_s(group, fits, lane));
-  if (decoded.confidence) {
-    const double lead = std::max(fits.second_best_chi2[lane] - fits.chi2[lane], 0.0f);
-    decoded.confidence[at] = static_cast<float>(probability_of(0.5 * lead));
-  }
+  const double lead = std::max(fits.second_best_chi2[lane] - fits.chi2[lane], 0.0f);
+  const auto confidence = static_cast<float>(probability_of(0.5 * lead));
+  if (decoded.confidence) decoded.confidence[at] = confidence;
+  store_residual(fits.chi2[lane], confidence, at, decoded);
   if (decoded.ratio) decoded.ratio[at] = fits.second_e_per_s[lane] / fits.signal_e_per_s[lane];
   if (decoded.delay_m)
     decoded.delay_m[at] = static_cast<float>(

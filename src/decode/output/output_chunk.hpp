@@ -12,6 +12,19 @@ namespace tofsmith {
 
 /// Pixels whose records lie side by side in the work space.
 inline constexpr int pixels_per_chunk = 128;
+/// Variances of measurements below this share of the pixel's largest count as that in residuals.
+inline constexpr double least_variance_share = 1e-4;
+
+/// Positions of the fields of a bin's ResidualModel::Limit, in blocks of four.
+struct LimitLayout {
+  static constexpr int variance = 0;  ///< per signal, per ambient light, and without light
+  static constexpr int error = 3;
+  static constexpr int end_of_bound = 4;
+  static constexpr int root = 4;
+  static constexpr int per_freedom = 5;
+  static constexpr int end = 6, stride = 8;
+};
+
 /// What is the same for all bins.
 struct OutputConstants {
   int samples = 0;
@@ -25,8 +38,16 @@ struct OutputConstants {
   std::vector<float> floor_noise_e2;  // variance without light (K)
   float typical_ambient = 0.0f;       // typical_variance() per ambient light
   float typical_floor_e2 = 0.0f;      // and without light
+  // Least variance of a measurement in residuals: per signal, per ambient light, and without light.
+  float least_shot = 0.0f, least_shot_ambient = 0.0f, least_floor_e2 = 0.0f;
   float low_signal_sigma2 = 0.0f;
   float min_confidence = 0.0f;
+  bool finds_inconsistent = false;
+  float half_quantile = 0.0f;  // q / 2 of ResidualModel, the largest of all bins
+  int off_plane_count = 0;
+  std::vector<float> off_plane;          // as ResidualModel, direction by direction (count, K)
+  std::vector<float> residual_basis;     // V, then off_plane_noise (K, rank + count)
+  std::vector<float> ambient_direction;  // as ResidualModel (K)
 };
 
 /// Which steps the wanted planes need.
@@ -34,6 +55,7 @@ struct OutputSteps {
   bool ambient = false;
   bool noise = false;
   bool confidence = false;
+  bool residual = false;
   int fields = 0;  // of the records
 };
 
@@ -50,6 +72,10 @@ struct OutputChunk {
   alignas(64) float variance_share[pixels_per_chunk];  // of a single measurement: 1 / averaged
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
+  alignas(64) float residual[pixels_per_chunk];
+  alignas(64) float inconsistent[pixels_per_chunk];  // 1 where a pixel is, else 0
+  alignas(64) std::uint32_t limit_start[pixels_per_chunk];
+  alignas(64) float limit[LimitLayout::stride * pixels_per_chunk];
   alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];
   alignas(64) float record[max_record_fields * pixels_per_chunk];
 

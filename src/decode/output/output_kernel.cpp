@@ -15,6 +15,7 @@
 
 #include "decode/output/output_noise-inl.hpp"
 #include "decode/output/output_position-inl.hpp"
+#include "decode/output/output_residual-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
@@ -24,7 +25,8 @@ namespace {
 /// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
 template <int Rank>
 HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
-                            const LobePosterior& posterior, const OutputSteps& steps,
+                            const LobePosterior& posterior, const RecordTable& limits,
+                            const OutputSteps& steps,
                             const std::uint8_t* saturated, OutputChunk& chunk,
                             const DecodedView& planes) {
   const RecordLayout& layout = records.layout;
@@ -45,7 +47,10 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
     write_depth_noise(chunk, planes.predicted_standard_deviation_m);
   if (steps.confidence) find_confidence(c, records, posterior, rank, chunk);
   if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
+  if (steps.residual) find_residual<Rank>(c, records, limits, planes.residual != nullptr, chunk);
+  if (planes.residual) write_values(chunk, chunk.residual, planes.residual);
   if (planes.status) {
+    if (!steps.residual) std::fill_n(chunk.inconsistent, pixels_per_chunk, 0.0f);
     if (!steps.confidence) std::fill_n(chunk.confidence, pixels_per_chunk, 1.0f);
     find_signal_noise(layout, chunk);
     write_status(c, chunk, saturated, planes.status);
@@ -59,7 +64,8 @@ HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t*
 
 template <int Rank>
 HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
-                           const LobePosterior& posterior, const OutputSteps& steps,
+                           const LobePosterior& posterior, const RecordTable& limits,
+                           const OutputSteps& steps,
                            const MatchedTile& tile, const DecodedView& planes) {
   OutputChunk chunk;
   for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
@@ -71,23 +77,24 @@ HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
     if (tile.averaged)
       for (int i = 0; i < chunk.pixels; ++i)
         chunk.variance_share[i] = 1.0f / tile.averaged[first + i];
-    write_chunk<Rank>(records, c, posterior, steps,
+    write_chunk<Rank>(records, c, posterior, limits, steps,
                       tile.saturated ? tile.saturated + first : nullptr, chunk,
                       planes.from(static_cast<std::size_t>(first)));
   }
 }
 
 void write(const BinRecords& records, const OutputConstants& c, const LobePosterior& posterior,
-           const OutputSteps& steps, const MatchedTile& tile, const DecodedView& planes) {
+           const RecordTable& limits, const OutputSteps& steps, const MatchedTile& tile,
+           const DecodedView& planes) {
   switch (records.layout.rank) {
     case 2:
-      return write_tile<2>(records, c, posterior, steps, tile, planes);
+      return write_tile<2>(records, c, posterior, limits, steps, tile, planes);
     case 3:
-      return write_tile<3>(records, c, posterior, steps, tile, planes);
+      return write_tile<3>(records, c, posterior, limits, steps, tile, planes);
     case 4:
-      return write_tile<4>(records, c, posterior, steps, tile, planes);
+      return write_tile<4>(records, c, posterior, limits, steps, tile, planes);
     default:
-      return write_tile<0>(records, c, posterior, steps, tile, planes);
+      return write_tile<0>(records, c, posterior, limits, steps, tile, planes);
   }
 }
 
@@ -165,7 +172,8 @@ float with_room_for(double value, int integers) {
 
 OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
                            const DecodeOptions& options, bool only_positions)
-    : records_(table, projection, !only_positions) {
+    : records_(table, projection, !only_positions),
+      limits_(only_positions ? 0 : table.samples(), LimitLayout::stride) {
   const double bin_m = table.row_m();
   const ExpectedNoise noise(table);
   const double ambient2 = projection.ambient.squaredNorm();
@@ -182,6 +190,12 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
       static_cast<float>(typical_variance(projection.noise_basis, noise.shot_ambient));
   constants_.typical_floor_e2 = static_cast<float>(
       std::max(min_variance_e2, typical_variance(projection.noise_basis, noise.floor_variance_e2)));
+  const auto least_of = [](double largest, double least) {
+    return static_cast<float>(least_variance_share * std::max(least, largest));
+  };
+  constants_.least_shot = least_of(noise.shot_gated.maxCoeff(), 0.0);
+  constants_.least_shot_ambient = least_of(noise.shot_ambient.maxCoeff(), 0.0);
+  constants_.least_floor_e2 = least_of(noise.floor_variance_e2.maxCoeff(), min_variance_e2);
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
   constants_.min_confidence = static_cast<float>(options.min_confidence);
@@ -196,11 +210,36 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
     fields[3] = static_cast<float>(
         typical_variance(projection.noise_basis, noise.shot_gated.row(n).transpose()));
   }
+  fill_limits(ResidualModel(table, projection, options), projection);
+}
+
+void OutputKernel::fill_limits(const ResidualModel& residuals,
+                               const AmbientProjection& projection) {
+  const RowMajorMatrix off_plane = residuals.off_plane().transpose();
+  RowMajorMatrix basis(projection.noise_basis.rows(), projection.rank() + off_plane.rows());
+  basis << projection.noise_basis, residuals.off_plane_noise();
+  constants_.off_plane_count = static_cast<int>(off_plane.rows());
+  constants_.off_plane.assign(off_plane.data(), off_plane.data() + off_plane.size());
+  constants_.residual_basis.assign(basis.data(), basis.data() + basis.size());
+  constants_.ambient_direction = in_floats(residuals.ambient_direction());
+  for (std::size_t n = 0; n < residuals.limits().size(); ++n) {
+    const ResidualModel::Limit& limit = residuals.limits()[n];
+    float* const row = limits_.row(static_cast<std::int32_t>(n));
+    row[LimitLayout::variance] = static_cast<float>(limit.of_signal);
+    row[LimitLayout::variance + 1] = static_cast<float>(limit.of_ambient);
+    row[LimitLayout::variance + 2] = static_cast<float>(limit.of_floor);
+    row[LimitLayout::error] = static_cast<float>(limit.error);
+    row[LimitLayout::root] = static_cast<float>(limit.root);
+    row[LimitLayout::per_freedom] = static_cast<float>(limit.per_freedom);
+  }
+  constants_.finds_inconsistent = residuals.half_quantile() > 0.0;
+  constants_.half_quantile = static_cast<float>(residuals.half_quantile());
 }
 
 bool OutputKernel::needs_electrons(const DecodedView& planes) const {
-  return constants_.sees_ambient && (planes.ambient_e_per_s || planes.confidence ||
-                                     planes.predicted_standard_deviation_m || planes.status);
+  return (constants_.sees_ambient && (planes.ambient_e_per_s || planes.confidence ||
+                                      planes.predicted_standard_deviation_m || planes.status)) ||
+         (needs_residuals(planes) && (constants_.sees_ambient || constants_.off_plane_count > 0));
 }
 
 bool OutputKernel::needs_confidence(const DecodedView& planes) const {
@@ -211,13 +250,15 @@ void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) con
   const RecordLayout& layout = records_.layout;
   OutputSteps steps;
   steps.confidence = needs_confidence(planes);
-  steps.noise = steps.confidence || planes.predicted_standard_deviation_m || planes.status;
+  steps.residual = needs_residuals(planes);
+  steps.noise =
+      steps.confidence || steps.residual || planes.predicted_standard_deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
-  steps.fields = steps.confidence ? layout.end_of_bound()
-                 : steps.noise    ? layout.end_of_noise()
-                 : steps.ambient  ? layout.end_of_light()
-                                  : layout.end_of_depth();
-  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, *posterior_, steps, tile, planes);
+  steps.fields = steps.confidence || steps.residual ? layout.end_of_bound()
+                 : steps.noise                      ? layout.end_of_noise()
+                 : steps.ambient                    ? layout.end_of_light()
+                                                    : layout.end_of_depth();
+  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, *posterior_, limits_, steps, tile, planes);
 }
 
 void OutputKernel::find_positions(const MatchedTile& tile, double* depth_bin) const {

@@ -7,6 +7,7 @@
 
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/output_chunk.hpp"
+#include "decode/output/residual_model.hpp"
 #include "decode/search/shared/bin_records.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -47,10 +48,15 @@ class OutputKernel {
 
   const BinRecords& records() const { return records_; }
   const OutputConstants& constants() const { return constants_; }
+  /// One row of LimitLayout per bin.
+  const RecordTable& limits() const { return limits_; }
 
   /// Which rows of a tile these planes need besides `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
   bool needs_confidence(const DecodedView& planes) const;
+  bool needs_residuals(const DecodedView& planes) const {
+    return planes.residual || (planes.status && constants_.finds_inconsistent);
+  }
   bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
 
   /// Writes the tile's pixels to the planes that are not null, from their first value on.
@@ -62,9 +68,12 @@ class OutputKernel {
   void find_positions(const MatchedTile& tile, double* depth_bin) const;
 
  private:
+  void fill_limits(const ResidualModel& residuals, const AmbientProjection& projection);
+
   BinRecords records_;
   OutputConstants constants_;
   std::optional<LobePosterior> posterior_;  // none: only positions
+  RecordTable limits_;
 };
 
 }  // namespace tofsmith

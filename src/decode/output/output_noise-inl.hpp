@@ -149,8 +149,11 @@ HWY_INLINE void write_status(const OutputConstants& c, const OutputChunk& chunk,
     const auto is_saturated =
         hn::Gt(hn::PromoteTo(di, hn::LoadU(Bytes(), saturated + i)), hn::Zero(di));
     const auto is_invalid = hn::Lt(hn::LoadU(di, chunk.bin + i), hn::Zero(di));
+    const auto is_inconsistent =
+        hn::RebindMask(di, hn::Gt(load(chunk.inconsistent, i), hn::Zero(d)));
     auto value =
         hn::IfThenElse(is_ambiguous, status(PixelStatus::ambiguous), status(PixelStatus::ok));
+    value = hn::IfThenElse(is_inconsistent, status(PixelStatus::inconsistent), value);
     value = hn::IfThenElse(is_low, status(PixelStatus::low_signal), value);
     value = hn::IfThenElse(is_nothing, status(PixelStatus::no_return), value);
     value = hn::IfThenElse(is_saturated, status(PixelStatus::saturated), value);

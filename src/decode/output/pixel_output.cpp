@@ -30,6 +30,7 @@ PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, 
   if (estimate.signal_e_per_s <
       options.low_signal_sigma * estimate.signal_standard_deviation_e_per_s)
     return PixelStatus::low_signal;
+  if (pixel.residual.is_inconsistent) return PixelStatus::inconsistent;
   if (pixel.confidence < options.min_confidence) return PixelStatus::ambiguous;
   return PixelStatus::ok;
 }
@@ -53,13 +54,15 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
   store(decoded.confidence, pixel.confidence);
   store(decoded.predicted_standard_deviation_m,
         estimate.depth_standard_deviation_row * table.row_m());
+  store(decoded.residual, pixel.residual.per_freedom);
   if (decoded.status) decoded.status[at] = status_of(table, options, raw, pixel);
 }
 
 void store_invalid(std::size_t at, const DecodedView& decoded) {
   if (decoded.bin) decoded.bin[at] = -1;
-  for (float* plane : {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s,
-                       decoded.confidence, decoded.predicted_standard_deviation_m})
+  for (float* plane :
+       {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s, decoded.confidence,
+        decoded.predicted_standard_deviation_m, decoded.residual})
     if (plane) plane[at] = no_value;
   if (decoded.status) decoded.status[at] = PixelStatus::invalid;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "decode/output/pixel_model.hpp"
+#include "decode/output/residual_model.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
@@ -17,6 +18,7 @@ struct PixelDecoding {
   double depth_row = 0.0;  ///< in rows of the table, [0, samples)
   PixelEstimate estimate;
   double confidence = 0.0;  ///< that no far-off depth is the true one
+  PixelResidual residual = {};
 };
 
 /// Writes one pixel, with its status: what every decoder does in the same way.

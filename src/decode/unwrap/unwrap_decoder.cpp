@@ -65,7 +65,8 @@ struct UnwrapDecoder::Plan {
         weights(weights_of(phases, table.measurements(), options.weights)),
         unwrapper(phases.frequencies(), weights),
         model(table, projection),
-        posterior(table, projection) {}
+        posterior(table, projection),
+        residuals(table, projection, options.status_thresholds) {}
 
   using PerMeasurement = std::array<double, max_measurements>;
   using PerFrequency = std::array<double, max_frequencies>;
@@ -78,6 +79,7 @@ struct UnwrapDecoder::Plan {
   PhaseUnwrapper unwrapper;
   PixelModel model;
   LobePosterior posterior;
+  ResidualModel residuals;
 
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
@@ -176,6 +178,9 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, 
     pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
     pixel.confidence = posterior.confidence(plane.data(), variance_e2.data(),
                                             nearest_bin(pixel.depth_row, table.samples()));
+    if (decoded.residual || decoded.status)
+      pixel.residual = residuals.residual(electrons.data(), pixel.estimate,
+                                          Position::at(pixel.depth_row), variance_share);
   }
   store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
 }

@@ -316,6 +316,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
   decode_frames(reader, preparation, steps, mapped, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
+  if (const auto note = inconsistent_note(result.total())) result.notes.push_back(*note);
 }
 
 DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,

@@ -18,7 +18,7 @@ namespace {
 
 constexpr EnumWords<DecodedPlane, all_decoded_planes.size()> plane_words(
     "DecodedPlane", "plane", "depth", "signal", "ambient", "confidence", "deviation", "status",
-    "delay", "ratio", "returns", "bin", "averaged");
+    "delay", "ratio", "returns", "bin", "averaged", "residual");
 constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", "radial", "z");
 
 /// What a plane holds where there is nothing.
@@ -53,7 +53,7 @@ std::vector<DecodedPlane> usual_planes(bool multipath) {
   std::vector<DecodedPlane> planes;
   for (const DecodedPlane plane : all_decoded_planes)
     if (plane != DecodedPlane::bin && plane != DecodedPlane::averaged &&
-        (multipath || !is_multipath_plane(plane)))
+        plane != DecodedPlane::residual && (multipath || !is_multipath_plane(plane)))
       planes.push_back(plane);
   return planes;
 }
@@ -92,6 +92,8 @@ auto DecodedPlanes::with(Planes& planes, DecodedPlane plane, const Use& use) {
       return use(planes.returns_);
     case DecodedPlane::averaged:
       return use(planes.averaged_);
+    case DecodedPlane::residual:
+      return use(planes.image_.residual);
     case DecodedPlane::bin:
       break;
   }

@@ -56,4 +56,16 @@ std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
                      likely_cause(std::ranges::max(without_depth, {}, by_count)));
 }
 
+std::optional<std::string> inconsistent_note(const StatusCounts& statuses) {
+  constexpr double many = 0.1;
+  const auto count = static_cast<double>(statuses.of(PixelStatus::inconsistent));
+  const auto pixels = static_cast<double>(statuses.pixels());
+  if (!(count > many * pixels)) return std::nullopt;
+  return fmt::format(
+      "{:.1f} % of the pixels are inconsistent: no depth explains their measurements within the "
+      "camera's noise. Check --code, --camera and the order and type of the raw numbers; if they "
+      "are right and the camera is not calibrated, allow for it by --model-error-percent",
+      100.0 * count / pixels);
+}
+
 }  // namespace tofsmith

@@ -14,5 +14,7 @@ std::optional<std::string> electrons_note(const RawFramesReader& reader,
                                           const DecodingTable& table);
 /// Where no pixel of any frame has a depth: how many have which status, and what to look at.
 std::optional<std::string> no_depth_note(const StatusCounts& statuses);
+/// Warning if more than 10 % of the pixels of all frames are inconsistent, with likely causes.
+std::optional<std::string> inconsistent_note(const StatusCounts& statuses);
 
 }  // namespace tofsmith

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "decode/output/pixel_model.hpp"
+#include "tofsmith/decode/decoder.hpp"
+
+namespace tofsmith {
+
+/// Goodness of fit of one pixel.
+struct PixelResidual {
+  /// Chi-square per degree of freedom; NaN without degrees of freedom.
+  double per_freedom = std::numeric_limits<double>::quiet_NaN();
+  bool is_inconsistent = false;
+};
+
+/// Tests whether any light at the decoded depth explains the measurements of a pixel.
+///
+/// With y the measurements, D the diagonal matrix of their variances at the estimated light, and
+/// B = [a, x(z), x'(z)] the directions in which they change with ambient light, signal and depth,
+/// the statistic is the weighted squared residual of a fit along B,
+///   chi^2 = min_b (y - B b)^T D^-1 (y - B b),
+/// which is chi-square distributed with K - rank B degrees of freedom for normal noise. This is
+/// true to first order for any estimate of depth within its noise, so every decoder shares it.
+///
+/// A model error e of the measurements raises chi by |D^-1/2 e| = d at most, and the quantile of a
+/// shifted chi by sqrt(q) d^2 / 2 at most, so a pixel is inconsistent where
+///   chi > sqrt(q) + min(d, sqrt(q) d^2 / 2),  d = m S / sqrt(lambda),
+/// with q the chi-square quantile of the false-alarm rate, m S the tolerated |e|, and lambda the
+/// least variance of the measurements in any direction perpendicular to B. The interpolation error
+/// between rows counts as a model error: on a smooth curve that of DepthPolynomials, else that of
+/// chords.
+class ResidualModel {
+ public:
+  /// Threshold at a bin. All but `per_freedom` are infinite where no residual is too large.
+  struct Limit {
+    /// Lower bounds of q lambda: per signal, per ambient light, and without light.
+    double of_signal = 0.0, of_ambient = 0.0, of_floor = std::numeric_limits<double>::infinity();
+    double error = 0.0;                                     ///< m, per signal
+    double root = std::numeric_limits<double>::infinity();  ///< sqrt(q)
+    /// 1 / degrees of freedom; NaN without any.
+    double per_freedom = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  ResidualModel(const DecodingTable& table, const AmbientProjection& projection,
+                const DecodeOptions& options);
+
+  /// Orthonormal directions W^T u, (K, count), perpendicular to ambient light and to signal from
+  /// any depth: measurements along them are noise alone. W is the whitening, if there is one.
+  const Eigen::MatrixXd& off_plane() const { return off_plane_; }
+  /// u, the same directions among whitened measurements.
+  const Eigen::MatrixXd& off_plane_noise() const { return off_plane_noise_; }
+  /// Unit vector of ambient light among whitened measurements (K); 0 where it cancels.
+  const Eigen::VectorXd& ambient_direction() const { return ambient_; }
+  /// q / 2, the largest of all bins; 0 where no pixel is inconsistent.
+  double half_quantile() const { return half_quantile_; }
+  /// At every bin.
+  const std::vector<Limit>& limits() const { return limits_; }
+
+  /// @param electrons  without dark ones (K)
+  /// @param estimate   its signal and ambient light
+  /// @param variance_share  of the noise of a single measurement
+  PixelResidual residual(const double* electrons, const PixelEstimate& estimate,
+                         const Position& position, double variance_share) const;
+
+ private:
+  int degrees_of_freedom(bool has_slope) const {
+    return free_measurements_ - (ambient_.isZero(0.0) ? 1 : 2) - (has_slope ? 1 : 0);
+  }
+  /// The curve around a row, whitened and without ambient light (K).
+  struct Course {
+    Eigen::VectorXd point;
+    Eigen::VectorXd slope;   ///< direction of the slope; 0 without one
+    bool has_slope = false;  ///< on either side
+    /// Noise across a corner of the curve is not explained by the slope of either side.
+    bool is_corner = false;
+    double error = 0.0;  ///< interpolation error on either side, perpendicular to point and slope
+  };
+  Course course_on_chords(std::int32_t row) const;
+  /// @param half_way  of a smooth curve, half a row after each row (N, rank); else empty
+  Course course_on_curve(std::int32_t row, const RowMajorMatrix& half_way) const;
+  Limit limit_at(std::int32_t row, const RowMajorMatrix& half_way,
+                 const DecodeOptions& options) const;
+  using PerMeasurement = std::array<double, max_measurements>;
+  /// Directions of signal and depth at a position, with or without parts along ambient light.
+  void find_tangent(const Position& position, PerMeasurement& point, PerMeasurement& slope) const;
+  std::int32_t next(std::int32_t bin) const { return bin + 1 < samples_ ? bin + 1 : 0; }
+  std::int32_t previous(std::int32_t bin) const { return bin > 0 ? bin - 1 : samples_ - 1; }
+
+  int samples_, measurements_;
+  int free_measurements_;      // those with noise
+  Eigen::MatrixXd whitening_;  // (K, K), or empty
+  Eigen::MatrixXd noiseless_;  // directions without noise among whitened measurements
+  RowMajorMatrix curve_;       // x, whitened (N, K)
+  Eigen::VectorXd ambient_;
+  std::optional<DepthPolynomials> polynomials_;  // none: depths lie on chords
+  RowMajorMatrix plane_curve_;                   // p (N, rank); of smooth curves alone
+  RowMajorMatrix noise_basis_;
+  Eigen::MatrixXd off_plane_, off_plane_noise_;
+  ExpectedNoise noise_;
+  std::array<double, 3> least_noise_;  // per signal, per ambient light, and without light
+  std::vector<Limit> limits_;
+  double half_quantile_ = 0.0;
+};
+
+}  // namespace tofsmith

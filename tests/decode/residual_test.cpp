@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Measurements that no depth explains.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "decode_setup.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+
+namespace tofsmith {
+namespace {
+
+DecodingTable table_of(const std::string& code, const Camera& camera) {
+  return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
+}
+
+/// Chords of this table are indistinguishable from the true correlation functions.
+DecodingTable fine_table_of(const std::string& code, Camera camera) {
+  camera.samples *= 16;
+  return table_of(code, camera);
+}
+
+/// Decodes pixels as one row, with their residuals.
+DepthImage decode_row(DecodeMethod method, const DecodingTable& table,
+                      const std::vector<float>& raw, const DecodeOptions& options = {},
+                      const float* averaged = nullptr) {
+  const AnyDecoder decoder = make_decoder(method, table, options);
+  const RawFrames frame = frame_of(raw, table.measurements());
+  RawView view = view_of_frame(frame, 0);
+  view.averaged = averaged;
+  DepthImage image(1, frame.width);
+  image.residual = image.depth_m;
+  std::visit([&](const auto& d) { d.decode(view, DecodedView::of(image)); }, decoder);
+  return image;
+}
+
+double share_of(const DepthImage& image, PixelStatus status) {
+  const auto count = std::count(image.status.pixels.begin(), image.status.pixels.end(), status);
+  return static_cast<double>(count) / static_cast<double>(image.status.size());
+}
+
+double mean_residual(const DepthImage& image) {
+  double sum = 0.0;
+  for (const float residual : image.residual.pixels) sum += residual;
+  return sum / static_cast<double>(image.residual.size());
+}
+
+/// Pixels of which the measurements from `first` on see another depth.
+std::vector<float> displaced_pixels(const DecodingTable& table, double signal, double near_bin,
+                                    double far_bin, int first, int pixels) {
+  std::vector<float> raw, other;
+  RandomStream random(4, 0);
+  for (int i = 0; i < pixels; ++i) {
+    append_noisy_pixel(table, signal, 1e3, near_bin, random, raw);
+    other.clear();
+    append_noisy_pixel(table, signal, 1e3, far_bin, random, other);
+    std::copy(other.begin() + first, other.end(), raw.end() - (table.measurements() - first));
+  }
+  return raw;
+}
+
+struct ResidualCase {
+  DecodeMethod method;
+  const char* code;
+  const char* camera;
+  int taps = 1;
+  Readout readout = Readout::separate;
+};
+
+class ResidualOfCode : public testing::TestWithParam<ResidualCase> {
+ protected:
+  DecodingTable table() const {
+    const ResidualCase& c = GetParam();
+    return table_of(c.code, camera_with(c.camera, c.taps, c.readout));
+  }
+  DecodingTable fine_table() const {
+    const ResidualCase& c = GetParam();
+    return fine_table_of(c.code, camera_with(c.camera, c.taps, c.readout));
+  }
+};
+
+TEST_P(ResidualOfCode, MarksConsistentPixelsAtTheStatedRate) {
+  const DecodingTable table = this->table(), actual = fine_table();
+  const int pixels = GetParam().method == DecodeMethod::ml ? 4000 : 20000;
+  const double rate = 0.02;
+  for (const double signal : {3e4, 1e5, 1e7}) {
+    const DepthImage image =
+        decode_row(GetParam().method, table, noisy_pixels(actual, signal, 1e3, pixels, 1),
+                   {.min_confidence = 0.0, .false_alarm_rate = rate});
+    const double error = std::sqrt(rate / pixels);
+    EXPECT_NEAR(share_of(image, PixelStatus::inconsistent), rate, 4 * error + 0.05 * rate)
+        << signal;
+    EXPECT_NEAR(mean_residual(image), 1.0, 4 * std::sqrt(2.0 / pixels) + 0.02) << signal;
+  }
+}
+
+TEST_P(ResidualOfCode, FindsMeasurementsOfTwoDepths) {
+  const DecodingTable table = this->table(), actual = fine_table();
+  const double samples = actual.samples();
+  const DepthImage image = decode_row(
+      GetParam().method, table,
+      displaced_pixels(actual, 1e6, 0.2 * samples, 0.27 * samples, table.measurements() / 2, 500));
+  EXPECT_GE(share_of(image, PixelStatus::inconsistent), 0.99);
+}
+
+TEST_P(ResidualOfCode, IsThatOfTheMeanOfMeasurements) {
+  const DecodingTable table = this->table();
+  constexpr int pixels = 1000, averaged = 64;
+  const std::vector<float> raw = noisy_pixels(fine_table(), 1e5, 1e3, pixels, 2);
+  const std::vector<float> as_means(pixels, averaged);
+  const DepthImage single = decode_row(GetParam().method, table, raw);
+  const DepthImage mean = decode_row(GetParam().method, table, raw, {}, as_means.data());
+  for (std::size_t i = 0; i < pixels; ++i)
+    ASSERT_NEAR(mean.residual.pixels[i], averaged * single.residual.pixels[i],
+                0.01 * averaged * (single.residual.pixels[i] + 0.1f));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Codes, ResidualOfCode,
+    testing::Values(
+        ResidualCase{DecodeMethod::zncc, "hamiltonian-k4", "paper-10f0"},
+        ResidualCase{DecodeMethod::zncc, "hamiltonian-k5", "paper-10f0"},
+        ResidualCase{DecodeMethod::zncc, "sinusoid-k4", "paper-10f0"},
+        ResidualCase{DecodeMethod::zncc, "sinusoid-k8", "paper-10f0"},
+        ResidualCase{DecodeMethod::zncc, "hamiltonian-k4", "paper-10f0", 2},
+        ResidualCase{DecodeMethod::zncc, "hamiltonian-k5", "paper-10f0", 2, Readout::difference},
+        ResidualCase{DecodeMethod::ml, "hamiltonian-k5", "paper-10f0"},
+        ResidualCase{DecodeMethod::ml, "sinusoid-k4", "paper-10f0", 2, Readout::difference},
+        ResidualCase{DecodeMethod::unwrap, "sinusoid-k4", "paper-10f0"},
+        ResidualCase{DecodeMethod::unwrap, "multifrequency-1x4-3x4", "paper-10f0"}));
+
+TEST(Residual, IsMissingWithoutDegreesOfFreedom) {
+  const DecodingTable table = table_of("hamiltonian-k3", camera_with("paper-10f0"));
+  for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml}) {
+    const DepthImage image = decode_row(method, table, noisy_pixels(table, 1e5, 1e3, 200, 3));
+    for (const float residual : image.residual.pixels) EXPECT_TRUE(std::isnan(residual));
+    EXPECT_EQ(share_of(image, PixelStatus::inconsistent), 0.0);
+  }
+}
+
+TEST(Residual, ChecksNothingAtRateZero) {
+  const DecodingTable table = table_of("sinusoid-k8", camera_with("paper-10f0"));
+  std::vector<float> raw = noisy_pixels(table, 1e6, 1e3, 200, 3);
+  for (std::size_t i = 0; i < raw.size(); i += 8) raw[i] += 2000.0f;
+  for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml, DecodeMethod::unwrap}) {
+    EXPECT_EQ(share_of(decode_row(method, table, raw), PixelStatus::inconsistent), 1.0);
+    const DepthImage unchecked = decode_row(method, table, raw, {.false_alarm_rate = 0.0});
+    EXPECT_EQ(share_of(unchecked, PixelStatus::inconsistent), 0.0);
+    EXPECT_GT(mean_residual(unchecked), 10.0);
+  }
+}
+
+TEST(Residual, ToleratesTheStatedModelError) {
+  // Every measurement is off by 2 % of its variation over depth.
+  const DecodingTable table = table_of("sinusoid-k8", camera_with("paper-10f0"));
+  DecodingTable actual = fine_table_of("sinusoid-k8", camera_with("paper-10f0"));
+  const Eigen::RowVectorXd mean = actual.correlation.colwise().mean();
+  for (int k = 0; k < 8; ++k)
+    actual.correlation.col(k) +=
+        (k % 2 == 0 ? 0.02 : -0.02) * (actual.correlation.col(k).array() - mean[k]).matrix();
+  const std::vector<float> raw = noisy_pixels(actual, 1e7, 1e3, 1000, 3);
+  for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml, DecodeMethod::unwrap}) {
+    EXPECT_GT(share_of(decode_row(method, table, raw), PixelStatus::inconsistent), 0.5);
+    EXPECT_LE(share_of(decode_row(method, table, raw, {.model_error_percent = 2.0}),
+                       PixelStatus::inconsistent),
+              0.005);
+  }
+}
+
+TEST(Residual, TwoReturnsExplainWhatOneDoesNot) {
+  const DecodingTable table = table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));
+  const DecodingTable actual =
+      fine_table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));
+  std::vector<float> raw;
+  RandomStream random(4, 0);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<float> second;
+    append_noisy_pixel(actual, 1e6, 1e3, 0.2 * actual.samples(), random, raw);
+    append_noisy_pixel(actual, 4e5, 0.0, 0.4 * actual.samples(), random, second);
+    for (std::size_t k = 0; k < second.size(); ++k)
+      raw[raw.size() - second.size() + k] += second[k];
+  }
+  EXPECT_GT(share_of(decode_row(DecodeMethod::zncc, table, raw), PixelStatus::inconsistent), 0.99);
+  const DepthImage two = decode_row(DecodeMethod::two_return, table, raw);
+  EXPECT_LT(share_of(two, PixelStatus::inconsistent), 0.05);
+  EXPECT_NEAR(mean_residual(two), 1.0, 0.3);
+}
+
+}  // namespace
+}  // namespace tofsmith
