@@ -56,8 +56,7 @@ class Decoder:
     false_alarm_rate : float, optional
         Share of consistent pixels that are marked inconsistent (0.001); 0 disables the status.
     model_error_percent : float, optional
-        Error of the camera model that is not marked inconsistent, in percent of the signal's part
-        of the measurements (0).
+        Tolerated error of the camera model, in percent of the signal's part of measurements (0).
     unwrap_weights : {"variance", "frequency"}, optional
         Of unwrap.
     device : str, optional
@@ -89,10 +88,8 @@ class Decoder:
         camera: Optional[CameraLike] = None,
         *,
         method: str = "zncc",
-        low_signal_sigma: Optional[float] = None,
-        min_confidence: Optional[float] = None,
-        false_alarm_rate: Optional[float] = None,
-        model_error_percent: Optional[float] = None,
+        low_signal_sigma: Optional[float] = None, min_confidence: Optional[float] = None,
+        false_alarm_rate: Optional[float] = None, model_error_percent: Optional[float] = None,
         unwrap_weights: Optional[str] = None,
         multipath: Optional[Mapping[str, Any]] = None,
         device: str = "cpu",
@@ -104,10 +101,8 @@ class Decoder:
         self._method = _check.one_of(method, "method", tuple(_tofsmith.decode_methods()))
         options = {
             "method": method,
-            "low_signal_sigma": low_signal_sigma,
-            "min_confidence": min_confidence,
-            "false_alarm_rate": false_alarm_rate,
-            "model_error_percent": model_error_percent,
+            "low_signal_sigma": low_signal_sigma, "min_confidence": min_confidence,
+            "false_alarm_rate": false_alarm_rate, "model_error_percent": model_error_percent,
             "unwrap_weights": unwrap_weights,
             "multipath": None if multipath is None else dict(multipath),
             "device": device,
