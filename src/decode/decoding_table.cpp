@@ -163,6 +163,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.dark_electrons = model.dark_electrons();
   table.constant_variance_e2 = model.constant_variance_e2();
   table.range_m = camera.range_m();
+  table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
 
   if (model.has_rows()) whiten_rows(model, camera, table);
   const Sensor& sensor = camera.sensor;
@@ -175,10 +176,6 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
     table.shot_correlation = model.tap_correlation_table(rows) * sums.transpose();
     table.shot_ambient_gain = sums * model.tap_ambient_gain();
     table.shot_dark_electrons = sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
-    // Ambient light that cancels still makes shot noise: that of the nominal light is assumed.
-    if (table.ambient_gain.isZero(0.0))
-      table.constant_variance_e2 += camera.operating.middle().ambient_e_per_s *
-                                    table.shot_ambient_gain.cwiseProduct(table.exposure_s);
     if (sensor.is_signed()) table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
     return resolved(table);
   }

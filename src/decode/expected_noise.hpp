@@ -13,7 +13,7 @@ struct ExpectedNoise {
 
   RowMajorMatrix shot_gated;          ///< T o shot_chi (N, K)
   Eigen::VectorXd shot_ambient;       ///< T o shot_kappa (K)
-  Eigen::VectorXd floor_variance_e2;  ///< without light (K)
+  Eigen::VectorXd floor_variance_e2;  ///< without light, or with hidden ambient light alone (K)
 };
 
 /// Keeps a noiseless table from dividing by zero [e^2].

@@ -163,6 +163,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
   table.shot_dark_electrons = taps_read * (sums * dark_e);
   table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
+  table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
   if (camera.temperature) {
     warm(*camera.temperature, table.row_m(), table.correlation);
     warm(*camera.temperature, table.row_m(), table.shot_correlation);

@@ -177,6 +177,7 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   define("RECORD_AMBIENT", layout.ambient());
   define("RECORD_SIGNAL_NOISE", layout.signal_noise());
   define("RECORD_BOUND", layout.bound());
+  define("RECORD_SHOT", layout.shot());
   define("CHORD_FIELDS", ChordLayout::fields);
   define("CHORD_DEPTH_NOISE", ChordLayout::depth_noise);
   define("CHORD_AMBIENT", ChordLayout::ambient);

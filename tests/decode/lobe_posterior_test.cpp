@@ -164,9 +164,11 @@ struct Reliability {
   std::array<RunningStatistics, edges.size()> claimed, right;
 };
 
-Reliability reliability_of(const DecodingTable& table, DecodeMethod method, int pixels) {
+Reliability reliability_of(DecodingTable table, DecodeMethod method, int pixels) {
   constexpr double ambient = 1e4, darkest = 0.1, brightest = 300.0;
+  table.hidden_ambient_e_per_s = 0.0;
   const double deviation = signal_deviation(table, ambient);
+  table.hidden_ambient_e_per_s = ambient;
   const LobePosterior posterior(table, AmbientProjection(table));
   const DecodingTable fine = finely_sampled(table);
   RandomStream random(11, 0);
@@ -175,8 +177,8 @@ Reliability reliability_of(const DecodingTable& table, DecodeMethod method, int 
   for (int i = 0; i < pixels; ++i) {
     truth.push_back(table.samples() * random.uniform());
     const double signal = deviation * darkest * std::pow(brightest / darkest, random.uniform());
-    const double depth_row = truth.back() * fine.samples() / table.samples();
-    append_noisy_pixel(fine, signal, ambient, depth_row, random, raw);
+    const double depth_bin = truth.back() * fine.bin_count() / table.samples();
+    append_noisy_pixel(fine, signal, ambient, depth_bin, random, raw);
   }
   const DepthImage image = std::visit(
       [&](const auto& decoder) -> DepthImage {

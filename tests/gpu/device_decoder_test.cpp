@@ -15,7 +15,7 @@ namespace {
 
 using DeviceDecoding = OnDevice;
 
-Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 127) {
+Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 255) {
   Outputs outputs(static_cast<std::size_t>(raw.pixels()));
   decoder.decode(raw, outputs.view(planes));
   return outputs;
@@ -23,7 +23,7 @@ Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 12
 
 /// @param left  how many pixels the device left to the decoder
 Outputs decoded(const DeviceDecoder& decoder, const RawView& raw, std::int64_t& left,
-                unsigned planes = 127) {
+                unsigned planes = 255) {
   Outputs outputs(static_cast<std::size_t>(raw.pixels()));
   left = decoder.decode(raw, outputs.view(planes));
   return outputs;
@@ -238,7 +238,7 @@ TEST_F(DeviceDecoding, EachPlaneIsTheSameWhicheverOthersAreWanted) {
   const DeviceDecoder on_device(device(), setup.decoder);
   std::int64_t left = 0;
   const Outputs all = decoded(on_device, row_of(raw, 4), left);
-  for (unsigned planes = 1; planes < 127; planes = planes * 2 + planes % 3)
+  for (unsigned planes = 1; planes < 255; planes = planes * 2 + planes % 3)
     expect_only(decoded(on_device, row_of(raw, 4), left, planes), all, planes);
 }
 

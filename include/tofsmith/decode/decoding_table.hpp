@@ -133,6 +133,9 @@ struct DecodingTable : MeasurementTable {
 
   Eigen::VectorXd shot_dark_electrons;   ///< [e] (K), or empty: dark_electrons
   Eigen::VectorXd constant_variance_e2;  ///< of read-out and quantization [e^2] (K), each >= 0
+  /// Ambient light whose shot noise decoders assume where ambient_gain is 0, so that measurements
+  /// do not show it [e/s].
+  double hidden_ambient_e_per_s = 0.0;
 
   Eigen::VectorXd black_level;            ///< raw number without light (K); 0 where it is electrons
   Eigen::VectorXd gain_e_per_raw;         ///< electrons per raw number (K), each > 0

@@ -44,11 +44,14 @@ namespace {
 
 constexpr int nodes_per_chunk = 1024;
 
+/// The nearest whole number. hn::Round() rounds half-way cases differently without vectors.
+HWY_INLINE Vector nearest(Vector x) { return hn::Floor(hn::Add(x, all(0.5f))); }
+
 /// exp(x) of x <= 0, at least exp(-80), to 2e-7.
 HWY_INLINE Vector exp_of(Vector x) {
   const Indices di;
   const Vector power = hn::Mul(hn::Max(x, all(-80.0f)), all(1.44269504f));
-  const Vector whole = hn::Round(power), rest = hn::Sub(power, whole);
+  const Vector whole = nearest(power), rest = hn::Sub(power, whole);
   Vector series = product_plus(rest, all(1.54035304e-4f), all(1.33335581e-3f));
   series = product_plus(rest, series, all(9.61812911e-3f));
   series = product_plus(rest, series, all(5.55041087e-2f));
@@ -121,10 +124,12 @@ float node_signals(const LobeSum& sum, float* signal) {
   return largest;
 }
 
-/// Returns true if no node outside the main lobe scores more than `limit`.
-bool leads(const LobePosterior::Nodes& nodes, int rank, const float* plane, float samples,
-           float centre, float half_width, float limit) {
+/// leads() for one rank; 0 for any.
+template <int Rank>
+HWY_INLINE bool leads_of_rank(const LobePosterior::Nodes& nodes, int any_rank, const float* plane,
+                              float samples, float centre, float half_width, float limit) {
   const Floats d;
+  const int rank = Rank > 0 ? Rank : any_rank;
   const Vector all_samples = all(samples), per_turn = hn::Div(all(1.0f), all_samples);
   for (int i = 0; i < nodes.stride; i += lanes_of(d)) {
     Vector score = hn::Zero(d);
@@ -135,11 +140,26 @@ bool leads(const LobePosterior::Nodes& nodes, int rank, const float* plane, floa
     const Mask is_high = hn::Gt(score, all(limit));
     if (hn::AllFalse(d, is_high)) continue;
     Vector away = hn::Sub(load(nodes.centre.data(), i), all(centre));
-    away = hn::Abs(hn::Sub(away, hn::Mul(all_samples, hn::Round(hn::Mul(away, per_turn)))));
+    away = hn::Abs(hn::Sub(away, hn::Mul(all_samples, nearest(hn::Mul(away, per_turn)))));
     const Vector end = product_plus(load(nodes.width.data(), i), all(0.5f), away);
     if (!hn::AllFalse(d, hn::And(is_high, hn::Gt(end, all(half_width))))) return false;
   }
   return true;
+}
+
+/// Returns true if no node outside the main lobe scores more than `limit`.
+bool leads(const LobePosterior::Nodes& nodes, int rank, const float* plane, float samples,
+           float centre, float half_width, float limit) {
+  switch (rank) {
+    case 2:
+      return leads_of_rank<2>(nodes, rank, plane, samples, centre, half_width, limit);
+    case 3:
+      return leads_of_rank<3>(nodes, rank, plane, samples, centre, half_width, limit);
+    case 4:
+      return leads_of_rank<4>(nodes, rank, plane, samples, centre, half_width, limit);
+    default:
+      return leads_of_rank<0>(nodes, rank, plane, samples, centre, half_width, limit);
+  }
 }
 
 struct LobeMass {
@@ -157,6 +177,7 @@ HWY_INLINE void add_nodes(const LobeSum& sum, int first, int count, const float*
                           LobeMass& mass) {
   constexpr float negligible = 30.0f;
   const Floats d;
+  const bool skips = peak > negligible;
   const auto no_light = all(static_cast<float>(std::exp(-static_cast<double>(peak))));
   const Vector samples = all(sum.samples), per_turn = hn::Div(all(1.0f), samples);
   const Vector least = all(std::sqrt(2 * std::max(peak - negligible, 0.0f)));
@@ -164,10 +185,13 @@ HWY_INLINE void add_nodes(const LobeSum& sum, int first, int count, const float*
   const float* const width = sum.nodes->width.data() + first;
   for (int i = 0; i < count; i += lanes_of(d)) {
     const Vector c = load(signal, i);
-    if (peak > negligible && hn::AllTrue(d, hn::Lt(c, least))) continue;
-    const Vector w = load(width, i);
+    const Mask counts = hn::Ge(c, least);
+    if (skips && hn::AllFalse(d, counts)) continue;
+    // Skipped nodes add nothing, whatever the length of vectors.
+    Vector w = load(width, i);
+    if (skips) w = hn::IfThenElseZero(counts, w);
     Vector away = hn::Sub(load(centre, i), all(sum.centre));
-    away = hn::Abs(hn::Sub(away, hn::Mul(samples, hn::Round(hn::Mul(away, per_turn)))));
+    away = hn::Abs(hn::Sub(away, hn::Mul(samples, nearest(hn::Mul(away, per_turn)))));
     // The share of the node's part that lies inside the lobe.
     const Vector share = hn::Div(hn::Sub(all(sum.half_width), away), hn::Max(w, all(1e-6f)));
     const Vector within = hn::Min(hn::Max(hn::Add(share, all(0.5f)), hn::Zero(d)), all(1.0f));
@@ -256,16 +280,28 @@ float LobePosterior::score_beside(const float* plane, float score, std::int32_t 
 
 bool LobePosterior::is_sure(const float* plane, float score, float least_lead_e2,
                             std::int32_t row) const {
-  // Between nodes the score is higher than at both by a factor of 1 / cos(step / 2) at most.
-  constexpr auto between = static_cast<float>(1.0 - 0.125 * coarse_step_rad * coarse_step_rad);
   const float best = score_beside(plane, score, row);
   const float square = best * best - least_lead_e2;
   if (!(best > 0.0f) || !(square > 0.0f)) return false;
   const Lobe& own = lobe(row);
-  return HWY_DYNAMIC_DISPATCH(leads)(
-      coarse_, rank_, plane, static_cast<float>(places_),
-      static_cast<float>(row * places_per_row_ + 0.5 * (own.right - own.left)),
-      static_cast<float>(0.5 * (own.left + own.right + 1)), std::sqrt(square) * between);
+  const auto leads_by = [&](const Nodes& nodes, float limit) {
+    return HWY_DYNAMIC_DISPATCH(leads)(
+        nodes, rank_, plane, static_cast<float>(places_),
+        static_cast<float>(row * places_per_row_ + 0.5 * (own.right - own.left)),
+        static_cast<float>(0.5 * (own.left + own.right + 1)), limit);
+  };
+  // A place at most half a step from a node scores no more than `limit` if the node scores no more
+  // than |q| cos(arccos(limit / |q|) + step / 2).
+  const float limit = std::sqrt(square);
+  float across2 = -square;
+  for (int j = 0; j < rank_; ++j) across2 += plane[j] * plane[j];
+  constexpr float sparse_turn = 0.5f * static_cast<float>(sparse_step_rad);
+  if (leads_by(sparse_, limit * std::cos(sparse_turn) -
+                            std::sqrt(std::max(across2, 0.0f)) * std::sin(sparse_turn)))
+    return true;
+  // Between close nodes the score is higher than at both by a factor of 1 / cos(step / 2) at most.
+  constexpr auto between = static_cast<float>(1.0 - 0.125 * coarse_step_rad * coarse_step_rad);
+  return leads_by(coarse_, limit * between);
 }
 
 double LobePosterior::confidence(const double* plane, const double* variance_e2,

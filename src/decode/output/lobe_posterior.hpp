@@ -85,7 +85,7 @@ class LobePosterior {
 
  private:
   /// Steps between nodes.
-  static constexpr double coarse_step_rad = 0.08, fine_step_rad = 0.02;
+  static constexpr double sparse_step_rad = 0.24, coarse_step_rad = 0.08, fine_step_rad = 0.02;
   Nodes make_nodes(double step) const;
   /// The same as MainLobe, in whole places.
   struct Lobe {
@@ -111,7 +111,7 @@ class LobePosterior {
   Eigen::VectorXd turn_rad_;    // from each place to the next; infinite where there is no chord
   std::vector<Lobe> lobes_;     // of rows
   std::vector<LobeBound> bounds_;
-  Nodes coarse_, fine_;
+  Nodes sparse_, coarse_, fine_;
 };
 
 }  // namespace tofsmith

@@ -44,11 +44,14 @@ LobePosterior::LobePosterior(const DecodingTable& table, const AmbientProjection
       noise_basis_(projection.noise_basis),
       turn_rad_(turns_of(curve_)) {
   const auto has_contrast = [&](std::int32_t n) { return !curve_.row(n).isZero(0.0); };
+  for (std::int32_t n = 0; n < places_; ++n)
+    if (!has_contrast(n)) unit_.row(n).setZero();
   for (std::int32_t n = 0; n < places_; ++n) {
     const std::int32_t next = n + 1 < places_ ? n + 1 : 0;
     if (turn_rad_[n] > jump_turn_rad || has_contrast(n) != has_contrast(next))
       turn_rad_[n] = std::numeric_limits<double>::infinity();
   }
+  sparse_ = make_nodes(sparse_step_rad);
   coarse_ = make_nodes(coarse_step_rad);
   fine_ = make_nodes(fine_step_rad);
   find_lobes();

@@ -26,9 +26,8 @@ namespace {
 template <int Rank>
 HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
                             const LobePosterior& posterior, const RecordTable& limits,
-                            const OutputSteps& steps,
-                            const std::uint8_t* saturated, OutputChunk& chunk,
-                            const DecodedView& planes) {
+                            const OutputSteps& steps, const std::uint8_t* saturated,
+                            OutputChunk& chunk, const DecodedView& planes) {
   const RecordLayout& layout = records.layout;
   const int rank = Rank > 0 ? Rank : layout.rank;
   find_rows(records.records, chunk.bin, chunk.pixels, chunk.start);
@@ -65,8 +64,8 @@ HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t*
 template <int Rank>
 HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
                            const LobePosterior& posterior, const RecordTable& limits,
-                           const OutputSteps& steps,
-                           const MatchedTile& tile, const DecodedView& planes) {
+                           const OutputSteps& steps, const MatchedTile& tile,
+                           const DecodedView& planes) {
   OutputChunk chunk;
   for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
     chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);

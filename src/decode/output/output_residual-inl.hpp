@@ -138,9 +138,9 @@ HWY_INLINE void find_variances(const OutputConstants& c, const BinRecords& recor
 
   const Vector signal = load(chunk.signal, i), ambient = noisy_ambient(chunk, i);
   const Vector rest = hn::Sub(all(1.0f), t);
-  const Vector least = product_plus(
-      signal, all(c.least_shot),
-      product_plus(ambient, all(c.least_shot_ambient), all(c.least_floor_e2)));
+  const Vector least =
+      product_plus(signal, all(c.least_shot),
+                   product_plus(ambient, all(c.least_shot_ambient), all(c.least_floor_e2)));
   for (int k = 0; k < layout.measurements; ++k) {
     float* const at = variance + k * Unexplained::lanes;
     const Vector shot = product_plus(rest, load(chunk.field(layout.shot() + k), i), load(at, 0));

@@ -140,11 +140,10 @@ RecordTable::RecordTable(std::int32_t rows, int fields)
 
 BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection,
                        bool with_chords)
-    : BinRecords(table, projection, with_chords, RecordBuilder(table, projection)) {}
+    : BinRecords(table, with_chords, RecordBuilder(table, projection)) {}
 
 template <typename Builder>
-BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection,
-                       bool with_chords, const Builder& builder)
+BinRecords::BinRecords(const DecodingTable& table, bool with_chords, const Builder& builder)
     : layout(builder.layout()),
       records(table.samples(), layout.end()),
       chords(ChordLayout::first_row(table.samples()), ChordLayout::fields) {

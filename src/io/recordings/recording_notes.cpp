@@ -63,8 +63,9 @@ std::optional<std::string> inconsistent_note(const StatusCounts& statuses) {
   if (!(count > many * pixels)) return std::nullopt;
   return fmt::format(
       "{:.1f} % of the pixels are inconsistent: no depth explains their measurements within the "
-      "camera's noise. Check --code, --camera and the order and type of the raw numbers; if they "
-      "are right and the camera is not calibrated, allow for it by --model-error-percent",
+      "camera's noise. Check --code, --camera and the order and type of the raw numbers. If they "
+      "are right, the camera differs from its description: calibrate it, set "
+      "sensor.modulation_contrast, or tolerate the difference with --model-error-percent",
       100.0 * count / pixels);
 }
 

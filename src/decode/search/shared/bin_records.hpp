@@ -106,8 +106,7 @@ struct BinRecords {
 
  private:
   template <typename Builder>
-  BinRecords(const DecodingTable& table, const AmbientProjection& projection, bool with_chords,
-             const Builder& builder);
+  BinRecords(const DecodingTable& table, bool with_chords, const Builder& builder);
 };
 
 }  // namespace tofsmith
