@@ -76,7 +76,7 @@ class Decoder {
   ///     any value, and the signal has a prior proportional to 1/S from a tenth of its standard
   ///     deviation upwards; the noise is that at the best bin. The main lobe is the run of bins
   ///     around the best one along which the code's own score falls, at most 5 % of the range on
-  ///     either side. Confidence is 1 where a bound proves that about 1e-5 at most is left for
+  ///     either side. Confidence is 1 where a bound proves that about 1e-3 at most is left for
   ///     other places;
   ///   residual: chi-square per degree of freedom of the measurements around the decoded light;
   ///   status: see PixelStatus; inconsistent if the residual exceeds the chi-square quantile of

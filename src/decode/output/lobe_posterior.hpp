@@ -29,8 +29,8 @@ struct LobeBound {
   double sine = 0.0;
 };
 
-/// Lead in chi-square that proves a confidence of 1: about 1e-5 at most is left for other places.
-inline constexpr float sure_lead = 20.0f;
+/// Lead in chi-square that proves a confidence of 1: about 1e-3 at most is left for other places.
+inline constexpr float sure_lead = 14.0f;
 
 /// Variance of single components of q = V^T y' with covariance C = V^T diag(v) V, a little above
 /// the mean: mean + (standard deviation) / 2 of its eigenvalues.
