@@ -101,4 +101,4 @@ def test_every_plane_of_a_decoded_image_is_there():
     names = {name for name in vars(ts.DepthImage)["__dataclass_fields__"]}
     assert names == planes
     image = ts.decode(np.ones((1, 1, 4), np.float32), "hamiltonian-k4", "paper-10f0")
-    assert set(image.planes()) == planes - {"bin", "delay_m", "ratio", "returns"}
+    assert set(image.planes()) == planes - {"bin", "residual", "delay_m", "ratio", "returns"}
