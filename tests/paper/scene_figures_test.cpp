@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <sstream>
+#include <string>
+#include <string_view>
 
 #include "camera/shared/prototype.hpp"
 #include "paper/figures.hpp"
@@ -27,15 +30,18 @@ CodeShelf& shelf() {
 }
 
 /// Each figure is made once.
-const Reproduction& figure(const std::string& name) {
-  static std::map<std::string, Reproduction> made;
-  if (!made.contains(name))
-    made[name] = paper_item(name).reproduce({coarse, shelf()}, [](double fraction, auto) {
+const Reproduction& figure(std::string_view name) {
+  static std::map<std::string, Reproduction, std::less<>> made;
+  auto found = made.find(name);
+  if (found == made.end()) {
+    const auto check = [](double fraction, auto) {
       EXPECT_GE(fraction, 0.0);
       EXPECT_LE(fraction, 1.0);
       return true;
-    });
-  return made[name];
+    };
+    found = made.emplace(name, paper_item(name).reproduce({coarse, shelf()}, check)).first;
+  }
+  return found->second;
 }
 
 void expect_page(const std::string& name, std::size_t figures) {
