@@ -266,7 +266,7 @@ TEST(LabEngine, ADesignIsACodeOfTheCameraAndTellsHowFarItIs) {
   ASSERT_TRUE(json.contains("answer")) << json;
   EXPECT_EQ(told, 1.0);
   const CodeSet code = parse_code_json(json["answer"]["file"].get<std::string>());
-  EXPECT_EQ(code.name(), json["answer"]["document"]["best"]);
+  EXPECT_EQ(code.name(), json["answer"]["document"]["best"].get<std::string>());
   EXPECT_GT(json["answer"]["error_m"], 0.0);
 }
 
