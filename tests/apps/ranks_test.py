@@ -154,9 +154,10 @@ class Ranks(RanksTest):
         self.assertEqual(error.count("tofsmith: none.toml: there is no such file"), 1)
 
     def test_ranks_of_other_instruction_sets_are_refused(self):
-        one = ["-n", "1", "-x", "TOFSMITH_TARGET=SCALAR", TOOL, "sweep", "s.toml", "--store", "s"]
+        sweep = [TOOL, "sweep", "s.toml", "--store", "s"]
         job = subprocess.Popen(
-            [MPIRUN, "--allow-run-as-root", "--oversubscribe", *one[:2], *one[4:], ":", *one],
+            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", "1", *sweep,
+             ":", "-n", "1", "env", "TOFSMITH_TARGET=SCALAR", *sweep],
             cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env=self.environment())
         _, error = self.finish(job, code=1)

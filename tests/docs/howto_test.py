@@ -67,6 +67,8 @@ class HowTo(BenchRecordsTest):
         environment = dict(os.environ, PATH=f"{os.path.dirname(TOOL)}:/usr/bin:/bin",
                            OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                            OMPI_MCA_rmaps_base_oversubscribe="1",
+                           PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
+                           OMPI_MCA_btl="^tcp",
                            ASAN_OPTIONS=options + ":detect_leaks=0")
         done = subprocess.run(["bash", "-ec", command], cwd=self.directory, env=environment,
                               text=True, capture_output=True, timeout=200)
