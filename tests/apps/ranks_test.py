@@ -154,10 +154,11 @@ class Ranks(RanksTest):
         self.assertEqual(error.count("tofsmith: none.toml: there is no such file"), 1)
 
     def test_ranks_of_other_instruction_sets_are_refused(self):
-        sweep = [TOOL, "sweep", "s.toml", "--store", "s"]
+        # Not one program for each rank: the mpirun of Open MPI 5 in Debian 13 crashes on that.
+        script = f"""[ "$OMPI_COMM_WORLD_RANK" = 0 ] || export TOFSMITH_TARGET=SCALAR
+            exec {TOOL} sweep s.toml --store s"""
         job = subprocess.Popen(
-            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", "1", *sweep,
-             ":", "-n", "1", "env", "TOFSMITH_TARGET=SCALAR", *sweep],
+            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", "2", "sh", "-c", script],
             cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env=self.environment())
         _, error = self.finish(job, code=1)
