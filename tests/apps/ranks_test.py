@@ -154,7 +154,7 @@ class Ranks(RanksTest):
         self.assertEqual(error.count("tofsmith: none.toml: there is no such file"), 1)
 
     def test_ranks_of_other_instruction_sets_are_refused(self):
-        # Not one program for each rank: the mpirun of Open MPI 5 in Debian 13 crashes on that.
+        # One program for all ranks: the mpirun of Debian 13 (Open MPI 5) crashes on several.
         script = f"""[ "$OMPI_COMM_WORLD_RANK" = 0 ] || export TOFSMITH_TARGET=SCALAR
             exec {TOOL} sweep s.toml --store s"""
         job = subprocess.Popen(

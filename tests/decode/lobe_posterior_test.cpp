@@ -83,7 +83,7 @@ TEST(LobePosterior, IsTheIntegralOverTheCurveAndAllSignals) {
 }
 
 TEST(LobePosterior, CountsAllOfARunOfBinsWithOneDirection) {
-  // Where a correlation function rises from 0, depth changes the signal alone.
+  // Correlation functions that rise from 0 have rows that differ in signal alone.
   const DecodingTable table = table_of("gray-k4", camera_with("paper-30x"));
   // In the brightest light the lobe ends at bins, not half a bin further: 0.5 of 15 bins.
   EXPECT_LT(largest_difference(table, {20.0, 50.0, 300.0}, 12, 20), 0.05);

@@ -72,8 +72,8 @@ void expect_what_the_decoder_gives(const Device& device, const DecodingTable& ta
   std::int64_t left = 0;
   const Outputs all = decoded(on_device, view, left);
   expect_alike(device.info(), options.use_doubles, all, expected, brightest);
-  // In dim light most pixels are left to the processor for their confidence, and those of a table
-  // with close lobes for their lobe.
+  // The processor finds the confidence of most pixels in dim light, and the lobe of all pixels of a
+  // table with close lobes.
   decoded(on_device, view, left, without_confidence);
   if (!parts_of(decoder).matcher.has_close_lobes()) {
     EXPECT_LT(static_cast<double>(left - 2 * odd_pixels),

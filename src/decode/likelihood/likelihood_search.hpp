@@ -55,7 +55,7 @@ class LikelihoodSearch {
   double depth_row(const ChordFit& fit) const { return fit.position().in_rows(scores_.samples()); }
   double depth_row(const MostLikely& found) const;
 
-  /// No signal and no followed peak where ambient light alone explains the pixel.
+  /// No signal where ambient light alone explains the pixel.
   /// @param fall  work space (N); then what every bin explains, DepthScores::weighted_fall
   MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall) const;
   /// Posterior probability of the main lobe around the most likely depth.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What LobePosterior tabulates of a curve: lobes, nodes and bounds.
+// The tables of LobePosterior: lobes, nodes and bounds of a curve.
 #include <algorithm>
 #include <cmath>
 #include <limits>

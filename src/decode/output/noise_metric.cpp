@@ -11,7 +11,7 @@ namespace tofsmith {
 NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
                          const double* variance_e2)
     : rank_(static_cast<int>(noise_basis.cols())) {
-  // What rounding leaves of a direction without noise.
+  // Smaller variances, as shares of the diagonal, are rounding errors of a direction without noise.
   constexpr double least_share = 1e-12;
   std::array<double, max_pairs> factor;
   const auto at = [](int i, int j) { return static_cast<std::size_t>(i * (i + 1) / 2 + j); };

@@ -205,7 +205,7 @@ HWY_INLINE Vector weighted_squares(const OutputConstants& c, const RecordLayout&
 /// Finds inconsistent pixels and, if `wants_plane`, residuals. The unweighted squares over the
 /// least variance are a bound that is enough for most pixels.
 ///
-/// Not inlined: g++ 12 would fail with an internal error for AVX-512.
+/// Inlining it makes g++ 12 fail with an internal error for AVX-512.
 template <int Rank>
 HWY_NOINLINE void find_residual(const OutputConstants& c, const BinRecords& records,
                                 const RecordTable& limits, bool wants_plane, OutputChunk& chunk) {

@@ -39,7 +39,7 @@ class ChordMatcher {
   bool is_coarse() const { return pieces_.has_value(); }
   /// What matches: bins(), or of a coarse table its points.
   const BinMatcher& points() const { return pieces_ ? *pieces_->matcher : rows_; }
-  /// Of points of a coarse table: the end of its chord that is closer.
+  /// The closer end of the chord of each point of a coarse table; otherwise empty.
   std::span<const std::int32_t> bin_of_point() const {
     return pieces_ ? std::span<const std::int32_t>(pieces_->bin_of_point)
                    : std::span<const std::int32_t>();
