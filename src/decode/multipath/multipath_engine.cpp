@@ -174,6 +174,11 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
   const double freedom = curve_.span - 2;
   unexplained_chi2_ =
       static_cast<float>(freedom + std::sqrt(options.threshold) * std::sqrt(2 * freedom));
+  // Unknown are depth and signal, the second signal and, of a return, its delay.
+  freedom_ = curve_.span - (later == MultipathKind::tail ? 3 : 4);
+  const double false_alarm_rate = options.status_thresholds.false_alarm_rate;
+  if (freedom_ > 0 && false_alarm_rate > 0.0)
+    consistent_chi2_ = chi_square_quantile_of_tail(false_alarm_rate, freedom_);
   if (options.prior) posterior_.emplace(curve_, *options.prior, known.range_m, delays_);
 }
 
@@ -302,17 +307,14 @@ double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits&
 /// if two returns explain the pixel.
 void MultipathEngine::store_residual(double chi2, float confidence, std::size_t at,
                                      const DecodedView& decoded) const {
-  const int unknowns = kind_ == MultipathKind::tail ? 3 : 4;  // without ambient light
-  const int freedom = curve_.span - unknowns;
   if (decoded.residual)
-    decoded.residual[at] =
-        freedom > 0 ? static_cast<float>(chi2 / freedom) : std::numeric_limits<float>::quiet_NaN();
+    decoded.residual[at] = freedom_ > 0 ? static_cast<float>(chi2 / freedom_)
+                                        : std::numeric_limits<float>::quiet_NaN();
   if (!decoded.status || decoded.status[at] != PixelStatus::inconsistent) return;
-  const DecodeOptions& thresholds = options_.status_thresholds;
-  if (freedom > 0 && chi2 > chi_square_quantile_of_tail(thresholds.false_alarm_rate, freedom))
-    return;
-  decoded.status[at] =
-      confidence < thresholds.min_confidence ? PixelStatus::ambiguous : PixelStatus::ok;
+  if (chi2 > consistent_chi2_) return;
+  decoded.status[at] = confidence < options_.status_thresholds.min_confidence
+                           ? PixelStatus::ambiguous
+                           : PixelStatus::ok;
 }
 
 /// What one return did not explain, with or without a second.

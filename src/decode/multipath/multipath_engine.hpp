@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "decode/expected_noise.hpp"
@@ -81,6 +82,8 @@ class MultipathEngine {
   MultipathCurve curve_;
   DelayBounds delays_;
   float unexplained_chi2_;  // more than a single return should leave
+  int freedom_;             // degrees of freedom that both returns leave
+  double consistent_chi2_ = std::numeric_limits<double>::infinity();  // the most they may leave
   std::optional<ReturnPosterior> posterior_;
 };
 
