@@ -66,6 +66,7 @@ for component in "${components[@]}"; do
     use_debian_tools
     settings=(-DTOFSMITH_TARGETS="$(own_target)" -DTOFSMITH_OPTIMIZE_KERNELS_ONLY=ON)
     for package in "${forbidden[@]}"; do settings+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"); done
-    bash -c "$steps" steps "$root" "$root/build-$component" "$component" install "${settings[@]}"
+    # One build folder for all components: a component reuses the objects of those below it.
+    bash -c "$steps" steps "$root" "$root/build-components" "$component" install "${settings[@]}"
   fi
 done

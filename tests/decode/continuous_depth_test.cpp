@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/shared/random.hpp"
+#include "sanitizers.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/units.hpp"
@@ -106,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Decoder, DecodesNoiseFreePixelsOfRandomFrequenciesToTheirDepth) {
   RandomStream random(4, 0);
-  for (int set = 0; set < 12; ++set) {
+  for (int set = 0; set < repetitions(12); ++set) {
     Frequencies list;
     int common = 0;
     do {

@@ -7,6 +7,7 @@
 
 #include "decode_setup.hpp"
 #include "reference_decoder.hpp"
+#include "sanitizers.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -60,7 +61,7 @@ void append_raw(std::vector<float>& raw, const DecodingTable& table, double sign
 
 TEST(UnequalMeasurements, DepthSignalAndAmbientComeBackWithoutNoise) {
   constexpr double signal = 1e6, ambient = 3e4;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < repetitions(60u); ++seed) {
     RandomStream random(seed, 1);
     const Decoder decoder(random_table(random, 3 + static_cast<int>(seed % 4)));
     const DecodingTable& table = decoder.table();
@@ -84,7 +85,7 @@ TEST(UnequalMeasurements, DepthSignalAndAmbientComeBackWithoutNoise) {
 }
 
 TEST(UnequalMeasurements, NoisyPixelsDecodeAsTheReferenceSays) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < repetitions(40u); ++seed) {
     RandomStream random(seed, 2);
     const Decoder decoder(random_table(random, 3 + static_cast<int>(seed % 4)));
     const ReferenceDecoder reference(decoder.table());

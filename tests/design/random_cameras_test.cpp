@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "sanitizers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/design.hpp"
 
@@ -52,12 +53,12 @@ void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
 }
 
 TEST(RandomCameras, GetACodeOrAReasonWithoutEffort) {
-  const std::uint64_t cameras = 1000, step = all_are_tried() ? 1 : 41;
+  const std::uint64_t cameras = 1000, step = all_are_tried() ? 1 : 1000 / repetitions(25u);
   for (std::uint64_t i = 0; i < cameras; i += step) expect_a_code_or_a_reason(i, 0.0);
 }
 
 TEST(RandomCameras, GetACodeOrAReasonFromEveryMethod) {
-  const std::uint64_t first = 1000, cameras = 50, step = all_are_tried() ? 1 : 13;
+  const std::uint64_t first = 1000, cameras = 50, step = all_are_tried() ? 1 : 50 / repetitions(4u);
   const double effort = all_are_tried() ? 1.0 : 0.01;
   for (std::uint64_t i = 0; i < cameras; i += step) expect_a_code_or_a_reason(first + i, effort);
 }

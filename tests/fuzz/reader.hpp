@@ -91,6 +91,10 @@ std::vector<Reader> waveform_readers();
 std::vector<Reader> bench_readers();
 std::vector<Reader> sweep_readers();
 
+/// The readers that the command line names, and which of them reads the next inputs.
+std::span<const Reader> chosen_readers();
+void choose(const Reader& reader);
+
 /// Puts right what `repair` says in the first `size` bytes, which have room for `max_size`; gives
 /// how many there are then. `data` may stay as it is where its form is broken.
 using Mutate = std::function<std::size_t(std::uint8_t* data, std::size_t size, std::size_t max)>;

@@ -23,7 +23,8 @@ std::vector<Reader> all_readers() {
   return all;
 }
 
-const Reader* chosen = nullptr;
+std::vector<Reader> chosen;
+const Reader* current = nullptr;
 
 void write_seeds(const Reader& reader, const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
@@ -33,6 +34,11 @@ void write_seeds(const Reader& reader, const std::filesystem::path& directory) {
 }
 
 }  // namespace
+
+std::span<const Reader> chosen_readers() { return chosen; }
+
+void choose(const Reader& reader) { current = &reader; }
+
 }  // namespace tofsmith::fuzz
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
@@ -47,13 +53,16 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     }
     if (word.starts_with("--reader="))
       for (const Reader& reader : readers)
-        if (reader.name == word.substr(9)) chosen = &reader;
-    if (word.starts_with("--seeds=") && chosen != nullptr) {
-      write_seeds(*chosen, word.substr(8));
+        if (word.substr(9) == reader.name || word.substr(9) == "all") chosen.push_back(reader);
+    if (word.starts_with("--seeds=") && !chosen.empty()) {
+      write_seeds(chosen.front(), word.substr(8));
       std::exit(0);
     }
   }
-  if (chosen != nullptr) return 0;
+  if (!chosen.empty()) {
+    current = &chosen.front();
+    return 0;
+  }
   fmt::print(stderr, "expected --reader=NAME, one of --reader=list\n");
   std::exit(2);
 }
@@ -61,7 +70,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    tofsmith::fuzz::chosen->read(std::as_bytes(std::span(data, size)));
+    tofsmith::fuzz::current->read(std::as_bytes(std::span(data, size)));
   } catch (const tofsmith::IoError&) {
   } catch (const std::invalid_argument&) {
   }
@@ -73,6 +82,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                std::size_t max_size, unsigned seed);
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
-  return tofsmith::fuzz::mutate_within(tofsmith::fuzz::chosen->repair, data, size, max_size, seed,
+  return tofsmith::fuzz::mutate_within(tofsmith::fuzz::current->repair, data, size, max_size, seed,
                                        LLVMFuzzerMutate);
 }

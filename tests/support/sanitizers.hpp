@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+namespace tofsmith {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool with_sanitizers = true;
+#else
+inline constexpr bool with_sanitizers = false;
+#endif
+
+/// How often a long test repeats its check: `all` times, or an eighth of it with sanitizers, which
+/// slow numerics down about ten times.
+template <typename Count>
+constexpr Count repetitions(Count all) {
+  return with_sanitizers ? std::max(Count{1}, all / 8) : all;
+}
+
+}  // namespace tofsmith
