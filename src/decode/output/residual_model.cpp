@@ -30,6 +30,7 @@ Eigen::VectorXd normalized_or_zero(const Eigen::VectorXd& vector) {
 
 /// The least variance of measurements along a combination of these columns, or a lower bound.
 double least_variance(const Eigen::MatrixXd& columns, const Eigen::VectorXd& variance) {
+  if (columns.cols() == 0) return 0.0;
   if (columns.cols() > most_eigenvalues) return std::max(variance.minCoeff(), 0.0);
   const Eigen::MatrixXd covariance = columns.transpose() * variance.asDiagonal() * columns;
   return std::max(columns.cols() == 1 ? covariance(0, 0) : least_eigenvalue(covariance), 0.0);
@@ -115,7 +116,8 @@ ResidualModel::Course ResidualModel::course_on_curve(std::int32_t row,
   Course course;
   course.point = noise_basis_ * p;
   course.has_slope = slope.squaredNorm() * p.squaredNorm() > parallel_chords;
-  course.slope = noise_basis_ * normalized_or_zero(slope);
+  course.slope = Eigen::VectorXd::Zero(course.point.size());
+  if (course.has_slope) course.slope = noise_basis_ * slope.normalized();
   for (const bool is_after : {true, false}) {
     const double t = is_after ? 0.5 : -0.5;
     const Eigen::VectorXd bend = polynomials_->bend.row(row),
