@@ -68,7 +68,8 @@ struct Decoder::Plan {
   OutputKernel outputs;
   std::vector<std::int32_t> bin_of_row;  // empty: bins are rows
 
-  void write(PixelTile& tile, const float* averaged, const DecodedView& planes) const;
+  void write(PixelTile& tile, const float* averaged, const NoiseRatios& noise,
+             const DecodedView& planes) const;
   /// Writes the bins of the tile's rows.
   void write_bins(const PixelTile& tile, std::int32_t* bin) const {
     if (bin_of_row.empty()) {
@@ -139,7 +140,7 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
     };
     if (!is_bin_enough)
       for_each_tile(plan_->matcher, raw, block, true, [&](PixelTile& tile, std::int64_t first) {
-        plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr,
+        plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr, raw.noise,
                      decoded.from(static_cast<std::size_t>(first)));
       });
     // Planes are those of the best chords: bins that are not beside these come by themselves.
@@ -155,7 +156,8 @@ DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& prog
 }
 
 /// All wanted planes of a matched tile, whose raw numbers become electrons.
-void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedView& planes) const {
+void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRatios& noise,
+                          const DecodedView& planes) const {
   std::array<std::uint8_t, pixels_per_tile> saturated{};
   if (const SaturationLevels levels(table); levels.has_any() && outputs.needs_saturation(planes))
     for (int k = 0; k < model.measurements(); ++k)
@@ -173,7 +175,8 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedV
                  .electrons = tile.raw,
                  .bin = tile.bin,
                  .saturated = saturated.data(),
-                 .averaged = averaged},
+                 .averaged = averaged,
+                 .noise = noise},
                 planes);
   if (planes.bin && !bin_of_row.empty()) write_bins(tile, planes.bin);
 }

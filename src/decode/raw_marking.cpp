@@ -38,6 +38,7 @@ RawView mark_as(const RawView& raw, const RawMarking& marking, std::vector<std::
   });
   RawView view = RawView::interleaved(numbers, raw.height, raw.width, raw.measurements);
   view.averaged = raw.averaged;
+  view.noise = raw.noise;
   return view;
 }
 

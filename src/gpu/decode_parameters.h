@@ -63,6 +63,7 @@ struct OutputParameters {
   int ambient_weights;
   float typical_ambient, typical_floor_e2;
   float low_signal_sigma2, sure_lead;
+  float lobe_noise, residual_noise;  ///< as NoiseRatios
 
   int records, record_stride;
   int chords, chord_blocks, chord_quarters;

@@ -33,6 +33,7 @@ void with_numbers_of(const RawView& raw, std::int64_t first, const std::vector<s
   RawView view =
       RawView::interleaved(values.data(), 1, static_cast<int>(open.size()), raw.measurements);
   if (raw.averaged) view.averaged = averaged.data();
+  view.noise = raw.noise;
   view.is_marked = true;
   use(view);
 }
@@ -92,7 +93,7 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
         },
         frame.raw.data);
   const int measurements = decoder.measurements();
-  const OpenNumbers there(in.numbers_of(open), measurements);
+  const OpenNumbers there(in.numbers_of(open), measurements, in.raw().noise());
   RawView view = there.view();
   std::vector<double> exact;
   if (frame.means) {
@@ -102,6 +103,7 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
     const float* const averaged = view.averaged;
     view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
     view.averaged = averaged;
+    view.noise = in.raw().noise();
     view.is_marked = true;
   }
   decode_open_pixels(view, open, planes);
@@ -152,8 +154,9 @@ std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes
   tile.fetch(planes);
   const std::vector<std::int32_t> open = tile.open_pixels();
   if (!open.empty())
-    decode_open_pixels(OpenNumbers(tile.numbers_of(open), decoder.measurements()).view(), open,
-                       planes);
+    decode_open_pixels(
+        OpenNumbers(tile.numbers_of(open), decoder.measurements(), tile.raw().noise()).view(), open,
+        planes);
   return std::ssize(open);
 }
 

@@ -18,8 +18,10 @@ constexpr int min_band_rows = 16;
 /// Numbers of rows that a device wrote, to where they belong in a filtered frame.
 class FilteredRows {
  public:
-  FilteredRows(const RawView& raw, FilteredFrame& frame) : planes_(planes_of(frame)) {
+  FilteredRows(const Filter::Plan& plan, const RawView& raw, FilteredFrame& frame)
+      : planes_(planes_of(frame)) {
     planes_.resize(raw.height, raw.width, raw.measurements, 1);
+    planes_.noise = plan.noise_ratios();
     planes_.result = 0;
   }
 
@@ -104,7 +106,8 @@ std::int64_t DeviceFilter::Plan::run_band(const FrameSource& source, IndexRange 
   });
   const std::int64_t pixels = std::int64_t{count} * raw.width;
   if (!after) result.reserve_planes(frame.queue(), pixels, raw.measurements);
-  const DeviceRaw& out = after ? after->tile.reserve_planes(pixels) : result;
+  const NoiseRatios noise = plan_of(filter).noise_ratios();
+  const DeviceRaw& out = after ? after->tile.reserve_planes(pixels, raw_float, noise) : result;
   frame.write(first - from, count, out);
   frame.queue().finish();
   if (filtered) filtered->fetch(frame.queue(), out, first, count);
@@ -121,7 +124,7 @@ std::int64_t DeviceFilter::Plan::run(const FrameSource& source, DeviceDecoder::P
   if (raw.pixels() < options.min_pixels && !source.on_device)
     return run_here(raw, after, decoded, filtered, progress, left_out);
   std::optional<FilteredRows> wanted;
-  if (filtered) wanted.emplace(raw, *filtered);
+  if (filtered) wanted.emplace(plan_of(filter), raw, *filtered);
   std::int64_t left_open = 0;
   for (std::int64_t first = 0; first < raw.height;) {
     const int rows = rows_at_a_time(raw);
@@ -164,7 +167,8 @@ bool DeviceFilter::Plan::start(const FrameSource& source, DeviceRaw& brought,
     there.on_device = &brought;
   }
   frame.filter(there, 0, raw.height, nullptr, [] {});
-  frame.write(0, raw.height, decoded_in.reserve_planes(pixels));
+  frame.write(0, raw.height,
+              decoded_in.reserve_planes(pixels, raw_float, plan_of(filter).noise_ratios()));
   decoded_in.queue().follow(frame.queue().mark());
   decoded_in.decode(decoded);
   decoded_in.queue().flush();

@@ -75,6 +75,7 @@ void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64
                        std::int64_t count) {
   upload_numbers<false>(queue, view, first, count);
   has_averaged_ = view.averaged != nullptr;
+  noise_ = view.noise;
   const std::int64_t bytes = count * std::int64_t{sizeof(float)};
   if (has_averaged_)
     queue.upload(view.averaged + first, static_cast<std::size_t>(bytes),
@@ -84,11 +85,13 @@ void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64
 void DeviceRaw::upload_exactly(const DeviceQueue& queue, const RawView& view) {
   upload_numbers<true>(queue, view, 0, view.pixels());
   has_averaged_ = false;
+  noise_ = {};
 }
 
 void DeviceRaw::copy(const DeviceQueue& queue, const DeviceRaw& frame, int measurements,
                      std::int64_t first, std::int64_t count) {
-  reserve_planes(queue, count, measurements, static_cast<RawNumber>(frame.tile_.number));
+  reserve_planes(queue, count, measurements, static_cast<RawNumber>(frame.tile_.number),
+                 frame.noise_);
   const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(float),
                     from = static_cast<std::size_t>(first) * sizeof(float),
                     plane = static_cast<std::size_t>(frame.tile_.pixels) * sizeof(float);
@@ -98,12 +101,13 @@ void DeviceRaw::copy(const DeviceQueue& queue, const DeviceRaw& frame, int measu
 }
 
 void DeviceRaw::reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
-                               RawNumber number) {
+                               RawNumber number, const NoiseRatios& noise) {
   tile_ = {.pixels = static_cast<int>(pixels),
            .pixel_stride = 1,
            .measurement_stride = static_cast<int>(pixels),
            .number = number};
   has_averaged_ = true;
+  noise_ = noise;
   const std::int64_t bytes = pixels * std::int64_t{sizeof(float)};
   reserve(queue, numbers_, bytes * measurements);
   reserve(queue, averaged_, bytes);

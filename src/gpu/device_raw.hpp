@@ -6,6 +6,7 @@
 
 #include "gpu/decode_parameters.h"
 #include "gpu/device_queue.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 
@@ -28,7 +29,7 @@ class DeviceRaw {
   /// means.
   /// @param number  what they are: raw_float, raw_rounded or raw_plane
   void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
-                      RawNumber number = raw_float);
+                      RawNumber number = raw_float, const NoiseRatios& noise = {});
   void release();
   /// Of a frame, at most.
   static std::int64_t bytes_per_pixel(const RawView& raw) { return 4 * (raw.measurements + 1); }
@@ -38,6 +39,7 @@ class DeviceRaw {
   const DeviceMemory* numbers() const { return &numbers_; }
   /// Null where they are no means.
   const DeviceMemory* averaged() const { return has_averaged_ ? &averaged_ : nullptr; }
+  const NoiseRatios& noise() const { return noise_; }
 
  private:
   template <bool exactly>
@@ -46,6 +48,7 @@ class DeviceRaw {
 
   TileParameters tile_{};
   bool has_averaged_ = false;
+  NoiseRatios noise_;
   DeviceMemory numbers_, averaged_;
 };
 

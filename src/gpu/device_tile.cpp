@@ -8,8 +8,8 @@
 
 namespace tofsmith {
 
-OpenNumbers::OpenNumbers(std::vector<float> numbers, int measurements)
-    : measurements_(measurements), numbers_(std::move(numbers)) {
+OpenNumbers::OpenNumbers(std::vector<float> numbers, int measurements, const NoiseRatios& noise)
+    : measurements_(measurements), noise_(noise), numbers_(std::move(numbers)) {
   const auto each = static_cast<std::size_t>(measurements) + 1;
   for (std::size_t at = each - 1; at < numbers_.size(); at += each)
     averaged_.push_back(numbers_[at]);
@@ -21,6 +21,7 @@ RawView OpenNumbers::view() const {
   view.column_stride = measurements_ + 1;
   view.row_stride = pixels * view.column_stride;
   view.averaged = averaged_.data();
+  view.noise = noise_;
   view.is_marked = true;
   return view;
 }
@@ -46,8 +47,9 @@ std::int64_t DeviceTile::bytes_per_pixel() const {
   return 4 * (outputs_.records().layout.measurements + words);
 }
 
-const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, RawNumber number) {
-  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements, number);
+const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, RawNumber number,
+                                            const NoiseRatios& noise) {
+  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements, number, noise);
   return raw_;
 }
 
@@ -74,6 +76,8 @@ void DeviceTile::decode(const DecodedView& wanted) {
   OutputParameters parameters = tables_.outputs;
   parameters.finds_confidence = outputs_.needs_confidence(wanted) ? 1 : 0;
   parameters.finds_residual = outputs_.needs_residuals(wanted) ? 1 : 0;
+  parameters.lobe_noise = raw_.noise().of_lobes;
+  parameters.residual_noise = raw_.noise().of_residual;
   queue_.run(write_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
              raw_.averaged(), &bins_, &opened_, &open_, room_for(wanted.depth_m, depth_),
              room_for(wanted.signal_e_per_s, signal_), room_for(wanted.ambient_e_per_s, ambient_),

@@ -13,12 +13,13 @@ namespace tofsmith {
 /// Numbers of pixels that a device leaves open: K, and of how many measurements they are the mean.
 class OpenNumbers {
  public:
-  OpenNumbers(std::vector<float> numbers, int measurements);
+  OpenNumbers(std::vector<float> numbers, int measurements, const NoiseRatios& noise);
   /// A frame of one row.
   RawView view() const;
 
  private:
   int measurements_;
+  NoiseRatios noise_;
   std::vector<float> numbers_, averaged_;
 };
 
@@ -40,7 +41,8 @@ class DeviceTile {
   }
   /// Makes room for so many pixels whose numbers, and of how many they are the mean, a kernel
   /// writes: DeviceRaw::reserve_planes().
-  const DeviceRaw& reserve_planes(std::int64_t pixels, RawNumber number = raw_float);
+  const DeviceRaw& reserve_planes(std::int64_t pixels, RawNumber number = raw_float,
+                                  const NoiseRatios& noise = {});
   /// Starts to decode them into planes of the device.
   /// @param wanted  those that are not null
   void decode(const DecodedView& wanted);

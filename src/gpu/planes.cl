@@ -39,7 +39,8 @@ bool is_sure(const struct OutputParameters* p, const float* q, Floats record, fl
   const float lead = square - other * other - across2;
   const float variance =
       signal * bound[3] + (ambient * p->typical_ambient + p->typical_floor_e2);
-  return other < score && lead >= p->sure_lead * (variance * share);
+  const float of_lobes = share < 1.0f ? p->sure_lead * p->lobe_noise : p->sure_lead;
+  return other < score && lead >= of_lobes * (variance * share);
 }
 
 /// Best point on the chords left and right of a bin.
@@ -308,7 +309,8 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   if (p.finds_residual) {
     float residual = NO_VALUE;
     is_inconsistent =
-        find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient, share,
+        find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient,
+                      share < 1.0f ? share * p.residual_noise : share,
                       residuals ? &residual : 0);
     if (residuals) residuals[pixel] = has_depth ? residual : NO_VALUE;
   }

@@ -73,6 +73,10 @@ struct ResidualCase {
   Readout readout = Readout::separate;
 };
 
+void PrintTo(const ResidualCase& c, std::ostream* out) {
+  *out << name_of(c.method) << ", " << c.code << " on " << c.camera << ", " << c.taps << " taps";
+}
+
 class ResidualOfCode : public testing::TestWithParam<ResidualCase> {
  protected:
   DecodingTable table() const {

@@ -105,6 +105,7 @@ void Filter::apply(const RawView& stored, FilteredFrame& filtered, const Progres
     plan.add_slope_noise(frame, round);
   }
   frame.result = from;
+  frame.noise = plan.noise_ratios();
   plan.finish(raw, frame, from, to);
 }
 

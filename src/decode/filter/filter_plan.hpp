@@ -46,6 +46,9 @@ struct Filter::Plan {
   /// The variance that the last window leaves.
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 
+  /// Noise of filtered numbers, relative to that which their `averaged` states.
+  NoiseRatios noise_ratios() const;
+
   /// Raw numbers into the first set of light, with their variances and where they are usable.
   void read(const RawView& raw, FilterPlanes& frame) const;
   /// Raw numbers into a set of light again, and where they are usable into a plane.

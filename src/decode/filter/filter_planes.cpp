@@ -77,6 +77,7 @@ RawView FilteredFrame::view() const {
           .column_stride = 1,
           .measurement_stride = p.grid.plane_floats(),
           .averaged = p.averaged.pixels.data(),
+          .noise = p.noise,
           .is_marked = true};
 }
 

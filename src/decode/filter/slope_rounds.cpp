@@ -28,6 +28,19 @@ SlopeNoise slope_noise_of(int windows, int round) {
   return (round == 0 ? first_slope_noise : later_slope_noise)[windows - 1];
 }
 
+/// Slopes add noise along the depth only, which the residual does not contain. In bright light the
+/// error of a second round, which follows the slopes of the first, makes up for the difference.
+/// Slopes also carry the lobe of a pixel to its neighbours, so that neighbours with the same error
+/// support each other: the ratio for lobes is fitted to pixels in weak light
+/// (benchmarks/reliability.py).
+NoiseRatios Filter::Plan::noise_ratios() const {
+  if (options.slope_rounds == 0) return {};
+  NoiseRatios ratios{.of_lobes = 1.3f};
+  if (options.slope_rounds == 1)
+    ratios.of_residual = 1.0f / (1.0f + slope_noise_of(options.windows, 0).sum);
+  return ratios;
+}
+
 void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const {
   const FilterGrid& grid = frame.grid;
   float* const averaged = frame.scalar(FilterPlanes::shift);

@@ -42,8 +42,8 @@ struct LikelihoodDecoder::Plan {
     return std::vector<double>(static_cast<std::size_t>(table.samples()));
   }
   double decode_depth_bin(const float* raw, std::vector<double>& fall) const;
-  void decode_pixel(const float* raw, double variance_share, std::size_t at,
-                    const DecodedView& decoded, std::vector<double>& fall) const;
+  void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
+                    std::size_t at, const DecodedView& decoded, std::vector<double>& fall) const;
 };
 
 LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& options) {
@@ -81,7 +81,7 @@ void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
         std::vector<double> fall = plan_->work_space();
         for (std::int64_t i = 0; i < block.pixels; ++i)
           plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),
-                              static_cast<std::size_t>(i), planes, fall);
+                              block.noise_of(i), static_cast<std::size_t>(i), planes, fall);
       },
       block_pixels);
 }
@@ -119,7 +119,8 @@ double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
   return table.in_bins(search.depth_row(found));
 }
 
-void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_share, std::size_t at,
+void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_share,
+                                           const NoiseRatios& noise, std::size_t at,
                                            const DecodedView& decoded,
                                            std::vector<double>& fall) const {
   PerMeasurement electrons;
@@ -128,10 +129,13 @@ void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_sha
   const MostLikely found = search.most_likely(pixel, fall);
   PixelDecoding decoding{search.depth_row(found), search.model().estimate(pixel, found.best)};
   if (decoding.estimate.signal_e_per_s > 0.0) {
-    decoding.confidence = search.confidence(pixel, found);
+    LikelihoodPixel of_lobes = pixel;
+    of_lobes.variance_share *= noise.of_lobes;
+    decoding.confidence = search.confidence(of_lobes, found);
     if (decoded.residual || decoded.status)
-      decoding.residual = residuals.residual(electrons.data(), decoding.estimate,
-                                             Position::at(decoding.depth_row), variance_share);
+      decoding.residual =
+          residuals.residual(electrons.data(), decoding.estimate, Position::at(decoding.depth_row),
+                             variance_share * noise.of_residual);
   }
   store_pixel(table, options, raw, decoding, at, decoded);
 }

@@ -242,6 +242,7 @@ void MultipathEngine::decode_block(const RawBlock& raw, const DecodedView& decod
   RawView view =
       RawView::interleaved(raw.values, 1, static_cast<int>(pixels), table().measurements());
   view.averaged = raw.averaged;
+  view.noise = raw.noise;
   view.is_marked = true;
   single_.decode(view, planes);
 

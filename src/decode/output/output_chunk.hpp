@@ -64,6 +64,7 @@ struct OutputChunk {
   int pixels = 0;
   const float* plane = nullptr;      // as in the tile
   const float* electrons = nullptr;  // as in the tile
+  NoiseRatios noise;
   alignas(64) std::int32_t bin[pixels_per_chunk];
   alignas(64) std::uint32_t start[pixels_per_chunk];  // of the bins' records
   alignas(64) float signal[pixels_per_chunk];         // > 0 where there is a depth

@@ -72,6 +72,7 @@ HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
     copy_rows(tile.bin + first, chunk.pixels, chunk.bin);
     chunk.plane = tile.plane + first;
     chunk.electrons = tile.electrons ? tile.electrons + first : nullptr;
+    chunk.noise = tile.noise;
     std::fill_n(chunk.variance_share, pixels_per_chunk, 1.0f);
     if (tile.averaged)
       for (int i = 0; i < chunk.pixels; ++i)

@@ -26,6 +26,7 @@ struct MatchedTile {
   const std::int32_t* bin = nullptr;        ///< of the best score; -1 for an invalid pixel
   const std::uint8_t* saturated = nullptr;  ///< 1 where a measurement is clipped, else 0
   const float* averaged = nullptr;          ///< as in RawView, of the first pixel on
+  NoiseRatios noise;
 };
 
 /// From best bins to planes, a tile at a time: what PixelModel and store_pixel define, in single

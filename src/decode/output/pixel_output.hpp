@@ -50,9 +50,13 @@ struct RawBlock {
   const float* values = nullptr;
   std::int64_t pixels = 0;
   const float* averaged = nullptr;  ///< as in RawView, of the block's first pixel on
+  NoiseRatios noise;
 
   /// The variance of pixel i over that of a single measurement.
   double variance_share(std::int64_t i) const { return averaged ? 1.0 / averaged[i] : 1.0; }
+  NoiseRatios noise_of(std::int64_t i) const {
+    return averaged && averaged[i] > 1.0f ? noise : NoiseRatios();
+  }
 };
 
 /// The same with the raw numbers of a block and where to store what they say.

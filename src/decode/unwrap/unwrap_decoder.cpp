@@ -84,8 +84,8 @@ struct UnwrapDecoder::Plan {
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double row_of(const Wraps& wraps) const;
-  void decode_pixel(const float* raw, double variance_share, std::size_t at,
-                    const DecodedView& decoded) const;
+  void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
+                    std::size_t at, const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
 };
@@ -128,7 +128,7 @@ void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,
                [&](const RawBlock& block, const DecodedView& planes) {
                  for (std::int64_t i = 0; i < block.pixels; ++i)
                    plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),
-                                       static_cast<std::size_t>(i), planes);
+                                       block.noise_of(i), static_cast<std::size_t>(i), planes);
                });
 }
 
@@ -161,7 +161,8 @@ double UnwrapDecoder::Plan::row_of(const Wraps& wraps) const {
   return wrap(wraps.depth * table.samples(), table.samples());
 }
 
-void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, std::size_t at,
+void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
+                                       const NoiseRatios& noise, std::size_t at,
                                        const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
   if (!read(raw, electrons)) return store_invalid(at, decoded);
@@ -176,11 +177,13 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, 
     PerFrequency share;
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();
     pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
+    for (double& variance : variance_e2) variance *= noise.of_lobes;
     pixel.confidence = posterior.confidence(plane.data(), variance_e2.data(),
                                             nearest_bin(pixel.depth_row, table.samples()));
     if (decoded.residual || decoded.status)
-      pixel.residual = residuals.residual(electrons.data(), pixel.estimate,
-                                          Position::at(pixel.depth_row), variance_share);
+      pixel.residual =
+          residuals.residual(electrons.data(), pixel.estimate, Position::at(pixel.depth_row),
+                             variance_share * noise.of_residual);
   }
   store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
 }

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Confidence and residual of frames whose noise is not the same in all directions (NoiseRatios).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "decode_setup.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/filter.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int side = 48;
+
+class FilteredNoise : public testing::TestWithParam<std::tuple<FilterStrength, const char*>> {
+ protected:
+  /// Planes of the filtered capture of a slanted plane.
+  DepthImage decode_plane(double signal, double first_bin, unsigned seed) const {
+    const DecodingTable& table = setup.decoder.table();
+    const RawFrames raw = frame_by_pixel(
+        table.measurements(), side, side, seed,
+        [&](int y, int x, RandomStream& random, std::vector<float>& values) {
+          append_noisy_pixel(table, signal, 1e4, first_bin + 0.02 * x + 0.01 * y, random, values);
+        });
+    FilteredFrame filtered;
+    filter.apply(view_of_frame(raw, 0), filtered);
+    DepthImage image(side, side);
+    image.residual = image.depth_m;
+    setup.decoder.decode(filtered.view(), DecodedView::of(image));
+    return image;
+  }
+
+  DecodeSetup setup{std::get<1>(GetParam()), camera_with("paper-10f0")};
+  Filter filter{setup.decoder.table(), FilterOptions::of(std::get<0>(GetParam()))};
+};
+
+TEST_P(FilteredNoise, LeavesAResidualOfAtMostAboutOne) {
+  for (const double signal : {3e3, 1e4, 1e5}) {
+    RunningStatistics residual, inconsistent;
+    for (unsigned seed = 1; seed <= 16; ++seed) {
+      const DepthImage image = decode_plane(signal, 40.3 + seed, seed);
+      for (const float value : image.residual.pixels) residual.add(value);
+      for (const PixelStatus status : image.status.pixels)
+        inconsistent.add(status == PixelStatus::inconsistent);
+    }
+    EXPECT_GT(residual.mean(), 0.4) << signal;
+    EXPECT_LT(residual.mean(), 1.15) << signal;
+    EXPECT_LT(inconsistent.mean(), 2e-3) << signal;
+  }
+}
+
+TEST_P(FilteredNoise, MakesPixelsAsConfidentAsTheyAreRight) {
+  const DecodingTable& table = setup.decoder.table();
+  RunningStatistics claimed, right;
+  RandomStream random(3, 0);
+  for (unsigned seed = 1; seed <= 600; ++seed) {
+    const double signal = 30.0 * std::pow(300.0, random.uniform());
+    const double first_bin = table.bin_count() * random.uniform();
+    const DepthImage image = decode_plane(signal, first_bin, seed);
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const float confidence = image.confidence(y, x);
+        if (!(confidence >= 0.7f && confidence < 0.999f)) continue;
+        const double away =
+            std::remainder(image.depth_m(y, x) / table.bin_m() - (first_bin + 0.02 * x + 0.01 * y),
+                           table.bin_count());
+        claimed.add(confidence);
+        right.add(std::abs(away) < 0.05 * table.bin_count());
+      }
+  }
+  ASSERT_GT(claimed.count(), 20000);
+  EXPECT_NEAR(claimed.mean(), right.mean(), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, FilteredNoise,
+                         testing::Combine(testing::Values(FilterStrength::light,
+                                                          FilterStrength::normal,
+                                                          FilterStrength::strong),
+                                          testing::Values("hamiltonian-k5", "sinusoid-k5")),
+                         [](const auto& info) {
+                           std::string name = std::string(name_of(std::get<0>(info.param))) + "_" +
+                                              std::get<1>(info.param);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace tofsmith
