@@ -22,11 +22,13 @@ class FilteredNoise : public testing::TestWithParam<std::tuple<FilterStrength, c
   /// Planes of the filtered capture of a slanted plane.
   DepthImage decode_plane(double signal, double first_bin, unsigned seed) const {
     const DecodingTable& table = setup.decoder.table();
-    const RawFrames raw = frame_by_pixel(
-        table.measurements(), side, side, seed,
-        [&](int y, int x, RandomStream& random, std::vector<float>& values) {
-          append_noisy_pixel(table, signal, 1e4, first_bin + 0.02 * x + 0.01 * y, random, values);
-        });
+    const RawFrames raw =
+        frame_by_pixel(table.measurements(), side, side, seed,
+                       [&](int y, int x, RandomStream& random, std::vector<float>& values) {
+                         const double depth_bin = first_bin + 0.02 * x + 0.01 * y;
+                         append_noisy_pixel(table, signal, 1e4,
+                                            std::fmod(depth_bin, table.samples()), random, values);
+                       });
     FilteredFrame filtered;
     filter.apply(view_of_frame(raw, 0), filtered);
     DepthImage image(side, side);

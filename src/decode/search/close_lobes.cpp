@@ -21,28 +21,39 @@ constexpr double far_apart = 2.5;
 /// Rows for which the distance is examined, at most.
 constexpr Eigen::Index max_examined = 4096;
 
-/// The best score of any row with row n, outside the run around n along which scores fall.
-double best_outside(const Eigen::VectorXd& score, Eigen::Index n) {
-  const Eigen::Index rows = score.size();
-  const auto at = [&](Eigen::Index i) { return score[(i % rows + rows) % rows]; };
-  Eigen::Index right = 1, left = 1;
-  while (right < rows && at(n + right) <= at(n + right - 1)) ++right;
-  while (left < rows - right && at(n - left) <= at(n - left + 1)) ++left;
-  double best = -1.0;
-  for (Eigen::Index i = right; i <= rows - left; ++i) best = std::max(best, at(n + i));
-  return best;
-}
-
-/// The least distance of the curve of unit directions from itself.
-double closest_approach(const RowMajorMatrix& units) {
-  const Eigen::Index step = (units.rows() + max_examined - 1) / max_examined;
-  double best = -1.0;
-  Eigen::VectorXd score;
-  for (Eigen::Index n = 0; n < units.rows(); n += step) {
-    score.noalias() = units * units.row(n).transpose();
-    best = std::max(best, best_outside(score, n));
+/// Returns true if the curve of unit directions comes closer to itself than `distance`, other than
+/// in the run of rows around each row along which scores fall.
+/// @param spacing  the largest distance between neighbouring rows
+bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) {
+  const Eigen::Index rows = units.rows();
+  const Eigen::Index step = (rows + max_examined - 1) / max_examined;
+  const double limit = 1.0 - 0.5 * distance * distance;
+  for (Eigen::Index n = 0; n < rows; n += step) {
+    const auto score = [&](Eigen::Index i) {
+      return units.row(n).dot(units.row(i < rows ? i : i - rows));
+    };
+    // The end of the run, in both directions; a row that is close after one that is farther away
+    // is not in it.
+    Eigen::Index first = n + 1, last = n + rows - 1;
+    double before = score(n), now = score(first);
+    for (; first < last && now > limit; now = score(++first)) {
+      if (now > before) return true;
+      before = now;
+    }
+    before = score(n), now = score(last);
+    for (; first < last && now > limit; now = score(--last)) {
+      if (now > before) return true;
+      before = now;
+    }
+    // Rows between, without those that are too far away to be reached.
+    while (first < last) {
+      now = score(first);
+      if (now > limit) return true;
+      const double away = std::sqrt(std::max(0.0, 2.0 - 2.0 * now));
+      first += std::max<Eigen::Index>(1, static_cast<Eigen::Index>((away - distance) / spacing));
+    }
   }
-  return std::sqrt(std::max(0.0, 2.0 - 2.0 * best));
+  return false;
 }
 
 /// The largest share of |q| by which a best point can exceed the rows next to it.
@@ -64,7 +75,7 @@ std::optional<CloseLobes> CloseLobes::of(const AmbientProjection& projection) {
   if (projection.rank() < 3 || !depth_polynomials(projection.curve)) return std::nullopt;
   const RowMajorMatrix units = projection.curve.rowwise().normalized();
   const double spacing = turns_of(projection.curve).maxCoeff();
-  if (closest_approach(units) >= far_apart * spacing) return std::nullopt;
+  if (!comes_closer(units, far_apart * spacing, spacing)) return std::nullopt;
   return CloseLobes(*SmoothCurve::of(projection.curve), slack_of(units));
 }
 
