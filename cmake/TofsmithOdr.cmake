@@ -8,7 +8,7 @@
 option(TOFSMITH_ODR "Add the target odr, which compares definitions; GCC only" OFF)
 if(TOFSMITH_ODR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(TOFSMITH_HAS_ODR ON)
-  string(APPEND CMAKE_CXX_FLAGS " -fno-lto")  # links use the code
+  string(APPEND CMAKE_CXX_FLAGS " -fno-lto")  # links use the code, not the descriptions
 endif()
 
 # Adds the target `odr`; to be called when all others exist.

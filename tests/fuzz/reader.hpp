@@ -91,8 +91,9 @@ std::vector<Reader> waveform_readers();
 std::vector<Reader> bench_readers();
 std::vector<Reader> sweep_readers();
 
-/// The readers that the command line names, and which of them reads the next inputs.
+/// Readers that the command line names.
 std::span<const Reader> chosen_readers();
+/// Selects the reader of the next inputs.
 void choose(const Reader& reader);
 
 /// Puts right what `repair` says in the first `size` bytes, which have room for `max_size`; gives

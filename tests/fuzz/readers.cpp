@@ -63,7 +63,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     current = &chosen.front();
     return 0;
   }
-  fmt::print(stderr, "expected --reader=NAME, one of --reader=list\n");
+  fmt::print(stderr, "expected --reader=NAME with a name from --reader=list, or --reader=all\n");
   std::exit(2);
 }
 

@@ -12,8 +12,8 @@ inline constexpr bool with_sanitizers = true;
 inline constexpr bool with_sanitizers = false;
 #endif
 
-/// How often a long test repeats its check: `all` times, or an eighth of it with sanitizers, which
-/// slow numerics down about ten times.
+/// Number of repetitions of a long test: `all`, or an eighth of it with sanitizers, which slow
+/// numerics down about ten times.
 template <typename Count>
 constexpr Count repetitions(Count all) {
   return with_sanitizers ? std::max(Count{1}, all / 8) : all;
