@@ -39,8 +39,7 @@ bool is_sure(const struct OutputParameters* p, const float* q, Floats record, fl
   const float lead = square - other * other - across2;
   const float variance =
       signal * bound[3] + (ambient * p->typical_ambient + p->typical_floor_e2);
-  const float of_lobes = share < 1.0f ? p->sure_lead * p->lobe_noise : p->sure_lead;
-  return other < score && lead >= of_lobes * (variance * share);
+  return other < score && lead >= p->sure_lead * (variance * share);
 }
 
 /// Best point on the chords left and right of a bin.
@@ -297,12 +296,16 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   if (ambient_e_per_s) ambient_e_per_s[pixel] = p.sees_ambient && has_depth ? ambient : NO_VALUE;
 
   const float noisy_ambient = fmax(ambient, 0.0f);
+  const bool is_mean = averaged && averaged[pixel] > 1.0f;
   const float share = averaged ? 1.0f / averaged[pixel] : 1.0f;
+  const float lobe_share = is_mean ? share * p.lobe_noise : share,
+              residual_share = is_mean ? share * p.residual_noise : share;
   if (deviation_m) {
     const float variance = variance_of(signal, noisy_ambient, chord + CHORD_DEPTH_NOISE);
     deviation_m[pixel] = has_depth ? sqrt(variance * share) / signal : NO_VALUE;
   }
-  if (p.finds_confidence && has_depth && !is_sure(&p, q, record, signal, noisy_ambient, share))
+  if (p.finds_confidence && has_depth &&
+      !is_sure(&p, q, record, signal, noisy_ambient, lobe_share))
     open[atomic_inc(opened)] = pixel;
   if (confidences) confidences[pixel] = has_depth ? 1.0f : NO_VALUE;
   bool is_inconsistent = false;
@@ -310,8 +313,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     float residual = NO_VALUE;
     is_inconsistent =
         find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient,
-                      share < 1.0f ? share * p.residual_noise : share,
-                      residuals ? &residual : 0);
+                      residual_share, residuals ? &residual : 0);
     if (residuals) residuals[pixel] = has_depth ? residual : NO_VALUE;
   }
   if (status) {

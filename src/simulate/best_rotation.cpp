@@ -62,7 +62,7 @@ BestRotation best_rotation(const CodeSet& code, const Camera& on, const Evaluate
   for (int r = 0; r < std::ssize(log_sum); ++r)
     if (!plays_alike_rotated(camera, trials.samples(), r))
       log_sum[static_cast<std::size_t>(r)] = std::numeric_limits<double>::infinity();
-  // A rotation that is off a generator's points by a rounding can lose a narrow pulse.
+  // A rotation that misses the points of the generator by a rounding error can lose a narrow pulse.
   for (;;) {
     best.rotation_bin = best_of_rotations(log_sum);
     if (best.rotation_bin == 0 || !why_not_playable(code.rotated(best.rotation_bin), camera))

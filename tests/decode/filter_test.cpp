@@ -251,6 +251,7 @@ TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
   camera.sensor.full_well_e = 1e4;
   const DecodeSetup setup("hamiltonian-k4", camera);
   const DecodingTable& table = setup.decoder.table();
+  const Decoder decoder(table, {.false_alarm_rate = 0.0});
   RawFrames raw = frame_seen(table, 48, 48, [](int, int) { return Seen{55.0, 5e4}; });
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   for (int y = 20; y < 26; ++y)
@@ -259,7 +260,7 @@ TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
     for (int x = 5; x < 9; ++x) raw.values[static_cast<std::size_t>((y * 48 + x) * 4)] = 1e4f;
   for (const FilterStrength strength : all_filter_strengths) {
     const FilteredFrame filtered = Filter(table, options_of(strength)).apply(raw);
-    const DepthImage image = decoded(setup.decoder, filtered);
+    const DepthImage image = decoded(decoder, filtered);
     for (int y = 0; y < 48; ++y)
       for (int x = 0; x < 48; ++x) {
         const bool is_invalid = y >= 20 && y < 26 && x >= 20 && x < 26;
@@ -267,13 +268,11 @@ TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
         const PixelStatus expected = is_invalid     ? PixelStatus::invalid
                                      : is_saturated ? PixelStatus::saturated
                                                     : PixelStatus::ok;
+        ASSERT_EQ(image.status(y, x), expected) << y << ' ' << x;
         if (expected != PixelStatus::ok) {
-          ASSERT_EQ(image.status(y, x), expected) << y << ' ' << x;
           ASSERT_EQ(filtered.averaged()(y, x), 1.0f);
           continue;
         }
-        ASSERT_NE(image.status(y, x), PixelStatus::invalid) << y << ' ' << x;
-        ASSERT_NE(image.status(y, x), PixelStatus::saturated) << y << ' ' << x;
         ASSERT_LT(std::abs(bin_error(table, image.depth_m(y, x), 55.0)), 0.5) << y << ' ' << x;
       }
   }

@@ -54,12 +54,14 @@ struct RawFrames {
   float* frame(int f) { return const_cast<float*>(static_cast<const RawFrames*>(this)->frame(f)); }
 };
 
-/// Noise of raw numbers in two respects, relative to the variance that `RawView::averaged` states.
-/// That is the noise of depth; a filter leaves other noise where no change of depth moves a pixel.
-/// They hold for pixels of which `averaged` is > 1: a filter leaves others as they were measured.
+/// Variances of filtered numbers relative to the variance that `RawView::averaged` states, which is
+/// that of depth.
 struct NoiseRatios {
-  float of_lobes = 1.0f;     ///< between one lobe and another; confidence depends on it
-  float of_residual = 1.0f;  ///< in the part that no depth explains
+  float of_lobes = 1.0f;     ///< between one lobe and another, for confidence
+  float of_residual = 1.0f;  ///< of the part that no depth explains
+
+  /// The ratios of a pixel: 1 unless it is a mean, because filters leave some pixels as measured.
+  NoiseRatios at(float averaged) const { return averaged > 1.0f ? *this : NoiseRatios(); }
 };
 
 /// The raw numbers of one frame where they are, in any of four types and any regular layout: number
@@ -76,7 +78,7 @@ struct RawView {
   /// How many equal measurements the numbers of a pixel are the mean of, each > 0, row by row (H,
   /// W): their variance is so many times smaller. Null: 1, as they leave a sensor.
   const float* averaged = nullptr;
-  NoiseRatios noise;
+  NoiseRatios noise;  ///< of the pixels for which `averaged` > 1
   /// The numbers were stored as unsigned integers and converted to another type.
   bool was_unsigned = false;
   /// Special numbers have already been replaced (see RawMarking): decoders and filters do not look

@@ -28,11 +28,10 @@ SlopeNoise slope_noise_of(int windows, int round) {
   return (round == 0 ? first_slope_noise : later_slope_noise)[windows - 1];
 }
 
-/// Slopes add noise along the depth only, which the residual does not contain. In bright light the
-/// error of a second round, which follows the slopes of the first, makes up for the difference.
-/// Slopes also carry the lobe of a pixel to its neighbours, so that neighbours with the same error
-/// support each other: the ratio for lobes is fitted to pixels in weak light
-/// (benchmarks/reliability.py).
+/// The noise of slopes affects the depth only, not the residual. No ratio is used for the residual
+/// of two rounds, because these add errors in bright light that would cause false alarms.
+/// Neighbours with the same wrong lobe support each other, because slopes are fitted to the depths
+/// of one lobe. The ratio for lobes, 1.3, was found with benchmarks/reliability.py.
 NoiseRatios Filter::Plan::noise_ratios() const {
   if (options.slope_rounds == 0) return {};
   NoiseRatios ratios{.of_lobes = 1.3f};

@@ -64,13 +64,15 @@ struct OutputChunk {
   int pixels = 0;
   const float* plane = nullptr;      // as in the tile
   const float* electrons = nullptr;  // as in the tile
-  NoiseRatios noise;
   alignas(64) std::int32_t bin[pixels_per_chunk];
   alignas(64) std::uint32_t start[pixels_per_chunk];  // of the bins' records
   alignas(64) float signal[pixels_per_chunk];         // > 0 where there is a depth
   alignas(64) float offset[pixels_per_chunk];         // of depth from the bin, in bins: in [-1, 1]
   alignas(64) float ambient[pixels_per_chunk];
-  alignas(64) float variance_share[pixels_per_chunk];  // of a single measurement: 1 / averaged
+  // Variances relative to a single measurement: 1 / averaged, also multiplied by NoiseRatios.
+  alignas(64) float variance_share[pixels_per_chunk];
+  alignas(64) float lobe_share[pixels_per_chunk];
+  alignas(64) float residual_share[pixels_per_chunk];
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
   alignas(64) float residual[pixels_per_chunk];

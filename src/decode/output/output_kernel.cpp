@@ -61,6 +61,19 @@ HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t*
   std::fill(std::copy_n(numbers, pixels, to), to + pixels_per_chunk, -1);
 }
 
+void find_shares(const MatchedTile& tile, int first, OutputChunk& chunk) {
+  for (float* share : {chunk.variance_share, chunk.lobe_share, chunk.residual_share})
+    std::fill_n(share, pixels_per_chunk, 1.0f);
+  if (!tile.averaged) return;
+  for (int i = 0; i < chunk.pixels; ++i) {
+    const float averaged = tile.averaged[first + i], share = 1.0f / averaged;
+    const NoiseRatios noise = tile.noise.at(averaged);
+    chunk.variance_share[i] = share;
+    chunk.lobe_share[i] = share * noise.of_lobes;
+    chunk.residual_share[i] = share * noise.of_residual;
+  }
+}
+
 template <int Rank>
 HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
                            const LobePosterior& posterior, const RecordTable& limits,
@@ -72,11 +85,7 @@ HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
     copy_rows(tile.bin + first, chunk.pixels, chunk.bin);
     chunk.plane = tile.plane + first;
     chunk.electrons = tile.electrons ? tile.electrons + first : nullptr;
-    chunk.noise = tile.noise;
-    std::fill_n(chunk.variance_share, pixels_per_chunk, 1.0f);
-    if (tile.averaged)
-      for (int i = 0; i < chunk.pixels; ++i)
-        chunk.variance_share[i] = 1.0f / tile.averaged[first + i];
+    find_shares(tile, first, chunk);
     write_chunk<Rank>(records, c, posterior, limits, steps,
                       tile.saturated ? tile.saturated + first : nullptr, chunk,
                       planes.from(static_cast<std::size_t>(first)));

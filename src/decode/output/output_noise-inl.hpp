@@ -57,12 +57,6 @@ HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_devi
   }
 }
 
-/// The values times a ratio of NoiseRatios, where it holds.
-HWY_INLINE Vector noise_ratio(const OutputChunk& chunk, Vector values, float ratio, int i) {
-  const Mask is_mean = hn::Lt(load(chunk.variance_share, i), all(1.0f));
-  return hn::IfThenElse(is_mean, hn::Mul(values, all(ratio)), values);
-}
-
 /// Returns where the confidence of pixels is proven to be 1. With c = <q, u_b>, q across u_b of
 /// length r and the score of other places at most s = cosine c + sine r (LobeBound), these have a
 /// chi-square larger by (|q|^2 - s^2 - r^2) / v.
@@ -84,8 +78,7 @@ HWY_INLINE Mask is_sure(const OutputConstants& c, const RecordLayout& layout, in
   const Vector variance = product_plus(
       load(chunk.signal, i), load(bound + 3 * pixels_per_chunk, i),
       product_plus(noisy_ambient(chunk, i), all(c.typical_ambient), all(c.typical_floor_e2)));
-  const Vector least = hn::Mul(noise_ratio(chunk, all(sure_lead), chunk.noise.of_lobes, i),
-                               hn::Mul(variance, load(chunk.variance_share, i)));
+  const Vector least = hn::Mul(all(sure_lead), hn::Mul(variance, load(chunk.lobe_share, i)));
   return hn::And(hn::Lt(other, score), hn::Ge(lead, least));
 }
 
@@ -102,9 +95,7 @@ inline float posterior_of(const OutputConstants& c, const BinRecords& records,
     score += q[j] * record[records.layout.point() + j];
   }
   const float variance = lit * bound[3] + (dim * c.typical_ambient + c.typical_floor_e2);
-  const float share = chunk.variance_share[i];
-  const float of_lobes = share < 1.0f ? chunk.noise.of_lobes : 1.0f;
-  if (posterior.is_sure(q, score * bound[0], sure_lead * of_lobes * (variance * share),
+  if (posterior.is_sure(q, score * bound[0], sure_lead * (variance * chunk.lobe_share[i]),
                         chunk.bin[i]))
     return 1.0f;
 
@@ -114,7 +105,7 @@ inline float posterior_of(const OutputConstants& c, const BinRecords& records,
   const float* const shot = record + records.layout.shot();
   for (int k = 0; k < records.layout.measurements; ++k)
     variance_e2[k] =
-        of_lobes * share *
+        chunk.lobe_share[i] *
         std::max(min_variance_e2, signal * shot[k] + ambient * c.shot_ambient.data()[k] +
                                       c.floor_noise_e2.data()[k]);
   return static_cast<float>(posterior.probability(plane, variance_e2, chunk.bin[i]));

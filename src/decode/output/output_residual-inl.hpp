@@ -219,9 +219,7 @@ HWY_NOINLINE void find_residual(const OutputConstants& c, const BinRecords& reco
     gather(limits.data(), chunk.limit_start + i, 0, LimitLayout::end_of_bound, chunk.limit + i);
     const auto limit = [&](int field) { return load(chunk.limit + field * pixels_per_chunk, i); };
     find_unexplained(c, layout, rank, chunk, i, left);
-    const Vector signal = load(chunk.signal, i);
-    const Vector share =
-        noise_ratio(chunk, load(chunk.variance_share, i), chunk.noise.of_residual, i);
+    const Vector signal = load(chunk.signal, i), share = load(chunk.residual_share, i);
     const Vector bound =
         hn::Mul(variance_of(signal, noisy_ambient(chunk, i), limit(LimitLayout::variance),
                             limit(LimitLayout::variance + 1), limit(LimitLayout::variance + 2)),

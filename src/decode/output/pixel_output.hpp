@@ -54,9 +54,7 @@ struct RawBlock {
 
   /// The variance of pixel i over that of a single measurement.
   double variance_share(std::int64_t i) const { return averaged ? 1.0 / averaged[i] : 1.0; }
-  NoiseRatios noise_of(std::int64_t i) const {
-    return averaged && averaged[i] > 1.0f ? noise : NoiseRatios();
-  }
+  NoiseRatios noise_of(std::int64_t i) const { return noise.at(averaged ? averaged[i] : 1.0f); }
 };
 
 /// The same with the raw numbers of a block and where to store what they say.

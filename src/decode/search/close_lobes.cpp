@@ -32,22 +32,20 @@ bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) 
     const auto score = [&](Eigen::Index i) {
       return units.row(n).dot(units.row(i < rows ? i : i - rows));
     };
-    // The end of the run, in both directions; a row that is close after one that is farther away
-    // is not in it.
+    // Follows the run in one direction to the first row at the distance. Returns true if the curve
+    // turns back before that.
     Eigen::Index first = n + 1, last = n + rows - 1;
-    double before = score(n), now = score(first);
-    for (; first < last && now > limit; now = score(++first)) {
-      if (now > before) return true;
-      before = now;
-    }
-    before = score(n), now = score(last);
-    for (; first < last && now > limit; now = score(--last)) {
-      if (now > before) return true;
-      before = now;
-    }
-    // Rows between, without those that are too far away to be reached.
+    const auto turns_back = [&](Eigen::Index& row, int direction) {
+      double before = score(n);
+      for (double now; first < last && (now = score(row)) > limit; row += direction, before = now)
+        if (now > before) return true;
+      return false;
+    };
+    if (turns_back(first, 1) || turns_back(last, -1)) return true;
+    // Between the ends of the run, rows that the curve cannot come close to in fewer steps are
+    // skipped.
     while (first < last) {
-      now = score(first);
+      const double now = score(first);
       if (now > limit) return true;
       const double away = std::sqrt(std::max(0.0, 2.0 - 2.0 * now));
       first += std::max<Eigen::Index>(1, static_cast<Eigen::Index>((away - distance) / spacing));

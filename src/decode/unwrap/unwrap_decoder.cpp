@@ -177,7 +177,8 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
     PerFrequency share;
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();
     pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
-    for (double& variance : variance_e2) variance *= noise.of_lobes;
+    for (int k = 0; k < table.measurements(); ++k)
+      variance_e2[static_cast<std::size_t>(k)] *= noise.of_lobes;
     pixel.confidence = posterior.confidence(plane.data(), variance_e2.data(),
                                             nearest_bin(pixel.depth_row, table.samples()));
     if (decoded.residual || decoded.status)
