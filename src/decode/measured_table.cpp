@@ -43,6 +43,20 @@ Eigen::MatrixXd light_of(const Eigen::MatrixXd& correlation) {
   return light.cwiseMax(0.0);
 }
 
+/// Columns as light: raised along ambient light until none falls below 0, as columns without their
+/// mean do. Unchanged if ambient light does not raise a column that does.
+Eigen::MatrixXd raised(const Eigen::MatrixXd& correlation, const Eigen::VectorXd& ambient_gain) {
+  double rise = 0.0;
+  for (Eigen::Index k = 0; k < correlation.cols(); ++k) {
+    const double least = correlation.col(k).minCoeff();
+    if (least >= 0.0) continue;
+    if (!(ambient_gain[k] > 0.0)) return correlation;
+    rise = std::max(rise, -least / ambient_gain[k]);
+  }
+  if (rise == 0.0) return correlation;
+  return (correlation.rowwise() + rise * ambient_gain.transpose()).cwiseMax(0.0);
+}
+
 /// Values that both taps of a pair share, by pair.
 Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
   Eigen::VectorXd shared(values.size() / 2);
@@ -151,22 +165,29 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
                                                    : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
-  DecodingTable table = table_of_rows(measured.correlation * readout.transpose(),
-                                      measured.range_m.value_or(camera.range_m()));
+  const Eigen::MatrixXd correlation =
+      differs ? measured.correlation : raised(measured.correlation, ambient_gain);
+  DecodingTable table =
+      table_of_rows(correlation * readout.transpose(), measured.range_m.value_or(camera.range_m()));
   table.ambient_gain = readout * ambient_gain;
   table.exposure_s = subtracts ? of_pairs(exposure_s, "exposure_s") : exposure_s;
   table.gain_e_per_raw = subtracts ? of_pairs(gain_e_per_raw, "gain_e_per_raw") : gain_e_per_raw;
   table.black_level = readout * black_level;
   table.dark_electrons =
       measured.differences ? Eigen::VectorXd::Zero(columns).eval() : (readout * dark_e).eval();
-  table.shot_correlation = light_of(measured.correlation) * sums.transpose();
-  table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
-  table.shot_dark_electrons = taps_read * (sums * dark_e);
+  const Eigen::MatrixXd light = light_of(correlation);
+  // Otherwise measurements show the light that makes their noise.
+  if (differs || light != correlation || ambient_gain.minCoeff() < 0.0) {
+    table.shot_correlation = light * sums.transpose();
+    table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
+    table.shot_dark_electrons = taps_read * (sums * dark_e);
+  }
   table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
   table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
   if (camera.temperature) {
     warm(*camera.temperature, table.row_m(), table.correlation);
-    warm(*camera.temperature, table.row_m(), table.shot_correlation);
+    if (table.shot_correlation.size() > 0)
+      warm(*camera.temperature, table.row_m(), table.shot_correlation);
   }
   table.correction = measured.correction;
   set_saturation(camera, table);

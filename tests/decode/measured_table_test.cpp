@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "decode_setup.hpp"
+#include "tofsmith/decode/filter.hpp"
 
 namespace tofsmith {
 namespace {
@@ -22,6 +23,14 @@ MeasuredTable sweep_of(const ForwardModel& model, const Camera& camera) {
   measured.taps = camera.sensor.taps;
   measured.ambient_gain = ambient_gain_of(measured.correlation, MeasuredAmbient::mean);
   return measured;
+}
+
+DepthImage decoded(const DecodingTable& table, const RawFrames& raw, FilteredFrame& filtered,
+                   FilterStrength strength) {
+  Filter(table, FilterOptions::of(strength)).apply(view_of_frame(raw, 0), filtered);
+  DepthImage image(raw.height, raw.width);
+  Decoder(table).decode(filtered.view(), DecodedView::of(image));
+  return image;
 }
 
 TEST(MeasuredTable, ASweepOfACodeDecodesAsTheCodeDoes) {
@@ -45,8 +54,10 @@ TEST(MeasuredTable, ASweepOfACodeDecodesAsTheCodeDoes) {
     EXPECT_EQ(table.black_level, code.black_level);
     EXPECT_EQ(table.saturation_level, code.saturation_level);
     EXPECT_EQ(table.range_m, code.range_m);
-    const auto& light = readout == Readout::difference ? code.shot_correlation : code.correlation;
-    EXPECT_TRUE(table.shot_correlation.isApprox(light, 1e-9));
+    EXPECT_EQ(table.shot_correlation.size(), code.shot_correlation.size());
+    EXPECT_TRUE(table.shot().isApprox(code.shot(), 1e-9));
+    EXPECT_TRUE(table.shot_ambient().isApprox(code.shot_ambient(), 1e-9));
+    EXPECT_TRUE(table.shot_dark().isApprox(code.shot_dark(), 1e-9));
     const std::vector<float> raw = noisy_pixels(code, 3e4, 1e4, 2000, 8);
     EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
   }
@@ -83,17 +94,34 @@ TEST(MeasuredTable, ASweepOfAMixerDecodesAsItsCodeDoes) {
   EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
 }
 
+// Separate taps show all light, which makes their noise, whatever constant a table leaves out.
 TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
   const Camera camera = camera_with("paper-10f0");
   const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
   const MeasuredTable measured = sweep_of(model, camera);
-  MeasuredTable zero_mean = measured;
-  zero_mean.correlation.array().rowwise() -= measured.correlation.colwise().mean().array();
-  const Decoder as_is(make_decoding_table(measured, camera));
-  const Decoder shifted(make_decoding_table(zero_mean, camera));
-  std::vector<float> raw = noisy_pixels(as_is.table(), 1e4, 1e4, 3000, 2);
-  for (float& value : raw) value = std::round(value);
-  EXPECT_EQ(bins_of(as_is, raw), bins_of(shifted, raw));
+  const DecodingTable as_is = make_decoding_table(measured, camera);
+  constexpr int side = 32;
+  const RawFrames raw = frame_by_pixel(
+      as_is.measurements(), side, side, 2,
+      [&](int y, int x, RandomStream& random, std::vector<float>& values) {
+        append_noisy_pixel(as_is, 2e3, 1e4, 55.0 + 0.02 * x + 0.01 * y, random, values);
+      });
+  for (const double constant : {0.05, 0.5, 3.0}) {
+    MeasuredTable lower = measured;
+    lower.correlation.rowwise() -= constant * measured.ambient_gain.transpose();
+    const DecodingTable shifted = make_decoding_table(lower, camera);
+    EXPECT_GE(shifted.shot().minCoeff(), 0.0);
+    for (const FilterStrength strength : all_filter_strengths) {
+      FilteredFrame of_table, of_lower;
+      const DepthImage expected = decoded(as_is, raw, of_table, strength);
+      const DepthImage image = decoded(shifted, raw, of_lower, strength);
+      for (std::size_t i = 0; i < image.status.pixels.size(); ++i) {
+        ASSERT_NEAR(of_lower.averaged().pixels[i] / of_table.averaged().pixels[i], 1.0, 1e-2);
+        ASSERT_NEAR(image.depth_m.pixels[i], expected.depth_m.pixels[i], 1e-4);
+        ASSERT_NEAR(image.confidence.pixels[i], expected.confidence.pixels[i], 1e-3);
+      }
+    }
+  }
 }
 
 TEST(MeasuredTable, WhatTheFileSaysGoesBeforeTheCamera) {
@@ -147,15 +175,19 @@ TEST(MeasuredTable, DriftIsInMetresWhateverTheRangeOfTheTable) {
   }
 }
 
-TEST(MeasuredTable, LightBehindColumnsThatGoBelowZeroIsTheirLargest) {
+TEST(MeasuredTable, LightBehindColumnsBelowZeroIsTheirLargestWhereAmbientLightAddsNothing) {
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Constant(10, 3, 0.25);
   correlation(4, 1) = -2.0;
   correlation(5, 2) = 0.5;
-  const MeasuredTable measured{correlation, 1, {}, {}, {}, {}};
+  MeasuredTable measured{correlation, 1, {}, {}, {}, {}};
+  const DecodingTable raised = make_decoding_table(measured, camera_with("paper-10f0"));
+  EXPECT_EQ(raised.shot(), (correlation.array() + 2.0).matrix());
+
+  measured.ambient_gain = Eigen::VectorXd::Zero(3);
   const DecodingTable table = make_decoding_table(measured, camera_with("paper-10f0"));
-  EXPECT_EQ(table.shot_correlation.col(0), correlation.col(0));
-  EXPECT_EQ(table.shot_correlation.col(1), Eigen::VectorXd::Constant(10, 2.0));
-  EXPECT_EQ(table.shot_correlation.col(2), correlation.col(2));
+  EXPECT_EQ(table.shot().col(0), correlation.col(0));
+  EXPECT_EQ(table.shot().col(1), Eigen::VectorXd::Constant(10, 2.0));
+  EXPECT_EQ(table.shot().col(2), correlation.col(2));
 }
 
 std::string refusal(const std::function<void(MeasuredTable&, Camera&)>& change) {
