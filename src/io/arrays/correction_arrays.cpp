@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tofsmith/core/error.hpp"
 
@@ -60,7 +61,8 @@ std::optional<DepthCorrection> correction_of(const NpzReader& archive, const std
         using Value = std::remove_cvref_t<decltype(value)>;
         const std::vector<double> numbers = numbers_of(archive, file, name);
         if constexpr (std::is_arithmetic_v<Value>) {
-          if (numbers.size() != 1 || !(std::abs(numbers[0]) < 1e9))
+          constexpr auto largest = static_cast<double>(std::numeric_limits<Value>::max());
+          if (numbers.size() != 1 || !(std::abs(numbers[0]) <= largest))
             throw IoError(fmt::format("{}: {}", file, name), "expected one finite number");
           value = static_cast<Value>(numbers[0]);
         } else {
