@@ -122,6 +122,7 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
       {"noise_rms", found.noise_rms},
       {"noise_source", found.noise_source},
       {"largest_standard_error", found.standard_error.maxCoeff()},
+      {"model_error_percent", found.table.model_error_percent},
       {"swing", found.table.correlation.colwise().maxCoeff().maxCoeff() -
                     found.table.correlation.colwise().minCoeff().minCoeff()},
       {"dead_pixels", found.dead.total()},

@@ -32,6 +32,7 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
           {"rms_m", found.rms_m},
           {"far_rms_m", found.far_rms_m},
           {"outlier_share", found.outlier_share},
+          {"model_error_percent", found.table.model_error_percent},
           {"terms", terms},
           {"far_terms", found.far_terms},
           {"notes", found.notes}};
@@ -47,6 +48,8 @@ std::string lines_of(const CalibratedDepth& found) {
     lines += rows[i][1].empty()
                  ? rows[i][0] + "\n"
                  : fmt::format("{:<18} {:>10} {} mm\n", rows[i][0], rows[i][1], rows[i][2]);
+  lines +=
+      fmt::format("error of the model: {:.2g} % of the signal\n", found.table.model_error_percent);
   lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
     lines += fmt::format("; beyond, by {}", fmt::join(found.far_terms, ", "));

@@ -67,7 +67,6 @@ for entry in "${releases[@]}"; do
   [[ -z "$wanted" || "$wanted" == "$version" ]] || continue
   dpkg --compare-versions "$version" ge "$own" || continue
   echo "Building the wheel for Python $version in $build"
-  # The compiler options are those of the preset dev, so that ccache can reuse its objects.
   options=(-DTOFSMITH_WERROR=ON -DBUILD_SHARED_LIBS=ON -DTOFSMITH_USE_OPENCL=OFF -DTOFSMITH_USE_MPI=OFF -DTOFSMITH_USE_LXI=OFF)
   bundle=()
   if [[ "$version" != "$own" ]]; then

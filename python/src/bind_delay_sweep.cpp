@@ -98,6 +98,7 @@ py::dict correlation_dict(const CalibratedCorrelation& found) {
   dict["correlation"] = adopt(Eigen::MatrixXd(found.table.correlation));
   dict["standard_error"] = adopt(Eigen::MatrixXd(found.standard_error));
   dict["ambient_gain"] = adopt(Eigen::VectorXd(found.table.ambient_gain));
+  dict["model_error_percent"] = found.table.model_error_percent;
   dict["exposure_s"] = adopt(Eigen::VectorXd(found.table.exposure_s));
   dict["black_level"] = adopt(Eigen::VectorXd(found.table.black_level));
   dict["taps"] = found.table.taps;
@@ -188,6 +189,7 @@ py::dict depth_dict(const CalibratedDepth& found) {
   dict["rms_m"] = found.rms_m;
   dict["far_rms_m"] = found.far_rms_m;
   dict["outlier_share"] = found.outlier_share;
+  dict["model_error_percent"] = found.table.model_error_percent;
   dict["pixels"] = found.pixels;
   dict["notes"] = found.notes;
   return dict;

@@ -42,6 +42,9 @@ class CalibratedDepth:
         by the far terms on parts of the range held out [m].
     outlier_share : float
         Of the pixels, which count for nothing.
+    model_error_percent : float
+        The least allowance with which at most 1 % of the pixels whose depth fits are inconsistent
+        [% of the signal]. A Decoder of the table tolerates it.
     pixels : int
         That were compared.
     notes : list of str
@@ -56,6 +59,7 @@ class CalibratedDepth:
     rms_m: float
     far_rms_m: float
     outlier_share: float
+    model_error_percent: float
     pixels: int
     notes: list[str]
     _handle: _tofsmith.CalibratedDepth = field(repr=False, compare=False)

@@ -23,6 +23,8 @@ NpzArrays arrays_of(const MeasuredTable& table) {
   arrays.emplace("taps", NpyArray::of<double>({}, std::vector{static_cast<double>(table.taps)}));
   arrays.emplace("differences",
                  NpyArray::of<double>({}, std::vector{table.differences ? 1.0 : 0.0}));
+  arrays.emplace("model_error_percent",
+                 NpyArray::of<double>({}, std::vector{table.model_error_percent}));
   if (table.black_level.size() > 0) arrays.emplace("offset_dn", list_of(table.black_level));
   if (table.ambient_gain.size() > 0) arrays.emplace("ambient", list_of(table.ambient_gain));
   if (table.exposure_s.size() > 0) arrays.emplace("exposure_s", list_of(table.exposure_s));

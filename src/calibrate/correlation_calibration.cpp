@@ -252,6 +252,13 @@ void set_scale(const Workbench& bench, const CorrelationCalibrationOptions& opti
   }
 }
 
+/// Twice the standard errors of the table, in percent of what depth changes, root mean squares.
+double model_error_percent(const CalibratedCorrelation& found) {
+  const Eigen::MatrixXd& functions = found.table.correlation;
+  const double change = (functions.rowwise() - functions.colwise().mean()).norm();
+  return change > 0.0 ? std::min(100.0, 200.0 * found.standard_error.norm() / change) : 0.0;
+}
+
 void add_notes(const Workbench& bench, const CorrelationCalibrationOptions& options,
                CalibratedCorrelation& result) {
   auto& notes = result.notes;
@@ -342,6 +349,7 @@ CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
   set_errors(bench, alignment, result, options.range_m);
   set_maps(bench, alignment, options, result);
   set_scale(bench, options, result);
+  result.table.model_error_percent = model_error_percent(result);
   if (options.taps == 2 && !options.differences)
     result.tap_mismatch =
         tap_imbalance(result.table.correlation, result.standard_error, result.notes);

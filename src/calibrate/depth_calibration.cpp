@@ -13,6 +13,7 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -186,6 +187,39 @@ Eigen::VectorXd standard_errors(const DepthFit& fit, const std::vector<int>& col
   return tile_errors(fit.terms, columns, slope, influence, tile, tiles);
 }
 
+/// The smallest allowance [%] with which at most 1 % of the pixels whose depth fits are
+/// inconsistent. Not all can be consistent, because some see two surfaces.
+double model_error_percent(const RawFrames& frames, const DepthFit& fit,
+                           const DecodingTable& table) {
+  constexpr double allowed_share = 0.01;
+  const double pixels = static_cast<double>((fit.weight.array() > 0.0).count());
+  Image<PixelStatus> status(frames.height, frames.width);
+  const auto is_enough = [&](double percent) {
+    const Decoder decoder(table, {.model_error_percent = percent});
+    double inconsistent = 0.0;
+    int decoded = -1;
+    for (Eigen::Index i = 0; i < fit.size(); ++i) {
+      const ReferenceSample& s = fit.samples[static_cast<std::size_t>(i)];
+      if (!(fit.weight[i] > 0.0)) continue;
+      if (s.frame != decoded) {
+        decoded = s.frame;
+        decoder.decode(view_of_frame(frames, decoded), {.status = status.pixels.data()});
+      }
+      inconsistent += status(s.row, s.column) == PixelStatus::inconsistent ? 1.0 : 0.0;
+    }
+    return inconsistent <= allowed_share * pixels;
+  };
+  if (is_enough(0.0)) return 0.0;
+  // Steps of a fifth, from 0.05 % to 100 %.
+  int too_small = -1, enough = 42;
+  const auto percent_of = [](int step) { return std::min(100.0, 0.05 * std::pow(1.2, step)); };
+  while (enough - too_small > 1) {
+    const int middle = (enough + too_small) / 2;
+    (is_enough(percent_of(middle)) ? enough : too_small) = middle;
+  }
+  return percent_of(enough);
+}
+
 void turn_backwards(MeasuredTable& table, std::vector<ReferenceSample>& samples, double range_m) {
   const Eigen::Index n = table.correlation.rows();
   table.correlation.bottomRows(n - 1) =
@@ -318,6 +352,9 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.outlier_share =
       static_cast<double>((fit.weight.array() == 0.0).count()) / static_cast<double>(fit.size());
   result.table.correction = correction;
+  report(parts[1], 0.9, "measuring the error of the model");
+  result.table.model_error_percent =
+      model_error_percent(frames, fit, make_decoding_table(result.table, camera));
   result.picture =
       picture_of(fit, fitted_m, wrapped_difference_m(result.mean_error_m - fit.start_m, range_m));
   add_notes(fit, reference, fitted_m, covered, result);

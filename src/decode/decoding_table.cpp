@@ -93,6 +93,8 @@ void DecodingTable::validate() const {
   require(lowest < highest, "lower_saturation_level", lowest, "must be below saturation_level");
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
   require(bins >= 0, "bins", bins, "must not be negative");
+  require(model_error_percent >= 0.0 && model_error_percent <= 100.0, "model_error_percent",
+          model_error_percent, "must be in [0, 100]");
   require(correlation_not_decodable(*this));
 }
 

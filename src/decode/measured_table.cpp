@@ -103,6 +103,8 @@ void MeasuredTable::validate() const {
   require_one_each(black_level, "black_level", columns());
   require_one_each(gain_e_per_raw, "gain_e_per_raw", columns());
   if (correction) correction->validate();
+  require(model_error_percent >= 0.0 && model_error_percent <= 100.0, "model_error_percent",
+          model_error_percent, "must be in [0, 100]");
   if (range_m)
     require(std::isfinite(*range_m) && *range_m > 0.0, "range_m", *range_m,
             "must be finite and > 0");
@@ -190,6 +192,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
       warm(*camera.temperature, table.row_m(), table.shot_correlation);
   }
   table.correction = measured.correction;
+  table.model_error_percent = measured.model_error_percent;
   set_saturation(camera, table);
   // The table's own black level holds for unsigned numbers, too.
   if (measured.black_level.size() > 0) table.marking.unsigned_black_level = 0.0;

@@ -112,6 +112,34 @@ TEST(CorrelationCalibration, RecoversTheTableWithinFourStandardErrorsAtEverySamp
   EXPECT_LT(mean_square, 1.5);
 }
 
+TEST(CorrelationCalibration, DecodersTolerateTheErrorsOfItsTable) {
+  const Bench bench{.side = 4};
+  const Camera camera = camera_of(bench);
+  const ForwardModel model(build_family("sinusoid-k4", camera), camera);
+  const CalibratedCorrelation found = calibrate_correlation(
+      sweep_of(bench, model), {.range_m = camera.range_m(), .black_level = level});
+  constexpr int pixels = 3000;
+  RawFrames bright{.frames = 1, .height = 1, .width = pixels, .measurements = 4};
+  RandomStream random(5, 0, 0);
+  for (int p = 0; p < pixels; ++p) {
+    const Eigen::VectorXd chi = model.correlation(random.uniform() * model.samples());
+    for (int k = 0; k < 4; ++k) {
+      const double electrons = 1e8 * chi[k];
+      bright.values.push_back(
+          static_cast<float>(level + electrons + std::sqrt(electrons) * random.normal()));
+    }
+  }
+  const auto inconsistent = [&](const MeasuredTable& table) {
+    const DepthImage image = Decoder(make_decoding_table(table, camera)).decode(bright);
+    return std::ranges::count(image.status.pixels, PixelStatus::inconsistent);
+  };
+  MeasuredTable strict = found.table;
+  strict.model_error_percent = 0.0;
+  EXPECT_GT(inconsistent(strict), pixels / 10);
+  EXPECT_LT(inconsistent(found.table), pixels / 100);
+  EXPECT_LT(found.table.model_error_percent, 1.0);
+}
+
 TEST(CorrelationCalibration, OfAMixerFindsItsTableOfBothSigns) {
   Camera camera = camera_of({});
   camera.sensor.demodulation = Demodulation::weight;

@@ -38,6 +38,7 @@ struct Bench {
   int frames = 6, height = 40, width = 56;
   double first_share = 0.0, last_share = 1.0;  // of the range that the scene spans
   double wrong_share = 0.05;                   // of reference pixels
+  double second_harmonic = 0.0;                // over the first; no depth explains it
   bool reversed = false;
   std::uint64_t seed = 1;
 
@@ -67,9 +68,10 @@ struct Bench {
           const double amplitude = 2e5 * (1.2 + std::cos(0.3 * column));
           const double phase_rad = (reversed ? -1.0 : 1.0) * turn_rad * nominal_m / range_m;
           for (int k = 0; k < 4; ++k)
-            raw.values.push_back(
-                static_cast<float>(amplitude * std::cos(phase_rad - k * turn_rad / 4) +
-                                   std::sqrt(amplitude) * random.normal()));
+            raw.values.push_back(static_cast<float>(
+                amplitude * std::cos(phase_rad - k * turn_rad / 4) +
+                second_harmonic * amplitude * std::cos(2 * (phase_rad - k * turn_rad / 4)) +
+                std::sqrt(amplitude) * random.normal()));
         }
       reference.depth_m.push_back(std::move(depth_m));
     }
@@ -157,6 +159,31 @@ TEST(DepthCalibration, RecoversKnownTermsWithinTheirIntervalsIn200Cameras) {
   EXPECT_GE(inside, 0.93 * all);
   RecordProperty("inside", inside);
   RecordProperty("all", all);
+}
+
+TEST(DepthCalibration, FindsTheModelErrorThatDecodersMustTolerate) {
+  const auto inconsistent_share = [](const Bench& bench, const MeasuredTable& table) {
+    const Decoder decoder(make_decoding_table(table, phase_camera()));
+    const DepthImage image = decoder.decode(bench.raw, 2);
+    return static_cast<double>(std::ranges::count(image.status.pixels, PixelStatus::inconsistent)) /
+           static_cast<double>(image.status.pixels.size());
+  };
+  for (const double share : {0.0, 0.01, 0.03, 0.1}) {
+    Bench bench{.second_harmonic = share, .reversed = share > 0.05, .truth = wiggle()};
+    bench.run();
+    const CalibratedDepth found = bench.calibrate();
+    const double percent = found.table.model_error_percent;
+    EXPECT_GE(percent, 100.0 * share);
+    EXPECT_LE(percent, 170.0 * share);  // at the depth where it is largest: sqrt(2), by fifths
+    EXPECT_LT(inconsistent_share(bench, found.table), 0.02);
+    MeasuredTable strict = found.table;
+    strict.model_error_percent = 0.0;
+    EXPECT_GE(inconsistent_share(bench, strict), share > 0.0 ? 0.4 : 0.0);
+
+    const auto path = std::filesystem::path(testing::TempDir()) / "model_error.npz";
+    write_calibrated_table(path, found.table, OutputPolicy::overwrite);
+    EXPECT_EQ(read_measured_table(path, {}).table.model_error_percent, percent);
+  }
 }
 
 TEST(DepthCalibration, DelayThatRunsBackwardsIsTurnedInTableAndCamera) {

@@ -24,7 +24,8 @@ struct DecodeOptions {
   /// Share of consistent pixels that are marked inconsistent; in [0, 1). 0 disables the status.
   double false_alarm_rate = 1e-3;
   /// Model error to tolerate on top of the noise, such as the wiggling of an uncalibrated camera
-  /// [% of the signal's part of the measurements, root mean square]; in [0, 100].
+  /// [% of the signal's part of the measurements, root mean square]; in [0, 100]. A larger one of
+  /// the decoding table replaces it.
   double model_error_percent = 0.0;
 
   /// @throws std::invalid_argument naming field, value and rule

@@ -152,6 +152,8 @@ struct DecodingTable : MeasurementTable {
   RowCovariance covariance;
   /// Of frames of one size; apply() takes it off what decoders give. None: nothing.
   std::optional<DepthCorrection> correction = {};
+  /// Error of the table that decoders tolerate at least, see DecodeOptions::model_error_percent.
+  double model_error_percent = 0.0;
 
   /// Whether measurements are rows, of correlated noise.
   bool has_rows() const { return whitening.size() > 0; }
@@ -251,6 +253,7 @@ struct MeasuredTable {
   Eigen::VectorXd gain_e_per_raw;  ///< electrons per raw number (K), or empty: the camera's
   std::optional<DepthCorrection> correction = {};  ///< taken off what it decodes; none: nothing
   std::optional<double> range_m = {};  ///< depth of a whole period [m]; none: the camera's
+  double model_error_percent = 0.0;    ///< error that decoders tolerate at least; in [0, 100]
 
   int samples() const { return static_cast<int>(correlation.rows()); }
   int columns() const { return static_cast<int>(correlation.cols()); }

@@ -72,11 +72,13 @@ ResidualModel::ResidualModel(const DecodingTable& table, const AmbientProjection
 
   RowMajorMatrix half_way;
   if (polynomials_) half_way = SmoothCurve::of(plane_curve_)->points(0.5);
+  DecodeOptions tolerant = options;
+  tolerant.model_error_percent = std::max(options.model_error_percent, table.model_error_percent);
   limits_.resize(static_cast<std::size_t>(samples_));
   parallel_for_blocks(samples_, 64, [&](IndexRange bins) {
     for (std::int64_t n = bins.begin; n < bins.end; ++n)
       limits_[static_cast<std::size_t>(n)] =
-          limit_at(static_cast<std::int32_t>(n), half_way, options);
+          limit_at(static_cast<std::int32_t>(n), half_way, tolerant);
   });
   for (const Limit& limit : limits_)
     if (std::isfinite(limit.root))

@@ -98,17 +98,29 @@ Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const
 }
 
 /// A number that stands alone in the archive; none: not there.
-std::optional<int> whole_number(const NpzReader& archive, const std::string& file,
-                                const char* name) {
+/// @param is_valid, rule  whether the number is valid, and in words
+template <typename Check>
+std::optional<double> number(const NpzReader& archive, const std::string& file, const char* name,
+                             const Check& is_valid, std::string_view rule) {
   if (!archive.contains(name)) return std::nullopt;
   const NpyArray array = archive.read(name);
-  const double value = array.size() == 1 ? array.to_doubles().front() : -1.0;
-  if (!(value >= 0.0 && value <= 64.0 && value == std::floor(value)))
+  const double value = array.size() == 1 ? array.to_doubles().front() : NAN;
+  if (array.size() != 1 || !is_valid(value))
     throw IoError(
         fmt::format("{}: {}", file, name),
-        fmt::format("found {}; expected one whole number, 0 to 64",
-                    array.size() == 1 ? fmt::format("{}", value) : describe_shape(array.shape())));
-  return static_cast<int>(value);
+        fmt::format("found {}; expected one {}",
+                    array.size() == 1 ? fmt::format("{}", value) : describe_shape(array.shape()),
+                    rule));
+  return value;
+}
+
+std::optional<int> whole_number(const NpzReader& archive, const std::string& file,
+                                const char* name) {
+  const auto is_whole = [](double value) {
+    return value >= 0.0 && value <= 64.0 && value == std::floor(value);
+  };
+  const auto value = number(archive, file, name, is_whole, "whole number, 0 to 64");
+  return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
 /// What an archive of calibrated functions says of its taps: `taps`, side by side. A word of the
@@ -125,9 +137,9 @@ TapLayout layout_of(const NpzReader& archive, const std::string& file, const Tap
 
 void note_unused(const NpzReader& archive, const std::string& file,
                  std::vector<std::string>& notes) {
-  constexpr std::array<std::string_view, 8> known = {"corrfs",    "ambient",       "exposure_s",
-                                                     "offset_dn", "gain_e_per_dn", "corrfs_se",
-                                                     "taps",      "differences"};
+  constexpr std::array<std::string_view, 9> known = {
+      "corrfs",    "ambient", "exposure_s",  "offset_dn",          "gain_e_per_dn",
+      "corrfs_se", "taps",    "differences", "model_error_percent"};
   std::vector<std::string> unused;
   for (const std::string& name : archive.names())
     if (std::ranges::find(known, name) == known.end() && !name.starts_with(correction_prefix))
@@ -208,6 +220,11 @@ MeasuredTableFile read_measured_table(const std::filesystem::path& path,
     table.gain_e_per_raw = list_of(archive, name, "gain_e_per_dn", table.columns());
     note_unused(archive, name, file.notes);
     table.correction = correction_of(archive, name);
+    table.model_error_percent =
+        number(
+            archive, name, "model_error_percent",
+            [](double value) { return value >= 0.0 && value <= 100.0; }, "number in [0, 100]")
+            .value_or(0.0);
     layout = layout_of(archive, name, layout);
     table.differences = whole_number(archive, name, "differences").value_or(0) != 0;
     if (table.differences) layout.taps = 1;
