@@ -9,7 +9,7 @@
 #
 #   --preset NAME   a preset of CMakePresets.json: dev (default), asan, tsan
 #   --floors LIST   build and run the unit tests of these folders only
-#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in each process as a host may do
+#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in tests and in Python as a host may do
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -62,7 +62,7 @@ if [[ -n "$locale" ]]; then
   [[ -e "$build/locale/$locale/LC_NUMERIC" ]] ||
     tofsmith_die "found no locale $locale in $build/locale; expected de_DE.UTF-8, from the package locales"
   cmake --build "$build" --target locale_shim
-  in_locale=(env LOCPATH="$build/locale" LC_ALL="$locale" TOFSMITH_TEST_LOCALE="$locale"
+  in_locale=(env LOCPATH="$build/locale" TOFSMITH_TEST_LOCALE_OF_HOSTS="$locale"
     LD_PRELOAD="$build/tests/liblocale_shim.so")
 fi
 

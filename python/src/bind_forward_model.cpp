@@ -32,7 +32,7 @@ void check_light(double signal_e_per_s, double ambient_e_per_s) {
   if (!(std::isfinite(signal_e_per_s) && signal_e_per_s >= 0.0))
     refuse("signal_e_per_s", fmt::format("{:f}", signal_e_per_s), "a finite number >= 0");
   if (!(std::isfinite(ambient_e_per_s) && ambient_e_per_s >= 0.0))
-    refuse("ambient_e_per_s", std::to_string(ambient_e_per_s), "a finite number >= 0");
+    refuse("ambient_e_per_s", fmt::format("{}", ambient_e_per_s), "a finite number >= 0");
 }
 
 py::array_t<double> expected(const ForwardModel& model, const Doubles& depth_bin, double signal,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raw_array.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -74,7 +76,7 @@ void RawArray::set_averaged(const Floats& averaged) {
   const auto is_count = [](float n) { return n > 0.0f && std::isfinite(n); };
   if (const float* const bad = std::find_if_not(first, first + averaged.size(), is_count);
       bad != first + averaged.size())
-    refuse("averaged", std::to_string(*bad), "finite numbers > 0");
+    refuse("averaged", fmt::format("{}", *bad), "finite numbers > 0");
   for (std::size_t f = 0; f < frames.size(); ++f)
     frames[f].averaged = first + static_cast<std::ptrdiff_t>(f) * frames[f].pixels();
 }

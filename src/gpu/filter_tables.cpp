@@ -18,9 +18,9 @@ namespace {
 class Constants {
  public:
   void add(const char* name, int value) { text_ += fmt::format("#define {} {}\n", name, value); }
-  /// Exactly this one.
+  /// Exactly this one, by digits in any locale.
   void add(const char* name, float value) {
-    text_ += fmt::format("#define {} {:a}f\n", name, value);
+    text_ += fmt::format("#define {} {:.9e}f\n", name, value);
   }
   void add_steps(const char* name, std::span<const WindowStep> steps) {
     std::string rows, columns;

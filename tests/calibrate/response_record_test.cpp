@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/calibrate/impulse_response.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -85,7 +86,7 @@ class RecordFile : public testing::Test {
     std::string text = header;
     double t = 0.0;
     for (int i = 0; i < 20; ++i) {
-      text += std::to_string(t) + "," + std::to_string(2 * t) + "\n";
+      text += fmt::format("{},{}\n", t, 2 * t);
       t += i == 9 ? second_step : 1.0;
     }
     return text;
@@ -123,7 +124,7 @@ TEST_F(RecordFile, RefusesTimesThatFallOrLeap) {
 TEST_F(RecordFile, AsksForTheColumnAndTheStepItNeeds) {
   std::string three = "t_s,ch1,ch2\n", one;
   for (int i = 0; i < 20; ++i) {
-    three += std::to_string(1e-3 * i) + "," + std::to_string(i) + ".5," + std::to_string(i) + "\n";
+    three += fmt::format("{},{}.5,{}\n", 1e-3 * i, i, i);
     one += std::to_string(i) + ".25\n";
   }
   EXPECT_THAT(refusal(three), HasSubstr("expected --column"));

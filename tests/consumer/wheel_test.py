@@ -18,6 +18,7 @@ import check  # noqa: E402
 # Prints a number, throws and catches, and calls a function of a library that wheels replace.
 EXTENSION = r"""
 #include <cstdio>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -25,6 +26,7 @@ extern "C" long curl_easy_init();
 extern "C" const char* answer() {
   static std::string text;
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   try {
     throw std::runtime_error("thrown");
   } catch (const std::exception& error) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/shared/text_numbers.hpp"
+
 namespace tofsmith {
 namespace {
 
@@ -23,7 +25,7 @@ TEST(NumberText, NumbersAreNeverPowersOfTen) {
 
 TEST(NumberText, NumbersKeepTheirDigits) {
   for (double value = 1e-5; value < 1e6; value *= 1.7)
-    EXPECT_NEAR(std::stod(plain_number(value, 4)), value, 0.5001e-3 * value) << value;
+    EXPECT_NEAR(number_in(plain_number(value, 4)).value(), value, 0.5001e-3 * value) << value;
 }
 
 TEST(NumberText, LengthsComeInTheUnitThatSuitsThem) {

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <chrono>
 #include <deque>
+#include <system_error>
 #include <thread>
 
 #include "simulated_server.hpp"
@@ -230,7 +232,8 @@ TEST(TcpConnection, SaysThatNothingIsThere) {
   int port = 0;
   { port = SimulatedServer(example_generator()).port(); }
   EXPECT_THAT(problem_of([&] { connected(port); }),
-              HasSubstr("cannot connect (Connection refused); check the address"));
+              HasSubstr("cannot connect (" + std::generic_category().message(ECONNREFUSED) +
+                        "); check the address"));
   // A label of 64 letters is no name: nobody is asked for it.
   const std::string no_name(64, 'a');
   EXPECT_THAT(problem_of([&] {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <charconv>
 
 #include "simulated_words.hpp"
 
@@ -162,7 +162,8 @@ std::string SimulatedGenerator::obey(const std::string& message) {
 }
 
 double SimulatedGenerator::setting(std::string_view text) {
-  const double value = std::strtod(std::string(text).c_str(), nullptr);
+  double value = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
   if (!strikes(Fault::other_value)) return value;
   constexpr double factors[] = {0.9, 1.02, 0.0, -1.0, 1000.0};
   return value * factors[detail_ % 5] + (value == 0.0 ? 0.25 : 0.0);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <locale>
 
 #include "damaged_files.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
@@ -123,6 +124,7 @@ TEST(CorrelationFile, ReadsTheSameFunctionsFromEveryFormat) {
   Eigen::MatrixXd functions = Eigen::MatrixXd::NullaryExpr(
       8, 2, [](Eigen::Index n, Eigen::Index i) { return static_cast<double>(n * 2 + i) / 16; });
   std::ofstream csv(directory / "f.csv");
+  csv.imbue(std::locale::classic());
   csv << "chi_0,chi_1\n";
   for (Eigen::Index n = 0; n < 8; ++n) csv << functions(n, 0) << "," << functions(n, 1) << "\n";
   csv.close();

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <locale>
 
 #include "damaged_files.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
@@ -70,6 +71,7 @@ TEST_F(MeasuredTableFileTest, IsTheSameFromEveryFormatAndOfAnyLength) {
   for (const Eigen::Index samples : {8, 61, 1939}) {
     const Eigen::MatrixXd functions = sweep(samples, 4);
     std::ofstream csv(directory_ / "t.csv");
+    csv.imbue(std::locale::classic());
     csv.precision(17);
     csv << functions << "\n";
     csv.close();

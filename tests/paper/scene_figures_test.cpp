@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "camera/shared/prototype.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "paper/figures.hpp"
 #include "paper/object_scan.hpp"
 #include "paper/paper.hpp"
@@ -140,7 +141,7 @@ TEST(Fig11, MeanDepthBehindTheFirstFilterIsTheWalls) {
     std::istringstream row(line);
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
     if (cells.at(1) != "1") continue;
-    EXPECT_NEAR(std::stod(cells.at(static_cast<std::size_t>(column))), 0.5, 0.005) << line;
+    EXPECT_NEAR(number_in(cells.at(static_cast<std::size_t>(column))).value(), 0.5, 0.005) << line;
     ++codes;
   }
   EXPECT_EQ(codes, 4);

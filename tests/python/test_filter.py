@@ -82,7 +82,7 @@ def test_means_by_hand_are_decoded_with_their_noise(camera, raw):
 
 @pytest.mark.parametrize("averaged, words", [
     (np.ones((40, 30)), r"averaged: got shape \(40, 30\); needs shape \(30, 40\)"),
-    (np.zeros((30, 40)), "averaged: got 0.0.*; needs finite numbers > 0"),
+    (np.zeros((30, 40)), "averaged: got 0; needs finite numbers > 0"),
 ])
 def test_counts_that_cannot_be_are_refused(camera, raw, averaged, words):
     with pytest.raises(ValueError, match=words):

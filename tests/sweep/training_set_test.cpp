@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
@@ -29,7 +30,7 @@ using testing::ThrowsMessage;
 LoadedTrainingScene wall(const TrainingScene& scene) {
   if (scene.name == "bad") throw IoError(scene.name, "is no scene");
   LoadedTrainingScene loaded{SceneImage(3, 4), PinholeView::centred(4, 3, 1.0)};
-  loaded.image.depth_m = Image<float>(3, 4, std::stof(scene.name));
+  loaded.image.depth_m = Image<float>(3, 4, static_cast<float>(number_in(scene.name).value()));
   return loaded;
 }
 

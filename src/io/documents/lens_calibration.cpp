@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -51,11 +53,11 @@ class CalibrationFile {
   }
 
   double number(const YAML::Node& node, const std::string& key) const {
-    double value = 0.0;
-    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+    const std::optional<double> value = node.IsScalar() ? number_in(node.Scalar()) : std::nullopt;
+    if (!value || !std::isfinite(*value))
       fail(node, fmt::format("{}: found {}; expected a finite number", key,
                              node.IsScalar() ? node.Scalar() : "no number"));
-    return value;
+    return *value;
   }
 
   std::optional<int> whole(std::initializer_list<const char*> keys) const {
