@@ -210,9 +210,9 @@ void run(CorrelationArguments& arguments, const Session& session) {
           .maxCoeff();
   session.say(fmt::format(
       "a table of {} x {}: standard errors up to {:.3g} of a swing of {:.5g} raw numbers (noise "
-      "{:.3g} per number, from {})",
+      "{:.3g} per number, from {}), model error {:.2g} % of the signal",
       found.table.samples(), found.table.columns(), found.standard_error.maxCoeff(), swing,
-      found.noise_rms, found.noise_source));
+      found.noise_rms, found.noise_source, found.table.model_error_percent));
   if (!found.maps.empty())
     session.say(fmt::format("maps of {} x {} pixels: offsets known to {}, gains to {:.2g} %",
                             found.maps.gain.width, found.maps.gain.height,

@@ -24,18 +24,20 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
     terms.push_back({{"name", term.name},
                      {"value_m", term.value_m.value},
                      {"standard_error_m", term.value_m.standard_error}});
-  return {{"pixels", found.pixels},
-          {"reversed", found.reversed},
-          {"known_share", found.known_share},
-          {"mean_error_m", found.mean_error_m},
-          {"rms_before_m", found.rms_before_m},
-          {"rms_m", found.rms_m},
-          {"far_rms_m", found.far_rms_m},
-          {"outlier_share", found.outlier_share},
-          {"model_error_percent", found.table.model_error_percent},
-          {"terms", terms},
-          {"far_terms", found.far_terms},
-          {"notes", found.notes}};
+  return {
+      {"pixels", found.pixels},
+      {"reversed", found.reversed},
+      {"known_share", found.known_share},
+      {"mean_error_m", found.mean_error_m},
+      {"rms_before_m", found.rms_before_m},
+      {"rms_m", found.rms_m},
+      {"far_rms_m", found.far_rms_m},
+      {"outlier_share", found.outlier_share},
+      {"model_error_percent",
+       found.model_error_percent ? nlohmann::ordered_json(*found.model_error_percent) : nullptr},
+      {"terms", terms},
+      {"far_terms", found.far_terms},
+      {"notes", found.notes}};
 }
 
 std::string lines_of(const CalibratedDepth& found) {
@@ -48,8 +50,8 @@ std::string lines_of(const CalibratedDepth& found) {
     lines += rows[i][1].empty()
                  ? rows[i][0] + "\n"
                  : fmt::format("{:<18} {:>10} {} mm\n", rows[i][0], rows[i][1], rows[i][2]);
-  lines +=
-      fmt::format("error of the model: {:.2g} % of the signal\n", found.table.model_error_percent);
+  if (found.model_error_percent)
+    lines += fmt::format("model error: {:.2g} % of the signal\n", *found.model_error_percent);
   lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
     lines += fmt::format("; beyond, by {}", fmt::join(found.far_terms, ", "));

@@ -303,7 +303,8 @@ void add_decode_command(CLI::App& app, Session& session) {
   command
       ->add_option("--model-error-percent", arguments->options.model_error_percent,
                    "error of the camera model, such as wiggling, that is not marked inconsistent, "
-                   "in percent of the signal's part of the measurements")
+                   "in percent of the signal's part of the measurements; a larger one of the table "
+                   "replaces it")
       ->capture_default_str()
       ->group(for_experts);
   command

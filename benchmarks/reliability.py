@@ -24,7 +24,7 @@ from tofsmith import Camera, Decoder, DecodingTable, Scene
 SIGNALS, FILTERED_SIGNALS = (0.1, 300), (0.01, 3)  # standard deviations of the signal
 TILE_PX, CLEARANCE_PX = 64, 26
 EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.995, 1.0)
-LEAST_PIXELS = 1000
+LEAST_PIXELS, LEAST_TILES = 1000, 20
 
 
 def designed(camera, exposures):
@@ -134,13 +134,14 @@ def reliability(decoder, code, camera, strength, pixels):
 
 
 def judged(confidence, is_right, tile):
-    """The differences as text, and True if all are within their limits. Errors of the pixels of a
-    tile are not independent: their sums are."""
+    """The differences as text, and True if all are within their limits. The pixels of a tile have
+    correlated errors, so the standard error uses the sums over tiles."""
     shows_error = len(np.unique(tile)) < len(tile)
     texts, is_good = [], True
     for low, high in zip(EDGES, EDGES[1:]):
         inside = (confidence >= low) & ((confidence < high) | (high == 1.0))
-        if (count := inside.sum()) < LEAST_PIXELS:
+        count = inside.sum()
+        if count < LEAST_PIXELS or len(np.unique(tile[inside])) < LEAST_TILES:
             texts.append(" " * (12 if shows_error else 6))
             continue
         claimed = confidence[inside].mean()
@@ -148,7 +149,8 @@ def judged(confidence, is_right, tile):
         away = is_right[inside] - confidence[inside]
         difference = away.mean()
         of_tile = np.unique(tile[inside], return_inverse=True)[1]
-        error = np.linalg.norm(np.bincount(of_tile, away - difference)) / count
+        sums = np.bincount(of_tile, away - difference)
+        error = np.linalg.norm(sums) * np.sqrt(len(sums) / max(1, len(sums) - 1)) / count
         is_good &= abs(difference) <= allowed + 4 * error
         texts.append(f"{difference:+.3f}" + (f" {error:.3f}" if shows_error else ""))
     return " ".join(texts), is_good
@@ -161,7 +163,7 @@ def main():
     parser.add_argument("--pixels", type=int, default=250000,
                         help="per code; a fifth for ml and unwrap, 16 times as many for filters (250000)")
     arguments = parser.parse_args()
-    print(f"{'code':29s} {'decoder':8s} " + " ".join(f"{edge:6.3f}" for edge in EDGES[1:]))
+    print("Upper ends of the bins: " + " ".join(f"{edge:.3f}" for edge in EDGES[1:]))
     all_good = True
     for name, camera, code, table in cases():
         if arguments.names and name not in arguments.names:

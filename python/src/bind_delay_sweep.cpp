@@ -189,7 +189,7 @@ py::dict depth_dict(const CalibratedDepth& found) {
   dict["rms_m"] = found.rms_m;
   dict["far_rms_m"] = found.far_rms_m;
   dict["outlier_share"] = found.outlier_share;
-  dict["model_error_percent"] = found.table.model_error_percent;
+  dict["model_error_percent"] = found.model_error_percent;
   dict["pixels"] = found.pixels;
   dict["notes"] = found.notes;
   return dict;

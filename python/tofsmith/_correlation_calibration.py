@@ -63,8 +63,8 @@ class CalibratedCorrelation:
     correlation, standard_error : ndarray, shape (N, K)
         Of the usual pixel [raw numbers]: row n at depth_bin = n; and the error of each value.
     model_error_percent : float
-        Twice the standard errors, in percent of the change with depth, root mean squares. A Decoder
-        of the table tolerates it.
+        Twice the standard errors, in percent of the signal, root mean squares. A Decoder of
+        decoding_table() tolerates it.
     ambient_gain, exposure_s, black_level : ndarray, shape (K,) or (0,)
         As of a measured table; empty: the camera's.
     taps : int

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Union
+from typing import Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -42,9 +42,10 @@ class CalibratedDepth:
         by the far terms on parts of the range held out [m].
     outlier_share : float
         Of the pixels, which count for nothing.
-    model_error_percent : float
-        The least allowance with which at most 1 % of the pixels whose depth fits are inconsistent
-        [% of the signal]. A Decoder of the table tolerates it.
+    model_error_percent : float, optional
+        With which at most 1 % of the pixels with the right depth are inconsistent [% of the signal],
+        within 20 %. A Decoder of decoding_table() tolerates it. None: the code has no degrees of
+        freedom.
     pixels : int
         That were compared.
     notes : list of str
@@ -59,7 +60,7 @@ class CalibratedDepth:
     rms_m: float
     far_rms_m: float
     outlier_share: float
-    model_error_percent: float
+    model_error_percent: Optional[float]
     pixels: int
     notes: list[str]
     _handle: _tofsmith.CalibratedDepth = field(repr=False, compare=False)

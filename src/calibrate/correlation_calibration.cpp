@@ -252,11 +252,22 @@ void set_scale(const Workbench& bench, const CorrelationCalibrationOptions& opti
   }
 }
 
-/// Twice the standard errors of the table, in percent of what depth changes, root mean squares.
+/// Twice the standard errors of the table, in percent of the signal's part of the measurements
+/// without ambient light, root mean squares.
 double model_error_percent(const CalibratedCorrelation& found) {
-  const Eigen::MatrixXd& functions = found.table.correlation;
-  const double change = (functions.rowwise() - functions.colwise().mean()).norm();
-  return change > 0.0 ? std::min(100.0, 200.0 * found.standard_error.norm() / change) : 0.0;
+  const MeasuredTable& table = found.table;
+  const Eigen::Index columns = table.correlation.cols();
+  const Eigen::VectorXd exposure_s =
+      table.exposure_s.size() > 0 ? table.exposure_s : Eigen::VectorXd::Ones(columns);
+  Eigen::VectorXd ambient = ambient_gain_of(
+      table.correlation, table.differences ? MeasuredAmbient::none : MeasuredAmbient::equal);
+  if (table.ambient_gain.size() > 0) ambient = table.ambient_gain;
+  ambient = ambient.cwiseProduct(exposure_s).eval();
+  if (!ambient.isZero(0.0)) ambient.normalize();
+  Eigen::MatrixXd signal = table.correlation * exposure_s.asDiagonal();
+  signal -= (signal * ambient).eval() * ambient.transpose();
+  const double error = (found.standard_error * exposure_s.asDiagonal()).norm();
+  return std::min(100.0, 200.0 * error / std::max(signal.norm(), 1e-300));
 }
 
 void add_notes(const Workbench& bench, const CorrelationCalibrationOptions& options,

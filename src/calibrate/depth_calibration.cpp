@@ -187,30 +187,38 @@ Eigen::VectorXd standard_errors(const DepthFit& fit, const std::vector<int>& col
   return tile_errors(fit.terms, columns, slope, influence, tile, tiles);
 }
 
-/// The smallest allowance [%] with which at most 1 % of the pixels whose depth fits are
-/// inconsistent. Not all can be consistent, because some see two surfaces.
-double model_error_percent(const RawFrames& frames, const DepthFit& fit,
-                           const DecodingTable& table) {
-  constexpr double allowed_share = 0.01;
-  const double pixels = static_cast<double>((fit.weight.array() > 0.0).count());
-  Image<PixelStatus> status(frames.height, frames.width);
+/// The model error [%] with which at most 1 % of the pixels that decode to the right depth are
+/// inconsistent, within 20 %. Not all can be consistent, because some see two surfaces. None: the
+/// code has no degrees of freedom.
+std::optional<double> model_error_percent(const RawFrames& frames, const DepthFit& fit,
+                                          const DecodingTable& table, const Progress& progress) {
+  RawFrames raw{.frames = 1, .height = 1, .measurements = frames.measurements};
+  for (Eigen::Index i = 0; i < fit.size(); ++i) {
+    const ReferenceSample& s = fit.samples[static_cast<std::size_t>(i)];
+    if (!(fit.weight[i] > 0.0)) continue;
+    const float* const pixel =
+        frames.frame(s.frame) +
+        (std::ptrdiff_t{s.row} * frames.width + s.column) * frames.measurements;
+    raw.values.insert(raw.values.end(), pixel, pixel + frames.measurements);
+    ++raw.width;
+  }
+  std::vector<PixelStatus> status(static_cast<std::size_t>(raw.width));
+  std::vector<float> residual(status.size());
+  double steps_done = 0.0;
   const auto is_enough = [&](double percent) {
-    const Decoder decoder(table, {.model_error_percent = percent});
-    double inconsistent = 0.0;
-    int decoded = -1;
-    for (Eigen::Index i = 0; i < fit.size(); ++i) {
-      const ReferenceSample& s = fit.samples[static_cast<std::size_t>(i)];
-      if (!(fit.weight[i] > 0.0)) continue;
-      if (s.frame != decoded) {
-        decoded = s.frame;
-        decoder.decode(view_of_frame(frames, decoded), {.status = status.pixels.data()});
-      }
-      inconsistent += status(s.row, s.column) == PixelStatus::inconsistent ? 1.0 : 0.0;
-    }
-    return inconsistent <= allowed_share * pixels;
+    constexpr double allowed_share = 0.01, steps = 8.0;
+    report(progress, steps_done++ / steps, "finding the model error");
+    Decoder(table, {.model_error_percent = percent})
+        .decode(view_of_frame(raw, 0), {.status = status.data(), .residual = residual.data()});
+    const auto inconsistent = std::ranges::count(status, PixelStatus::inconsistent);
+    const auto weak = std::ranges::count(status, PixelStatus::low_signal);
+    return static_cast<double>(inconsistent) <=
+           allowed_share * static_cast<double>(raw.width - weak);
   };
-  if (is_enough(0.0)) return 0.0;
-  // Steps of a fifth, from 0.05 % to 100 %.
+  const bool no_error_is_enough = is_enough(0.0);
+  if (std::ranges::none_of(residual, [](float r) { return std::isfinite(r); })) return {};
+  if (no_error_is_enough) return 0.0;
+  // Steps of 20 %, from 0.05 % to 100 %.
   int too_small = -1, enough = 42;
   const auto percent_of = [](int step) { return std::min(100.0, 0.05 * std::pow(1.2, step)); };
   while (enough - too_small > 1) {
@@ -268,6 +276,16 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
   for (Eigen::Index i = 0; i < fit.size(); ++i)
     expected_m.push_back(fit.samples[static_cast<std::size_t>(i)].depth_m - fit.start_m -
                          fitted_m[i]);
+  constexpr double usual_percent = 10.0;
+  if (!result.model_error_percent)
+    result.notes.push_back(
+        "the model error is not known: the code has no degrees of freedom beyond depth, signal and "
+        "ambient light");
+  else if (*result.model_error_percent > usual_percent)
+    result.notes.push_back(fmt::format(
+        "no depth explains the measurements to better than {:.0f} % of the signal: do code, "
+        "order of exposures and noise of the camera match these frames?",
+        *result.model_error_percent));
   if (auto note = shift_note(fit.samples, reference, expected_m, fit.range_m, fit.scale_m))
     result.notes.push_back(*note);
 }
@@ -298,7 +316,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.table = nominal_table(model, code, camera);
   const DecodingTable table = make_decoding_table(result.table, camera);
   const double range_m = table.range_m;
-  const ProgressParts parts(progress, {3.0, 1.0});
+  const ProgressParts parts(progress, {3.0, 1.0, 1.0});
 
   // Pixels that can be compared, and the direction of delay.
   std::vector<ReferenceSample> samples = reference_samples(frames, reference, table, parts[0]);
@@ -352,9 +370,9 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.outlier_share =
       static_cast<double>((fit.weight.array() == 0.0).count()) / static_cast<double>(fit.size());
   result.table.correction = correction;
-  report(parts[1], 0.9, "measuring the error of the model");
-  result.table.model_error_percent =
-      model_error_percent(frames, fit, make_decoding_table(result.table, camera));
+  result.model_error_percent =
+      model_error_percent(frames, fit, make_decoding_table(result.table, camera), parts[2]);
+  result.table.model_error_percent = result.model_error_percent.value_or(0.0);
   result.picture =
       picture_of(fit, fitted_m, wrapped_difference_m(result.mean_error_m - fit.start_m, range_m));
   add_notes(fit, reference, fitted_m, covered, result);

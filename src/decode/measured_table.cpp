@@ -43,18 +43,19 @@ Eigen::MatrixXd light_of(const Eigen::MatrixXd& correlation) {
   return light.cwiseMax(0.0);
 }
 
-/// Columns as light: raised along ambient light until none falls below 0, as columns without their
-/// mean do. Unchanged if ambient light does not raise a column that does.
+/// Columns as light: raised along ambient light until none that it reaches is below 0, as zero-mean
+/// columns are.
 Eigen::MatrixXd raised(const Eigen::MatrixXd& correlation, const Eigen::VectorXd& ambient_gain) {
+  if (ambient_gain.minCoeff() < 0.0) return correlation;
   double rise = 0.0;
-  for (Eigen::Index k = 0; k < correlation.cols(); ++k) {
-    const double least = correlation.col(k).minCoeff();
-    if (least >= 0.0) continue;
-    if (!(ambient_gain[k] > 0.0)) return correlation;
-    rise = std::max(rise, -least / ambient_gain[k]);
-  }
+  for (Eigen::Index k = 0; k < correlation.cols(); ++k)
+    if (ambient_gain[k] > 0.0)
+      rise = std::max(rise, -correlation.col(k).minCoeff() / ambient_gain[k]);
   if (rise == 0.0) return correlation;
-  return (correlation.rowwise() + rise * ambient_gain.transpose()).cwiseMax(0.0);
+  Eigen::MatrixXd light = correlation.rowwise() + rise * ambient_gain.transpose();
+  for (Eigen::Index k = 0; k < correlation.cols(); ++k)
+    if (ambient_gain[k] > 0.0) light.col(k) = light.col(k).cwiseMax(0.0);
+  return light;
 }
 
 /// Values that both taps of a pair share, by pair.
@@ -168,7 +169,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
   const Eigen::MatrixXd correlation =
-      differs ? measured.correlation : raised(measured.correlation, ambient_gain);
+      measured.differences ? measured.correlation : raised(measured.correlation, ambient_gain);
   DecodingTable table =
       table_of_rows(correlation * readout.transpose(), measured.range_m.value_or(camera.range_m()));
   table.ambient_gain = readout * ambient_gain;
@@ -178,7 +179,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.dark_electrons =
       measured.differences ? Eigen::VectorXd::Zero(columns).eval() : (readout * dark_e).eval();
   const Eigen::MatrixXd light = light_of(correlation);
-  // Otherwise measurements show the light that makes their noise.
+  // Without shot terms the measurements show the light that makes their noise.
   if (differs || light != correlation || ambient_gain.minCoeff() < 0.0) {
     table.shot_correlation = light * sums.transpose();
     table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();

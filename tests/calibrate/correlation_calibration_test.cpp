@@ -116,8 +116,14 @@ TEST(CorrelationCalibration, DecodersTolerateTheErrorsOfItsTable) {
   const Bench bench{.side = 4};
   const Camera camera = camera_of(bench);
   const ForwardModel model(build_family("sinusoid-k4", camera), camera);
-  const CalibratedCorrelation found = calibrate_correlation(
-      sweep_of(bench, model), {.range_m = camera.range_m(), .black_level = level});
+  const DelaySweep sweep = sweep_of(bench, model);
+  CorrelationCalibrationOptions options{.range_m = camera.range_m(), .black_level = level};
+  const CalibratedCorrelation found = calibrate_correlation(sweep, options);
+  // The same numbers of unequal exposures are as certain; ambient light explains less of them.
+  options.exposure_s = Eigen::Vector4d(1.0, 1.0, 20.0, 20.0);
+  const double of_unequal = calibrate_correlation(sweep, options).table.model_error_percent;
+  EXPECT_LT(of_unequal, found.table.model_error_percent);
+  EXPECT_GT(of_unequal, 0.25 * found.table.model_error_percent);
   constexpr int pixels = 3000;
   RawFrames bright{.frames = 1, .height = 1, .width = pixels, .measurements = 4};
   RandomStream random(5, 0, 0);

@@ -168,11 +168,16 @@ TEST(DepthCalibration, FindsTheModelErrorThatDecodersMustTolerate) {
     return static_cast<double>(std::ranges::count(image.status.pixels, PixelStatus::inconsistent)) /
            static_cast<double>(image.status.pixels.size());
   };
-  for (const double share : {0.0, 0.01, 0.03, 0.1}) {
+  for (const double share : {0.0, 0.01, 0.03, 0.2}) {
     Bench bench{.second_harmonic = share, .reversed = share > 0.05, .truth = wiggle()};
     bench.run();
     const CalibratedDepth found = bench.calibrate();
-    const double percent = found.table.model_error_percent;
+    ASSERT_TRUE(found.model_error_percent);
+    const double percent = *found.model_error_percent;
+    EXPECT_EQ(found.table.model_error_percent, percent);
+    EXPECT_EQ(percent > 10.0, std::ranges::any_of(found.notes, [](const std::string& note) {
+                return note.find("no depth explains") != std::string::npos;
+              }));
     EXPECT_GE(percent, 100.0 * share);
     EXPECT_LE(percent, 170.0 * share);  // at the depth where it is largest: sqrt(2), by fifths
     EXPECT_LT(inconsistent_share(bench, found.table), 0.02);
@@ -184,6 +189,32 @@ TEST(DepthCalibration, FindsTheModelErrorThatDecodersMustTolerate) {
     write_calibrated_table(path, found.table, OutputPolicy::overwrite);
     EXPECT_EQ(read_measured_table(path, {}).table.model_error_percent, percent);
   }
+}
+
+TEST(DepthCalibration, TheModelErrorOfACodeWithoutDegreesOfFreedomIsNotKnown) {
+  Bench bench{.truth = wiggle()};
+  bench.run();
+  Camera camera = phase_camera();
+  camera.sensor.taps = 1;
+  camera.sensor.drain = true;
+  camera.sensor.readout = Readout::separate;
+  RawFrames three = bench.raw;
+  three.measurements = 3;
+  three.values.clear();
+  // Phases 0, 120 and 240 degrees from those at 0 and 90 degrees, with ambient light.
+  for (std::size_t i = 0; i < bench.raw.values.size(); i += 4) {
+    const float c = bench.raw.values[i], s = bench.raw.values[i + 1];
+    for (int k = 0; k < 3; ++k) {
+      const double angle_rad = k * turn_rad / 3;
+      three.values.push_back(static_cast<float>(1e6 + std::cos(angle_rad) * static_cast<double>(c) +
+                                                std::sin(angle_rad) * static_cast<double>(s)));
+    }
+  }
+  const CalibratedDepth found =
+      calibrate_depth(three, bench.reference, build_family("sinusoid-k3", camera), camera);
+  EXPECT_FALSE(found.model_error_percent);
+  EXPECT_EQ(found.table.model_error_percent, 0.0);
+  EXPECT_THAT(found.notes, Contains(HasSubstr("no degrees of freedom")));
 }
 
 TEST(DepthCalibration, DelayThatRunsBackwardsIsTurnedInTableAndCamera) {

@@ -183,6 +183,18 @@ TEST(MeasuredTable, LightBehindColumnsBelowZeroIsTheirLargestWhereAmbientLightAd
   const DecodingTable raised = make_decoding_table(measured, camera_with("paper-10f0"));
   EXPECT_EQ(raised.shot(), (correlation.array() + 2.0).matrix());
 
+  // The second column is out of reach.
+  measured.ambient_gain = Eigen::Vector3d(0.0, 0.0, 1.0);
+  measured.correlation(0, 2) = -0.5;
+  const DecodingTable partly = make_decoding_table(measured, camera_with("paper-10f0"));
+  EXPECT_EQ(partly.shot().col(1), Eigen::VectorXd::Constant(10, 2.0));
+  EXPECT_EQ(partly.shot().col(2), (measured.correlation.col(2).array() + 0.5).matrix());
+
+  measured.ambient_gain = Eigen::Vector3d(-1.0, 1.0, 1.0);
+  EXPECT_EQ(make_decoding_table(measured, camera_with("paper-10f0")).correlation,
+            measured.correlation);
+
+  measured.correlation = correlation;
   measured.ambient_gain = Eigen::VectorXd::Zero(3);
   const DecodingTable table = make_decoding_table(measured, camera_with("paper-10f0"));
   EXPECT_EQ(table.shot().col(0), correlation.col(0));

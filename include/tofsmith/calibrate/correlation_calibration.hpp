@@ -109,7 +109,8 @@ struct CalibratedCorrelation {
 ///      mean curve is made again of the pixels so aligned, until neither changes.
 ///   4. Table: the aligned mean at N equally spaced places of the period, N as many as there were.
 ///      Errors from the residuals of the fits, place by place. table.model_error_percent is twice
-///      their share of the change with depth, root mean squares.
+///      their share of the signal's part of the measurements. Pixels whose curves have another
+///      shape differ by more.
 /// The mean gain is 1 and the mean offset 0.
 /// @throws std::invalid_argument if sweep or options are invalid, or no live pixel is left
 CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
@@ -159,7 +160,9 @@ struct CalibratedDepth {
   double rms_m = 0.0;                  ///< left over on blocks of pixels held out
   double far_rms_m = 0.0;      ///< left over by the terms beyond, on parts of the range held out
   double outlier_share = 0.0;  ///< of the pixels, which count for nothing
-  std::int64_t pixels = 0;     ///< that were compared
+  /// As DecodeOptions::model_error_percent, within 20 %; none: the code has no degrees of freedom.
+  std::optional<double> model_error_percent;
+  std::int64_t pixels = 0;  ///< that were compared
   DepthErrorPicture picture;
   std::vector<std::string> notes;
 };
@@ -173,8 +176,8 @@ struct CalibratedDepth {
 ///   3. Which terms: by blocks of a checkerboard held out in turn. Beyond the depths that the
 ///      reference had, those count that predict parts of the range held out.
 ///   4. Standard errors from tiles of pixels, whose errors may be alike.
-///   5. table.model_error_percent is the smallest with which at most 1 % of the pixels whose depth
-///      fits are inconsistent.
+///   5. The model error with which at most 1 % of the pixels with the right depth are inconsistent.
+///      Errors below the noise of the frames are not found.
 /// @param camera  its model of the code is what is nominal
 /// @throws std::invalid_argument if sizes disagree, fewer than 100 pixels can be compared, or the
 ///         reference is in another unit, flipped, or of something else

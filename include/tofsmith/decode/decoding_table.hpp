@@ -273,8 +273,9 @@ struct MeasuredTable {
 /// impulse responses do not count: they are in the measurement.
 ///
 /// Signal is found in multiples of what the table was measured with. Shot noise is that of the
-/// expected electrons; for a column that goes below 0, whose light is not known, that of its
-/// largest magnitude, as if two buckets had shared so much.
+/// expected electrons: columns below 0 are raised along ambient_gain, and the ambient light found
+/// is lower by that. Differences, and columns below 0 that ambient light does not reach, have the
+/// noise of their largest magnitude at every depth.
 /// @throws std::invalid_argument if table or camera are invalid or do not fit
 DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& camera);
 
