@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "calibrate_output.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/calibrate/calibration_reports.hpp"
@@ -24,20 +26,18 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
     terms.push_back({{"name", term.name},
                      {"value_m", term.value_m.value},
                      {"standard_error_m", term.value_m.standard_error}});
-  return {
-      {"pixels", found.pixels},
-      {"reversed", found.reversed},
-      {"known_share", found.known_share},
-      {"mean_error_m", found.mean_error_m},
-      {"rms_before_m", found.rms_before_m},
-      {"rms_m", found.rms_m},
-      {"far_rms_m", found.far_rms_m},
-      {"outlier_share", found.outlier_share},
-      {"model_error_percent",
-       found.model_error_percent ? nlohmann::ordered_json(*found.model_error_percent) : nullptr},
-      {"terms", terms},
-      {"far_terms", found.far_terms},
-      {"notes", found.notes}};
+  return {{"pixels", found.pixels},
+          {"reversed", found.reversed},
+          {"known_share", found.known_share},
+          {"mean_error_m", found.mean_error_m},
+          {"rms_before_m", found.rms_before_m},
+          {"rms_m", found.rms_m},
+          {"far_rms_m", found.far_rms_m},
+          {"outlier_share", found.outlier_share},
+          {"model_error_percent", number_json(found.model_error_percent.value_or(NAN))},
+          {"terms", terms},
+          {"far_terms", found.far_terms},
+          {"notes", found.notes}};
 }
 
 std::string lines_of(const CalibratedDepth& found) {
