@@ -49,7 +49,7 @@ auto made(const Make& make) {
 
 }  // namespace
 
-void DeviceArguments::add_to(CLI::App& command, const OptionText& text) {
+void DeviceArguments::add_to(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--device",
@@ -60,35 +60,12 @@ void DeviceArguments::add_to(CLI::App& command, const OptionText& text) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          fmt::format("what {}: cpu; gpu, the first one; auto, that or else cpu, which {} are left "
-                      "to; a number or part of a name from list, which prints the devices of "
-                      "OpenCL. {}",
-                      text.does, text.left_to_cpu, text.promise))
+          "OpenCL device that averages, filters and decodes: cpu (none); gpu, the first one; auto, "
+          "the first GPU, but cpu for small frames and other methods; or a number or part of a "
+          "name from list, which prints the devices. Only zncc runs on devices, with the same "
+          "results")
       ->default_str(name_)
       ->group(for_experts);
-}
-
-void DeviceArguments::add_to(CLI::App& command) {
-  add_to(command, {"adds frames up, filters and decodes", "small frames",
-                   "The same numbers come out, of zncc alone"});
-}
-
-void DeviceArguments::add_capture_to(CLI::App& command) {
-  add_to(command, {"draws the noise", "small scenes",
-                   "The same frames come out, of devices that have doubles"});
-}
-
-void DeviceArguments::add_trials_to(CLI::App& command) {
-  add_to(command, {"runs the trials", "few trials",
-                   "The same figures come out, of zncc and devices that have doubles"});
-}
-
-std::optional<DeviceTrials> DeviceArguments::trials(const EvaluateOptions& options) const {
-  return made([&] { return device_trials(name_, options); });
-}
-
-std::optional<DeviceCapture> DeviceArguments::capture() const {
-  return made([&] { return device_capture(name_); });
 }
 
 RecordingDevice::RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name)

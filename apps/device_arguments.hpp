@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "tofsmith/gpu.hpp"
 #include "tofsmith/io/decode_recording.hpp"
@@ -44,30 +43,13 @@ class RecordingDevice {
 /// What computes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.
 class DeviceArguments {
  public:
-  /// Of a command that decodes.
   void add_to(CLI::App& command);
-  /// Of one that captures.
-  void add_capture_to(CLI::App& command);
-  /// Of one that evaluates.
-  void add_trials_to(CLI::App& command);
   /// What decodes in place of `decoder`, which must outlive it; none: it does so itself.
   /// @throws UsageError if a device is named and no device decodes by this method; IoError if there
   ///         is no such device, or it fails
   std::optional<RecordingDevice> device_for(const AnyDecoder& decoder) const;
-  /// What draws the noise of captures; none: the processor.
-  /// @throws UsageError if a device is named that has no doubles; IoError as device_for()
-  std::optional<DeviceCapture> capture() const;
-  /// What runs trials; none: the processor.
-  /// @throws UsageError if a device is named that cannot; IoError as device_for()
-  std::optional<DeviceTrials> trials(const EvaluateOptions& options) const;
 
  private:
-  /// In its help: what a device does, what `auto` leaves to the processor, and what holds.
-  struct OptionText {
-    std::string_view does, left_to_cpu, promise;
-  };
-  void add_to(CLI::App& command, const OptionText& text);
-
   std::string name_ = "cpu";
 };
 

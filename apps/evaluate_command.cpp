@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "device_arguments.hpp"
 #include "distance_arguments.hpp"
 #include "evaluation_table.hpp"
 #include "help_pages.hpp"
@@ -109,7 +108,6 @@ struct EvaluateArguments {
   bool every_level = false;
   DistanceArguments distance;
   TapArguments taps;
-  DeviceArguments device;
   std::string output;
 };
 
@@ -200,8 +198,7 @@ void check_output(const std::filesystem::path& path, const Session& session) {
 /// Depth error of each code, which is moved to its best origin first if that was asked for; by zncc
 /// beside maximum likelihood, on the same depths and noise.
 std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camera& camera,
-                                        const EvaluateArguments& arguments,
-                                        const TrialsBy& trials_by) {
+                                        const EvaluateArguments& arguments) {
   std::vector<EvaluatedCode> evaluated;
   const ProgressParts parts(terminal_progress("evaluating"), codes.size());
   const bool is_compared = arguments.options.method == DecodeMethod::ml;
@@ -215,7 +212,7 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
     }
     EvaluateOptions options = arguments.options;
     options.draw_every_measurement = is_compared;
-    EvaluatedCode code{evaluate(codes[i], camera, options, of_code[1], trials_by), rotation};
+    EvaluatedCode code{evaluate(codes[i], camera, options, of_code[1]), rotation};
     if (is_compared) {
       options.method = DecodeMethod::zncc;
       code.zncc_error = evaluate(codes[i], camera, options, of_code[2]);
@@ -265,17 +262,14 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (arguments.robustness) perturbed.emplace();
   if (!arguments.perturb.empty()) perturbed = parse_perturbations(arguments.perturb);
   if (perturbed) static_cast<void>(perturbations(camera, *perturbed));  // refused before long work
-  const std::optional<DeviceTrials> on_device = arguments.device.trials(arguments.options);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));
-  std::vector<EvaluatedCode> evaluated =
-      evaluate_all(codes, camera, arguments, on_device ? on_device->trials_by() : TrialsBy());
+  std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
   if (perturbed) judge_robustness(evaluated, codes, camera, arguments.options, *perturbed);
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
   print(session, camera, evaluated, arguments);
-  if (on_device) session.say("device " + on_device->device().info().name);
   for (const CodeSet& code : codes)
     if (const auto note = ambiguity_note(make_decoding_table(ForwardModel(code, camera), camera)))
       session.say(fmt::format("{}: {}", code.name(), *note));
@@ -353,7 +347,6 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_flag("--every-level", arguments->every_level,
                     "print a row for every light level, not only the mean, the best and the worst");
   arguments->distance.add_to(*command);
-  arguments->device.add_trials_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "device_arguments.hpp"
 #include "fresh_directory.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
@@ -39,7 +38,6 @@ struct TrainingSetRequest {
   SceneSource source;               ///< how each is to be read
   std::filesystem::path directory;
   TrainingSetOptions options;
-  ExposeBy expose_by;
 };
 
 /// Whether that is more than one scene.
@@ -81,9 +79,8 @@ void make_training_set(const TrainingSetRequest& request, const CodeSet& code, c
   const FreshDirectory fresh(request.directory);
   make_output_directory(request.directory);
   session.directory = request.directory;
-  const TrainingSetRun run =
-      write_training_set(request.directory, scenes, code, camera, load, request.options,
-                         terminal_progress("simulating"), request.expose_by);
+  const TrainingSetRun run = write_training_set(request.directory, scenes, code, camera, load,
+                                                request.options, terminal_progress("simulating"));
   session.print_json({{"directory", request.directory.string()},
                       {"index", run.index.string()},
                       {"code", code.name()},
@@ -110,7 +107,6 @@ struct SimulateArguments {
   std::optional<double> signal_e_per_s, ambient_e_per_s;
   std::string signal_range, ambient_range, shard;
   CaptureOptions options;
-  DeviceArguments device;
   MultipathLightArguments returns;
   std::string stray_light;
   std::string output, truth, truth_near, truth_far;
@@ -123,14 +119,9 @@ struct CapturedScene {
   bool is_still = true;
 };
 
-/// What draws noise elsewhere; empty: nothing does.
-ExposeBy expose_by(const std::optional<DeviceCapture>& on_device) {
-  return on_device ? on_device->expose_by() : ExposeBy();
-}
-
 /// An image as it is, shapes through the camera's lens.
 CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene& scene,
-                          const CodeSet& code, const Camera& camera, const ExposeBy& exposed) {
+                          const CodeSet& code, const Camera& camera) {
   CapturedScene captured;
   const Progress progress = terminal_progress("capturing");
   const Image<float> kernel =
@@ -139,15 +130,14 @@ CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene&
     captured.light = arguments.returns.load(scene, camera);
     captured.light.stray_light = kernel;
     captured.capture.raw =
-        capture(scene.image, captured.light, code, camera, arguments.options, progress, exposed);
+        capture(scene.image, captured.light, code, camera, arguments.options, progress);
     captured.capture.truth = {scene.image};
     return captured;
   }
   StagedSetup setup{.search_of = embree_search(),
                     .light = {},
                     .ambient_scale = scene.image.ambient_scale,
-                    .stray_light = kernel,
-                    .expose_by = exposed};
+                    .stray_light = kernel};
   if (arguments.returns.is_used())
     setup.light = [&](const StagedScene& staged, const SceneImage& rays) {
       captured.light = arguments.returns.load({scene.name, rays, staged.view, staged}, camera);
@@ -227,7 +217,6 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
     throw UsageError("--stray-light: found many scenes; expected one");
   const Camera camera = arguments.camera.load();
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
-  const std::optional<DeviceCapture> on_device = arguments.device.capture();
   make_training_set(
       {.scenes = arguments.scenes,
        .source = arguments.scene,
@@ -237,8 +226,7 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
                    .ambient = light_range("ambient", arguments.ambient_range,
                                           arguments.ambient_e_per_s, usual.ambient_e_per_s),
                    .capture = arguments.options,
-                   .shard = parse_shard(arguments.shard)},
-       .expose_by = expose_by(on_device)},
+                   .shard = parse_shard(arguments.shard)}},
       load_camera_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
 }
 
@@ -304,13 +292,12 @@ void run(SimulateArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   const OutputPolicy policy = check_outputs(arguments, session);
-  const std::optional<DeviceCapture> on_device = arguments.device.capture();
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(usual.signal_e_per_s);
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(usual.ambient_e_per_s);
-  const CapturedScene captured = capture_one(arguments, scene, code, camera, expose_by(on_device));
+  const CapturedScene captured = capture_one(arguments, scene, code, camera);
   const RawFrames& raw = captured.capture.raw;
   write_raw_frames(arguments.output, raw, policy);
   leave_camera(arguments, camera, code, scene.view, session);
@@ -326,7 +313,6 @@ void run(SimulateArguments& arguments, Session& session) {
                       {"signal_e_per_s", arguments.options.signal_e_per_s},
                       {"ambient_e_per_s", arguments.options.ambient_e_per_s},
                       {"seed", arguments.options.seed},
-                      {"device", on_device ? on_device->device().info().name : "cpu"},
                       {"range_m", extent.range_m},
                       {"beyond_range_share", extent.beyond_range_share()},
                       {"lens", nlohmann::ordered_json::parse(lens_to_json(lens_of(scene.view)))},
@@ -338,7 +324,6 @@ void run(SimulateArguments& arguments, Session& session) {
       raw.measurements, code.name(), arguments.options.signal_e_per_s,
       arguments.options.reference_distance_m, arguments.options.ambient_e_per_s,
       arguments.options.seed));
-  if (on_device) session.say("device " + on_device->device().info().name);
   if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
   if (const std::string remark = albedo_remark(scene); !remark.empty()) session.say(remark);
   if (!(lens_setting(scene.view) ==
@@ -416,7 +401,6 @@ void add_simulate_command(CLI::App& app, Session& session) {
                    "also write the farthest; a lens mixes both: see docs/scenes.md")
       ->group(for_experts);
   arguments->returns.add_to(*command);
-  arguments->device.add_capture_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

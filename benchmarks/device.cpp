@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels that a device of OpenCL decodes per second, from its memory and from this computer's,
 // beside copies of the same bytes in the same run; and how many of them differ from the Decoder's.
-// Frames that it filters and captures per second beside the processor's, and frames of recordings
+// Frames that it filters per second beside the processor's, and frames of recordings
 // one after another and two at a time; and from which size on it is the faster.
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@
 #include <optional>
 
 #include "decode_setup.hpp"
-#include "gpu/device_capture.hpp"
 #include "gpu/device_tile.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -217,36 +216,6 @@ void report_recordings(const Device& device, int runs) {
   tell("in time, looking 4 frames ahead:", nullptr, TimeFilterOptions{.look_ahead = 4});
 }
 
-/// Frames captured under one light, beside the processor's.
-void report_captures(const Device& device, int runs) {
-  if (!device.info().has_doubles) return fmt::print("captures: the device has no doubles\n");
-  constexpr int height = 480, width = 640;
-  for (const NoiseModel noise : {NoiseModel::gaussian, NoiseModel::poisson}) {
-    Camera camera = camera_with("paper-10f0");
-    camera.sensor.noise = noise;
-    const CodeSet code = build_family("hamiltonian-k4", camera);
-    SceneImage scene(height, width);
-    for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
-      scene.depth_m.pixels[i] = 1.0f + 8.0f * static_cast<float>(i % 977) / 977.0f;
-    DeviceCapture::Plan plan(device, {});
-    std::int64_t left = 0;
-    const ExposeBy there = [&](const UnexposedFrames& frames, const Progress& progress) {
-      left = plan.expose(frames, progress);
-    };
-    const CaptureOptions options{.signal_e_per_s = 1e5, .ambient_e_per_s = 1e4, .frames = 8};
-    RawFrames on_it, here;
-    const double by_device =
-        seconds_of([&] { on_it = capture(scene, code, camera, options, {}, there); }, runs);
-    const double by_processor =
-        seconds_of([&] { here = capture(scene, code, camera, options); }, runs);
-    fmt::print(
-        "captures, {} noise, VGA, K = 4: {:8.1f} frames/s with copies; here {:8.1f}; {} pixels of "
-        "8 frames left to it, {} numbers differ (asked: 0)\n",
-        noise == NoiseModel::poisson ? "Poisson" : "normal", 8.0 / by_device, 8.0 / by_processor,
-        left, differences(on_it.values, here.values));
-  }
-}
-
 /// The smallest of some sizes from which on `there` takes less time than `here`; in words.
 std::string crossover(const std::function<double(int)>& there,
                       const std::function<double(int)>& here) {
@@ -315,7 +284,6 @@ int run(int argc, char** argv) {
     report(device, code, pixels, rate, runs);
   report_filters(device, runs);
   report_recordings(device, runs);
-  report_captures(device, runs);
   report_crossovers(device, runs);
   return 0;
 }

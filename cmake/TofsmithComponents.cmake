@@ -22,7 +22,7 @@ set(tofsmith_lab_needs report)  # for the pages of calibrations and exports
 set(tofsmith_sweep_needs io)
 
 set(tofsmith_core_about "codes, cameras, decoding and simulation")
-set(tofsmith_gpu_about "captures, trials, filtering and decoding on devices of OpenCL")
+set(tofsmith_gpu_about "averaging, filtering and decoding on OpenCL devices")
 set(tofsmith_design_about "the search for codes")
 set(tofsmith_io_about "files, images and meshes")
 set(tofsmith_report_about "figures and HTML pages")

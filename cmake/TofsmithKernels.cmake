@@ -27,10 +27,6 @@ tofsmith_add_kernels(filter_kernels filter_tables.hpp decode_parameters.h number
                      windows.cl slopes.cl)
 tofsmith_add_kernels(time_kernels device_time_filter.hpp decode_parameters.h numbers.cl time_parameters.h time.cl)
 tofsmith_add_kernels(mean_kernels device_means.hpp decode_parameters.h numbers.cl means.cl)
-tofsmith_add_kernels(capture_kernels device_capture.hpp decode_parameters.h numbers.cl random.cl
-                     capture_parameters.h capture.cl)
-tofsmith_add_kernels(trial_kernels device_trials.hpp decode_parameters.h numbers.cl random.cl vector_math.cl
-                     trial_parameters.h trials.cl trial_measurements.cl)
 
 if(TOFSMITH_HAS_OPENCL)
   target_link_libraries(tofsmith_gpu PRIVATE OpenCL::OpenCL)

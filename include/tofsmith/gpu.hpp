@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: captures, trials, means, filters and decoding on devices of OpenCL.
+/// All of tofsmith::gpu: averaging, filtering and decoding on OpenCL devices.
 /// Includes tofsmith/core.hpp.
 
 #include <array>
@@ -61,7 +61,7 @@ class Device {
   std::shared_ptr<State> state_;
 };
 
-/// How a decoder, filter or capture uses its device.
+/// How a decoder or filter uses its device.
 struct DeviceOptions {
   /// For the pixels under way and their planes [MB], > 0; larger frames go in parts. Where the
   /// device has less, parts become smaller. Filters take as many rows as a result depends on, at
@@ -83,12 +83,9 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
                     Field("use_doubles", o.use_doubles), Field("min_pixels", o.min_pixels, ">= 0"));
 }
 
-/// DeviceOptions::min_pixels of the device `auto`, of decoding, of filtering and of captures: not
-/// measured on any GPU, and rather too large than too small.
-inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000,
-                     auto_min_pixels_to_capture = 75'000;
-/// The same of evaluations: the fewest trials per operating point that `auto` leaves to a device.
-inline constexpr std::int64_t auto_min_trials_to_evaluate = 10'000'000;
+/// DeviceOptions::min_pixels of the device `auto`, for decoding and for filtering. The values are
+/// guesses on the high side, not measured on any GPU.
+inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000;
 
 struct FrameSource;  ///< of the implementation
 class DeviceRaw;
@@ -291,63 +288,6 @@ class DeviceFramesUnderWay {
   std::unique_ptr<Plan> plan_;
 };
 
-/// Draws the noise of captures on a device that has doubles. Frames are those of capture(), bit by
-/// bit: the words that random numbers are made of are the same, and of a pixel in which a number
-/// hangs on the last bits of a logarithm, an exponential, a sine or a cosine, the processor draws
-/// the noise. Light comes from a scene's direct returns on the device; of longer ways, lenses that
-/// blur and scenes that move it is collected by the processor and exposed on the device.
-///
-/// Safe to use from many threads, which wait for one another.
-class DeviceCapture {
- public:
-  /// Compiles kernels.
-  /// @throws std::invalid_argument for options, and if the device has no doubles; IoError if it
-  ///         fails, with what its compiler says of kernels
-  explicit DeviceCapture(const Device& device, const DeviceOptions& options = {});
-  ~DeviceCapture();
-  DeviceCapture(DeviceCapture&&) noexcept;
-  DeviceCapture& operator=(DeviceCapture&&) noexcept;
-
-  const Device& device() const;
-
-  /// What capture(), StagedSetup and write_training_set() take, while this lives. Throws IoError if
-  /// the device fails, and Interrupted if progress says so.
-  ExposeBy expose_by() const;
-
-  struct Plan;  ///< of the implementation
-
- private:
-  std::unique_ptr<Plan> plan_;
-};
-
-/// Draws and decodes the Monte Carlo trials of evaluate() on a device that has doubles: of all
-/// cameras, by ZNCC. From the same random words by the same steps: trials are those of the
-/// processor, bit by bit, where the device rounds quotients correctly; elsewhere positions differ
-/// in the last bits. Of a trial in which a count hangs on the last bits of a logarithm or an
-/// exponential, the processor draws the noise, and it decodes trials whose bin single precision
-/// does not prove.
-class DeviceTrials {
- public:
-  /// @throws std::invalid_argument for options, and if the device has no doubles
-  explicit DeviceTrials(const Device& device, const DeviceOptions& options = {});
-  ~DeviceTrials();
-  DeviceTrials(DeviceTrials&&) noexcept;
-  DeviceTrials& operator=(DeviceTrials&&) noexcept;
-
-  const Device& device() const;
-
-  /// What evaluate() takes, while this lives; of trials of other kinds, nothing, and the processor
-  /// runs them. Throws IoError if the device fails.
-  TrialsBy trials_by() const;
-
- private:
-  struct Plan;
-  std::unique_ptr<Plan> plan_;
-};
-
-/// Why trials are the processor's, whatever the code and the camera; none: a device runs them.
-std::optional<BrokenRule> why_not_on_device(const EvaluateOptions& options);
-
 /// What decodes in place of a decoder on the device that a user names: "cpu", nothing; "auto": the
 /// first GPU, or nothing where there is none or the decoder is no Decoder; else Device::named().
 /// `auto` leaves frames of fewer than auto_min_pixels_to_decode to the processor.
@@ -370,18 +310,5 @@ std::optional<DeviceFilter> device_filter(std::string_view device, const Filter&
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
                                           const TimeFilter* time_filter, bool makes_means,
                                           const DeviceDecoder& after);
-
-/// What draws the noise of captures on the device that a user names, as device_decoder(): `auto`
-/// leaves scenes of fewer than auto_min_pixels_to_capture, and all where the GPU has no doubles, to
-/// the processor.
-/// @throws InvalidArgument if a device is named that has no doubles; IoError if there is no such
-///         device, or it fails
-std::optional<DeviceCapture> device_capture(std::string_view device);
-
-/// What runs the trials of evaluate() on the device that a user names, as device_decoder(): `auto`
-/// leaves fewer than auto_min_trials_to_evaluate, and what no device runs, to the processor.
-/// @throws InvalidArgument if a device is named that has no doubles, or cannot, as
-///         why_not_on_device(); IoError if there is no such device, or it fails
-std::optional<DeviceTrials> device_trials(std::string_view device, const EvaluateOptions& options);
 
 }  // namespace tofsmith

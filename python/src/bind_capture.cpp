@@ -36,11 +36,6 @@ SceneImage scene_of(const py::dict& planes) {
   return scene;
 }
 
-BoundCapture::BoundCapture(const std::string& device) {
-  const py::gil_scoped_release release;
-  on_device_ = device_capture(device);
-}
-
 namespace {
 
 std::vector<MultipathReturn> multipath_returns(const Floats& distance_m, const Floats& ratio) {
@@ -109,14 +104,12 @@ py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns
                                  const py::object& callback) {
   const py::dict values = given.attr("copy")();
   const Image<float> kernel = taken_image(values, "stray_light");
-  const std::string device = taken_device(values);
   const CaptureOptions options = capture_options(camera, values);
   const SceneImage scene = scene_of(planes);
   SceneLight light = light_of(returns, scene);
   light.stray_light = kernel;
-  const BoundCapture by(device);
   return adopt(without_gil(callback, [&](const Progress& progress) {
-    return capture(scene, light, code, camera, options, progress, by.expose_by());
+    return capture(scene, light, code, camera, options, progress);
   }));
 }
 
@@ -175,16 +168,12 @@ py::dict capture_staged(const std::string& name, const py::dict& size, const py:
                         const py::dict& given, const py::object& callback) {
   const py::dict values = given.attr("copy")();
   const Image<float> kernel = taken_image(values, "stray_light");
-  const BoundCapture by(taken_device(values));
   const CaptureOptions options = capture_options(camera, values);
   const LoadedScene scene = loaded_scene(name, size, camera);
   std::optional<BounceOptions> bounces;
   if (bounce_rays > 0) bounces = bounce_options(scene, camera, bounce_rays);
-  StagedSetup setup{.search_of = embree_search(),
-                    .light = {},
-                    .ambient_scale = {},
-                    .stray_light = kernel,
-                    .expose_by = by.expose_by()};
+  StagedSetup setup{
+      .search_of = embree_search(), .light = {}, .ambient_scale = {}, .stray_light = kernel};
   if (!returns.empty() || bounces)
     setup.light = [&](const StagedScene& staged, const SceneImage& rays) {
       SceneLight light;
@@ -200,11 +189,10 @@ py::dict capture_staged(const std::string& name, const py::dict& size, const py:
   light.stray_light = kernel;
   StagedCapture made = without_gil(callback, [&](const Progress& progress) {
     if (scene.staged) return capture(*scene.staged, code, camera, options, setup, progress);
-    return StagedCapture{
-        .raw = capture(scene.image, light, code, camera, options, progress, by.expose_by()),
-        .truth = {scene.image},
-        .near_m = {scene.image.depth_m},
-        .far_m = {scene.image.depth_m}};
+    return StagedCapture{.raw = capture(scene.image, light, code, camera, options, progress),
+                         .truth = {scene.image},
+                         .near_m = {scene.image.depth_m},
+                         .far_m = {scene.image.depth_m}};
   });
   const auto own = [](const Image<float>& depth_m) -> const Image<float>& { return depth_m; };
   py::dict result;

@@ -6,7 +6,6 @@
 #include "options.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/gpu.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -31,14 +30,11 @@ Options options_of(const py::dict& values) {
 }  // namespace
 
 void bind_simulate(py::module_& module) {
-  module.def("evaluate", [](const CodeSet& code, const Camera& camera, const py::dict& given,
+  module.def("evaluate", [](const CodeSet& code, const Camera& camera, const py::dict& values,
                             const py::object& callback) {
-    const py::dict values = given.attr("copy")();
-    const std::string device = taken_device(values);
     const EvaluateOptions options = options_of<EvaluateOptions>(values);
     return report_dict(without_gil(callback, [&](const Progress& progress) {
-      const std::optional<DeviceTrials> there = device_trials(device, options);
-      return evaluate(code, camera, options, progress, there ? there->trials_by() : TrialsBy());
+      return evaluate(code, camera, options, progress);
     }));
   });
   module.def("best_rotation", [](const CodeSet& code, const Camera& camera, const py::dict& values,

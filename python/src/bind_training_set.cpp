@@ -24,10 +24,9 @@ void read_range(OptionReader& reader, const char* name, LightRange& range) {
 
 LightRange always(double level_e_per_s) { return {level_e_per_s, level_e_per_s}; }
 
-TrainingSetOptions set_options(const py::dict& values, const Camera& camera, std::string& device) {
+TrainingSetOptions set_options(const py::dict& values, const Camera& camera) {
   TrainingSetOptions options;
   OptionReader reader(values, "");
-  reader.value("device", device);
   reader.fields(options.capture, {"signal_e_per_s", "ambient_e_per_s"});
   const OperatingPoint usual = capture_light(camera, options.capture.reference_distance_m);
   options.signal = always(usual.signal_e_per_s);
@@ -62,17 +61,15 @@ LoadedTrainingScene load_scene(const py::object& load, const std::string& name) 
 py::dict write_set(const std::string& directory, const std::vector<std::string>& names,
                    const py::object& load, const CodeSet& code, const Camera& camera,
                    const py::dict& values, const py::object& callback) {
-  std::string device = "cpu";
-  const TrainingSetOptions options = set_options(values, camera, device);
-  const BoundCapture by(device);
+  const TrainingSetOptions options = set_options(values, camera);
   std::vector<TrainingScene> scenes;
   for (const std::string& name : names) scenes.push_back({name, name});
   const TrainingSetRun run = without_gil(callback, [&](const Progress& progress) {
     make_output_directory(directory);
     return write_training_set(
         directory, scenes, code.resampled(camera.samples), camera,
-        [&](const TrainingScene& scene) { return load_scene(load, scene.name); }, options, progress,
-        by.expose_by());
+        [&](const TrainingScene& scene) { return load_scene(load, scene.name); }, options,
+        progress);
   });
   py::dict dict;
   dict["scenes"] = run.scenes;

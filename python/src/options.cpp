@@ -62,14 +62,4 @@ std::string OptionReader::full_name(const std::string& name) const {
   return owner_.empty() ? name : owner_ + "." + name;
 }
 
-std::string taken_device(const py::dict& options) {
-  std::string device = "cpu";
-  if (const py::object name = options.attr("pop")("device", py::none()); !name.is_none()) {
-    py::dict alone;
-    alone["device"] = name;
-    OptionReader(alone, "").value("device", device);
-  }
-  return device;
-}
-
 }  // namespace tofsmith::python

@@ -78,9 +78,6 @@ std::string shown(py::handle value);
 template <typename Options>
 void read_options(const py::dict& values, const std::string& owner, Options& options);
 
-/// `device` out of a dict of options, where it stands no more; cpu if it does not.
-std::string taken_device(const py::dict& options);
-
 /// Sets fields of an options struct from a dict of their names. None leaves the default.
 class OptionReader {
  public:

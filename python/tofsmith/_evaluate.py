@@ -30,7 +30,6 @@ def evaluate(
     max_trials: Optional[int] = None,
     draw_every_measurement: Optional[bool] = None,
     bounds: Optional[bool] = None,
-    device: str = "cpu",
     progress: Progress = None,
 ) -> DepthErrorReport:
     """Monte Carlo depth error at every operating point of the camera, with bounds beside it.
@@ -63,19 +62,12 @@ def evaluate(
         looks at (False): so methods are compared on the same noise.
     bounds : bool, optional
         Also compute the bounds (True); else they are 0.
-    device : str, optional
-        What runs the trials: "cpu"; "gpu", the first one; "auto", that or else the processor, which
-        few trials are left to; a number or part of a name of the devices of OpenCL, which must have
-        doubles. Devices run zncc alone, with the same figures. See docs/gpu.md.
     progress : callable, optional
 
     Raises
     ------
     ValueError
-        If the code does not fit, the method cannot decode it, an option breaks a rule, or the
-        device cannot run such trials.
-    OSError
-        If there is no such device, or it fails.
+        If the code does not fit, the method cannot decode it, or an option breaks a rule.
     """
     camera = camera_of(camera)
     options = {
@@ -91,7 +83,6 @@ def evaluate(
         "max_trials": max_trials,
         "draw_every_measurement": draw_every_measurement,
         "bounds": bounds,
-        "device": device,
     }
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)

@@ -213,7 +213,6 @@ def capture(
     transients: Optional[Transients] = None,
     bounces: int = 0,
     bounce_rays: int = 256,
-    device: str = "cpu",
     progress: Progress = None,
 ) -> npt.NDArray[np.float32]:
     """Raw measurements of a scene.
@@ -251,10 +250,6 @@ def capture(
     bounces, bounce_rays : int, optional
         1: also light that one other surface sends on, gathered by so many rays a pixel, as
         bounced_light() says; of a name or file. (0)
-    device : str, optional
-        What draws the noise: "cpu"; "gpu", the first one; "auto", that or else the processor, which
-        small scenes are left to; a number or part of a name of the devices of OpenCL, which must
-        have doubles. The same bits. See docs/gpu.md.
     progress : callable, optional
 
     Returns
@@ -267,7 +262,7 @@ def capture(
     ValueError
         Naming what does not fit.
     OSError
-        For what is no scene; if there is no such device, or it fails.
+        For what is no scene.
     """
     options: dict[str, Any] = {
         "signal_e_per_s": signal_e_per_s,
@@ -277,7 +272,6 @@ def capture(
         "seed": seed,
         "frames": frames,
         "stray_light": stray_light,
-        "device": device,
     }
     raw: npt.NDArray[np.float32]
     if isinstance(scene, (str, os.PathLike)):
@@ -358,8 +352,8 @@ def capture_staged(
     returns, tail, transients, bounces, bounce_rays, progress
         As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
     **options
-        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light,
-        device as in capture().
+        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
+        as in capture().
 
     Examples
     --------

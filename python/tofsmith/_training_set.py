@@ -55,7 +55,6 @@ def write_training_set(
     seed: Optional[int] = None,
     frames: Optional[int] = None,
     shard: Optional[tuple[int, int]] = None,
-    device: str = "cpu",
     progress: Progress = None,
 ) -> TrainingSetRun:
     """Captures and decodes every scene; writes KEY.npz (raw, depth_m, true_depth_m, albedo) and
@@ -78,8 +77,6 @@ def write_training_set(
         Of the whole set (1): noise and light depend on it and the scene's name and content alone.
     shard : (index, count), optional
         One part of the work, from 1, by the scenes' names.
-    device : str, optional
-        What draws the noise, as of capture(): the same files.
     progress : callable, optional
         What is finished when it stops the work is kept.
 
@@ -88,7 +85,7 @@ def write_training_set(
     ValueError
         For options that break a rule. A scene that fails is listed in `failures`.
     OSError
-        If a file cannot be written; if there is no such device, or it fails.
+        If a file cannot be written.
 
     Examples
     --------
@@ -104,7 +101,6 @@ def write_training_set(
         "seed": seed,
         "frames": frames,
         "shard": None if shard is None else list(shard),
-        "device": device,
     }
     if not isinstance(scenes, Mapping) or not scenes:
         raise TypeError(f"scenes: got {_check.shown(scenes)}; needs a dict of names and scenes")

@@ -12,7 +12,7 @@
 #define HALF_BLOCK 8   // rows from one of its windows to the next
 #define TO_WHOLE 12582912.0f  // 1.5 * 2^23, as cell_place-inl.hpp
 
-// ---- The vector of a pixel, as tile_projection.cpp, where outputs follow without FUSES_PRODUCTS.
+// ---- The vector of a pixel, as tile_projection.cpp.
 
 float project(const struct ProjectionParameters* p, int number, Floats tables, const float* raw,
               float* q) {
@@ -34,11 +34,6 @@ float project(const struct ProjectionParameters* p, int number, Floats tables, c
 /// Reads the numbers of a pixel, and its vector. @return what that may be off by
 float vector_of(const struct ProjectionParameters* p, const struct TileParameters* tile,
                 Floats tables, global const uchar* raw_numbers, int pixel, float* raw, float* q) {
-  if (tile->number == raw_plane) {
-    for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = 0.0f;
-    for (int j = 0; j < RANK; ++j) raw[j] = q[j] = raw_number(tile, raw_numbers, pixel, j);
-    return 0.0f;
-  }
   for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = raw_number(tile, raw_numbers, pixel, k);
   return project(p, tile->number, tables, raw, q);
 }

@@ -13,7 +13,6 @@ enum RawNumber {
   raw_uint16,
   raw_uint8,
   raw_rounded,  ///< floats that were doubles
-  raw_plane,    ///< where they lie in the plane that ZNCC looks at: floats, RANK of them
   raw_double    ///< of which means are made, no more
 };
 

@@ -196,7 +196,7 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
 
 }  // namespace
 
-DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses) {
+DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles) {
   const auto [matcher, kernel] = parts_of(decoder);
   Words words_at(words);
   is_coarse = matcher.is_coarse();
@@ -213,7 +213,6 @@ DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses)
   outputs = parameters_of(decoder, kernel, matcher.bins().exact().scale(), has_doubles, words_at);
   outputs.projection = points.projection;
   options = options_of(kernel.records().layout, has_doubles);
-  if (fuses) options += " -D FUSES_PRODUCTS";
 }
 
 }  // namespace tofsmith

@@ -18,8 +18,7 @@ extern const std::string_view decode_kernels;
 /// All that a decoder decides by, as a device reads it.
 struct DecodeTables {
   /// @param has_doubles  whether the device computes with them
-  /// @param fuses        whether vectors are found by product_plus() in one step
-  DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses);
+  DecodeTables(const Decoder& decoder, bool has_doubles);
 
   MatchParameters points;  ///< beside which the planes' best points on the chords lie
   MatchParameters bins;    ///< of a coarse table; else as `points`

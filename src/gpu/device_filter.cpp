@@ -107,7 +107,7 @@ std::int64_t DeviceFilter::Plan::run_band(const FrameSource& source, IndexRange 
   const std::int64_t pixels = std::int64_t{count} * raw.width;
   if (!after) result.reserve_planes(frame.queue(), pixels, raw.measurements);
   const NoiseRatios noise = plan_of(filter).noise_ratios();
-  const DeviceRaw& out = after ? after->tile.reserve_planes(pixels, raw_float, noise) : result;
+  const DeviceRaw& out = after ? after->tile.reserve_planes(pixels, noise) : result;
   frame.write(first - from, count, out);
   frame.queue().finish();
   if (filtered) filtered->fetch(frame.queue(), out, first, count);
@@ -167,8 +167,7 @@ bool DeviceFilter::Plan::start(const FrameSource& source, DeviceRaw& brought,
     there.on_device = &brought;
   }
   frame.filter(there, 0, raw.height, nullptr, [] {});
-  frame.write(0, raw.height,
-              decoded_in.reserve_planes(pixels, raw_float, plan_of(filter).noise_ratios()));
+  frame.write(0, raw.height, decoded_in.reserve_planes(pixels, plan_of(filter).noise_ratios()));
   decoded_in.queue().follow(frame.queue().mark());
   decoded_in.decode(decoded);
   decoded_in.queue().flush();

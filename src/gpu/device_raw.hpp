@@ -27,7 +27,7 @@ class DeviceRaw {
             std::int64_t count);
   /// Makes room for floats, measurement after measurement, that a kernel writes; all of them are
   /// means.
-  /// @param number  what they are: raw_float, raw_rounded or raw_plane
+  /// @param number  raw_float or raw_rounded
   void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
                       RawNumber number = raw_float, const NoiseRatios& noise = {});
   void release();

@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "decode/filter/shared/filter_parts.hpp"
-
 namespace tofsmith {
 
 OpenNumbers::OpenNumbers(std::vector<float> numbers, int measurements, const NoiseRatios& noise)
@@ -26,15 +24,13 @@ RawView OpenNumbers::view() const {
   return view;
 }
 
-DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles,
-                       bool as_trials)
+DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles)
     : outputs_(parts_of(decoder).outputs),
       bin_count_(decoder.table().bin_count()),
-      tables_(decoder, use_doubles && device.info().has_doubles, as_trials && fuses_products()),
+      tables_(decoder, use_doubles && device.info().has_doubles),
       queue_(device),
       match_(queue_.kernel(decode_kernels, tables_.options, "match")),
       write_(queue_.kernel(decode_kernels, tables_.options, "write_planes")),
-      write_offsets_(queue_.kernel(decode_kernels, tables_.options, "write_offsets")),
       gather_(queue_.kernel(decode_kernels, tables_.options, "gather_numbers")),
       scatter_(queue_.kernel(decode_kernels, tables_.options, "scatter_values")),
       words_(queue_.allocate(tables_.words.size() * sizeof(std::uint32_t))),
@@ -47,9 +43,8 @@ std::int64_t DeviceTile::bytes_per_pixel() const {
   return 4 * (outputs_.records().layout.measurements + words);
 }
 
-const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, RawNumber number,
-                                            const NoiseRatios& noise) {
-  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements, number, noise);
+const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, const NoiseRatios& noise) {
+  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements, raw_float, noise);
   return raw_;
 }
 
@@ -102,32 +97,6 @@ void DeviceTile::fetch(const DecodedView& to) const {
   fetch_plane(deviation_, to.predicted_standard_deviation_m);
   fetch_plane(status_, to.status);
   fetch_plane(residual_, to.residual);
-}
-
-void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
-  const std::int64_t pixels = raw_.tile().pixels;
-  const auto count = static_cast<std::size_t>(pixels);
-  const double samples = outputs_.constants().samples, bins_per_row = bin_count_ / samples;
-  start_list_of_open();
-  find_bins(between_bins ? tables_.points : tables_.bins,
-            *room(bins_, pixels * std::int64_t{sizeof(std::int32_t)}));
-  offsets_here_.assign(count, 0.0f);
-  if (between_bins) {
-    room(depth_, pixels * std::int64_t{sizeof(float)});
-    queue_.run(write_offsets_, pixels, tables_.outputs, raw_.tile(), &words_, raw_.numbers(),
-               &bins_, &depth_);
-    queue_.download(depth_, count * sizeof(float), offsets_here_.data());
-  }
-  bins_here_.resize(count);
-  queue_.download(bins_, count * sizeof(std::int32_t), bins_here_.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    double at = static_cast<double>(bins_here_[i]) + static_cast<double>(offsets_here_[i]);
-    if (at < 0.0) at += samples;
-    if (at >= samples) at -= samples;
-    depth_bin[i] = bins_here_[i] < 0 ? -1.0
-                   : between_bins    ? at * bins_per_row
-                                     : nearest_bin(bins_here_[i]);
-  }
 }
 
 void DeviceTile::release() {

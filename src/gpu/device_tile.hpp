@@ -27,10 +27,8 @@ class OpenNumbers {
 /// memory there grows with the largest tile.
 class DeviceTile {
  public:
-  /// @param decoder   must outlive this
-  /// @param as_trials  vectors are found as TrialDecoder finds them, not as Decoder
-  DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles,
-             bool as_trials = false);
+  /// @param decoder  must outlive this
+  DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles);
 
   /// Of a pixel with all of its planes, at most.
   std::int64_t bytes_per_pixel() const;
@@ -41,18 +39,13 @@ class DeviceTile {
   }
   /// Makes room for so many pixels whose numbers, and of how many they are the mean, a kernel
   /// writes: DeviceRaw::reserve_planes().
-  const DeviceRaw& reserve_planes(std::int64_t pixels, RawNumber number = raw_float,
-                                  const NoiseRatios& noise = {});
+  const DeviceRaw& reserve_planes(std::int64_t pixels, const NoiseRatios& noise = {});
   /// Starts to decode them into planes of the device.
   /// @param wanted  those that are not null
   void decode(const DecodedView& wanted);
   /// Fetches the planes that `decode` was asked for.
   /// @param to  where the tile's first pixel belongs
   void fetch(const DecodedView& to) const;
-  /// Finds where they are [bin], as TrialDecoder: in [0, N); -1 where the decoder has to decode
-  /// them, which open_pixels() names, or numbers are not finite.
-  /// @param between_bins  else the best bins
-  void find_positions(bool between_bins, double* depth_bin);
   /// Frees its memory there, but for the decoder's tables.
   void release();
   /// Pixels of the tile that the decoder has to decode; one may be named twice.
@@ -87,12 +80,10 @@ class DeviceTile {
   int bin_count_;
   DecodeTables tables_;
   DeviceQueue queue_;
-  DeviceKernel match_, write_, write_offsets_, gather_, scatter_;
+  DeviceKernel match_, write_, gather_, scatter_;
   DeviceMemory words_;  // of the tables
   DeviceRaw raw_;
   DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
-  std::vector<std::int32_t> bins_here_;
-  std::vector<float> offsets_here_;
   DeviceMemory depth_, signal_, ambient_, confidence_, deviation_, status_, residual_;
 };
 

@@ -238,21 +238,6 @@ bool find_residual(const struct OutputParameters* p, Floats tables, const float*
   return is_open && sqrt(chi2 * bound) > limit[LIMIT_ROOT] * longest;
 }
 
-/// How far from its bin each pixel is [bin], -1 .. 1.
-kernel void write_offsets(const struct OutputParameters p, const struct TileParameters tile,
-                          Floats tables, global const uchar* raw_numbers,
-                          global const int* bins, global float* offsets) {
-  const int pixel = (int)get_global_id(0);
-  if (pixel >= tile.pixels) return;
-  const int bin = bins[pixel];
-  if (bin == UNPROVEN) return;
-  float raw[MEASUREMENTS], q[RANK];
-  vector_of(&p.projection, &tile, tables, raw_numbers, pixel, raw, q);
-  const struct ChordPoint point =
-      best_point(q, tables + p.records + (bin + 1) * p.record_stride, bin);
-  offsets[pixel] = point.is_left ? -point.t : point.t;
-}
-
 /// Planes that are null are not wanted. Pixels without a proven bin are left to the host, and so are
 /// those whose confidence is not proven to be 1.
 kernel void write_planes(const struct OutputParameters p, const struct TileParameters tile,

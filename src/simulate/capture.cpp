@@ -25,22 +25,17 @@ void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
 }
 
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
-                  const Camera& camera, const CaptureOptions& options, const Progress& progress,
-                  const ExposeBy& expose_by) {
+                  const Camera& camera, const CaptureOptions& options, const Progress& progress) {
   light.validate(scene, camera);
   const RowCapture source(scene, light, ForwardModel(code, camera), camera, options);
   const LensBlur blur = camera.blur.value_or(LensBlur());
-  // Elsewhere, light of longer ways is that of this computer, collected before.
-  const bool by_rows = !expose_by || light.is_direct_only();
-  if (blur.kind == LensBlur::Kind::none && light.stray_light.empty() && by_rows)
-    return captured_frames(source, nullptr, scene.height(), scene.width(), options.frames, progress,
-                           expose_by);
+  if (blur.kind == LensBlur::Kind::none && light.stray_light.empty())
+    return captured_frames(source, nullptr, options.frames, progress);
   // An image has one ray a pixel, whatever the lens would like.
   CollectedLight blurred(scene.height(), scene.width(), source.tap_values());
   add_light(source, blur, 1, {0, source.tap_values()}, blurred);
   scatter_light(light.stray_light, options.ambient_e_per_s, blurred);
-  return captured_frames(source, &blurred, scene.height(), scene.width(), options.frames, progress,
-                         expose_by);
+  return captured_frames(source, &blurred, options.frames, progress);
 }
 
 MultipathTruth multipath_truth(const SceneImage& scene, const SceneLight& light,
@@ -75,9 +70,8 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 }
 
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
-                  const CaptureOptions& options, const Progress& progress,
-                  const ExposeBy& expose_by) {
-  return capture(scene, SceneLight(), code, camera, options, progress, expose_by);
+                  const CaptureOptions& options, const Progress& progress) {
+  return capture(scene, SceneLight(), code, camera, options, progress);
 }
 
 }  // namespace tofsmith

@@ -44,12 +44,10 @@ const std::vector<CameraBounds::Level>& CameraBounds::of(int exposures) {
 }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
-                          CameraBounds& bounds, const Progress& progress,
-                          const TrialsBy& trials_by) {
+                          CameraBounds& bounds, const Progress& progress) {
   const Camera camera = judged_camera(on);
   const ForwardModel model(code, camera);
-  DepthTrials trials(model, camera, options);
-  trials.have_run_by(trials_by);
+  const DepthTrials trials(model, camera, options);
   DepthErrorReport result = trial_errors(trials, code, camera, options, progress);
   if (!options.bounds) {
     report(progress, 1.0, "depth error");
@@ -71,9 +69,9 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateO
 }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
-                          const Progress& progress, const TrialsBy& trials_by) {
+                          const Progress& progress) {
   CameraBounds bounds(camera);
-  return evaluate(code, camera, options, bounds, progress, trials_by);
+  return evaluate(code, camera, options, bounds, progress);
 }
 
 }  // namespace tofsmith

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// What the noise of a sensor is computed with, here and on other processors.
+/// Parameters of a sensor's noise.
 struct NoiseParts {
   NoiseModel model;
   bool subtracts, is_signed;
@@ -50,7 +50,6 @@ class PixelNoise {
   /// Step 4: raw measurements of a pixel from the raw numbers of its taps.
   /// @param raw  (tap values) in, (measurements) out, in place
   void read_out(double* raw, int tap_values) const;
-  const NoiseParts& parts() const { return parts_; }
   /// Measurements that leave the sensor for that many tap values.
   int measurements(int tap_values) const { return parts_.subtracts ? tap_values / 2 : tap_values; }
 

@@ -12,7 +12,7 @@ namespace tofsmith {
 namespace {
 
 /// Adds noise of a covariance to values, by its Cholesky factor. With pivots: rows may depend on
-/// each other. Step by step as written, so that other processors come to the same bits.
+/// each other.
 void add_row_noise(Eigen::MatrixXd& covariance, const double* normals, double* value) {
   const Eigen::Index count = covariance.rows();
   std::array<Eigen::Index, max_measurements> order;

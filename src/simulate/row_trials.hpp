@@ -23,18 +23,9 @@ class RowTrials {
   /// normals.
   void draw(const TrialStreams& streams, double ambient_e_per_s, int trials, TrialTile& tile) const;
 
-  // What it computes with, for other processors.
-  bool is_poisson() const { return is_poisson_; }
-  double read_noise_e() const { return read_noise_e_; }
-  /// What signal of 1 e/s brings at every point of depth: of Poisson noise electrons of time bin 0,
-  /// (points + 1); of normal noise [points][K + pairs_of(K)], means and covariance of the rows.
-  const std::vector<double>& of_signal() const { return of_signal_; }
-  /// What stands beside it, of as many numbers.
-  std::vector<double> beside_signal(double ambient_e_per_s) const;
-  /// Of Poisson noise: [N][K].
-  const std::vector<float>& weights() const { return weights_; }
-
  private:
+  /// Electrons and variances from ambient and dark current, in the layout of of_signal_.
+  std::vector<double> beside_signal(double ambient_e_per_s) const;
   void draw_poisson_rows(const TrialStreams& streams, double ambient_e_per_s, int trials,
                          TrialTile& tile) const;
   void draw_normal_rows(double ambient_e_per_s, int trials, TrialTile& tile) const;

@@ -103,9 +103,8 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
       add_light(source, blur, samples, {exposure * taps, taps}, pixels);
     }
     scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
-    const UnexposedFrames unexposed{
-        source, &pixels, height, width, frame, 1, result.raw.frame(frame)};
-    setup.expose_by ? setup.expose_by(unexposed, {}) : expose_here(unexposed, {});
+    SharedProgress none({}, height, "capture");
+    expose_frame(source, &pixels, frame, result.raw.frame(frame), none);
     result.truth.push_back(view.centres_at(view.at(camera.frame_middle_s(frame, exposures))));
     result.near_m.push_back(std::move(pixels.near_m));
     result.far_m.push_back(std::move(pixels.far_m));
@@ -135,7 +134,7 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
   if (blur.is_sharp()) {
     SceneLight light = light_of(scene, truth, setup, 1);
     light.stray_light = setup.stray_light;
-    result.raw = capture(truth, light, code, camera, options, progress, setup.expose_by);
+    result.raw = capture(truth, light, code, camera, options, progress);
     result.near_m = result.far_m = {truth.depth_m};
     return result;
   }
@@ -147,8 +146,7 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
   CollectedLight pixels(truth.height(), truth.width(), source.tap_values());
   add_light(source, blur, blur.pixel_samples, {0, source.tap_values()}, pixels);
   scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
-  result.raw = captured_frames(source, &pixels, truth.height(), truth.width(), options.frames,
-                               progress, setup.expose_by);
+  result.raw = captured_frames(source, &pixels, options.frames, progress);
   result.near_m = {std::move(pixels.near_m)};
   result.far_m = {std::move(pixels.far_m)};
   return result;

@@ -101,14 +101,12 @@ struct SceneOutcome {
 class TrainingSet {
  public:
   TrainingSet(fs::path directory, const CodeSet& code, const Camera& camera,
-              const TrainingSceneLoader& load, const TrainingSetOptions& options,
-              const ExposeBy& expose_by)
+              const TrainingSceneLoader& load, const TrainingSetOptions& options)
       : directory_(std::move(directory)),
         code_(code),
         camera_(camera),
         load_(load),
         options_(options),
-        expose_by_(expose_by),
         setup_(setup_key(camera, code)),
         decoder_(make_decoding_table(ForwardModel(code, camera), camera)) {}
 
@@ -151,8 +149,7 @@ class TrainingSet {
       return entry;
     }
     make_output_directory(arrays.parent_path());
-    const RawFrames raw =
-        capture(example.scene.image, code_, camera_, example.capture, {}, expose_by_);
+    const RawFrames raw = capture(example.scene.image, code_, camera_, example.capture);
     write_npz(arrays, arrays_of(example, raw, decoder_), OutputPolicy::overwrite);
     // Last: it says that all is there.
     write_file_atomically(parameters,
@@ -202,7 +199,6 @@ class TrainingSet {
   const Camera& camera_;
   const TrainingSceneLoader& load_;
   const TrainingSetOptions& options_;
-  const ExposeBy& expose_by_;
   std::string setup_;
   Decoder decoder_;
   std::atomic<std::int64_t> written_ = 0, kept_ = 0;
@@ -237,13 +233,12 @@ void TrainingSetOptions::validate() const {
 TrainingSetRun write_training_set(const fs::path& directory, std::span<const TrainingScene> scenes,
                                   const CodeSet& code, const Camera& camera,
                                   const TrainingSceneLoader& load,
-                                  const TrainingSetOptions& options, const Progress& progress,
-                                  const ExposeBy& expose_by) {
+                                  const TrainingSetOptions& options, const Progress& progress) {
   options.validate();
   std::vector<TrainingScene> ours;
   for (const TrainingScene& scene : scenes)
     if (options.shard.holds(fnv1a_128_hex(scene.name))) ours.push_back(scene);
-  TrainingSet set(directory, code, camera, load, options, expose_by);
+  TrainingSet set(directory, code, camera, load, options);
   TrainingSetRun run{.scenes = static_cast<std::int64_t>(ours.size())};
   Json index = {{"tofsmith", TOFSMITH_VERSION}, {"training_set", training_set_version},
                 {"setup", set.setup()},         {"camera", Json::parse(camera_to_json(camera))},

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""`decode --device` and `simulate --device`: the same files by a device of OpenCL, and drivers loaded when asked for alone."""
+"""`decode --device`: the same files from an OpenCL device; drivers are loaded only on request."""
 
 import json
 import os
@@ -68,95 +68,6 @@ class Device(CommandLineTest):
                 self.assertEqual(self.bytes_of(f"auto{frame}.npz"), expected)
                 if DEVICES[0]["doubles"]:
                     self.assertEqual(self.bytes_of(f"0{frame}.npz"), expected, more)
-
-    def simulate(self, device, output, *more, **options):
-        return self.run_tool("simulate", *more, "--code", "hamiltonian-k4", "--device", device,
-                             "-o", output, **options)
-
-    @needs_device
-    def test_a_device_captures_the_frames_that_the_processor_captures(self):
-        if not DEVICES[0]["doubles"]:
-            self.skipTest("the device has no doubles")
-        for more in ((), ("--frames", "3", "--seed", "9"), ("--tail", "0.5"), ("--bounces", "1"),
-                     ("--set", "sensor.noise=poisson", "--set", "sensor.adc_bits=12", "--set",
-                      "sensor.gain_e_per_dn=4"),
-                     ("--set", "lens.blur=gaussian", "--set", "lens.blur_sigma_px=0.7")):
-            for device in ("cpu", "auto", "0"):
-                code, _, error = self.simulate(device, device + ".npy", "table-top", "--width",
-                                               "80", "--height", "60", *more, "--force")
-                self.assertEqual((code, error), (0, ""))
-            for device in ("auto", "0"):
-                self.assertEqual(self.bytes_of(device + ".npy"), self.bytes_of("cpu.npy"), more)
-
-    @needs_device
-    def test_a_device_captures_the_training_set_that_the_processor_captures(self):
-        if not DEVICES[0]["doubles"]:
-            self.skipTest("the device has no doubles")
-
-        def content(folder):
-            return {name[len(folder):]: self.bytes_of(name) for name in self.files()
-                    if name.startswith(folder + "/") and os.path.isfile(self.path(name))}
-
-        for device in ("cpu", "0"):
-            code, _, error = self.simulate(device, device, "table-top", "corner", "ball", "--width",
-                                           "40", "--height", "30", "--signal-range", "1e4:1e6")
-            self.assertEqual((code, error), (0, ""))
-        self.assertEqual(len(content("cpu")), 7)
-        self.assertEqual(content("0"), content("cpu"))
-
-    @needs_device
-    def test_says_which_device_captured(self):
-        if not DEVICES[0]["doubles"]:
-            self.skipTest("the device has no doubles")
-        out = self.simulate("0", "a.npy", "ball")[1]
-        self.assertIn("device " + DEVICES[0]["name"], out.decode())
-        out = self.simulate("0", "b.npy", "ball", "--json")[1]
-        self.assertEqual(json.loads(out)["device"], DEVICES[0]["name"])
-        self.assertIn("0  " + DEVICES[0]["name"], self.do("simulate", "--device", "list"))
-
-    @needs_device
-    def test_a_capture_on_a_device_that_is_not_there_writes_nothing(self):
-        before = self.files()
-        for inputs, output in ((("ball",), "a.npy"), (("ball", "corner"), "set")):
-            code, out, error = self.simulate("7000", output, *inputs)
-            self.assertEqual((code, out), (1, b""))
-            self.assertIn("0 " + DEVICES[0]["name"], error)
-            self.assertEqual(self.files(), before)
-
-    def evaluate(self, device, *more, codes=("hamiltonian-k4", "sinusoid-k4")):
-        return self.run_tool("evaluate", *codes, "--device", device, "--trials", "4000", *more)
-
-    @needs_device
-    def test_a_device_evaluates_as_the_processor(self):
-        if not DEVICES[0]["doubles"]:
-            self.skipTest("the device has no doubles")
-        rows = ("--set", "sensor.readout=rows", "--set", "sensor.read_noise_e=0", "--set",
-                "light.peak_factor=20", "--set", "samples=60", "--set", "exposure_s=1", "--set",
-                "operating.signal_e_per_s=[1e3]", "--set", "operating.ambient_e_per_s=[1e3]")
-        poisson = ("--set", "sensor.noise=poisson")
-        for more in ((), poisson, ("--clip-to-open-sensor",), ("--set", "operating.depths=[2,1]"),
-                     (*poisson, "--set", "sensor.adc_bits=12", "--set", "sensor.gain_e_per_dn=4",
-                      "--target-standard-error", "3%"), rows, (*rows, *poisson)):
-            codes = ("fourier-k5",) if more[:2] == rows[:2] else ("hamiltonian-k4", "sinusoid-k4")
-            found, expected = (self.evaluate(device, "--json", *more, codes=codes)
-                               for device in ("0", "cpu"))
-            self.assertEqual((found[0], found[2]), (0, expected[2]))
-            if is_pocl():
-                self.assertEqual(found[1], expected[1], more)
-            for a, b in zip(json.loads(found[1])["codes"], json.loads(expected[1])["codes"]):
-                for kind in ("linear", "circular"):
-                    near = b[kind]["geometric_mean_m"]
-                    self.assertAlmostEqual(a[kind]["geometric_mean_m"], near, delta=1e-6 * near)
-            self.assertEqual(self.evaluate("auto", "--json", *more, codes=codes)[1], expected[1])
-        self.assertIn("device " + DEVICES[0]["name"], self.evaluate("0")[1].decode())
-
-    @needs_device
-    def test_trials_that_a_device_does_not_run_are_refused_and_run_by_auto(self):
-        code, out, error = self.evaluate("0", "--method", "ml")
-        self.assertEqual((code, out), (2, b""))
-        self.assertIn("zncc", error)
-        self.assertEqual(self.evaluate("auto", "--method", "ml")[0], 0)
-        self.assertIn("0 " + DEVICES[0]["name"], self.evaluate("7000")[2])
 
     @needs_device
     def test_says_which_device_decoded(self):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Captures, filters and decoding on a device of OpenCL, where there is one."""
+"""Filtering and decoding on an OpenCL device, where there is one."""
 
 import io
 import pickle
@@ -92,53 +92,6 @@ def test_a_device_adds_frames_of_streams_up_that_look_ahead(decoders, tmp_path):
         assert len(taken[0]) == len(taken[1]) == 4 // case.get("average", 1)
         for expected, found in zip(*taken):
             np.testing.assert_allclose(found["depth"], expected["depth"], rtol=1e-5)
-
-
-def test_a_device_captures_as_the_processor(decoders, tmp_path):
-    camera = ts.Camera("paper-10f0", sensor={"noise": "poisson", "read_noise_e": 5.0})
-    scene = ts.built_in_scene("table-top", 32, 24)
-    lens = {"blur": "gaussian", "blur_sigma_px": 0.5, "pixel_samples": 2}
-    blurred = ts.Camera("paper-10f0", lens=lens)
-    cases = [{"frames": 2}, {"seed": 7, "tail": ts.ExponentialTail(1.0, 0.3)},
-             {"stray_light": np.full((3, 3), 0.02)}]
-    sets = {}
-    for device in "cpu", "0":
-        made = [ts.capture(scene, "hamiltonian-k4", camera, device=device, **case)
-                for case in cases]
-        staged = ts.capture_staged("ball", "sinusoid-k4", blurred, width=32, height=24,
-                                   device=device)
-        run = ts.write_training_set(tmp_path / device, {"one": scene}, "hamiltonian-k4", camera,
-                                    device=device)
-        arrays = np.load(next((tmp_path / device).rglob("*.npz")))
-        assert run.failures == []
-        sets[device] = [*made, staged.raw, arrays["raw"], arrays["depth_m"]]
-    for found, expected in zip(sets["0"], sets["cpu"]):
-        np.testing.assert_array_equal(found, expected)
-    for call in (lambda: ts.capture(scene, "hamiltonian-k4", camera, device="no such device"),
-                 lambda: ts.capture_staged("ball", "hamiltonian-k4", camera, device="7000"),
-                 lambda: ts.write_training_set(tmp_path / "none", {"one": scene}, "hamiltonian-k4",
-                                               camera, device="7000")):
-        with pytest.raises(OSError, match="expected one of"):
-            call()
-    assert not (tmp_path / "none").exists()
-    with pytest.raises(TypeError, match="device"):
-        ts.capture(scene, "hamiltonian-k4", camera, device=0)
-
-
-def test_a_device_evaluates_as_the_processor(decoders):
-    light = {"signal_e_per_s": [1e5], "ambient_e_per_s": [1e4]}
-    for sensor in ({}, {"noise": "poisson"}, {"noise": "poisson", "adc_bits": 12,
-                                              "gain_e_per_dn": 4.0}):
-        camera = ts.Camera("paper-10f0", operating=light, sensor=sensor)
-        here = ts.evaluate("hamiltonian-k4", camera, trials=5000)
-        there = ts.evaluate("hamiltonian-k4", camera, trials=5000, device="0")
-        for kind in ("linear", "circular"):
-            np.testing.assert_allclose(float(getattr(there, kind).geometric_mean_m),
-                                       float(getattr(here, kind).geometric_mean_m), rtol=1e-6)
-    with pytest.raises(ValueError, match="must be zncc"):
-        ts.evaluate("sinusoid-k4", camera, method="unwrap", device="0")
-    with pytest.raises(OSError, match="expected one of"):
-        ts.evaluate("hamiltonian-k4", camera, device="7000")
 
 
 def test_a_filter_has_a_device_of_its_own(decoders):

@@ -386,38 +386,5 @@ TEST(AdaptiveTrials, RefuseTargetsThatMakeNoSense) {
                std::invalid_argument);
 }
 
-TEST(DepthTrials, RunElsewhereGiveTheSameSums) {
-  const Camera camera = camera_at(1e4, 1e4);
-  const CodeSet code = build_family("hamiltonian-k4", camera);
-  const EvaluateOptions options{
-      .trials = 5002, .target_standard_error = 0.01, .max_trials = 2'000'000};
-  int runs = 0;
-  const TrialsBy elsewhere = [&](const DepthTrials& trials) -> TrialRunner {
-    return [&](const TrialRun& run) {
-      ++runs;
-      const auto tile = std::make_unique<TrialTile>();
-      std::int64_t done = 0;
-      for (std::int64_t at = run.trials.begin; at < run.trials.end; at += 100) {
-        const IndexRange part{at, std::min(run.trials.end, at + 100)};
-        const TrialBlock block = trials.run(run.round, part, *tile);
-        std::copy(block.true_bin.begin(), block.true_bin.end(), run.true_bin + done);
-        std::copy(block.decoded_bin.begin(), block.decoded_bin.end(), run.decoded_bin + done);
-        done += part.end - part.begin;
-      }
-    };
-  };
-  const DepthErrorReport a = evaluate(code, camera, options, {}, elsewhere);
-  const DepthErrorReport b = evaluate(code, camera, options);
-  EXPECT_GT(runs, 1);
-  EXPECT_EQ(a.trials, b.trials);
-  EXPECT_EQ(a.linear.mean_m.value, b.linear.mean_m.value);
-  EXPECT_EQ(a.linear.mean_m.standard_error, b.linear.mean_m.standard_error);
-  EXPECT_EQ(a.circular.mean_m.value, b.circular.mean_m.value);
-  EXPECT_EQ(a.linear_rmse.mean_m.value, b.linear_rmse.mean_m.value);
-  const TrialsBy not_there = [](const DepthTrials&) { return TrialRunner(); };
-  EXPECT_EQ(evaluate(code, camera, options, {}, not_there).linear.mean_m.value,
-            b.linear.mean_m.value);
-}
-
 }  // namespace
 }  // namespace tofsmith

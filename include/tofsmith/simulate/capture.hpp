@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,21 +41,15 @@ auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
                             const CaptureOptions& options);
 
-struct UnexposedFrames;  ///< of the implementation
-/// What draws the noise of frames in place of this computer's processor, with the same numbers:
-/// DeviceCapture::expose_by() (gpu.hpp). Empty: the processor.
-using ExposeBy = std::function<void(const UnexposedFrames& frames, const Progress& progress)>;
-
 /// Raw measurements of a scene, (F, H, W, K): electrons, or counts if the sensor has an ADC.
 /// Depth beyond the unambiguous range wraps, as in a camera. A pixel without return sees ambient
 /// light only. A lens (Camera::blur) blurs over the image's pixels; staged_capture.hpp casts rays.
 /// @throws std::invalid_argument if scene, camera or options are invalid, or the code does not fit
-///         the camera; Interrupted if progress says so; what `expose_by` throws
+///         the camera; Interrupted if progress says so
 /// @note the noise of a pixel depends on (seed, pixel, frame) alone: same bits for any number of
 ///       threads
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
-                  const CaptureOptions& options = {}, const Progress& progress = {},
-                  const ExposeBy& expose_by = {});
+                  const CaptureOptions& options = {}, const Progress& progress = {});
 
 /// How light comes to the pixels of a scene, beside its one direct way. Multipath returns and
 /// a tail add to the direct return; a transient takes its place: the pixel's signal is shared out
@@ -81,7 +74,7 @@ struct SceneLight {
 /// the frames are the same, bit by bit; with it pixels draw from the same streams.
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
                   const Camera& camera, const CaptureOptions& options = {},
-                  const Progress& progress = {}, const ExposeBy& expose_by = {});
+                  const Progress& progress = {});
 
 /// Truth of a capture: where each pixel's light came from. Tails and transients are in what made
 /// them.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -138,14 +137,6 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
       Field("circular_rmse", r.circular_rmse), Field("points", r.points));
 }
 
-class DepthTrials;  ///< of the implementation
-struct TrialRun;    ///< of the implementation
-/// What draws and decodes trials in place of this computer's processor, from the same random words:
-/// DeviceTrials::trials_by() (gpu.hpp). Asked once for all trials of a code; empty, or what it
-/// gives is empty: the processor.
-using TrialRunner = std::function<void(const TrialRun& run)>;
-using TrialsBy = std::function<TrialRunner(const DepthTrials& trials)>;
-
 /// Monte Carlo depth error at every operating point of the camera, with bounds beside it.
 ///
 /// Trial t of point p draws from the stream (seed, p, t) alone: its depth, uniform on the t-th of
@@ -162,11 +153,10 @@ using TrialsBy = std::function<TrialRunner(const DepthTrials& trials)>;
 /// many again as it has. Where the error is linear, as many are made as the wraps foreseen from the
 /// circular error need, whether or not any were met.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
-///         the method cannot decode it; Interrupted if progress says so; what `trials_by` throws
+///         the method cannot decode it; Interrupted if progress says so
 /// @note same bits for any number of threads, on one dispatch_target()
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
-                          const EvaluateOptions& options = {}, const Progress& progress = {},
-                          const TrialsBy& trials_by = {});
+                          const EvaluateOptions& options = {}, const Progress& progress = {});
 
 /// The best origin of depth of a code.
 struct BestRotation {

@@ -18,9 +18,8 @@ struct StagedSetup {
   /// view has the rays as pixels, and with what they see.
   std::function<SceneLight(const StagedScene& scene, const SceneImage& rays)> light;
   Image<float> ambient_scale;  ///< of the pixels, as in SceneImage; empty: 1
-  Image<float> stray_light =
-      {};                   ///< over the pixels, as in SceneLight; that of `light` is not used
-  ExposeBy expose_by = {};  ///< as in capture()
+  /// Over the pixels, as in SceneLight; that of `light` is not used.
+  Image<float> stray_light = {};
 };
 
 /// Raw measurements of a scene of shapes, with what is true of them.
@@ -43,8 +42,7 @@ struct StagedCapture {
 /// and without motion the frames are those of the other capture(), bit by bit.
 /// @throws std::invalid_argument as capture() and ray_cast(), if a disc of confusion is wider than
 ///         128 pixels, motions or times do not fit (StagedScene::at, Camera::frame_period_s), or
-///         ambient_scale is not of the view's size; Interrupted if progress says so; what
-///         StagedSetup::expose_by throws
+///         ambient_scale is not of the view's size; Interrupted if progress says so
 /// @note same bits for any number of threads
 StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camera& camera,
                       const CaptureOptions& options, const StagedSetup& setup = {},

@@ -69,8 +69,7 @@ using TrainingSceneLoader = std::function<LoadedTrainingScene(const TrainingScen
 /// true_depth_m, albedo) and then KEY.json (parameters), below a folder of the first two digits of
 /// its key; at the end, an index. The key is a hash of everything that determines the content: what
 /// is there under it is finished and stays.
-/// @param load       called from several threads at a time; what it throws fails that scene only
-/// @param expose_by  as in capture(), called likewise; what it throws ends all
+/// @param load  called from several threads at a time; what it throws fails that scene only
 /// @return with what failed. Noise and drawn light levels depend on the seed and the scene's name
 ///         and content: same bits whatever the order, the shards and the number of threads
 /// @throws IoError if an output cannot be written; Interrupted if progress says so (asked between
@@ -78,7 +77,6 @@ using TrainingSceneLoader = std::function<LoadedTrainingScene(const TrainingScen
 TrainingSetRun write_training_set(const std::filesystem::path& directory,
                                   std::span<const TrainingScene> scenes, const CodeSet& code,
                                   const Camera& camera, const TrainingSceneLoader& load,
-                                  const TrainingSetOptions& options, const Progress& progress = {},
-                                  const ExposeBy& expose_by = {});
+                                  const TrainingSetOptions& options, const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -32,7 +32,6 @@ class CameraBounds {
 /// evaluate() with bounds that are shared with other codes: the same figures.
 /// @param bounds  of the same camera
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
-                          CameraBounds& bounds, const Progress& progress,
-                          const TrialsBy& trials_by = {});
+                          CameraBounds& bounds, const Progress& progress);
 
 }  // namespace tofsmith

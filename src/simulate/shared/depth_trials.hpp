@@ -31,13 +31,6 @@ struct TrialRound {
   std::int64_t trials = 0;  ///< even
 };
 
-/// Trials of a round that are run elsewhere.
-struct TrialRun {
-  TrialRound round;
-  IndexRange trials;               ///< of the round
-  double *true_bin, *decoded_bin;  ///< room for them, [bin] in [0, N)
-};
-
 /// The Monte Carlo loop behind every depth error: draw depth and noise, decode. What a trial draws
 /// depends on the seed, its point and its number alone. A tile of trials stays in the innermost
 /// caches from its random numbers to its errors.
@@ -67,41 +60,12 @@ class DepthTrials {
   std::vector<Sums> sum(std::span<const TrialRound> rounds, const Sums& none, const Add& add,
                         const Progress& progress, std::int64_t runs_at_once = 512) const;
 
-  /// From now on `sum` has them run elsewhere, if that can be done. Sums are added in the same
-  /// order.
-  void have_run_by(const TrialsBy& trials_by) {
-    runner_ = trials_by ? trials_by(*this) : TrialRunner();
-  }
-
   /// Runs trials [begin, end) of a round, at most trials_per_tile and an even number, in a
   /// workspace.
   TrialBlock run(const TrialRound& round, IndexRange trials, TrialTile& tile) const;
 
-  // What it computes with, for other processors.
-  const EvaluateOptions& options() const { return options_; }
-  bool has_uniform_albedo() const { return uniform_albedo_; }
-  double albedo() const { return albedo_; }
-  const DepthPrior& depths() const { return depths_; }
-  const TrialModel& model() const { return model_; }
-  /// Null where taps are read out.
-  const RowTrials* rows() const { return rows_ ? &*rows_ : nullptr; }
-  const DecodingTable& believed() const { return believed_; }
-  const TrialDecoder& decoder() const { return decoder_; }
-  /// Of every point; none where draws_in_plane() is not so.
-  const std::vector<PlaneNoise>& plane_noise() const { return plane_noise_; }
-  /// Electrons of every tap at a point without signal, their shot noise, and where clipping to an
-  /// open sensor begins; that is empty where there is none.
-  const std::vector<float>& mean_floor_e(std::size_t point) const { return mean_floor_e_[point]; }
-  const std::vector<float>& shot_floor_e2(std::size_t point) const { return shot_floor_e2_[point]; }
-  const std::vector<float>& max_e(std::size_t point) const { return max_e_[point]; }
-
  private:
   static constexpr std::int64_t trials_per_run = 4 * trials_per_tile;
-
-  /// What `sum` adds, of trials that `runner_` runs.
-  template <typename Sums, typename Add>
-  std::vector<Sums> sum_of_runner(std::span<const TrialRound> rounds, const Sums& none,
-                                  const Add& add, const Progress& progress) const;
 
   void draw_signal(const TrialStreams& streams, std::size_t point, int trials,
                    TrialTile& tile) const;
@@ -121,14 +85,12 @@ class DepthTrials {
   TrialDecoder decoder_;
   std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
   std::vector<std::vector<float>> mean_floor_e_, shot_floor_e2_, max_e_;  // of every point: (taps)
-  TrialRunner runner_;                                                    // none: here
 };
 
 template <typename Sums, typename Add>
 std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sums& none,
                                    const Add& add, const Progress& progress,
                                    std::int64_t runs_at_once) const {
-  if (runner_) return sum_of_runner(rounds, none, add, progress);
   struct Run {
     std::size_t round;
     IndexRange trials;
@@ -161,37 +123,6 @@ std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sum
       if (std::ssize(runs) == runs_at_once) finish();
     }
   if (!runs.empty()) finish();
-  return total;
-}
-
-template <typename Sums, typename Add>
-std::vector<Sums> DepthTrials::sum_of_runner(std::span<const TrialRound> rounds, const Sums& none,
-                                             const Add& add, const Progress& progress) const {
-  constexpr std::int64_t runs_at_once = 1024;
-  std::vector<Sums> total(rounds.size(), none), of_run;
-  std::vector<double> true_bin, decoded_bin;
-  std::int64_t all = 0, done = 0;
-  for (const TrialRound& round : rounds) all += round.trials;
-  for (std::size_t r = 0; r < rounds.size(); ++r)
-    for (std::int64_t begin = 0; begin < rounds[r].trials; begin += runs_at_once * trials_per_run) {
-      const std::int64_t count = std::min(rounds[r].trials - begin, runs_at_once * trials_per_run);
-      true_bin.resize(static_cast<std::size_t>(count));
-      decoded_bin.resize(static_cast<std::size_t>(count));
-      runner_({rounds[r], {begin, begin + count}, true_bin.data(), decoded_bin.data()});
-      of_run.assign(static_cast<std::size_t>((count + trials_per_run - 1) / trials_per_run), none);
-      parallel_for(std::ssize(of_run), [&](std::int64_t i) {
-        const std::int64_t end = std::min(count, (i + 1) * trials_per_run);
-        for (std::int64_t at = i * trials_per_run; at < end; at += trials_per_tile) {
-          const auto size =
-              static_cast<std::size_t>(std::min<std::int64_t>(end - at, trials_per_tile));
-          add(of_run[static_cast<std::size_t>(i)],
-              TrialBlock{{true_bin.data() + at, size}, {decoded_bin.data() + at, size}});
-        }
-      });
-      for (const Sums& sums : of_run) total[r].merge(sums);
-      done += count;
-      report(progress, static_cast<double>(done) / static_cast<double>(all), "depth error");
-    }
   return total;
 }
 

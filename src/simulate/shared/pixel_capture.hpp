@@ -40,18 +40,6 @@ class PixelCapture {
   void expose(double ambient_e_per_s, RandomStream& random, std::vector<double>& light,
               float* raw) const;
 
-  // What it computes with, for other processors.
-  double range_m() const { return range_m_; }
-  double bin_m() const { return bin_m_; }
-  double dark_e_per_s() const { return dark_e_per_s_; }
-  const FineCorrelation& correlation() const { return correlation_; }
-  const NoiseParts& noise() const { return noise_.parts(); }
-  /// Of the tap values.
-  const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
-  const Eigen::VectorXd& ambient_gain() const { return ambient_gain_; }
-  /// (K, N), where they are read out.
-  const std::optional<Eigen::MatrixXd>& rows() const { return rows_; }
-
  private:
   double range_m_, bin_m_;
   double dark_e_per_s_;

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
+#include "core/shared/shared_progress.hpp"
 #include "simulate/shared/pixel_capture.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -30,8 +30,6 @@ class RowCapture {
   int measurements() const { return pixel_.measurements(); }
   int tap_values() const { return pixel_.tap_values(); }
   const SceneImage& scene() const { return *scene_; }
-  const CaptureOptions& options() const { return options_; }
-  const PixelCapture& pixel() const { return pixel_; }
   /// Raw measurements of one row of one frame, (W, K).
   void row(int frame, int row, float* raw) const;
 
@@ -70,29 +68,16 @@ struct CollectedLight {
   CollectedLight(int height_, int width_, int tap_values_);
 };
 
-/// Frames under one light, of which every pixel is to be given its noise.
-struct UnexposedFrames {
-  const RowCapture& source;
-  const CollectedLight* light;  ///< null: the direct light of the source's scene, a ray a pixel
-  int height, width;
-  int first_frame, frames;
-  float* raw;  ///< (frames, H, W, K), of the first frame on
+/// Exposes one frame on all threads.
+/// @param light  null: the direct light of the source's scene, one ray per pixel
+/// @param raw    (H, W, K)
+/// @param shared  advances by 1 per row
+void expose_frame(const RowCapture& source, const CollectedLight* light, int frame, float* raw,
+                  SharedProgress& shared);
 
-  std::int64_t pixels() const { return std::int64_t{height} * width; }
-};
-
-/// Frames under one light, each with noise of its own, drawn here or elsewhere.
-/// @param light  null: the direct light of the source's scene, a ray a pixel
+/// Exposes the first `frames` frames under the same light, each with independent noise.
 /// @throws Interrupted if progress says so
-RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int height,
-                          int width, int frames, const Progress& progress,
-                          const ExposeBy& expose_by);
-
-/// Exposes them here, on all threads.
-void expose_here(const UnexposedFrames& frames, const Progress& progress);
-
-/// Exposes pixels of one of the frames here. @param raw  of the first of them, (pixels, K)
-void expose_pixels(const UnexposedFrames& frames, int frame, std::span<const std::int64_t> pixels,
-                   float* raw);
+RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int frames,
+                          const Progress& progress);
 
 }  // namespace tofsmith
