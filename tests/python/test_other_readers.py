@@ -118,28 +118,6 @@ def test_pfm_of_either_byte_order_is_read(tmp_path, order):
                                rtol=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f4", "f8"])
-def test_frames_of_every_type_and_order_are_those_numpy_reads(tmp_path, kind):
-    raw = RANDOM.integers(0, 100, (2, 3, 4, 5)).astype(kind)
-    for order, memory in itertools.product("<>", "CF"):
-        array = np.asarray(raw.astype(order + kind), order=memory)
-        np.save(tmp_path / "a.npy", array)
-        np.savez(tmp_path / "a.npz", raw=array)
-        np.savez_compressed(tmp_path / "b.npz", raw=array)
-        for name in ("a.npy", "a.npz", "b.npz"):
-            np.testing.assert_array_equal(ts.read_raw(tmp_path / name), raw.astype(np.float32))
-
-
-@pytest.mark.parametrize("array", [
-    np.zeros((2, 3, 4), np.float16), np.zeros((2, 3, 4), bool), np.zeros((2, 3, 4), complex),
-    np.zeros((2, 3, 4), "U3"), np.zeros((2, 3, 4), "M8[s]"), np.zeros((2, 3, 4), [("a", "f4")]),
-    np.full((2, 3, 4), None)], ids=lambda array: str(array.dtype))
-def test_frames_of_other_types_are_refused_by_their_name(tmp_path, array):
-    np.save(tmp_path / "a.npy", array, allow_pickle=True)
-    with pytest.raises(OSError, match="a.npy"):
-        ts.read_raw(tmp_path / "a.npy")
-
-
 def ply_of(vertices, triangles, form, number, count):
     """A mesh as NumPy's records lay it out."""
     order = ">" if form == "binary_big_endian" else "<"
@@ -171,18 +149,3 @@ def test_ply_of_every_form_is_the_same_mesh(tmp_path):
     assert np.isfinite(seen[0]).any()
     for depth in seen[1:]:
         np.testing.assert_array_equal(depth, seen[0])
-
-
-def test_numpy_reads_the_points_we_write(tmp_path):
-    points = RANDOM.normal(0, 1, (9, 3)).astype(np.float32)
-    points[4] = np.nan
-    signal = np.arange(9, dtype=np.float32)
-    ts.write_points(tmp_path / "a.ply", points, {"signal": signal})
-    header, _, data = (tmp_path / "a.ply").read_bytes().partition(b"end_header\n")
-    lines = header.decode().splitlines()
-    assert lines[:2] == ["ply", "format binary_little_endian 1.0"] and "element vertex 8" in lines
-    names = [line.split()[2] for line in lines if line.startswith("property float ")]
-    found = np.frombuffer(data, [(name, "<f4") for name in names])
-    kept = np.arange(9) != 4
-    np.testing.assert_array_equal(np.stack([found[axis] for axis in "xyz"], 1), points[kept])
-    np.testing.assert_array_equal(found["signal"], signal[kept])
