@@ -35,12 +35,6 @@ class Atlas(CommandLineTest):
         self.assertIn("bandwidth^-a peak^-b", text)
         self.assertIn("What bandwidth buys", self.bytes_of("a.html").decode())
 
-    def test_codes_of_it_go_where_codes_go(self):
-        name = self.do_json("atlas", "--taps", "1", "--bandwidth", "10", "--peak", "15")["codes"][0]["name"]
-        self.assertEqual(self.do_json("codes", name)["name"], name)
-        self.do("codes", name, "-o", "c.code.json")
-        self.assertEqual(self.do_json("codes", "c.code.json")["taps"], 1)
-
     def test_refuses_other_versions_damage_and_bad_words(self):
         self.write("one.txt", ONE)
         self.assertEqual(len(self.do_json("atlas", "--file", "one.txt")["codes"]), 1)

@@ -29,39 +29,6 @@ class Datasets(CommandLineTest):
         return {os.path.relpath(name, folder): self.bytes_of(name) for name in self.files()
                 if name.startswith(folder + "/") and os.path.isfile(self.path(name))}
 
-    def test_writes_raw_depth_truth_and_parameters(self):
-        self.make_scenes()
-        document = self.simulate("set", "scenes", "--signal-range", "1e5:1e7", "--frames", "2")
-        self.assertEqual((document["scenes"], document["written"], document["kept"]), (5, 5, 0))
-        index = json.loads(self.bytes_of("set/index.json"))
-        self.assertEqual([scene["name"] for scene in index["scenes"]],
-                         ["000.npy", "002.npy", "004.npy", "sub/001.npy", "sub/003.npy"])
-        signals = set()
-        for scene in index["scenes"]:
-            arrays = np.load(self.path("set/" + scene["file"]))
-            self.assertEqual(arrays["raw"].shape, (2, 6, 8, 3))
-            self.assertEqual(arrays["depth_m"].shape, (2, 6, 8))
-            self.assertEqual(arrays["true_depth_m"].shape, (6, 8))
-            self.assertTrue(1e5 <= scene["signal_e_per_s"] <= 1e7)
-            signals.add(scene["signal_e_per_s"])
-            parameters = self.bytes_of("set/" + scene["file"].replace(".npz", ".json"))
-            self.assertEqual(json.loads(parameters), scene)
-        self.assertEqual(len(signals), 5)
-        again = self.simulate("set", "scenes", "--signal-range", "1e5:1e7", "--frames", "2")
-        self.assertEqual((again["written"], again["kept"]), (0, 5))
-
-    def test_a_list_and_shards_give_the_bytes_of_the_folder(self):
-        self.make_scenes()
-        self.simulate("whole")
-        self.write("scenes/list.txt", "sub/003.npy\n# remark\n004.npy\nsub/001.npy\n002.npy\n000.npy\n")
-        self.simulate("listed", "scenes/list.txt", "--threads", "1")
-        self.assertEqual(self.content("whole"), self.content("listed"))
-        sums = [self.simulate("parts", "scenes", "--shard", f"{i}/2")["written"] for i in (2, 1)]
-        self.assertEqual(sum(sums), 5)
-        self.assertEqual(self.simulate("parts")["kept"], 5)
-        parts = {name: data for name, data in self.content("parts").items() if "-of-" not in name}
-        self.assertEqual(parts, self.content("whole"))
-
     def test_a_bad_file_is_told_and_leaves_the_others(self):
         self.make_scenes(3)
         self.write("scenes/broken.npy", "no array")

@@ -14,20 +14,6 @@ SIMULATE = ["simulate", "corner", *SMALL, *TWO_BUCKETS, "-o", "raw.npy"]
 
 
 class Multipath(CommandLineTest):
-    def test_truth_of_bounced_light_is_read_back_as_returns(self):
-        self.do(*SIMULATE, "--bounces", "1", "--bounce-rays", "32", "--truth-multipath", "t.npz")
-        truth = np.load(self.path("t.npz"))
-        self.assertEqual(truth["first"].shape, (8 * 6 + 1,))
-        self.assertTrue((truth["ratio"] > 0).all())
-        direct = np.repeat(truth["depth_m"].ravel(), np.diff(truth["first"]))
-        self.assertTrue((truth["distance_m"] >= direct).all())
-        self.do(*SIMULATE[:-1], "again.npy", "--multipath-file", "t.npz")
-        self.assertEqual(self.bytes_of("raw.npy"), self.bytes_of("again.npy"))
-
-    def test_no_bounces_are_direct_light(self):
-        self.do(*SIMULATE, "--bounces", "0")
-        self.do(*SIMULATE[:-1], "direct.npy")
-        self.assertEqual(self.bytes_of("raw.npy"), self.bytes_of("direct.npy"))
 
     def test_a_scene_beside_the_maps(self):
         document = self.do_json(
@@ -36,23 +22,6 @@ class Multipath(CommandLineTest):
             "corner", *SMALL, "--bounce-rays", "32", "-o", "page.html")
         self.assertEqual(document["scene"]["all"]["pixels"], 8 * 6)
         self.assertIn(b"seen from above", self.bytes_of("page.html"))
-
-    def test_designs_say_what_multipath_makes_of_codes(self):
-        self.write("mine.toml",
-                   "fundamental_frequency_hz = 15e6\nsamples = 60\n[light]\npeak_factor = 15\n"
-                   "[sensor]\ntaps = 2\n[operating]\nsignal_e_per_s = [1e5]\n"
-                   "ambient_e_per_s = [1e4]\n[operating.multipath]\nratio = [0.3, 0.3]\n"
-                   "delay_m = [1, 2]\n")
-        document = self.do_json("design", "mine.toml", "--method", "factorize", "--exposures", "5",
-                                "--effort", "0.05", "--trials", "1000", "-o", "designed",
-                                "--multipath", "ratio=.2:.4", "--multipath-weight", ".1")
-        self.assertEqual(document["camera"]["operating"]["multipath"],
-                         {"ratio": [0.2, 0.4], "delay_m": [1.0, 2.0], "weight": 0.1})
-        for code in document["codes"]:
-            errors = code["multipath"]
-            self.assertGreater(errors["single_path"]["linear_m"], code["linear"]["mean_m"])
-            self.assertIsNotNone(errors["two_return"])
-        self.assertIn(b"And with multipath?", self.bytes_of("designed/report.html"))
 
     def test_refusals_of_words(self):
         for arguments, words in (

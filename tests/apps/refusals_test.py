@@ -4,7 +4,6 @@
 and leaves no file behind."""
 
 import json
-import math
 import os
 import unittest
 
@@ -124,91 +123,29 @@ class Refusals(CommandLineTest):
 
     def test_cameras(self):
         self.refuse_camera("", "c.toml", "fundamental_frequency_hz")
-        self.refuse_camera("samples = ", "c.toml:1")
         self.refuse_camera(CAMERA + "peak_facter = 3", "c.toml:6", "did you mean")
-        self.refuse_camera(CAMERA.replace("240", "'many'"), "c.toml:2", "samples", "many")
-        self.refuse_camera(CAMERA.replace("240", "3"), "c.toml:2", "samples", "3")
-        self.refuse_camera(CAMERA.replace("= 15\n", "= 0.5\n"), "c.toml:5", "peak_factor", ">= 1")
         self.refuse_camera(CAMERA.replace("= 15\n", "= nan\n"), "c.toml:5", "peak_factor", "finite")
-        self.refuse_camera(CAMERA + 'impulse_response = { kind = "hann" }', "c.toml", "f_max_hz")
-        self.refuse_camera(CAMERA + 'impulse_response = { kind = "bell" }', "c.toml", "bell")
-        self.refuse_camera(CAMERA + '[sensor]\nreadout = "difference"\n', "c.toml", "readout",
-                           "taps")
-        self.refuse_camera(b"\xff\xfe", "c.toml")
         self.refuse_camera(b"\0" * 100, "c.toml")
 
     def test_settings(self):
         self.refuse_setting("light.peak_facter=3", "unknown key", "did you mean light.peak_factor?")
         self.refuse_setting("foo", "'foo'", "key = value")
         self.refuse_setting("", "key")
-        self.refuse_setting("=3", "'=3'")
-        self.refuse_setting("light.peak_factor=0.5", "0.5", ">= 1")
         self.refuse_setting("sensor.read_noise_e=-1", "-1", ">= 0")
-        self.refuse_setting("fundamental_frequency_hz=0", "> 0")
-        self.refuse_setting("exposure_s=-1", "exposure_s")
         self.refuse_setting("operating.error=round", "round", "linear")
-        self.refuse_setting("light.impulse_response={kind='hann', f_max_hz=0}", "f_max_hz", "> 0")
 
-    def test_codes_a_camera_cannot_play(self):
+    def test_codes(self):
         self.refuse(["evaluate", "multifrequency-1x4-4000x4"], "4000", "must be in [1, 2048]")
         for code in ("sinusoid-k2", "square-k2"):
             self.refuse(["evaluate", code], "measurements = 2", ">= 3")
-        # three equal measurements cannot tell depth from signal
-        code = self.code()
-        code["modulation"] = [code["modulation"][0]] * 3
-        code["demodulation"] = [code["demodulation"][0]] * 3
-        self.write("c.code.json", json.dumps(code))
-        self.refuse(["evaluate", "c.code.json"], "rank", ">= 2")
-
-    def code(self, name="sinusoid-k3"):
-        """A code as its file says it; the file is gone."""
-        self.do("codes", name, "-o", "made.code.json", "--force", "--camera", "paper-10f0")
-        return json.loads(self.bytes_of("made.code.json"))
-
-    def sampled_code(self):
-        """sinusoid-k3 as samples at the middles of 240 cells."""
-        code = self.code()
-        for waveform in code["modulation"] + code["demodulation"]:
-            values = [waveform["mean"] + 2 * sum(
-                re * math.cos(2 * math.pi * n * (cell + 0.5) / 240)
-                - im * math.sin(2 * math.pi * n * (cell + 0.5) / 240)
-                for n, re, im in waveform["harmonics"]) for cell in range(240)]
-            waveform.clear()
-            waveform.update(kind="sampled", values=[min(max(v, 0), 2) for v in values])
-        return code
-
-    def test_code_files(self):
-        def refuse(change, *words, name="sinusoid-k3"):
-            code = self.sampled_code() if name == "sampled" else self.code(name)
-            change(code)
-            self.write("c.code.json", json.dumps(code))
-            self.refuse(["evaluate", "c.code.json", "--trials", "1000"], "c.code.json", *words)
-
-        def value(kind, at, new):
-            def change(code):
-                code[kind][0]["values"][at] = new
-            return change
-
-        def harmonics(of, new):
-            return lambda c: c[of][0].update(harmonics=new)
-        refuse(value("demodulation", 3, float("nan")), "c.code.json:1:", name="sampled")
-        refuse(value("demodulation", 3, 1.5), "demodulation", "1.5", name="sampled")
-        refuse(value("demodulation", 3, -0.5), "demodulation", "-0.5", name="sampled")
-        refuse(value("modulation", 3, "one"), "modulation", name="sampled")
-        refuse(lambda c: c["modulation"][0]["values"].pop(), "239", "240", name="sampled")
-        refuse(harmonics("modulation", [[1, 0.5]]), "/modulation/0/harmonics/0", "imaginary part")
-        refuse(harmonics("modulation", [[0, 0.5, 0]]), "/modulation/0/harmonics/0/0", "found 0")
-        refuse(harmonics("demodulation", [[1, 0.5, 0]]), "/demodulation/0", "values in [0, 1]")
-        refuse(lambda c: c["modulation"].pop(), "modulation")
-        refuse(lambda c: c.pop("samples"), "samples")
-        refuse(lambda c: c.update(samples=-1), "samples")
-        refuse(lambda c: c.update(samples=1e300), "samples")
-        refuse(lambda c: c.update(format="other"), "tofsmith-code")
-        refuse(lambda c: c.update(version=99), "version")
-        refuse(lambda c: c["demodulation"][0].update(on=[[0.5, 0.2]]), "on",
-               name="hamiltonian-k3")
-        refuse(lambda c: c["demodulation"][0].update(on=[[0.5, 0.6], [0.1, 0.2]]), "on",
-               name="hamiltonian-k3")
+        self.do("codes", "sinusoid-k3", "-o", "c.code.json")
+        code = json.loads(self.bytes_of("c.code.json"))
+        # Three equal measurements do not tell depth from signal.
+        same = code | {"modulation": code["modulation"][:1] * 3, "demodulation": code["demodulation"][:1] * 3}
+        for content, words in ((same, ["rank", ">= 2"]), (code | {"version": 99}, ["c.code.json", "version"]),
+                               (code | {"samples": -1}, ["c.code.json", "samples"])):
+            self.write("c.code.json", json.dumps(content))
+            self.refuse(["evaluate", "c.code.json"], *words)
         self.write("c.code.json", '{"format": "tofsmith-code",')
         self.refuse(["evaluate", "c.code.json"], "c.code.json:1:")
         self.write("c.txt", "")
@@ -223,41 +160,19 @@ class Refusals(CommandLineTest):
 
     def test_raw_frames(self):
         good = np.ones((4, 5, 3), np.float32)
-        np.save(self.path("good.npy"), good)
-        content = self.bytes_of("good.npy")
-
-        def refuse(*words, name="raw.npy", code="hamiltonian-k3"):
-            self.refuse(["decode", name, "--code", code, "-o", "d.npy"], name, *words)
-
-        def refuse_array(array, *words):
+        decode = lambda name, *more: ["decode", name, "--code", "hamiltonian-k3", "-o", "d.npy", *more]
+        for array, words in ((good[:, :, :2], ["2 measurements", "expected 3"]), (good[:0], ["0"]),
+                             (good.astype("?"), ["bool", "expected numbers", "astype"]),
+                             (good[:, :, 0], ["shape (4, 5)", "all files"])):
             np.save(self.path("raw.npy"), array)
-            refuse(*words)
-
-        def refuse_bytes(content, *words):
-            self.write("raw.npy", content)
-            refuse(*words)
-        refuse_array(good[:, :, :2], "2 measurements", "expected 3")
-        refuse_array(good[0], "shape", "expected")
-        refuse_array(good[:0], "0")
-        refuse_array(good.astype("c8"), "complex", "expected")
-        refuse_array(good.astype("?"), "bool", "expected numbers", "astype")
-        refuse_array(good[:, :, 0], "shape (4, 5)", "all files")
-        refuse_array(good.astype("U3"), "expected")
-        refuse_bytes(content[:-1], "expected")
-        refuse_bytes(content + b"x", "expected")
-        refuse_bytes(content[:20], "expected")
-        refuse_bytes(b"", "expected")
-        refuse_bytes(content.replace(b"(4, 5, 3)", b"(9" + b"9" * 18 + b", 5, 3)"))
-        refuse_bytes(content.replace(b"(4, 5, 3)", b"(-4, 5,3)"))
-        refuse_bytes(content.replace(b"'<f4'", b"'|O'"))
+            self.refuse(decode("raw.npy"), "raw.npy", *words)
+        np.save(self.path("raw.npy"), good)
+        self.refuse(decode("raw.npy", "--frame", "1"), "--frame = 1", "1 frame", code=2)
+        self.write("raw.npy", self.bytes_of("raw.npy")[:-1])
+        self.refuse(decode("raw.npy"), "raw.npy", "expected")
         np.savez(self.path("raw.npz"), a=good, b=good)
-        refuse("raw", name="raw.npz")
-        self.write("raw.npz", self.bytes_of("raw.npz")[:-30])
-        refuse(name="raw.npz")
-        refuse("expected 4", name="good.npy", code="sinusoid-k4")
-        refuse("no such file", name="absent.npy")
-        self.refuse(["decode", "good.npy", "--code", "hamiltonian-k3", "--frame", "1", "-o",
-                     "d.npy"], "--frame = 1", "1 frame", code=2)
+        self.refuse(decode("raw.npz"), "raw.npz", "raw")
+        self.refuse(decode("absent.npy"), "absent.npy", "no such file")
 
     def test_reproduce(self):
         self.refuse(["reproduce", "fig7", "--mesh", "none.obj", "-o", "r"], "none.obj")
@@ -288,13 +203,9 @@ class Refusals(CommandLineTest):
         ball = "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = "
         for text, words in (
                 ("", ["found no shapes"]),
-                ("[[sphere", ["s.toml:1:"]),
                 (ball + "0", ["s.toml:3:12", "> 0"]),
-                (ball + "1\nalbedo = -0.5", ["s.toml:4:10", "-0.5", "[0, 1]"]),
                 (ball + "1\ntexture = { image = 'absent.png' }", ["s.toml:4", "absent.png"]),
-                (ball + "1\n[[mesh]]\nfile = 'absent.obj'", ["s.toml:5", "absent.obj"]),
-                ("[[plane]]\npoint_m = [0, 0, 1]\nnormal = [0, 0, 0]", ["s.toml:3", "direction"]),
-                (ball + "1\nraduis_m = 1", ["s.toml:4", "did you mean sphere[0].radius_m?"])):
+                (ball + "1\n[[mesh]]\nfile = 'absent.obj'", ["s.toml:5", "absent.obj"])):
             self.write("s.toml", text)
             self.refuse(scene("s.toml"), *words)
         self.refuse(scene("tabel-top"), "did you mean table-top?")
@@ -304,37 +215,16 @@ class Refusals(CommandLineTest):
         self.refuse(scene("s.toml", "--width", "64"), "--width", "[view]", code=2)
         self.refuse(scene("table-top", "--scale-m", "2"), "--scale-m", "mesh", code=2)
         self.refuse(scene("table-top", "--width", "0"), "--width", code=2)
-
-    def test_meshes(self):
-        corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
-        for name, text, words in (
-                ("m.obj", "", ["empty"]),
-                ("m.obj", corners, ["no faces"]),
-                ("m.obj", corners + "f 1 2 4", ["m.obj:4", "index 4", "1 .. 3"]),
-                ("m.obj", corners.replace("1", "nan", 1) + "f 1 2 3", ["m.obj:2", "'nan'"]),
-                ("m.ply", "ply\nformat ascii 1.0\nelement vertex 999999999\n", ["999999999"]),
-                ("m.stl", b"\0" * 84, ["m.stl"]),
-                ("m.stl", b"\0" * 80 + b"\xff" * 4, ["84 bytes", "expected"])):
-            self.write(name, text)
-            self.refuse(["scene", name, "-o", "out"], name, *words)
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4")
+        self.refuse(scene("m.obj"), "m.obj:4", "index 4", "1 .. 3")
 
     def test_pictures_of_scenes(self):
-        depth = np.ones((4, 5), np.float32)
-        depth[0, 0] = np.nan
-        np.save(self.path("depth.npy"), depth)
-        simulate = lambda *more: ["simulate", "depth.npy", "--code", "sinusoid-k4", "-o", "raw.npy",
-                                  *more]
-        for option in ("--image", "--ambient-image"):
-            for value in (-1.0, np.nan, np.inf):
-                picture = np.ones((4, 5), np.float32)
-                picture[2, 3] = value
-                np.save(self.path("p.npy"), picture)
-                self.refuse(simulate(option, "p.npy"), "p.npy: row 2, column 3", ">= 0")
-            np.save(self.path("p.npy"), np.ones((5, 5), np.float32))
-            self.refuse(simulate(option, "p.npy"), "p.npy", "5 x 5", "4 x 5", "depth.npy")
-            self.refuse(simulate(option, "absent.png"), "absent.png")
-        np.save(self.path("depth.npy"), -depth)
-        self.refuse(simulate(), "depth.npy", "-1", "> 0")
+        np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))
+        for option, shape, value, words in (("--image", (4, 5), -1.0, ["p.npy: row 0, column 0", ">= 0"]),
+                                            ("--ambient-image", (5, 5), 1.0, ["5 x 5", "4 x 5", "depth.npy"])):
+            np.save(self.path("p.npy"), np.full(shape, value, np.float32))
+            self.refuse(["simulate", "depth.npy", "--code", "sinusoid-k4", "-o", "raw.npy", option,
+                         "p.npy"], "p.npy", *words)
 
     def test_outputs(self):
         np.save(self.path("raw.npy"), np.ones((4, 5, 3), np.float32))

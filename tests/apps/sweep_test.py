@@ -8,7 +8,6 @@ import io
 import json
 import os
 import random
-import resource
 import signal
 import sqlite3
 import sys
@@ -76,33 +75,6 @@ class Sweep(CommandLineTest):
         self.assertEqual(self.sweep("s.sqlite")["computed"], 10)
         self.assertEqual(self.export("s.sqlite"), self.export("new.sqlite"))
 
-    def test_linked_axes_find_what_a_store_has_of_the_same_items(self):
-        head = 'code = "square-k4"\nset = ["samples=60"]\ntrials = 400\n[[axis]]\n'
-        self.write("s.toml", head + 'key = "light.peak_factor"\nvalues = [12, 15]\n[[axis]]\n'
-                   'key = "sensor.read_noise_e"\nvalues = [10, 20]\n')
-        self.assertEqual(self.sweep("s.sqlite", "--report", "s.html")["computed"], 4)
-        self.assertIn(b"Depth error over sensor.read_noise_e and light.peak_factor",
-                      self.bytes_of("s.html"))
-        self.write("s.toml", head + 'keys = ["light.peak_factor", "sensor.read_noise_e"]\n'
-                   'values = [[12, 10], 15, [15, 20]]\n')
-        again = self.sweep("s.sqlite", "--report", "l.html", "--export", "s.csv")
-        self.assertEqual((again["items"], again["computed"]), (3, 1))
-        page = self.bytes_of("l.html")
-        self.assertIn(b"Depth error over light.peak_factor, sensor.read_noise_e", page)
-        self.assertNotIn(b"over two axes", page)
-        rows = np.genfromtxt(io.BytesIO(self.bytes_of("s.csv")), delimiter=",", names=True,
-                             deletechars="", dtype=None, encoding="utf-8")
-        self.assertEqual(sorted({(r["light.peak_factor"], r["sensor.read_noise_e"]) for r in rows}),
-                         [(12, 10), (15, 15), (15, 20)])
-
-    def test_evaluate_finds_the_same(self):
-        self.sweep("s.sqlite", "--export", "s.json")
-        item = json.loads(self.bytes_of("s.json"))["codes"][-1]
-        alone = self.do_json("evaluate", "hamiltonian-k3", "--trials", "400", "--set", "samples=60",
-                             "--set", "operating.signal_e_per_s=[1e5]", "--set",
-                             "operating.ambient_e_per_s=[1e4]")["codes"][0]
-        self.assertEqual(item["points"], alone["points"])
-
     def test_shards_merge_to_the_whole(self):
         computed = [self.sweep(f"{i}.sqlite", "--shard", f"{i}/3")["computed"] for i in (1, 2, 3)]
         self.assertEqual(sum(computed), 20)
@@ -110,16 +82,6 @@ class Sweep(CommandLineTest):
         self.assertEqual(self.export("all.sqlite", "--status"), self.export("new.sqlite"))
         self.refuse(["sweep", "merge", "all.sqlite", "1.sqlite"], "all.sqlite")
         self.refuse(["sweep", "merge", "none.sqlite", "nowhere.sqlite"], "there is no such store")
-
-    def test_is_the_same_on_one_thread_and_on_two_processes(self):
-        first = self.start("sweep", "s.toml", "--store", "two.sqlite")
-        second = self.start("sweep", "s.toml", "--store", "two.sqlite")
-        for process in (first, second):
-            _, error = process.communicate(timeout=60)
-            self.assertEqual((process.returncode, error), (0, b""))
-        whole = self.export("two.sqlite", "--status")
-        self.assertEqual(json.loads(whole)["finished"], 20)
-        self.assertEqual(self.export("one.sqlite", "--threads", "1"), whole)
 
     def test_a_kill_at_any_moment_loses_only_unfinished_items(self):
         self.write("s.toml", sweep_text(4000))
@@ -164,19 +126,6 @@ class Sweep(CommandLineTest):
                          "tofsmith: interrupted; finished items are kept in s.sqlite, and the same "
                          "command goes on from there\n")
         self.assertEqual(self.sweep("s.sqlite", "--status")["running"], 0)
-
-    def test_a_full_disk_loses_nothing(self):
-        def small_files():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
-
-        # Python ignores the signal that would end the process; so does the tool then.
-        code, out, error = self.run_tool("sweep", "s.toml", "--store", "s.sqlite",
-                                         preexec_fn=small_files, restore_signals=False)
-        self.assertEqual((code, out), (1, b""))
-        self.assertIn("tofsmith: s.sqlite: cannot", error)
-        self.assertIn("finished before is kept", error)
-        self.check_integrity("s.sqlite")
-        self.assertEqual(self.export("s.sqlite"), self.export("new.sqlite"))
 
     def as_reader(self):
         """Options of a process that may not write here."""

@@ -37,18 +37,6 @@ class Tables(CommandLineTest):
                                 *more)
         return np.load(self.path(output)), document["notes"]
 
-    def test_a_sweep_decodes_as_the_code_does(self):
-        np.save(self.path("t.npy"), self.sweep())
-        truth = self.frame()
-        expected, notes = self.decode("hamiltonian-k3")
-        self.assertEqual(notes, [])
-        depth, notes = self.decode("t.npy")
-        self.assertEqual(notes, [])
-        self.assertLess(np.abs(depth - truth).max(), 0.02)
-        self.assertLess(np.abs(depth - expected).mean(), 0.003)
-        half, _ = self.decode("t.npy", "--range-m", str(RANGE_M / 2))
-        np.testing.assert_allclose(half, depth / 2, rtol=1e-5)
-
     def test_the_range_and_where_it_comes_from_are_reported(self):
         np.save(self.path("t.npy"), self.sweep())
         self.frame()
@@ -94,17 +82,6 @@ class Tables(CommandLineTest):
         self.assertGreater(np.abs(kept - expected).max(), 0.005)
         self.assertEqual(len(notes), 1)
         self.assertIn("1 of 121 bins", notes[0])  # the two ends look the same
-
-    def test_columns_may_differ_in_everything(self):
-        table, truth = self.sweep(), self.frame()
-        raw = np.load(self.path("raw.npy"))
-        gain, offset = np.array([0.5, 2, 4]), np.array([100, -30, 7])
-        np.save(self.path("raw.npy"), (raw / gain + offset).astype(np.float32))
-        np.savez(self.path("t.npz"), corrfs=table, ambient=[1.0, 1, 1], exposure_s=[0.1, 0.1, 0.1],
-                 gain_e_per_dn=gain, offset_dn=offset, made="today")
-        depth, notes = self.decode("t.npz")
-        self.assertLess(np.abs(depth - truth).max(), 0.02)
-        self.assertIn("not used: made", notes[0])
 
     def test_pairs_of_taps(self):
         buckets = ("--set", "sensor.taps=2")
@@ -182,31 +159,6 @@ class Tables(CommandLineTest):
                 self.refuse(command, table, "measured table (corrfs only)", "only decode takes")
         self.refuse(["decode", "raw.npy", "--code", "other.npz", "-o", "d.npy"], "other.npz",
                     "curves, made", "modfs", "corrfs")
-
-    def test_maps_of_each_pixel(self):
-        self.frame()
-        planes = ("--outputs", "depth,signal,ambient,status")
-
-        def planes_of(*more):
-            self.do("decode", "raw.npy", "--code", "hamiltonian-k3", *planes, "-o", "d.npz",
-                    "--force", *more)
-            return np.load(self.path("d.npz"))
-        before = planes_of()
-        offset = np.linspace(0, 6, 192).reshape(12, 16).astype(np.float32)
-        gain = np.linspace(0.5, 2.0, 192).reshape(12, 16)
-        gain[3, 4] = np.nan
-        np.save(self.path("offset.npy"), offset)
-        np.savez(self.path("gain.npz"), gain=gain)
-        after = planes_of("--offset-map", "offset.npy", "--gain-map", "gain.npz")
-        dead = np.isnan(gain)
-        self.assertTrue(np.isnan(after["depth"][dead]).all())
-        self.assertEqual(list(after["status"][dead]), [1])
-        live = ~dead
-        wrapped = np.mod(before["depth"] - offset, RANGE_M)
-        np.testing.assert_allclose(after["depth"][live], wrapped[live], atol=1e-5)
-        np.testing.assert_allclose(after["signal"][live], (before["signal"] / gain)[live],
-                                   rtol=1e-5)
-        self.assertTrue((after["status"][live] == before["status"][live]).all())
 
     def test_maps_that_do_not_fit(self):
         self.frame()

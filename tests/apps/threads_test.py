@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Commands that compute write and print the same bytes with 1, 2, 3 and 8 threads, of which
+"""Commands that compute write and print the same bytes with 1, 3 and 8 threads, of which
 there may be more than cores."""
 
 import os
@@ -30,6 +30,12 @@ COMMANDS = {
                               "-o", "wrapped.npy"),
     "simulate, bounces": ("simulate", *SCENE, "--code", "sinusoid-k4", *CAMERA, *LIGHT, "--bounces",
                           "1", "--bounce-rays", "16", "-o", "bounced.npy"),
+    "simulate, motion and blur": (
+        "simulate", "moving-hand", "--width", "24", "--height", "18", "--code", "sinusoid-k4", *CAMERA,
+        "--set", "lens.blur=gaussian", "--set", "lens.blur_sigma_px=0.6", "--frames", "2", "-o",
+        "moving.npy"),
+    "simulate, a mesh": ("simulate", "mesh.obj", "--width", "64", "--height", "48", "--code",
+                         "sinusoid-k4", *CAMERA, "-o", "mesh.npy"),
     "simulate, many scenes": (
         "simulate", "room", "corner", "--width", "24", "--height", "18", "--code", "sinusoid-k4",
         "--signal-range", "1e4:1e5", "--ambient-range", "1e3:1e4", "-o", "set"),
@@ -48,6 +54,8 @@ COMMANDS = {
     "evaluate": ("evaluate", "sinusoid-k4", "hamiltonian-k3", *CAMERA, *TRIALS, "--best-rotation",
                  "--robustness"),
     "evaluate, likelihood": ("evaluate", "sinusoid-k4", *CAMERA, "--trials", "300", "--method", "ml"),
+    "evaluate, unwrapping": ("evaluate", "multifrequency-k5", *CAMERA, "--trials", "300", "--method",
+                             "unwrap", "--target-standard-error", "10%"),
     "multipath": ("multipath", "multifrequency-k5", *CAMERA, "--trials", "200", "--delays", "1",
                   "--ratios", ".3", "--tails", ".5"),
     "require": ("require", "--error", "30mm", *SMALL, "--vary", "power", "--max-factor", "1.5",
@@ -90,6 +98,7 @@ class Threads(CommandLineTest):
         np.save(self.path(f"{folder}/shifted.npy"), (waves[:, None, None] + noise).astype("f4"))
         np.savetxt(self.path(f"{folder}/shifts.txt"), delays)
         np.savetxt(self.path(f"{folder}/c.txt"), 20 + np.arange(6))
+        self.write(f"{folder}/mesh.obj", "v 0 0 0\nv 2 0 0\nv 2 1 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
         self.write(f"{folder}/sweep.toml",
                    'set = ["samples=60"]\ncodes = ["sinusoid-k4"]\ntrials = 2000\n'
                    '[[axis]]\nkey = "light.peak_factor"\nvalues = [2, 4, 6]\n')
@@ -118,7 +127,7 @@ class Threads(CommandLineTest):
 
     def test_any_number_of_them_gives_the_same_bytes(self):
         expected = None
-        for threads in ("1", "2", "3", "8"):
+        for threads in ("1", "3", "8"):
             self.prepare(threads)
             found = self.outcome(threads, threads)
             expected = expected or found

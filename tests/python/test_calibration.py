@@ -70,6 +70,9 @@ def test_a_response_is_that_of_the_command(both, scope, cli):
     found.write_report(both[1] / "mine.html", source=str(scope))
     same_page(both, "mine.html")
     np.testing.assert_allclose(written.transfer(9), found.camera(base).transfer(9), rtol=1e-6)
+    fit, whole = found.camera(base, arm="sensor", kind="gaussian"), found.camera(base, arm="system")
+    assert (fit.light, fit.sensor.impulse_response) == (base.light, found.fits[0].response)
+    assert (whole.light.impulse_response.kind, whole.sensor.impulse_response.kind) == ("file", "none")
 
 
 @pytest.fixture(scope="module")
