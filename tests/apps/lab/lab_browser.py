@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lab's page in a headless Chromium, as its tests drive it."""
 
+import contextlib
 import sys
 import time
 import unittest
@@ -9,6 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "report" / "browser"))
 import browser_test  # noqa: E402  leaves with 77 where Selenium is missing
+from native_engine import page_with_engine  # noqa: E402
 
 HELPERS = """
 window.waitFor = async (test, seconds = 20) => {
@@ -107,6 +109,15 @@ class LabTest(unittest.TestCase):
         return found
 
 
-def is_there():
-    """Whether there is a Chromium to test with."""
-    return all(Path(p).exists() for p in (browser_test.CHROMIUM, browser_test.CHROMEDRIVER))
+def run_tests(page_or_engine):
+    """Runs the tests of the main module on a page, or on the engine as a program. Exit 77: skipped."""
+    if not all(Path(p).exists() for p in (browser_test.CHROMIUM, browser_test.CHROMEDRIVER)):
+        print(f"skipped: {browser_test.CHROMIUM} or its driver is missing")
+        sys.exit(77)
+    if not page_or_engine.is_file():
+        print(f"skipped: {page_or_engine} is not built")
+        sys.exit(77)
+    is_page = page_or_engine.suffix == ".html"
+    with contextlib.nullcontext(page_or_engine) if is_page else page_with_engine(page_or_engine) as page:
+        LabTest.page = page
+        unittest.main()

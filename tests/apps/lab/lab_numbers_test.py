@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lab as it is given out has the numbers of the command. Exit 77: no page is built, or no browser.
+"""The lab has the numbers of the command. Exit 77: no page is built, or no browser.
 
-    lab_numbers_test.py TOFSMITH PAGE [OTHER_PAGE ..]: the first that is there
+    lab_numbers_test.py TOFSMITH PAGE_OR_ENGINE
 """
 
 import json
@@ -15,11 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-TOOL = sys.argv[1]
-PAGES = [Path(name) for name in sys.argv[2:] if Path(name).is_file()]
-del sys.argv[1:]
+TOOL, PAGE = sys.argv.pop(1), Path(sys.argv.pop(1))
 
-from lab_browser import LabTest, browser_test, is_there  # noqa: E402
+from lab_browser import LabTest, run_tests  # noqa: E402
 
 TRIALS = 1000
 
@@ -119,11 +117,4 @@ class Numbers(LabTest):
 
 
 if __name__ == "__main__":
-    if not is_there():
-        print(f"skipped: {browser_test.CHROMIUM} or its driver is missing")
-        sys.exit(77)
-    if not PAGES:
-        print("skipped: no lab.html is built (scripts/lab.sh)")
-        sys.exit(77)
-    LabTest.page = PAGES[0]
-    unittest.main()
+    run_tests(PAGE)

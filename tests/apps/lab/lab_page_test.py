@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lab's page in a real browser: controls, files, links, undo, designs. Exit 77: no browser here.
 
-    lab_page_test.py PAGE
+    lab_page_test.py PAGE_OR_ENGINE    a page, or the engine as a program (lab_engine_cli)
 """
 
 import base64
@@ -16,9 +16,7 @@ from pathlib import Path
 
 PAGE = Path(sys.argv.pop(1))
 
-from lab_browser import LabTest, browser_test, is_there  # noqa: E402
-
-LabTest.page = PAGE
+from lab_browser import LabTest, run_tests  # noqa: E402
 
 # Another valid value for each field, found from what the field is.
 OTHER_VALUE = """
@@ -344,10 +342,4 @@ class DarkPhone(LabTest):
 
 
 if __name__ == "__main__":
-    if not is_there():
-        print(f"skipped: {browser_test.CHROMIUM} or its driver is missing")
-        sys.exit(77)
-    if not PAGE.is_file():
-        print(f"skipped: {PAGE} is not built")
-        sys.exit(77)
-    unittest.main()
+    run_tests(PAGE)

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The lab's page with the C++ engine as a program in place of WebAssembly, on a local port."""
+
+import contextlib
+import http.server
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+PACK = HERE.parents[2] / "apps" / "lab" / "page" / "pack.py"
+
+
+def handler_of(program):
+    """Answers each request by a process of its own, whose lines are sent as they come."""
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_POST(self):
+            request = self.rfile.read(int(self.headers["Content-Length"]))
+            self.send_response(200)
+            self.send_header("Access-Control-Allow-Origin", "*")
+            self.end_headers()
+            with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as engine:
+                engine.stdin.write(request)
+                engine.stdin.close()
+                try:
+                    for line in engine.stdout:
+                        self.wfile.write(line)
+                except OSError:  # the page has ended its worker
+                    engine.kill()
+
+        def log_message(self, *_):
+            pass
+
+    return Handler
+
+
+@contextlib.contextmanager
+def page_with_engine(program):
+    """The path of a page whose workers ask the program."""
+    with tempfile.TemporaryDirectory(prefix="tofsmith-lab-") as folder:
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler_of(program))
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        worker, page = Path(folder, "worker.js"), Path(folder, "lab.html")
+        address = f"http://127.0.0.1:{server.server_port}/"
+        worker.write_text((HERE / "native_worker.js").read_text().replace("ENGINE_ADDRESS", f"'{address}'"))
+        subprocess.run([sys.executable, PACK, "--worker", worker, "-o", page], check=True)
+        text = page.read_text()
+        for before, after in (("default-src 'none';", f"default-src 'none'; connect-src {address};"),
+                              ("trials: 20000,", "trials: 500,")):  # less to compute in each test
+            if before not in text:
+                raise ValueError(f"{page} has no {before}")
+            text = text.replace(before, after, 1)
+        page.write_text(text)
+        yield page
+        server.shutdown()
