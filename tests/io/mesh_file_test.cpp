@@ -38,11 +38,12 @@ const std::string obj_square =
     "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
     "f 1/1/1 2/2/1 3/3/1\nf -4/-4/-1 -2/-2/-1 -1/-1/-1\n";
 
-std::string ply_header(const std::string& format, int vertices = 4) {
+std::string ply_header(const std::string& format, int vertices = 4,
+                       const std::string& type = "float") {
   return "ply\nformat " + format + " 1.0\ncomment a square\nelement vertex " +
-         std::to_string(vertices) +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
-         "property list uchar int vertex_indices\nend_header\n";
+         std::to_string(vertices) + "\nproperty " + type + " x\nproperty " + type +
+         " y\nproperty " + type +
+         " z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
 }
 const std::string ply_rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 const std::string ply_square = ply_header("ascii") + ply_rows;
@@ -57,9 +58,10 @@ std::string ply_big_endian_square() {
   return text;
 }
 
-std::string ply_binary_square() {
-  std::string text = ply_header("binary_little_endian");
-  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) text += raw(static_cast<float>(f));
+template <typename Number>
+std::string ply_binary_square(const std::string& type) {
+  std::string text = ply_header("binary_little_endian", 4, type);
+  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) text += raw(static_cast<Number>(f));
   for (const int i : {0, 1, 2}) text += (i == 0 ? "\3" : "") + raw(i);
   for (const int i : {0, 2, 3}) text += (i == 0 ? "\3" : "") + raw(i);
   return text;
@@ -97,7 +99,7 @@ TEST(MeshFile, EveryFormatHoldsTheSameSquare) {
   EXPECT_EQ(square.triangles.size(), 2u);
   EXPECT_EQ(corners(square)[4], Eigen::Vector3d(1, 1, 0));
   for (const auto& [text, file] :
-       {std::pair(ply_square, "a.ply"), std::pair(ply_binary_square(), "b.PLY"),
+       {std::pair(ply_square, "a.ply"), std::pair(ply_binary_square<float>("float"), "b.PLY"),
         std::pair(ply_big_endian_square(), "c.ply"), std::pair(stl_square, "a.stl"),
         std::pair(stl_binary_square(), "b.stl")}) {
     const TriangleMesh mesh = parse(text, file);
@@ -105,6 +107,16 @@ TEST(MeshFile, EveryFormatHoldsTheSameSquare) {
     EXPECT_EQ(corners(mesh), corners(square)) << file;
     EXPECT_TRUE(mesh.texture_coordinates.empty()) << file;
   }
+}
+
+TEST(MeshFile, PlyVerticesMayBeOfAnyNumberType) {
+  const auto square = corners(parse(obj_square, "a.obj"));
+  for (const std::string& text :
+       {ply_binary_square<std::int8_t>("char"), ply_binary_square<std::uint8_t>("uint8"),
+        ply_binary_square<std::int16_t>("short"), ply_binary_square<std::uint16_t>("ushort"),
+        ply_binary_square<std::int32_t>("int32"), ply_binary_square<std::uint32_t>("uint"),
+        ply_binary_square<float>("float32"), ply_binary_square<double>("double")})
+    EXPECT_EQ(corners(parse(text, "a.ply")), square) << text.substr(0, 90);
 }
 
 TEST(MeshFile, TextureCoordinatesStayWithTheirVertices) {
@@ -269,16 +281,16 @@ FileParser parser_for(const char* file) {
 }
 
 TEST(MeshFile, TruncatedBinaryFilesAreRefused) {
-  expect_truncations_refused(bytes_of(ply_binary_square()), parser_for("a.ply"));
+  expect_truncations_refused(bytes_of(ply_binary_square<float>("float")), parser_for("a.ply"));
   expect_truncations_refused(bytes_of(stl_binary_square()), parser_for("a.stl"));
 }
 
 TEST(MeshFile, DamagedFilesAreReadOrRefused) {
   EXPECT_GT(expect_damage_read_or_refused(bytes_of(obj_square), 1500, 1, parser_for("a.obj")), 100);
   EXPECT_GT(expect_damage_read_or_refused(bytes_of(ply_square), 1500, 2, parser_for("a.ply")), 100);
-  EXPECT_GT(
-      expect_damage_read_or_refused(bytes_of(ply_binary_square()), 1500, 3, parser_for("a.ply")),
-      100);
+  EXPECT_GT(expect_damage_read_or_refused(bytes_of(ply_binary_square<float>("float")), 1500, 3,
+                                          parser_for("a.ply")),
+            100);
   EXPECT_GT(expect_damage_read_or_refused(bytes_of(stl_square), 1500, 4, parser_for("a.stl")), 100);
   EXPECT_GT(
       expect_damage_read_or_refused(bytes_of(stl_binary_square()), 1500, 5, parser_for("a.stl")),

@@ -201,7 +201,7 @@ TEST(Npy, TypedAccessChecksTheType) {
   EXPECT_THROW(NpyArray(NpyType::float32, {1ull << 40, 1ull << 40}), std::invalid_argument);
 }
 
-TEST(NpyReader, SlicesAreThoseOfTheWholeArray) {
+TEST(NpyReader, ReadsEitherOrderOfAxes) {
   const TemporaryDirectory directory;
   std::vector<float> values(5 * 2 * 3);
   std::iota(values.begin(), values.end(), 0.0f);
@@ -222,15 +222,6 @@ TEST(NpyReader, SlicesAreThoseOfTheWholeArray) {
     const NpyReader reader(directory / name);
     EXPECT_THAT(reader.shape(), ElementsAre(5, 2, 3));
     EXPECT_TRUE(std::ranges::equal(reader.read_all().as<float>(), values));
-    for (std::size_t begin = 0; begin <= 5; ++begin)
-      for (std::size_t count = 0; begin + count <= 5; ++count) {
-        const NpyArray slice = reader.read_rows(begin, count);
-        EXPECT_THAT(slice.shape(), ElementsAre(count, 2, 3));
-        EXPECT_TRUE(
-            std::ranges::equal(slice.as<float>(), std::span(values).subspan(begin * 6, count * 6)));
-      }
-    EXPECT_THROW(reader.read_rows(6, 0), std::invalid_argument);
-    EXPECT_THROW(reader.read_rows(3, 3), std::invalid_argument);
   }
 }
 
@@ -249,7 +240,7 @@ TEST(NpyReader, NoticesAFileThatShrinks) {
   write_npy(directory / "a.npy", NpyArray(NpyType::float64, {10, 10}), OutputPolicy::overwrite);
   const NpyReader reader(directory / "a.npy");
   std::filesystem::resize_file(directory / "a.npy", 500);
-  EXPECT_THAT(io_error_of([&] { reader.read_rows(0, 10); }), HasSubstr("the file ends here"));
+  EXPECT_THAT(io_error_of([&] { reader.read_all(); }), HasSubstr("the file ends here"));
 }
 
 TEST(NpyReader, GivesAnyItemsInEitherByteOrder) {
@@ -271,22 +262,6 @@ TEST(NpyReader, GivesAnyItemsInEitherByteOrder) {
     EXPECT_THROW(reader.read_items(0, std::as_writable_bytes(std::span(values)).first(3)),
                  std::invalid_argument);
   }
-}
-
-TEST(NpyWriter, SliceBySliceGivesTheFileOfTheWholeArray) {
-  const TemporaryDirectory directory;
-  std::vector<std::int32_t> values(12 * 4);
-  std::iota(values.begin(), values.end(), -5);
-  NpyWriter writer(directory / "a.npy", NpyType::int32, {4}, OutputPolicy::refuse_existing);
-  for (std::size_t row = 0; row < 12; row += 3)
-    writer.append(NpyArray::of<std::int32_t>({3, 4}, std::span(values).subspan(row * 4, 12)));
-  EXPECT_THROW(writer.append(NpyArray(NpyType::int32, {3, 5})), std::invalid_argument);
-  EXPECT_THROW(writer.append(NpyArray(NpyType::float32, {3, 4})), std::invalid_argument);
-  EXPECT_FALSE(std::filesystem::exists(directory / "a.npy"));
-  writer.commit();
-  EXPECT_EQ(writer.rows(), 12u);
-  EXPECT_EQ(serialize_npy(read_npy(directory / "a.npy")),
-            serialize_npy(NpyArray::of<std::int32_t>({12, 4}, values)));
 }
 
 TEST(NpyItemWriter, PiecesGiveTheFileOfTheWholeArray) {

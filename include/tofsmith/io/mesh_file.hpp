@@ -30,14 +30,6 @@ struct PointCloud {
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< red, green, blue, sRGB
 };
 
-/// Reads the vertices of an ascii or binary little endian PLY file that holds nothing else. Scalars
-/// of any number type become float.
-/// @param file  what errors call it
-/// @throws IoError at a byte offset if the header is malformed, x, y or z is missing, there are
-///         lists or other elements, or the data is not as long as the header says
-PointCloud parse_ply(std::span<const std::byte> content, std::string_view file);
-PointCloud read_ply(const std::filesystem::path& path);
-
 /// Binary little endian: x, y, z, the scalars, then red, green, blue.
 /// @throws std::invalid_argument if lists differ in length or a scalar's name is no PLY word, taken
 ///         or used twice

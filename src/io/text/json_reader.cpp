@@ -52,10 +52,6 @@ double JsonReader::number(double low, double high, double tolerance) const {
   return found;
 }
 
-double JsonReader::number_or_infinity() const {
-  return value_->is_null() ? infinity : number(0.0, infinity, 0.0);
-}
-
 int JsonReader::integer(int low, int high) const {
   const std::string expected = fmt::format("an integer in [{}, {}]", low, high);
   if (!value_->is_number_integer()) mistyped(expected);

@@ -21,8 +21,6 @@ class JsonReader {
   double number() const;
   /// A number of [low, high], give or take `tolerance`.
   double number(double low, double high, double tolerance) const;
-  /// A number >= 0, or infinity where the document says null: JSON has no infinity.
-  double number_or_infinity() const;
   bool is_null() const { return value_->is_null(); }
   bool boolean() const;
   int integer(int low, int high) const;
