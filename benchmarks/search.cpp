@@ -16,8 +16,8 @@
 #include <string>
 
 #include "asked_figures.hpp"
+#include "chip_setup.hpp"
 #include "design/chips/chip_metric.hpp"
-#include "design/chips/standard_chip_codes.hpp"
 #include "generated_meshes.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/design/chip_search.hpp"
@@ -36,13 +36,6 @@ struct LightLevel {
 };
 const LightLevel levels[] = {
     {"HIGH", {1.7e7, 0.0}}, {"LOWAMB", {1.7e7, 8e7}}, {"LOWSIG", {1.1e6, 0.0}}};
-
-Camera camera_of(int chips, int taps, const OperatingPoint& point) {
-  Camera camera = at_point(built_in_camera("exclusive-3tap-9chip"), point);
-  camera.sensor.taps = taps;
-  camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * chips);
-  return camera;
-}
 
 /// One search that is asked for: best known metrics [mm], and processor seconds on two cores.
 struct Row {
@@ -79,7 +72,8 @@ ChipSearchResult search(const Row& row, const LightLevel& level, int finalists, 
   options.exposures = row.exposures;
   options.finalists = finalists;
   const std::clock_t begin = std::clock();
-  ChipSearchResult result = search_chip_codes(camera_of(row.chips, row.taps, level.point), options);
+  ChipSearchResult result =
+      search_chip_codes(chip_camera(row.chips, row.taps, level.point), options);
   *cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   return result;
 }
@@ -108,7 +102,7 @@ void prove(bool is_long, benchmarks::AskedFigures& asked) {
 /// search.
 void raw(benchmarks::AskedFigures& asked) {
   constexpr int chips = 9;
-  const Camera camera = camera_of(chips, 3, levels[0].point);
+  const Camera camera = chip_camera(chips, 3, levels[0].point);
   for (const bool equal_duty : {true, false}) {
     double best[3], codes = 0;
     std::fill(best, best + 3, std::numeric_limits<double>::infinity());
@@ -134,7 +128,7 @@ void raw(benchmarks::AskedFigures& asked) {
     for (int i = 0; i < 3; ++i) {
       ChipSearchOptions options;
       options.equal_duty = equal_duty;
-      const auto result = search_chip_codes(camera_of(chips, 3, levels[i].point), options);
+      const auto result = search_chip_codes(chip_camera(chips, 3, levels[i].point), options);
       asked.at_most(fmt::format("{} duty, {}: relative difference from raw enumeration",
                                 equal_duty ? "equal" : "any", levels[i].name),
                     std::abs(result.finalists.front().rms_m / best[i] - 1), 1e-9);
@@ -149,7 +143,7 @@ void anneal(benchmarks::AskedFigures& asked) {
     options.exposures = 2;
     options.finalists = 2;
     const std::clock_t begin = std::clock();
-    const auto result = search_chip_codes(camera_of(12, 3, levels[i].point), options);
+    const auto result = search_chip_codes(chip_camera(12, 3, levels[i].point), options);
     fmt::print("annealed: 3 taps, 12 chips, 2 exposures, {}\n", levels[i].name);
     print(result, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     std::fflush(stdout);
@@ -180,7 +174,7 @@ void compare(benchmarks::AskedFigures& asked) {
   fmt::print("mesh: {} pixels at {:.2f} m on average\n", seen, mean_distance_m);
 
   for (int i = 0; i < 3; ++i) {
-    const Camera camera = camera_of(9, 3, levels[i].point);
+    const Camera camera = chip_camera(9, 3, levels[i].point);
     constexpr int samples = 360;
     std::vector<StandardCode> codes = standard_chip_codes(camera, samples);
     for (const int exposures : {1, 2}) {
@@ -195,7 +189,7 @@ void compare(benchmarks::AskedFigures& asked) {
     }
     EvaluateOptions options;
     options.trials = 20000;
-    const auto table = compare_chip_codes(codes, camera, options).front();
+    const auto table = compare_chip_codes(codes, camera, options);
     fmt::print("{}\n  {:<26}{:>12}{:>22}{:>22}\n", levels[i].name, "code", "metric [mm]",
                "Monte Carlo ML [mm]", "mesh, mean/median [mm]");
     for (std::size_t k = 0; k < codes.size(); ++k) {

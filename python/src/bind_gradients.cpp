@@ -268,7 +268,6 @@ void bind_gradients(py::module_& module) {
   py::class_<CodeGradients>(module, "CodeGradients")
       .def(py::init<const Camera&, int, int>())
       .def("measurements", &CodeGradients::measurements)
-      .def("has_shot", &CodeGradients::has_shot)
       .def(
           "dark_electrons",
           [](const CodeGradients& steps) { return adopt(Eigen::VectorXd(steps.dark_electrons())); })

@@ -19,16 +19,6 @@ void RunningStatistics::add(double value) {
   sum_of_squares_ += difference * (value - mean_);
 }
 
-void RunningStatistics::merge(const RunningStatistics& other) {
-  if (other.count_ == 0) return;
-  const double total = static_cast<double>(count_ + other.count_);
-  const double difference = other.mean_ - mean_;
-  sum_of_squares_ += other.sum_of_squares_ + difference * difference * static_cast<double>(count_) *
-                                                 static_cast<double>(other.count_) / total;
-  mean_ += difference * static_cast<double>(other.count_) / total;
-  count_ += other.count_;
-}
-
 double RunningStatistics::variance() const {
   return count_ < 2 ? 0.0 : sum_of_squares_ / static_cast<double>(count_ - 1);
 }

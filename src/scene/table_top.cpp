@@ -4,8 +4,6 @@
 
 #include <numbers>
 
-#include "tofsmith/scene/ray_caster.hpp"
-
 namespace tofsmith {
 
 namespace {
@@ -47,11 +45,6 @@ StagedScene table_top_scene(int width, int height) {
   scene.camera_to_world =
       Eigen::Translation3d(0.0, -0.55, 0.0) * Eigen::AngleAxisd(-0.20, Eigen::Vector3d::UnitX());
   return scene;
-}
-
-SceneImage table_top_image(int width, int height) {
-  const StagedScene scene = table_top_scene(width, height);
-  return ray_cast(scene.shapes, scene.view, scene.camera_to_world);
 }
 
 }  // namespace tofsmith

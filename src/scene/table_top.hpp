@@ -3,7 +3,6 @@
 #pragma once
 
 #include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
 
@@ -13,8 +12,5 @@ namespace tofsmith {
 /// @param width, height  resolution of the pinhole camera, > 0; the view is 60 degrees wide
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 6
 StagedScene table_top_scene(int width = 320, int height = 240);
-
-/// The demo scene as the camera sees it.
-SceneImage table_top_image(int width = 320, int height = 240);
 
 }  // namespace tofsmith

@@ -50,17 +50,4 @@ void FineCorrelation::at(double depth_bin, double* chi) const {
   for (int j = 0; j < tap_values_; ++j) chi[j] = below[j] + share * (above[j] - below[j]);
 }
 
-double FineCorrelation::largest_error(const ForwardModel& model) const {
-  const Eigen::MatrixXd exact = model.tap_correlation_table(2 * points_);
-  std::vector<double> chi(static_cast<std::size_t>(tap_values_));
-  double largest = 0.0;
-  for (int cell = 0; cell < points_; ++cell) {
-    at((cell + 0.5) / points_per_bin_, chi.data());
-    for (int j = 0; j < tap_values_; ++j)
-      largest =
-          std::max(largest, std::abs(chi[static_cast<std::size_t>(j)] - exact(2 * cell + 1, j)));
-  }
-  return largest;
-}
-
 }  // namespace tofsmith

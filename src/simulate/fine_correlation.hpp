@@ -35,8 +35,6 @@ class FineCorrelation {
   const std::vector<double>& table() const { return table_; }
   /// chi at a depth in [0, N], written to `chi` (tap values).
   void at(double depth_bin, double* chi) const;
-  /// Largest distance from the model's exact function, at the middle of every cell of the table.
-  double largest_error(const ForwardModel& model) const;
 
  private:
   int tap_values_;

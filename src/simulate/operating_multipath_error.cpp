@@ -128,19 +128,6 @@ struct OperatingMultipathTrials {
 
 }  // namespace
 
-OperatingMultipathError operating_multipath_error(const CodeSet& code, const Camera& camera,
-                                                  const OperatingMultipath& later,
-                                                  const EvaluateOptions& options,
-                                                  const Progress& progress) {
-  return OperatingMultipathTrials(code, camera, later, options).single_path(progress);
-}
-
-OperatingMultipathError two_return_error(const CodeSet& code, const Camera& camera,
-                                         const OperatingMultipath& later,
-                                         const EvaluateOptions& options, const Progress& progress) {
-  return OperatingMultipathTrials(code, camera, later, options).two_return(progress);
-}
-
 OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
                                                     const OperatingMultipath& later,
                                                     const EvaluateOptions& options,

@@ -103,20 +103,6 @@ TEST(Parallel, UsesMoreThreadsThanCoresIfAskedTo) {
   });
 }
 
-TEST(Statistics, MergeEqualsOneStream) {
-  RandomStream stream(3, 0);
-  RunningStatistics whole, left, right;
-  for (int i = 0; i < 1000; ++i) {
-    const double x = 5 + stream.normal();
-    whole.add(x);
-    (i < 300 ? left : right).add(x);
-  }
-  left.merge(right);
-  EXPECT_NEAR(left.mean(), whole.mean(), 1e-12);
-  EXPECT_NEAR(left.variance(), whole.variance(), 1e-12);
-  EXPECT_EQ(left.count(), whole.count());
-}
-
 TEST(Statistics, GeometricMeanPropagatesRelativeErrors) {
   const Estimate estimates[] = {{1.0, 0.1}, {100.0, 10.0}};
   const Estimate mean = geometric_mean_of(estimates);

@@ -24,6 +24,14 @@ const OperatingPoint high{1.7e7, 0.0}, low_ambient{1.7e7, 8e7}, low_signal{1.1e6
 
 Camera nine_chips() { return built_in_camera("exclusive-3tap-9chip"); }
 
+/// The camera with the clock and the taps of a code, and samples that hold whole chips.
+Camera camera_for(const ChipCode& code, Camera camera) {
+  camera.sensor.taps = code.taps;
+  camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * code.chips);
+  camera.samples = (camera.samples + code.chips - 1) / code.chips * code.chips;
+  return camera;
+}
+
 ChipCode code_of(std::vector<std::vector<std::string>> exposures) {
   ChipCode code{static_cast<int>(exposures.front().front().size()),
                 static_cast<int>(exposures.front().size()) - 1,

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/table_top.hpp"
+#include "table_top_image.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoder.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/table_top.hpp"
+#include "table_top_image.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {

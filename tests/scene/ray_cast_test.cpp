@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "core/shared/random.hpp"
-#include "scene/table_top.hpp"
+#include "table_top_image.hpp"
 
 namespace tofsmith {
 namespace {
@@ -177,7 +177,7 @@ TEST(TableTop, StandsWithinTheCamerasRange) {
 }
 
 TEST(TableTop, ShowsEveryShape) {
-  const StagedScene staged = table_top_scene(80, 60);
+  const StagedScene staged = built_in_scene("table-top", 80, 60);
   const SceneImage whole = table_top_image(80, 60);
   for (std::size_t left_out = 0; left_out < staged.shapes.size(); ++left_out) {
     std::vector<Shape> others = staged.shapes;

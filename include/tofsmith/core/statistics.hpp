@@ -16,11 +16,10 @@ struct Estimate {
 /// a / b; the standard error takes the two for independent.
 Estimate ratio_of(const Estimate& a, const Estimate& b);
 
-/// Mean and variance of a stream of values in one pass (Welford), mergeable (Chan et al.).
+/// Mean and variance of a stream of values in one pass (Welford).
 class RunningStatistics {
  public:
   void add(double value);
-  void merge(const RunningStatistics& other);
 
   std::int64_t count() const { return count_; }
   double mean() const { return mean_; }

@@ -72,13 +72,6 @@ double chip_level(int on_chips, int chips, double peak_factor);
 /// The code as waveforms, at the camera's levels and samples.
 CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::string& name);
 
-/// The camera with a clock and taps as the code has them and samples that hold whole chips (the
-/// next multiple at or above the camera's own): what the code is judged on.
-Camera camera_for(const ChipCode& code, Camera camera);
-
-/// The camera, judged at one operating point.
-Camera at_point(Camera camera, const OperatingPoint& point);
-
 /// How codes on a chip clock are searched.
 struct ChipSearchOptions {
   int exposures = 1;  ///< E, 1 .. 4; with the camera's taps at least 3 measurements, at most 16

@@ -205,22 +205,6 @@ auto fields_of(ConstOrNot<OperatingMultipathError> auto& e) {
                     Field("circular_m", e.circular_m, "finite and >= 0"));
 }
 
-/// Error where every pixel has a second return, decoded as if there were one, by zncc. Trial t of a
-/// point draws depth, uniform on the t-th slice of the range, albedo, return and noise from a
-/// stream of its own. Of the options, trials (per point) and seed count.
-/// @throws std::invalid_argument as evaluate(); Interrupted
-OperatingMultipathError operating_multipath_error(const CodeSet& code, const Camera& camera,
-                                                  const OperatingMultipath& later,
-                                                  const EvaluateOptions& options = {},
-                                                  const Progress& progress = {});
-
-/// The same trials, decoded as two returns.
-/// @throws std::invalid_argument also for codes that cannot separate two returns
-OperatingMultipathError two_return_error(const CodeSet& code, const Camera& camera,
-                                         const OperatingMultipath& later,
-                                         const EvaluateOptions& options = {},
-                                         const Progress& progress = {});
-
 /// Errors of a code in the operating multipath.
 struct OperatingMultipathReport {
   OperatingMultipathError single_path;                ///< decoded as single-path
@@ -231,8 +215,11 @@ auto fields_of(ConstOrNot<OperatingMultipathReport> auto& r) {
   return std::tuple(Field("single_path", r.single_path), Field("two_return", r.two_return));
 }
 
-/// Both, on the same trials.
-/// @throws as operating_multipath_error()
+/// Computes the depth error where every pixel has a second return, for zncc and for the two-return
+/// decoder on the same trials. Trial t of an operating point draws depth, uniform on the t-th slice
+/// of the range, albedo, return and noise from its own random stream. Of the options, only trials
+/// (per operating point) and seed count.
+/// @throws std::invalid_argument as evaluate(); Interrupted
 OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
                                                     const OperatingMultipath& later,
                                                     const EvaluateOptions& options = {},

@@ -141,17 +141,4 @@ CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::strin
                          std::move(demodulation));
 }
 
-Camera camera_for(const ChipCode& code, Camera camera) {
-  camera.sensor.taps = code.taps;
-  camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * code.chips);
-  camera.samples = (camera.samples + code.chips - 1) / code.chips * code.chips;
-  return camera;
-}
-
-Camera at_point(Camera camera, const OperatingPoint& point) {
-  camera.operating.signal_e_per_s = {point.signal_e_per_s};
-  camera.operating.ambient_e_per_s = {point.ambient_e_per_s};
-  return camera;
-}
-
 }  // namespace tofsmith

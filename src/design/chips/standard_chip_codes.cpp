@@ -3,12 +3,10 @@
 #include "design/chips/standard_chip_codes.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "code/shared/ramp.hpp"
 #include "design/chips/chip_metric.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {
 
@@ -106,34 +104,6 @@ std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples)
           {"three-phase-square", to_code_set(square, three_taps, "three-phase-square")},
           {"double-ramp-in-turn", double_ramp_in_turn(samples)},
           {"coprime-three-phase", to_code_set(pair, three_taps, "coprime-three-phase")}};
-}
-
-std::vector<std::vector<ComparedCode>> compare_chip_codes(const std::vector<StandardCode>& codes,
-                                                          const Camera& camera,
-                                                          EvaluateOptions options,
-                                                          const Progress& progress) {
-  options.method = DecodeMethod::ml;
-  options.bounds = false;
-  const std::vector<OperatingPoint> points = camera.operating.points();
-  std::vector<std::vector<ComparedCode>> table(points.size());
-  const ProgressParts parts(progress, codes.size());
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    const CodeSet& code = codes[i].code;
-    Camera fitted = camera;
-    fitted.sensor.taps = code.taps();
-    fitted.samples = code.samples();
-    const DepthErrorReport report = evaluate(code, fitted, options, parts[i]);
-    const CramerRaoBound bound(ForwardModel(code, fitted), fitted);
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      const Eigen::VectorXd sigma_m = bound.sigma_m(points[p]);
-      table[p].push_back({.name = codes[i].name,
-                          .exposures = code.exposures(),
-                          .taps = code.taps(),
-                          .rms_m = std::sqrt(sigma_m.squaredNorm() / double(sigma_m.size())),
-                          .circular_mde_m = report.points[p].circular_mde_m});
-    }
-  }
-  return table;
 }
 
 }  // namespace tofsmith

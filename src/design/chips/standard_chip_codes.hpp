@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tofsmith/design/chip_search.hpp"
-#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 
@@ -30,22 +29,5 @@ struct StandardCode {
 /// @param samples  a multiple of 36
 /// @throws std::invalid_argument for other samples
 std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples);
-
-/// How well a code does on a camera at one operating point.
-struct ComparedCode {
-  std::string name;
-  int exposures = 0, taps = 0;
-  double rms_m = 0.0;       ///< root mean square over depth of CramerRaoBound::sigma_m
-  Estimate circular_mde_m;  ///< Monte Carlo, maximum likelihood
-};
-
-/// Every code on the camera, with as many taps and samples as the code has, at each of its
-/// operating points: (points, codes).
-/// @param options  of the trials; the method is maximum likelihood whatever they say
-/// @throws std::invalid_argument if a code does not fit; Interrupted
-std::vector<std::vector<ComparedCode>> compare_chip_codes(const std::vector<StandardCode>& codes,
-                                                          const Camera& camera,
-                                                          EvaluateOptions options = {},
-                                                          const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -21,12 +21,6 @@ SwitchedLabels SwitchedLabels::from_cells(const std::vector<int>& cells) {
   return labels;
 }
 
-double SwitchedLabels::shortest_run() const {
-  double shortest = 1.0;
-  for (std::size_t i = 0; i < runs(); ++i) shortest = std::min(shortest, length(i));
-  return shortest;
-}
-
 double SwitchedLabels::share(int wanted) const {
   if (at.empty()) return label[0] == wanted ? 1.0 : 0.0;
   double sum = 0.0;

@@ -24,7 +24,6 @@ struct SwitchedLabels {
   /// Begin of the run after run i; a period later for the last.
   double end(std::size_t i) const { return i + 1 < at.size() ? at[i + 1] : at[0] + 1.0; }
   double length(std::size_t i) const { return end(i) - at[i]; }
-  double shortest_run() const;
   /// Share of the period with that label.
   double share(int wanted) const;
   /// On where the label is that.

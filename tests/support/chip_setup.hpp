@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "design/chips/standard_chip_codes.hpp"
+#include "tofsmith/design/chip_search.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+
+/// A camera with exclusive taps on a chip clock, judged at one operating point.
+inline Camera chip_camera(int chips, int taps, const OperatingPoint& point) {
+  Camera camera = built_in_camera("exclusive-3tap-9chip");
+  camera.operating.signal_e_per_s = {point.signal_e_per_s};
+  camera.operating.ambient_e_per_s = {point.ambient_e_per_s};
+  camera.sensor.taps = taps;
+  camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * chips);
+  return camera;
+}
+
+/// Quality of a code on a camera at one operating point.
+struct ComparedCode {
+  std::string name;
+  double rms_m = 0.0;       ///< root mean square over depth of CramerRaoBound::sigma_m
+  Estimate circular_mde_m;  ///< Monte Carlo, maximum likelihood
+};
+
+/// Evaluates every code by maximum likelihood, on the camera with as many taps and samples as the
+/// code has, at the camera's only operating point.
+inline std::vector<ComparedCode> compare_chip_codes(const std::vector<StandardCode>& codes,
+                                                    const Camera& camera, EvaluateOptions options) {
+  options.method = DecodeMethod::ml;
+  options.bounds = false;
+  std::vector<ComparedCode> table;
+  for (const StandardCode& standard : codes) {
+    const CodeSet& code = standard.code;
+    Camera fitted = camera;
+    fitted.sensor.taps = code.taps();
+    fitted.samples = code.samples();
+    const DepthErrorReport report = evaluate(code, fitted, options);
+    const Eigen::VectorXd sigma_m = CramerRaoBound(ForwardModel(code, fitted), fitted)
+                                        .sigma_m(camera.operating.points().front());
+    table.push_back({standard.name, std::sqrt(sigma_m.squaredNorm() / double(sigma_m.size())),
+                     report.points.front().circular_mde_m});
+  }
+  return table;
+}
+
+}  // namespace tofsmith
