@@ -332,14 +332,6 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_flag("--robustness", arguments->robustness,
                     "also judge each code on perturbed cameras: bandwidth ±20 %, peak ±10 %, "
                     "50 ps edge jitter, 2 % tap mismatch");
-  command
-      ->add_flag_callback(
-          "--multipath",
-          [] {
-            throw UsageError("--multipath: a command of its own now: tofsmith multipath CODE ..");
-          },
-          "")
-      ->group("");
   command->add_option("--perturb", arguments->perturb,
                       "also judge each code on cameras with each of these changes and with all at "
                       "once: jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");

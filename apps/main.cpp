@@ -13,6 +13,8 @@
 #include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 #include <system_error>
 
 #include "command_listing.hpp"
@@ -54,17 +56,28 @@ std::string words_of(const CLI::App& command) {
   return parent == nullptr ? std::string() : words_of(*parent) + " " + command.get_name();
 }
 
-/// The empty name of an output would pass for one that was not given.
-void refuse_outputs_without_name(int argc, char** argv) {
-  constexpr std::string_view outputs[] = {
-      "-o",           "--output",   "--store", "--export",     "--report",    "--table",
-      "--offset-map", "--gain-map", "--truth", "--truth-near", "--truth-far", "--truth-multipath"};
+/// Names of all options with a value, of the program and of every command below it.
+void add_options_with_values(const CLI::App& app, std::set<std::string>& names) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_size() == 0) continue;
+    for (const std::string& name : option->get_snames()) names.insert("-" + name);
+    for (const std::string& name : option->get_lnames()) names.insert("--" + name);
+  }
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    add_options_with_values(*command, names);
+}
+
+/// Commands treat an empty file name as one that was not given, and CLI11 takes the next word as
+/// the value of `--output=`.
+void refuse_empty_values(const CLI::App& app, int argc, char** argv) {
+  std::set<std::string> options;
+  add_options_with_values(app, options);
   for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    for (const std::string_view output : outputs)
-      if ((word == output && i + 1 < argc && argv[i + 1][0] == '\0') ||
-          (word.size() == output.size() + 1 && word.starts_with(output) && word.back() == '='))
-        throw IoError(output, "found an empty file name; expected a path");
+    std::string word = argv[i];
+    const bool ends_open = word.ends_with('=');
+    if (ends_open) word.pop_back();
+    if (options.contains(word) && (ends_open || (i + 1 < argc && argv[i + 1][0] == '\0')))
+      throw UsageError(fmt::format("{}: found an empty value; expected a value", word));
   }
 }
 
@@ -146,7 +159,6 @@ void pin_target() {
 
 int run(int argc, char** argv) {
   pin_target();
-  refuse_outputs_without_name(argc, argv);
   Session session;
   session.command_line = as_typed(argc, argv);
   session.words.assign(argv + std::min(argc, 1), argv + argc);
@@ -172,6 +184,7 @@ int run(int argc, char** argv) {
       [&] { thread_limit = std::make_unique<ThreadLimit>(session.threads); });
 
   add_commands(app, session);
+  refuse_empty_values(app, argc, argv);
   if (app.get_subcommands([](const CLI::App*) { return true; }).size() > 1)
     app.footer("Try: tofsmith demo -o out    tofsmith codes    tofsmith design paper-10f0 -o out");
 

@@ -34,10 +34,6 @@ class MethodArguments {
         ->group(for_experts);
   }
   DecodeMethod method() const { return parse_decode_method(method_); }
-  /// Whether it tells multipath returns from the direct one.
-  bool is_multipath() const {
-    return method() == DecodeMethod::two_return || method() == DecodeMethod::tail;
-  }
   UnwrapWeights unwrap_weights() const { return parse_unwrap_weights(weights_); }
 
  private:

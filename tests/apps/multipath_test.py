@@ -42,9 +42,6 @@ class Multipath(CommandLineTest):
         self.refuse(["multipath", "hamiltonian-k5", "--width", "8"], "--width", "--scene", code=2)
         self.refuse(["multipath", "hamiltonian-k5", "-o", "m.csv"],
                     "-o m.csv: unknown extension; expected .json or .html", code=2)
-        for rest in ([], ["--delays", "1"], ["--scene", "corner", "-o", "page.html"]):
-            self.refuse(["evaluate", "hamiltonian-k5", "--multipath", *rest],
-                        "a command of its own now: tofsmith multipath CODE", code=2)
         for value, words in (
                 ("ratio=.1:.5:.9", "found 'ratio=.1:.5:.9'; expected ratio=a:b,delta=a:b"),
                 ("ratio=.1,delay=1", "found 'delay=1'; expected ratio=a:b,delta=a:b"),
