@@ -34,9 +34,10 @@ if(TOFSMITH_IS_STATIC)
       "pkg_check_modules(LIBZIP REQUIRED QUIET IMPORTED_TARGET libzip)"
       "pkg_check_modules(YAML_CPP REQUIRED QUIET IMPORTED_TARGET yaml-cpp)"
       "pkg_check_modules(HDF5 REQUIRED QUIET IMPORTED_TARGET hdf5-serial)")
+  set(finds_lab "find_dependency(PkgConfig)"
+      "pkg_check_modules(LIBMD REQUIRED QUIET IMPORTED_TARGET libmd)")
   if(TOFSMITH_HAS_LXI)
-    set(finds_lab "find_dependency(PkgConfig)"
-        "pkg_check_modules(LIBLXI REQUIRED QUIET IMPORTED_TARGET liblxi)")
+    list(APPEND finds_lab "pkg_check_modules(LIBLXI REQUIRED QUIET IMPORTED_TARGET liblxi)")
   endif()
   set(finds_report "find_dependency(ZLIB)")
   set(finds_sweep "find_dependency(SQLite3)")

@@ -49,6 +49,7 @@ packages_demo=(
 packages_build=(
   "${packages_demo[@]}" "${packages_opencl[@]}"
   libsqlite3-dev      # sweep store
+  libmd-dev           # SHA-256 of exported files
   libboost-dev        # Asio: generators in the network
 )
 # The Python package, on top of the library.

@@ -3,10 +3,11 @@
 #include "instrument/generator_scripts.hpp"
 
 #include <fmt/format.h>
+#include <sha2.h>
 
+#include <array>
 #include <cmath>
-
-#include "core/shared/sha256.hpp"
+#include <cstdint>
 
 namespace tofsmith {
 
@@ -111,9 +112,10 @@ std::string text_of(std::span<const std::byte> bytes) {
 }
 
 std::string memory_name(const QuantizedWaveform& waveform) {
-  const auto* const codes = reinterpret_cast<const char*>(waveform.codes.data());
-  const std::string hash =
-      sha256_hex(std::string_view(codes, waveform.codes.size() * sizeof(waveform.codes[0])));
+  const std::span codes(waveform.codes);
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> digits{};
+  const std::string hash = SHA256Data(reinterpret_cast<const std::uint8_t*>(codes.data()),
+                                      codes.size_bytes(), digits.data());
   std::string name = fmt::format("{}{}_{}", waveform.arm == Arm::light ? "M" : "D",
                                  waveform.index + 1, hash.substr(0, 7));
   for (char& c : name)
