@@ -12,24 +12,19 @@ from typing import Any
 
 import numpy as np
 
+from ._plot_style import draw_depth_maps, new_figure, styled
 
-def picture_of(value: object, draw: Callable[[Any], Any]) -> str:
-    """HTML of `value`.
 
-    Parameters
-    ----------
-    value : object
-        Whose repr stands above the picture.
-    draw : callable
-        Gives a matplotlib figure of tofsmith.plot, which it is called with.
-    """
+def picture_of(value: object, draw: Callable[[], Any]) -> str:
+    """HTML of `value`: its repr, and the matplotlib figure that `draw` returns below it. Without
+    matplotlib only the repr."""
     text = f"<code>{html.escape(repr(value))}</code>"
     try:
-        from . import plot
+        figure = draw()
     except ImportError:  # no matplotlib
         return text
     data = io.BytesIO()
-    draw(plot).savefig(data, format="png", dpi=100)
+    figure.savefig(data, format="png", dpi=100)
     encoded = base64.b64encode(data.getvalue()).decode("ascii")
     name = html.escape(type(value).__name__)
     return f'{text}<br><img alt="{name}" src="data:image/png;base64,{encoded}">'
@@ -40,14 +35,15 @@ def depth_picture(value: object, depth_m: Any) -> str:
     if depth_m is None or not np.isfinite(depth_m).any() or min(np.shape(depth_m)) == 0:
         return f"<code>{html.escape(repr(value))}</code>"
     frame = depth_m if np.ndim(depth_m) == 2 else depth_m[0]
-    return picture_of(value, lambda plot: plot.depth_maps(frame))
+    depths_m = {"": np.asarray(frame, np.float32)}
+    return picture_of(value, lambda: styled(draw_depth_maps)(depths_m))
 
 
 def table_picture(value: object, correlation: Any, range_m: float) -> str:
     """HTML of what measurements are over depth: correlation functions, (N, K)."""
 
-    def draw(plot: Any) -> Any:
-        figure = plot.new_figure(None, 4.5, 2.2)
+    def draw() -> Any:
+        figure = new_figure(None, 4.5, 2.2)
         axis = figure.subplots()
         depth_m = (np.arange(len(correlation)) + 0.5) * range_m / len(correlation)
         axis.plot(depth_m, correlation)
@@ -60,8 +56,8 @@ def table_picture(value: object, correlation: Any, range_m: float) -> str:
 def camera_picture(value: object, frequency_hz: float, transfer: Any) -> str:
     """HTML of a camera: how much of each harmonic light and sensor let through together."""
 
-    def draw(plot: Any) -> Any:
-        figure = plot.new_figure(None, 4.5, 2.0)
+    def draw() -> Any:
+        figure = new_figure(None, 4.5, 2.0)
         axis = figure.subplots()
         axis.bar(1e-6 * frequency_hz * np.arange(len(transfer)), np.abs(transfer),
                  0.5e-6 * frequency_hz)
@@ -75,9 +71,9 @@ def camera_picture(value: object, frequency_hz: float, transfer: Any) -> str:
 def code_picture(value: object, modulation: Any, demodulation: Any, taps: int) -> str:
     """HTML of a code: an exposure a row, its modulation and the demodulations of its taps."""
 
-    def draw(plot: Any) -> Any:
+    def draw() -> Any:
         samples, exposures = modulation.shape
-        figure = plot.new_figure(None, 4.5, 0.4 + 0.8 * exposures)
+        figure = new_figure(None, 4.5, 0.4 + 0.8 * exposures)
         axes = figure.subplots(exposures, 1, sharex=True, squeeze=False)[:, 0]
         periods = np.arange(samples) / samples
         for e, axis in enumerate(axes):

@@ -103,3 +103,25 @@ def log_ticks_in_plain_numbers(axis: Any) -> None:
 def short(value: float) -> str:
     """Two digits; whole numbers from 10 on."""
     return f"{value:.2g}" if value < 10 else f"{value:.0f}"
+
+
+def draw_depth_maps(depths_m: dict[str, Any], figure: Optional[Figure] = None) -> Figure:
+    """Depth planes (H, W) side by side under their names, with one colour scale. Pixels without
+    depth are grey."""
+    shown = np.concatenate([d[np.isfinite(d)] for d in depths_m.values()])
+    low, high = np.percentile(shown, (0.5, 99.5)) if shown.size else (0.0, 1.0)
+    rows, columns = grid(len(depths_m))
+    height, width = next(iter(depths_m.values())).shape
+    panel_in = (page_in - 0.8) / 3 if len(depths_m) > 1 else column_in - 0.8
+    figure = new_figure(figure, 0.8 + panel_in * columns, 0.3 + panel_in * height / width * rows)
+    axes = figure.subplots(rows, columns, squeeze=False)
+    picture = None
+    for axis, (name, depth_m) in zip(axes.flat, depths_m.items()):
+        axis.set_facecolor("0.8")
+        picture = axis.imshow(depth_m, vmin=low, vmax=high, interpolation="nearest")
+        axis.set(title=name, xticks=[], yticks=[])
+        axis.spines[:].set_visible(False)
+    for axis in axes.flat[len(depths_m) :]:
+        axis.axis("off")
+    figure.colorbar(picture, ax=axes, label="depth (m)")
+    return figure

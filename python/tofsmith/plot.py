@@ -42,6 +42,7 @@ from ._forward_model import ForwardModel, coding_curve_in_space
 from ._plot_style import (
     colours,
     column_in,
+    draw_depth_maps,
     grid,
     log_ticks_in_plain_numbers,
     new_figure,
@@ -320,23 +321,7 @@ def depth_maps(
     """Depth maps side by side with one colour scale: one, or several of one shape by name. Pixels
     without depth are grey."""
     named = named_depths(depths)
-    shown = np.concatenate([d[np.isfinite(d)] for d in named.values()])
-    low, high = np.percentile(shown, (0.5, 99.5)) if shown.size else (0.0, 1.0)
-    rows, columns = grid(len(named))
-    height, width = next(iter(named.values())).shape
-    panel_in = (page_in - 0.8) / 3 if len(named) > 1 else column_in - 0.8
-    figure = new_figure(figure, 0.8 + panel_in * columns, 0.3 + panel_in * height / width * rows)
-    axes = figure.subplots(rows, columns, squeeze=False)
-    picture = None
-    for axis, (name, depth) in zip(axes.flat, named.items()):
-        axis.set_facecolor("0.8")
-        picture = axis.imshow(depth, vmin=low, vmax=high, interpolation="nearest")
-        axis.set(title=name if isinstance(depths, dict) else "", xticks=[], yticks=[])
-        axis.spines[:].set_visible(False)
-    for axis in axes.flat[len(named) :]:
-        axis.axis("off")
-    figure.colorbar(picture, ax=axes, label="depth (m)")
-    return figure
+    return draw_depth_maps(named if isinstance(depths, dict) else {"": named["depth"]}, figure)
 
 
 @styled

@@ -3,6 +3,7 @@
 """Objects behave as users of NumPy and notebooks expect."""
 
 import copy
+import html
 import pickle
 import subprocess
 import sys
@@ -91,6 +92,14 @@ def test_reprs_are_short_and_notebooks_get_a_picture(decoder):
         assert "&lt;" in page.split("<img")[0]
         assert "data:image/png;base64,iVBOR" in page
     assert "img" not in ts.DepthImage()._repr_html_()
+
+
+def test_notebooks_without_matplotlib_get_the_repr(monkeypatch):
+    for name in ("matplotlib", "matplotlib.pyplot"):
+        monkeypatch.setitem(sys.modules, name, None)
+    scene = ts.load_scene("table-top", width=8, height=6)
+    for value in (scene, ts.Camera("paper-10f0")):
+        assert value._repr_html_() == f"<code>{html.escape(repr(value))}</code>"
 
 
 def test_decoders_copy_and_pickle(decoder, tmp_path):
