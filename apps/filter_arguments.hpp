@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith::apps {
 

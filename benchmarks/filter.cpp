@@ -13,6 +13,7 @@
 #include "decode_frame.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith::benchmarks {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/point_cloud.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"

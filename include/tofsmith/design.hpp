@@ -9,6 +9,7 @@
 #include "tofsmith/design/candidate.hpp"
 #include "tofsmith/design/chip_search.hpp"
 #include "tofsmith/design/circulant_tv.hpp"
+#include "tofsmith/design/code_gradients.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/design/factorize.hpp"
 #include "tofsmith/design/optimize.hpp"

@@ -8,7 +8,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
-#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/point_cloud.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith::python {

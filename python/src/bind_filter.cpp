@@ -12,6 +12,9 @@
 #include "progress.hpp"
 #include "raw_array.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/merge_exposures.hpp"
+#include "tofsmith/decode/stray_light.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith::python {
 

@@ -8,7 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/design/optimize.hpp"
+#include "tofsmith/design/code_gradients.hpp"
 
 // The steps of tofsmith.torch, which checks and shapes what comes: here arrays of B codes, C order,
 // (B, N, K) of tables, (B, P, K) of measurements, (B, P) of light.

@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith::python {
 

@@ -11,7 +11,7 @@
 #include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/stray_light.hpp"
 
 namespace tofsmith {
 

@@ -7,7 +7,7 @@
 
 #include "core/shared/random.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/stray_light.hpp"
 
 namespace tofsmith {
 namespace {

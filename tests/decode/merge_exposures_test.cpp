@@ -9,7 +9,7 @@
 #include "core/shared/random.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/merge_exposures.hpp"
 
 namespace tofsmith {
 namespace {

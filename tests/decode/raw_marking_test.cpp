@@ -11,6 +11,8 @@
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/merge_exposures.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith {
 namespace {

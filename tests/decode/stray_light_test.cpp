@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/stray_light.hpp"
 
 namespace tofsmith {
 namespace {

@@ -12,7 +12,7 @@
 #include "decode/raw_scale.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith {
 namespace {

@@ -9,7 +9,7 @@
 #include "each_target.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/design/optimize.hpp"
+#include "tofsmith/design/code_gradients.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {

@@ -63,8 +63,8 @@ def upward_imports(sources):
 
 
 def cycle(sources):
-    """Modules that import one another in a circle, and what is only reached through them; empty if
-    there is no circle."""
+    """Modules that import one another in a circle, and the modules that import them; empty if there
+    is no circle."""
     imports = {module: {m for m, _ in imported_modules(module, source, sources)} & set(sources)
                for module, source in sources.items()}
     while True:  # a module that imports only removed ones can be removed; a circle stays

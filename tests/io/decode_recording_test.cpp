@@ -18,7 +18,6 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 

@@ -41,7 +41,7 @@ keywords = [
     ("RequirementOptions", "design/design.hpp", ts.find_requirements, set()),
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
-    ("TimeFilterOptions", "decode/filter.hpp", ts.TimeFilter, set()),
+    ("TimeFilterOptions", "decode/time_filter.hpp", ts.TimeFilter, set()),
     ("ExportOptions", "waveforms/waveform_export.hpp", ts.export_waveforms, set()),
     ("ResponseRecordOptions", "calibrate/impulse_response.hpp", ts.read_response_record, set()),
     ("ResponseCalibrationOptions", "calibrate/impulse_response.hpp",

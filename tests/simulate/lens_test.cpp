@@ -11,7 +11,7 @@
 #include "simulate/lens_kernels.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/stray_light.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
 
 namespace tofsmith {

@@ -2,18 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/design/candidate.hpp"
 
 namespace tofsmith {
@@ -99,117 +95,5 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
 
 /// A shortest pulse that the camera's samples can follow [s]: two of them.
 double suggested_shortest_pulse_s(const Camera& camera);
-
-/// Light that P pixels see.
-struct PixelLight {
-  std::span<const double> depth_bin, signal_e_per_s, ambient_e_per_s;  ///< (P) each
-};
-
-/// Gradient of a function of the measurements of pixels.
-struct PixelGradient {
-  MeasurementTable table;                                      ///< by the code's table
-  Eigen::VectorXd depth_bin, signal_e_per_s, ambient_e_per_s;  ///< (P)
-};
-
-/// By what gradients are wanted.
-struct WantedGradients {
-  bool table = true;
-  bool light = true;  ///< signal and ambient
-  bool depth = true;
-};
-
-/// Gradient of a function of decoded depths.
-template <typename Value>
-struct DecodedGradient {
-  MeasurementTable table;
-  std::vector<Value> electrons;  ///< (P, K)
-};
-
-/// How measurements are decoded softly: chord j between bins is chosen with probability
-///   exp(S_j / temperature_e2) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the best point p of
-///   it,
-/// on the correlation functions without what ambient light explains.
-struct SoftDecoding {
-  std::span<const double> temperature_e2;  ///< (P), > 0; the variance of y is what noise suggests
-  bool circular = false;                   ///< depths and errors go the shorter way round
-};
-
-/// What optimize() goes downhill along, for others to learn codes with: from waveforms that are
-/// held over N cells to tables, electrons, soft decoding and the Cramer-Rao bound, each step with
-/// its adjoint. Waveforms may be any real numbers, whether a camera can play them or not. Arms,
-/// contrast, readout of taps, dark current and exposures are the camera's. Variances are those
-/// before any clipping.
-/// @note thread-safe; same bits for any number of threads
-class CodeGradients {
- public:
-  /// Matrices of pixels, one row each.
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  /// @throws std::invalid_argument if the camera is invalid, or has rows, a generator, playback,
-  ///         temperature or tap_mismatch, which waveforms would have to be known for
-  CodeGradients(const Camera& camera, int samples, int exposures);
-  ~CodeGradients();
-  CodeGradients(const CodeGradients&) = delete;
-  CodeGradients& operator=(const CodeGradients&) = delete;
-
-  int samples() const;
-  int exposures() const;
-  int tap_values() const;    ///< columns of a demodulation, exposures x taps
-  int measurements() const;  ///< K: what leaves the sensor
-  bool has_shot() const;     ///< whether tables have the light behind differences too
-
-  /// Correlation functions of waveforms (N, E) and (N, E x taps) at the bins.
-  MeasurementTable measure(const Eigen::MatrixXd& modulation,
-                           const Eigen::MatrixXd& demodulation) const;
-  /// Gradient by {modulation, demodulation} of a function whose gradient by the table is given.
-  std::pair<Eigen::MatrixXd, Eigen::MatrixXd> pull_back(const Eigen::MatrixXd& modulation,
-                                                        const Eigen::MatrixXd& demodulation,
-                                                        const MeasurementTable& by_table) const;
-
-  /// Expected electrons [e] and variance [e^2] of the measurements (P, K), as of ForwardModel.
-  void electrons(const MeasurementTable& table, const PixelLight& light, Rows& mean,
-                 Rows& variance) const;
-  /// @param by_mean, by_variance  (P, K)
-  /// @param wanted  others are zero
-  PixelGradient pull_back_electrons(const MeasurementTable& table, const PixelLight& light,
-                                    const Rows& by_mean, const Rows& by_variance,
-                                    WantedGradients wanted = {}) const;
-
-  /// Expected depth [bin] (P) of electrons (P, K) with dark current taken off. Circular: the mean
-  /// about the best match, on the shorter way round, in [0, N).
-  template <typename Value>
-  std::vector<double> soft_decode(const MeasurementTable& table, std::span<const Value> electrons,
-                                  const SoftDecoding& decoding) const;
-  /// Expected |error| [bin] (P), of depths that are true.
-  template <typename Value>
-  std::vector<double> soft_error(const MeasurementTable& table, std::span<const Value> electrons,
-                                 const SoftDecoding& decoding,
-                                 std::span<const double> true_bin) const;
-  /// Gradient of sum weight[p] of soft_decode(), or where true_bin is not empty of soft_error().
-  /// That by a temperature is -<y, gradient by y> / (2 temperature): S is quadratic in y.
-  template <typename Value>
-  DecodedGradient<Value> pull_back_decoded(const MeasurementTable& table,
-                                           std::span<const Value> electrons,
-                                           const SoftDecoding& decoding,
-                                           std::span<const double> true_bin,
-                                           std::span<const double> weight) const;
-
-  /// CramerRaoBound::sigma_m() of a table with 4 cells per bin [m] (4 N, points).
-  Eigen::MatrixXd depth_deviation_m(const MeasurementTable& table,
-                                    std::span<const OperatingPoint> points) const;
-  /// Gradient of sum by_deviation o depth_deviation_m(): by the table, and signal_e_per_s and
-  /// ambient_e_per_s (points). Infinite deviations count nothing.
-  PixelGradient pull_back_depth_deviation(const MeasurementTable& table,
-                                          std::span<const OperatingPoint> points,
-                                          const Eigen::MatrixXd& by_deviation) const;
-
-  /// Electrons of dark current (K), which decoding takes off.
-  const Eigen::VectorXd& dark_electrons() const;
-
-  struct Steps;  ///< what they stand on
-
- private:
-  std::unique_ptr<const Steps> steps_;
-};
 
 }  // namespace tofsmith

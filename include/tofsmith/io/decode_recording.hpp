@@ -17,6 +17,7 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/scene_image.hpp"

@@ -2,40 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
-
-/// One more number per point, such as "intensity" or "confidence".
-struct PointScalar {
-  std::string name;  ///< letters, digits and underscores
-  std::vector<float> values;
-};
-
-/// Points in space. Every list but `points_m` may be empty; the others are as long as it.
-struct PointCloud {
-  std::vector<std::array<float, 3>> points_m;        ///< x, y, z
-  std::vector<PointScalar> scalars;                  ///< in the file's order
-  std::vector<std::array<std::uint8_t, 3>> colours;  ///< red, green, blue, sRGB
-};
-
-/// Binary little endian: x, y, z, the scalars, then red, green, blue.
-/// @throws std::invalid_argument if lists differ in length or a scalar's name is no PLY word, taken
-///         or used twice
-std::vector<std::byte> serialize_ply(const PointCloud& cloud);
-/// @throws IoError as AtomicFile does
-void write_ply(const std::filesystem::path& path, const PointCloud& cloud, OutputPolicy policy);
 
 /// Largest mesh file that is read [bytes]; a triangle takes 15 to 200.
 inline constexpr std::uint64_t max_mesh_file_bytes = std::uint64_t{1} << 30;

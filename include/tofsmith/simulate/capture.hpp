@@ -60,7 +60,7 @@ struct SceneLight {
   /// One for all pixels, or one for each, row by row; empty: none.
   std::vector<Transient> transients;
   /// What the lens then scatters over the image, ambient light too: the kernel of StrayLight
-  /// (decode/filter.hpp); empty: nothing.
+  /// (decode/stray_light.hpp); empty: nothing.
   Image<float> stray_light;
 
   bool is_direct_only() const { return returns.empty() && !tail && transients.empty(); }

@@ -11,7 +11,7 @@
 #include "decode/filter/hidden_signal.hpp"
 #include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith {
 

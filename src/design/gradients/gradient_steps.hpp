@@ -6,7 +6,7 @@
 
 #include "design/gradients/between_bins.hpp"
 #include "design/optimize/sampled_camera.hpp"
-#include "tofsmith/design/optimize.hpp"
+#include "tofsmith/design/code_gradients.hpp"
 
 namespace tofsmith {
 

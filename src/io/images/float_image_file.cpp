@@ -10,7 +10,7 @@
 #include "io/images/array_image.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/stray_light.hpp"
 
 namespace tofsmith {
 namespace {

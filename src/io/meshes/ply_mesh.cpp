@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "io/meshes/ply_header.hpp"
+#include "io/meshes/ply_types.hpp"
 #include "io/meshes/polygon_soup.hpp"
 #include "io/shared/byte_cursor.hpp"
 #include "tofsmith/core/error.hpp"

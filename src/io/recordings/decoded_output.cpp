@@ -13,11 +13,10 @@
 #include <utility>
 
 #include "io/images/exr.hpp"
-#include "io/meshes/pcd.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/point_cloud.hpp"
 
 namespace tofsmith {
 

@@ -11,6 +11,9 @@
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/merge_exposures.hpp"
+#include "tofsmith/decode/stray_light.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 
 namespace tofsmith {

@@ -5,6 +5,7 @@
 #include "decode/filter/filter_plan.hpp"
 #include "decode/filter/time_filter_state.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith {
 

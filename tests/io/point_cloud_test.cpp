@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/point_cloud.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ PointCloud test_cloud() {
   return cloud;
 }
 
-TEST(Ply, TheFileIsTheOneTheFormatAsksFor) {
+TEST(PointCloud, TheFileIsTheOneTheFormatAsksFor) {
   PointCloud cloud;
   cloud.points_m = {{1.0f, -2.0f, 0.0f}};
   cloud.scalars = {{"intensity", {0.5f}}};
@@ -30,7 +30,7 @@ TEST(Ply, TheFileIsTheOneTheFormatAsksFor) {
                      std::string("\0\0\x80\x3f\0\0\0\xc0\0\0\0\0\0\0\0\x3f\1\2\xff", 19)));
 }
 
-TEST(Ply, RefusesToWriteCloudsThatAreNone) {
+TEST(PointCloud, RefusesToWriteCloudsThatAreNone) {
   PointCloud cloud = test_cloud();
   cloud.colours.pop_back();
   EXPECT_THROW(serialize_ply(cloud), std::invalid_argument);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/meshes/ply_header.hpp"
+#include "io/meshes/ply_types.hpp"
 
 #include <algorithm>
 #include <array>

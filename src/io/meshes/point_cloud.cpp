@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/point_cloud.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ void check(const PointCloud& cloud) {
   if (!cloud.colours.empty()) same_length(cloud.colours.size(), "colours");
 }
 
-std::string header_text(const PointCloud& cloud) {
+std::string ply_header(const PointCloud& cloud) {
   std::string text = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\n",
@@ -46,11 +46,22 @@ std::string header_text(const PointCloud& cloud) {
   return text + "end_header\n";
 }
 
-}  // namespace
+std::string pcd_header(const PointCloud& cloud, int height, int width) {
+  std::string names = "x y z", sizes = "4 4 4", types = "F F F", counts = "1 1 1";
+  for (const PointScalar& scalar : cloud.scalars) {
+    names += " " + scalar.name;
+    sizes += " 4";
+    types += " F";
+    counts += " 1";
+  }
+  return fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\n"
+      "COUNT {}\nWIDTH {}\nHEIGHT {}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
+      names, sizes, types, counts, width, height, cloud.points_m.size());
+}
 
-std::vector<std::byte> serialize_ply(const PointCloud& cloud) {
-  check(cloud);
-  const std::string header = header_text(cloud);
+/// The header, then of every point x, y, z, the scalars and its colour.
+std::vector<std::byte> with_points(const std::string& header, const PointCloud& cloud) {
   const std::size_t row_bytes =
       sizeof(float) * (3 + cloud.scalars.size()) + (cloud.colours.empty() ? 0 : 3);
   std::vector<std::byte> content(header.size() + row_bytes * cloud.points_m.size());
@@ -70,8 +81,20 @@ std::vector<std::byte> serialize_ply(const PointCloud& cloud) {
   return content;
 }
 
+}  // namespace
+
+std::vector<std::byte> serialize_ply(const PointCloud& cloud) {
+  check(cloud);
+  return with_points(ply_header(cloud), cloud);
+}
+
 void write_ply(const std::filesystem::path& path, const PointCloud& cloud, OutputPolicy policy) {
   write_file_atomically(path, serialize_ply(cloud), policy);
+}
+
+void write_pcd(const std::filesystem::path& path, const PointCloud& cloud, int height, int width,
+               OutputPolicy policy) {
+  write_file_atomically(path, with_points(pcd_header(cloud, height, width), cloud), policy);
 }
 
 }  // namespace tofsmith

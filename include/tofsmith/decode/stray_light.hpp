@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "tofsmith/core/image.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+/// Stray light: the lens scatters light from every pixel to all others. Of light x the sensor sees
+/// (1 - s) x + kernel * x, where s is the sum of the kernel. Light scattered out of the image is
+/// lost; light scattered into the image from outside is unknown and is not removed.
+/// Caches data for frames of one size; not thread-safe.
+class StrayLight {
+ public:
+  /// @param kernel  (2 R + 1, 2 Q + 1): share of a pixel's light that reaches each pixel around it;
+  ///                the middle is the pixel itself
+  /// @throws std::invalid_argument unless the size is odd, each share finite and >= 0, and their
+  ///         sum < 0.5
+  explicit StrayLight(Image<float> kernel);
+  ~StrayLight();
+  StrayLight(StrayLight&&) noexcept;
+  StrayLight& operator=(StrayLight&&) noexcept;
+
+  const Image<float>& kernel() const { return kernel_; }
+  /// s, the share of all light that is scattered.
+  double share() const { return share_; }
+  /// Memory that remove() takes for frames of this size [bytes].
+  double memory_bytes(int height, int width, int measurements) const;
+
+  /// Returns the light that the sensor sees of light (H, W).
+  Image<float> scatter(const Image<float>& light);
+  /// Inverts scatter(): iterates x <- (y - kernel * x) / (1 - s) until x changes by less than 1e-6
+  /// of its largest value, at most 60 times.
+  Image<float> gather(const Image<float>& seen);
+  /// Applies gather() to each measurement of a frame. Saturated and invalid pixels keep their
+  /// values; a saturated pixel is assumed to scatter its measured light, an invalid one none.
+  /// @param table  provides the black level and the saturation level of the raw values
+  /// @param clean  (1, H, W, K), with about the noise of the raw values
+  /// @throws std::invalid_argument if the measurements differ
+  /// @note the same bits for any number of threads
+  void remove(const RawView& raw, const DecodingTable& table, RawFrames& clean);
+
+ private:
+  struct Plan;
+  const Plan& plan_of(int height, int width);
+  Image<float> gathered(const Plan& plan, const Image<float>& seen) const;
+
+  Image<float> kernel_;
+  double share_ = 0.0;
+  std::unique_ptr<Plan> plan_;
+};
+
+}  // namespace tofsmith
