@@ -34,9 +34,10 @@ void set_field(const char* argument, const std::string& setting, Options& option
     if (field.name != key) return;
     is_known = true;
     if (!CLI::detail::lexical_cast(value, field.value) ||
-        !keeps(static_cast<double>(field.value), field.rule))
-      throw UsageError(
-          fmt::format("{} {}: found {}; must be {}", argument, key, value, field.rule));
+        !field.range.contains(static_cast<double>(field.value)))
+      throw UsageError(fmt::format(
+          "{} {}: found {}; must be {}", argument, key, value,
+          field.range.text(std::is_integral_v<std::remove_cvref_t<decltype(field.value)>>)));
   });
   if (is_known) return;
   const std::vector<std::string> keys = keys_of<Options>();

@@ -79,8 +79,8 @@ struct DeviceOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
-  return std::tuple(Field("memory_mb", o.memory_mb, "finite and > 0"),
-                    Field("use_doubles", o.use_doubles), Field("min_pixels", o.min_pixels, ">= 0"));
+  return std::tuple(Field("memory_mb", o.memory_mb, above(0)), Field("use_doubles", o.use_doubles),
+                    Field("min_pixels", o.min_pixels, at_least(0)));
 }
 
 /// DeviceOptions::min_pixels of the device `auto`, for decoding and for filtering. The values are

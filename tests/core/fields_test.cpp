@@ -17,8 +17,8 @@ struct Inner {
   int tries = 8;
 };
 auto fields_of(ConstOrNot<Inner> auto& i) {
-  return std::tuple(Field("share", i.share, "in (0, 1/2]"),
-                    Field("tries", i.tries, ">= 1", ByEffort{3}));
+  return std::tuple(Field("share", i.share, left_open(0, 0.5)),
+                    Field("tries", i.tries, at_least(1), ByEffort{3}));
 }
 
 struct Whole {
@@ -30,9 +30,9 @@ struct Whole {
   std::optional<Inner> second;
 };
 auto fields_of(ConstOrNot<Whole> auto& w) {
-  return std::tuple(Field("starts", w.starts, "in [2, 4e9]", ByEffort{2}),
-                    Field("delays_m", w.delays_m, "finite and > 0"),
-                    Field("longest_m", w.longest_m, "> 0"), Field("name", w.name),
+  return std::tuple(Field("starts", w.starts, closed(2, 4e9), ByEffort{2}),
+                    Field("delays_m", w.delays_m, above(0)),
+                    Field("longest_m", w.longest_m, above(0).or_infinity()), Field("name", w.name),
                     Field("inner", w.inner), Field("second", w.second));
 }
 static_assert(lists_every_field<Inner> && lists_every_field<Whole>);
@@ -92,30 +92,10 @@ TEST(Fields, AreVisitedByNameInOrder) {
 
 TEST(Fields, RefusalsNameOwnerFieldValueAndRule) {
   EXPECT_EQ(refusal({}), "");
-  EXPECT_EQ(refusal({.starts = 1}), "Whole::starts = 1; must be in [2, 4e9]");
+  EXPECT_EQ(refusal({.starts = 1}), "Whole::starts = 1; must be in [2, 4000000000]");
   EXPECT_EQ(refusal({.delays_m = {1.0, infinity}}),
             "Whole::delays_m = inf; each must be finite and > 0");
   EXPECT_EQ(refusal({.longest_m = 0.0}), "Whole::longest_m = 0; must be > 0");
-}
-
-TEST(Fields, RulesHoldAsTheyRead) {
-  const double not_a_number = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(keeps(-infinity, ""));
-  EXPECT_TRUE(keeps(infinity, ">= 0"));
-  EXPECT_FALSE(keeps(infinity, "finite and >= 0"));
-  EXPECT_FALSE(keeps(not_a_number, ">= 0"));
-  EXPECT_FALSE(keeps(not_a_number, "in [0, 1]"));
-  EXPECT_TRUE(keeps(0.0, "0 or >= 2"));
-  EXPECT_FALSE(keeps(1.0, "0 or >= 2"));
-  EXPECT_TRUE(keeps(2.0, "0 or >= 2"));
-  EXPECT_TRUE(keeps(0.0, "in [0, 1)"));
-  EXPECT_FALSE(keeps(1.0, "in [0, 1)"));
-  EXPECT_FALSE(keeps(0.0, "in (0, 1]"));
-  EXPECT_TRUE(keeps(1.0, "in (0, 1]"));
-  EXPECT_FALSE(keeps(0.5, "in (0, 1/2)"));
-  EXPECT_TRUE(keeps(0.49, "in (0, 1/2)"));
-  EXPECT_TRUE(keeps(1e-7, "in [1e-7, 1e-2]"));
-  EXPECT_FALSE(keeps(0.0, "> 0"));
 }
 
 TEST(Fields, EffortScalesMarkedCountsAndNothingElse) {

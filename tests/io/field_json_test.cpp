@@ -30,9 +30,10 @@ struct Finding {
   double bound_m = 0.0;
 };
 auto fields_of(ConstOrNot<Finding> auto& f) {
-  return std::tuple(Field("name", f.name), Field("starts", f.starts, ">= 1", ByEffort{1}),
-                    Field("error_m", f.error_m, "finite and >= 0"), Field("steps", f.steps),
-                    Field("point", f.point), Field("bound_m", f.bound_m, ">= 0"));
+  return std::tuple(Field("name", f.name), Field("starts", f.starts, at_least(1), ByEffort{1}),
+                    Field("error_m", f.error_m, at_least(0)), Field("steps", f.steps),
+                    Field("point", f.point),
+                    Field("bound_m", f.bound_m, at_least(0).or_infinity()));
 }
 
 /// A Finding to which a field was added, and listed, and nothing else was done.
@@ -41,8 +42,8 @@ struct Grown {
   int added = 8;
 };
 auto fields_of(ConstOrNot<Grown> auto& g) {
-  return std::tuple(Field("starts", g.starts, ">= 1"),
-                    Field("added", g.added, "in [3, 16]", ByEffort{3}));
+  return std::tuple(Field("starts", g.starts, at_least(1)),
+                    Field("added", g.added, closed(3, 16), ByEffort{3}));
 }
 
 namespace {

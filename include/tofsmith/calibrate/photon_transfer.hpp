@@ -24,9 +24,9 @@ struct PhotonTransferOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
-  return std::tuple(Field("black_level_dn", o.black_level_dn, "finite and >= 0"),
-                    Field("adc_bits", o.adc_bits, "in [1, 24]"),
-                    Field("averaged", o.averaged, "finite and > 0"));
+  return std::tuple(Field("black_level_dn", o.black_level_dn, at_least(0)),
+                    Field("adc_bits", o.adc_bits, closed(1, 24)),
+                    Field("averaged", o.averaged, above(0)));
 }
 
 /// Mean and variance of one pair of frames of one measurement; of differences, of those that

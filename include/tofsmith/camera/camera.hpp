@@ -131,8 +131,8 @@ struct OperatingPoint {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
-  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, "finite and >= 0"),
-                    Field("ambient_e_per_s", p.ambient_e_per_s, "finite and >= 0"));
+  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, at_least(0)),
+                    Field("ambient_e_per_s", p.ambient_e_per_s, at_least(0)));
 }
 
 /// How the noise of electrons is drawn.

@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/range.hpp"
 
 // The fields of an options or result struct, listed once beside it, in the order of declaration:
 //
 //   auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
-//     return std::tuple(Field("starts", o.starts, ">= 1", ByEffort{2}), Field("polish", o.polish));
+//     return std::tuple(Field("starts", o.starts, at_least(1), ByEffort{2}), Field("polish",
+//     o.polish));
 //   }
 //
 // Validation, keys of finished work, JSON, Python and effort go through for_each_field(), which
@@ -40,19 +42,25 @@ struct ByEffort {
   int min = 0;
 };
 
+/// What a field is, as a noun phrase: the help text of its option.
+struct Help {
+  std::string_view text;
+};
+
 /// What JSON documents call a field, where that is not its name.
 struct InDocuments {
   std::string_view name;
 };
 
-/// A field of a struct: its name, itself, and as marks the rule that numbers keep, such as
-/// "finite and >= 0", "> 0", "in [24, 960]", "in (0, 1/2)" or "0 or >= 2", and what else is known.
+/// A field of a struct: its name, a reference to its value, the range of numbers, and further
+/// marks.
 template <typename Value>
 struct Field {
   const char* name;
   Value& value;
-  const char* rule = "";
+  Range range = {};
   std::optional<ByEffort> by_effort = {};
+  std::string_view help = {};
   std::string_view document_name = name;
   unsigned marks = 0;
 
@@ -64,8 +72,9 @@ struct Field {
   bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
 
  private:
-  void set(const char* its_rule) { rule = its_rule; }
+  void set(const Range& its_range) { range = its_range; }
   void set(ByEffort effort) { by_effort = effort; }
+  void set(Help its) { help = its.text; }
   void set(InDocuments its) { document_name = its.name; }
   void set(FieldMark mark) { marks |= as_bits(mark); }
 };
@@ -119,9 +128,6 @@ void for_each_field(Struct& its, Visit&& visit) {
 /// "linear_se_m" beside "linear_mde_m".
 std::string error_name(std::string_view name);
 
-/// Whether a number keeps the rule of a Field; "" is none.
-bool keeps(double value, std::string_view rule);
-
 template <typename Value>
 inline constexpr bool is_list = false;
 template <typename Item>
@@ -133,26 +139,27 @@ inline constexpr bool is_optional<std::optional<Value>> = true;
 
 namespace detail {
 template <typename Value>
-void check(const char* name, const Value& value, std::string_view rule, std::string_view owner,
+void check(const char* name, const Value& value, const Range& range, std::string_view owner,
            std::string_view which = "must be ") {
   if constexpr (std::is_arithmetic_v<Value>) {
-    if (!keeps(static_cast<double>(value), rule))
-      require(false, std::string(owner) + name, value, std::string(which) + std::string(rule));
+    if (!range.contains(static_cast<double>(value)))
+      require(false, std::string(owner) + name, value,
+              std::string(which) + range.text(std::is_integral_v<Value>));
   } else if constexpr (is_list<Value>) {
-    for (const auto& item : value) check(name, item, rule, owner, "each must be ");
+    for (const auto& item : value) check(name, item, range, owner, "each must be ");
   } else if constexpr (is_optional<Value>) {
-    if (value) check(name, *value, rule, owner);
+    if (value) check(name, *value, range, owner);
   }
 }
 }  // namespace detail
 
-/// Checks the rule of every field; members that are structs check their own.
+/// Checks the range of every field; members that are structs check their own.
 /// @param owner  before the names in errors: "OptimizeOptions::"
 /// @throws std::invalid_argument "OptimizeOptions::starts = -3; must be >= 1"
 template <typename Struct>
 void check_fields(const Struct& its, std::string_view owner = "") {
   for_each_field(
-      its, [&](const auto& field) { detail::check(field.name, field.value, field.rule, owner); });
+      its, [&](const auto& field) { detail::check(field.name, field.value, field.range, owner); });
 }
 
 /// A count times `effort`, rounded, and at least as large as it must stay.

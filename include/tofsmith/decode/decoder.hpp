@@ -33,10 +33,10 @@ struct DecodeOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
-  return std::tuple(Field("low_signal_sigma", o.low_signal_sigma, "finite and >= 0"),
-                    Field("min_confidence", o.min_confidence, "in [0, 1]"),
-                    Field("false_alarm_rate", o.false_alarm_rate, "in [0, 1)"),
-                    Field("model_error_percent", o.model_error_percent, "in [0, 100]"));
+  return std::tuple(Field("low_signal_sigma", o.low_signal_sigma, at_least(0)),
+                    Field("min_confidence", o.min_confidence, closed(0, 1)),
+                    Field("false_alarm_rate", o.false_alarm_rate, right_open(0, 1)),
+                    Field("model_error_percent", o.model_error_percent, closed(0, 100)));
 }
 
 /// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out

@@ -54,12 +54,12 @@ struct FilterOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FilterOptions> auto& o) {
-  return std::tuple(Field("windows", o.windows, "in [1, 3]"),
-                    Field("slope_rounds", o.slope_rounds, "in [0, 4]"),
-                    Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"),
-                    Field("trusted_pixels", o.trusted_pixels, "finite and >= 1"),
-                    Field("same_depth_sigma", o.same_depth_sigma, "finite and > 0"),
-                    Field("own_light_sigma", o.own_light_sigma, "finite and >= 0"));
+  return std::tuple(Field("windows", o.windows, closed(1, 3)),
+                    Field("slope_rounds", o.slope_rounds, closed(0, 4)),
+                    Field("max_difference_sigma", o.max_difference_sigma, above(0)),
+                    Field("trusted_pixels", o.trusted_pixels, at_least(1)),
+                    Field("same_depth_sigma", o.same_depth_sigma, above(0)),
+                    Field("own_light_sigma", o.own_light_sigma, at_least(0)));
 }
 
 struct FilterPlanes;

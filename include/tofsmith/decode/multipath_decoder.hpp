@@ -22,9 +22,9 @@ struct ReturnPrior {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ReturnPrior> auto& p) {
-  return std::tuple(Field("single_probability", p.single_probability, "in [0, 1)"),
-                    Field("mean_delay_m", p.mean_delay_m, "finite and > 0"),
-                    Field("max_ratio", p.max_ratio, "in (0, 1]"));
+  return std::tuple(Field("single_probability", p.single_probability, right_open(0, 1)),
+                    Field("mean_delay_m", p.mean_delay_m, above(0)),
+                    Field("max_ratio", p.max_ratio, left_open(0, 1)));
 }
 
 /// How multipath is looked for.
@@ -47,10 +47,11 @@ struct MultipathOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
-  return std::tuple(Field("threshold", o.threshold, "finite and >= 0"),
-                    Field("shortest_delay_m", o.shortest_delay_m, "> 0"),
-                    Field("longest_delay_m", o.longest_delay_m), Field("tail_m", o.tail_m, "> 0"),
-                    Field("prior", o.prior), Field("status_thresholds", o.status_thresholds));
+  return std::tuple(Field("threshold", o.threshold, at_least(0)),
+                    Field("shortest_delay_m", o.shortest_delay_m, above(0)),
+                    Field("longest_delay_m", o.longest_delay_m),
+                    Field("tail_m", o.tail_m, above(0)), Field("prior", o.prior),
+                    Field("status_thresholds", o.status_thresholds));
 }
 
 /// What a decoder of several returns says about every pixel of a frame; all planes are (H, W).

@@ -30,10 +30,10 @@ struct TimeFilterOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
-  return std::tuple(Field("max_frames", o.max_frames, ">= 1"),
-                    Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"),
+  return std::tuple(Field("max_frames", o.max_frames, at_least(1)),
+                    Field("max_difference_sigma", o.max_difference_sigma, above(0)),
                     Field("before_filter", o.before_filter),
-                    Field("look_ahead", o.look_ahead, "in [0, 1000]"));
+                    Field("look_ahead", o.look_ahead, closed(0, 1000)));
 }
 
 /// Averages the raw measurements of each pixel over frames, as long as the scene does not change,

@@ -28,11 +28,10 @@ struct MeasurementReport {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
   return std::tuple(
-      Field("residual_rms", m.residual_rms, "finite and >= 0", FieldMark::may_be_null),
-      Field("smallest_residual_rms", m.smallest_residual_rms, "finite and >= 0",
-            FieldMark::may_be_null),
+      Field("residual_rms", m.residual_rms, at_least(0), FieldMark::may_be_null),
+      Field("smallest_residual_rms", m.smallest_residual_rms, at_least(0), FieldMark::may_be_null),
       Field("demodulation_duty", m.demodulation_duty), Field("modulation_duty", m.modulation_duty),
-      Field("peak", m.peak), Field("edges", m.edges, ">= 0"), Field("start", m.start),
+      Field("peak", m.peak), Field("edges", m.edges, at_least(0)), Field("start", m.start),
       Field("history", m.history, FieldMark::apart));
 }
 

@@ -93,14 +93,14 @@ struct ChipSearchOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
-  return std::tuple(Field("exposures", o.exposures, "in [1, 4]", FieldMark::from_above),
-                    Field("margin_sigma", o.margin_sigma, "finite and >= 0"),
-                    Field("separation_periods", o.separation_periods, "in (0, 1/2)"),
+  return std::tuple(Field("exposures", o.exposures, closed(1, 4), FieldMark::from_above),
+                    Field("margin_sigma", o.margin_sigma, at_least(0)),
+                    Field("separation_periods", o.separation_periods, open(0, 0.5)),
                     Field("equal_duty", o.equal_duty),
-                    Field("max_exhaustive", o.max_exhaustive, ">= 0"),
-                    Field("finalists", o.finalists, "in [1, 100]"),
-                    Field("annealing_starts", o.annealing_starts, "in [0, 10000]", ByEffort{2}),
-                    Field("annealing_steps", o.annealing_steps, ">= 1"),
+                    Field("max_exhaustive", o.max_exhaustive, at_least(0).or_infinity()),
+                    Field("finalists", o.finalists, closed(1, 100)),
+                    Field("annealing_starts", o.annealing_starts, closed(0, 10000), ByEffort{2}),
+                    Field("annealing_steps", o.annealing_steps, at_least(1)),
                     Field("seed", o.seed, FieldMark::from_above));
 }
 

@@ -74,14 +74,16 @@ struct DesignOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
-  return std::tuple(
-      Field("method", o.method), Field("exposures", o.exposures, "in [1, 16]"),
-      Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
-      Field("optimize", o.optimize), Field("search", o.search), Field("robust", o.robust),
-      Field("baselines", o.baselines), Field("atlas_cameras", o.atlas_cameras, ">= 0"),
-      Field("best_rotation", o.best_rotation), Field("search_trials", o.search_trials, ">= 100"),
-      Field("trials", o.trials, ">= 1000"),
-      Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"), Field("seed", o.seed));
+  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, closed(1, 16)),
+                    Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
+                    Field("optimize", o.optimize), Field("search", o.search),
+                    Field("robust", o.robust), Field("baselines", o.baselines),
+                    Field("atlas_cameras", o.atlas_cameras, at_least(0)),
+                    Field("best_rotation", o.best_rotation),
+                    Field("search_trials", o.search_trials, at_least(100)),
+                    Field("trials", o.trials, at_least(1000)),
+                    Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity()),
+                    Field("seed", o.seed));
 }
 
 /// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
@@ -238,10 +240,10 @@ struct RequirementOptions {
   bool vary_bandwidth = true;
   bool vary_power = true;
   bool vary_exposure = true;
-  double max_factor = 64.0;  ///< quantities are varied between 1 / this and this, in (1, 1e6]
-  double effort = 0.1;       ///< of every design, as of with_effort()
-  int trials = 50000;        ///< per operating point, to judge codes, >= 1000
-  bool map = true;           ///< also the error over bandwidth and power, if both are varied
+  double max_factor = 64.0;  ///< quantities are varied between 1 / max_factor and max_factor
+  double effort = 0.1;       ///< of every design: see with_effort()
+  int trials = 50000;
+  bool map = true;  ///< also the error over bandwidth and power, if both are varied
   std::uint64_t seed = 1;
 
   /// What is varied, in the order of the enumeration.
@@ -250,13 +252,16 @@ struct RequirementOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
   return std::tuple(
-      Field("error_m", o.error_m, "finite and > 0"), Field("vary_bandwidth", o.vary_bandwidth),
+      Field("error_m", o.error_m, above(0)), Field("vary_bandwidth", o.vary_bandwidth),
       Field("vary_power", o.vary_power), Field("vary_exposure", o.vary_exposure),
-      Field("max_factor", o.max_factor, "in (1, 1e6]"), Field("effort", o.effort, "in [0.01, 100]"),
-      Field("trials", o.trials, ">= 1000"), Field("map", o.map), Field("seed", o.seed));
+      Field("max_factor", o.max_factor, left_open(1, 1e6),
+            Help{"largest factor by which a quantity is increased or decreased"}),
+      Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"}),
+      Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
+      Field("map", o.map, Help{"no map of the error over bandwidth and power"}),
+      Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 
 /// How much of one quantity it takes, everything else as the camera has it.

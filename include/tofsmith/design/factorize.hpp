@@ -89,14 +89,14 @@ struct FactorizeOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
-  return std::tuple(Field("total_variation_weights", o.total_variation_weights, "in [1e-7, 1e-2]"),
-                    Field("max_iterations", o.max_iterations, ">= 1"),
-                    Field("objective_tolerance", o.objective_tolerance, ">= 0"),
+  return std::tuple(Field("total_variation_weights", o.total_variation_weights, closed(1e-7, 1e-2)),
+                    Field("max_iterations", o.max_iterations, at_least(1)),
+                    Field("objective_tolerance", o.objective_tolerance, at_least(0)),
                     Field("feed_back_projection", o.feed_back_projection),
-                    Field("random_starts", o.random_starts, ">= 0", ByEffort{2}),
+                    Field("random_starts", o.random_starts, at_least(0), ByEffort{2}),
                     Field("structured_starts", o.structured_starts),
                     Field("keep_naive", o.keep_naive), Field("refine_edges", o.refine_edges),
-                    Field("refined", o.refined, ">= 1"), Field("kept", o.kept, ">= 1"),
+                    Field("refined", o.refined, at_least(1)), Field("kept", o.kept, at_least(1)),
                     Field("seed", o.seed, FieldMark::from_above));
 }
 

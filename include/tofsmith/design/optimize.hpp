@@ -45,17 +45,20 @@ struct OptimizeOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
-  return std::tuple(
-      Field("samples", o.samples, "in [24, 960]"), Field("starts", o.starts, ">= 1", ByEffort{2}),
-      Field("steps_per_start", o.steps_per_start, ">= 1"),
-      Field("hops", o.hops, ">= 0", ByEffort{0}), Field("steps_per_hop", o.steps_per_hop, ">= 1"),
-      Field("patience", o.patience, ">= 0"), Field("refined", o.refined, ">= 1"),
-      Field("refinement_steps", o.refinement_steps, ">= 0", ByEffort{50}),
-      Field("trials_per_step", o.trials_per_step, ">= 8"),
-      Field("pool_trials", o.pool_trials, ">= 1000"), Field("polish", o.polish),
-      Field("polish_steps", o.polish_steps, ">= 0"), Field("seed", o.seed, FieldMark::from_above),
-      Field("two_return_weight", o.two_return_weight, "finite and >= 0"),
-      Field("max_two_return_loss", o.max_two_return_loss, ">= 1"));
+  return std::tuple(Field("samples", o.samples, closed(24, 960)),
+                    Field("starts", o.starts, at_least(1), ByEffort{2}),
+                    Field("steps_per_start", o.steps_per_start, at_least(1)),
+                    Field("hops", o.hops, at_least(0), ByEffort{0}),
+                    Field("steps_per_hop", o.steps_per_hop, at_least(1)),
+                    Field("patience", o.patience, at_least(0)),
+                    Field("refined", o.refined, at_least(1)),
+                    Field("refinement_steps", o.refinement_steps, at_least(0), ByEffort{50}),
+                    Field("trials_per_step", o.trials_per_step, at_least(8)),
+                    Field("pool_trials", o.pool_trials, at_least(1000)), Field("polish", o.polish),
+                    Field("polish_steps", o.polish_steps, at_least(0)),
+                    Field("seed", o.seed, FieldMark::from_above),
+                    Field("two_return_weight", o.two_return_weight, at_least(0)),
+                    Field("max_two_return_loss", o.max_two_return_loss, at_least(1).or_infinity()));
 }
 
 /// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:

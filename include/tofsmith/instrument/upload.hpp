@@ -62,8 +62,8 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
                     Field("load_ohm", r.load_ohm), Field("output_on", r.output_on),
                     Field("read_back", r.read_back), Field("reset", r.reset),
                     Field("true_arb", r.true_arb), Field("wave_header", r.wave_header),
-                    Field("settle_s", r.settle_s, "in [0, 60]"),
-                    Field("patience_s", r.patience_s, "in [0, 600]"), Field("filter", r.filter));
+                    Field("settle_s", r.settle_s, closed(0, 60)),
+                    Field("patience_s", r.patience_s, closed(0, 600)), Field("filter", r.filter));
 }
 
 /// What an answer must say.
@@ -130,9 +130,9 @@ struct UploadSelection {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<UploadSelection> auto& s) {
-  return std::tuple(Field("light_channel", s.light_channel, ">= 0"),
-                    Field("sensor_channel", s.sensor_channel, ">= 0"),
-                    Field("exposure", s.exposure, ">= 1"), Field("tap", s.tap, ">= 1"),
+  return std::tuple(Field("light_channel", s.light_channel, at_least(0)),
+                    Field("sensor_channel", s.sensor_channel, at_least(0)),
+                    Field("exposure", s.exposure, at_least(1)), Field("tap", s.tap, at_least(1)),
                     Field("all", s.all));
 }
 

@@ -67,11 +67,11 @@ struct SceneSource {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SceneSource> auto& s) {
-  return std::tuple(Field("scene", s.scene), Field("image", s.image),
-                    Field("ambient_image", s.ambient_image), Field("kind", s.kind),
-                    Field("linear_image", s.linear_image), Field("width", s.width, "in [1, 16384]"),
-                    Field("height", s.height, "in [1, 16384]"), Field("scale_m", s.scale_m, "> 0"),
-                    Field("time_s", s.time_s, "finite"));
+  return std::tuple(
+      Field("scene", s.scene), Field("image", s.image), Field("ambient_image", s.ambient_image),
+      Field("kind", s.kind), Field("linear_image", s.linear_image),
+      Field("width", s.width, closed(1, 16384)), Field("height", s.height, closed(1, 16384)),
+      Field("scale_m", s.scale_m, above(0)), Field("time_s", s.time_s, finite()));
 }
 
 /// A scene and the pinhole it is seen through.

@@ -30,11 +30,11 @@ struct CaptureOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
-  return std::tuple(Field("signal_e_per_s", o.signal_e_per_s, "finite and >= 0"),
-                    Field("ambient_e_per_s", o.ambient_e_per_s, "finite and >= 0"),
-                    Field("reference_distance_m", o.reference_distance_m, "finite and > 0"),
+  return std::tuple(Field("signal_e_per_s", o.signal_e_per_s, at_least(0)),
+                    Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0)),
+                    Field("reference_distance_m", o.reference_distance_m, above(0)),
                     Field("falloff", o.falloff), Field("seed", o.seed),
-                    Field("frames", o.frames, ">= 1"));
+                    Field("frames", o.frames, at_least(1)));
 }
 
 /// Signal of a pixel, were the sensor fully open [e/s]; 0 where nothing returns (NaN depth).

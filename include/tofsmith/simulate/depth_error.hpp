@@ -23,39 +23,42 @@ enum class DepthSampling {
   bins,     ///< on bins only: flatters codes that are wrong in between
 };
 
-/// How depth error is measured.
+/// Options of evaluate(); fields_of() below describes each of them.
 struct EvaluateOptions {
-  /// Per operating point, 2 .. 4e9; odd numbers are rounded up. With a target: at first.
-  std::int64_t trials = 20000;
-  std::uint64_t seed = 1;            ///< of all trials
-  double outlier_threshold_m = 0.5;  ///< circular errors beyond are outliers [m], >= 0
-  bool sub_bin = true;               ///< decode between bins; else to the nearest bin
+  std::int64_t trials = 20000;  ///< odd numbers are rounded up
+  std::uint64_t seed = 1;
+  double outlier_threshold_m = 0.5;
+  bool sub_bin = true;  ///< false: decode to the nearest bin
   DepthSampling depth = DepthSampling::uniform;
-  /// Clip electrons of every tap to [0, T (S + A)], as the simulator of the paper's authors does.
   bool clip_to_open_sensor = false;
   DecodeMethod method = DecodeMethod::zncc;
-  UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< of DecodeMethod::unwrap
-  /// Trials go on at a point, in rounds, until the standard error of the error that the camera is
-  /// judged by (linear or circular) is at most this share of it, [0, 1); 0: no target.
-  double target_standard_error = 0.0;
-  std::int64_t max_trials = 50'000'000;  ///< per operating point with a target, >= 2, <= 4e9
-  /// Draw the noise of every measurement even where it could be drawn in the plane that ZNCC looks
-  /// at: methods are so compared on the same noise.
+  UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< for DecodeMethod::unwrap
+  double target_standard_error = 0.0;                      ///< 0: no target
+  std::int64_t max_trials = 50'000'000;
+  /// Draws the noise of every measurement even if ZNCC needs fewer numbers, so that methods are
+  /// compared with the same noise.
   bool draw_every_measurement = false;
-  bool bounds = true;  ///< also compute the bounds; else they stay 0
+  bool bounds = true;  ///< false: bounds stay 0
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
   return std::tuple(
-      Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed),
-      Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"), Field("sub_bin", o.sub_bin),
-      Field("depth", o.depth), Field("clip_to_open_sensor", o.clip_to_open_sensor),
+      Field("trials", o.trials, closed(2, 4e9),
+            Help{"trials per operating point; with a target, the number of the first round"}),
+      Field("seed", o.seed, Help{"seed of all trials"}),
+      Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
+            Help{"circular error above which a depth is an outlier [m]"}),
+      Field("sub_bin", o.sub_bin, Help{"decode to the nearest bin only"}), Field("depth", o.depth),
+      Field("clip_to_open_sensor", o.clip_to_open_sensor,
+            Help{"clip electrons to [0, T (S + A)], like the simulator of the paper's authors"}),
       Field("method", o.method), Field("unwrap_weights", o.unwrap_weights),
-      Field("target_standard_error", o.target_standard_error, "in [0, 1)"),
-      Field("max_trials", o.max_trials, "in [2, 4e9]"),
+      Field("target_standard_error", o.target_standard_error, right_open(0, 1),
+            Help{"relative standard error of the depth error at which trials end, such as 1% or "
+                 "0.01"}),
+      Field("max_trials", o.max_trials, closed(2, 4e9),
+            Help{"maximum number of trials per operating point with a target"}),
       Field("draw_every_measurement", o.draw_every_measurement), Field("bounds", o.bounds));
 }
 
@@ -80,18 +83,18 @@ inline double bound_or_nan(double bound_m) {
 }
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
-  return std::tuple(Field("point", p.point, FieldMark::in_place),
-                    Field("trials", p.trials, FieldMark::apart),
-                    Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
-                    Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
-                    Field("linear_rmse_m", p.linear_rmse_m, "finite and >= 0"),
-                    Field("circular_rmse_m", p.circular_rmse_m, "finite and >= 0"),
-                    Field("outlier_rate", p.outlier_rate, "in [0, 1]", FieldMark::without_error),
-                    Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", FieldMark::bound),
-                    Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", FieldMark::bound,
-                          FieldMark::may_be_null),
-                    Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, ">= 0",
-                          FieldMark::bound, FieldMark::may_be_null));
+  return std::tuple(
+      Field("point", p.point, FieldMark::in_place), Field("trials", p.trials, FieldMark::apart),
+      Field("linear_mde_m", p.linear_mde_m, at_least(0)),
+      Field("circular_mde_m", p.circular_mde_m, at_least(0)),
+      Field("linear_rmse_m", p.linear_rmse_m, at_least(0)),
+      Field("circular_rmse_m", p.circular_rmse_m, at_least(0)),
+      Field("outlier_rate", p.outlier_rate, closed(0, 1), FieldMark::without_error),
+      Field("cramer_rao_mae_m", p.cramer_rao_mae_m, at_least(0).or_infinity(), FieldMark::bound),
+      Field("receiver_bound_mae_m", p.receiver_bound_mae_m, at_least(0).or_infinity(),
+            FieldMark::bound, FieldMark::may_be_null),
+      Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, at_least(0).or_infinity(),
+            FieldMark::bound, FieldMark::may_be_null));
 }
 
 /// One figure for all operating points, of what is known of each.
@@ -101,8 +104,8 @@ struct DepthErrorMean {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DepthErrorMean> auto& m) {
-  return std::tuple(Field("geometric_mean_m", m.geometric_mean_m, "finite and >= 0"),
-                    Field("mean_m", m.mean_m, "finite and >= 0"));
+  return std::tuple(Field("geometric_mean_m", m.geometric_mean_m, at_least(0)),
+                    Field("mean_m", m.mean_m, at_least(0)));
 }
 
 /// Depth error of a code on a camera.
@@ -127,9 +130,9 @@ struct DepthErrorReport {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
   return std::tuple(
-      Field("code", r.code, InDocuments{"name"}), Field("exposures", r.exposures, ">= 1"),
-      Field("taps", r.taps, ">= 1"), Field("measurements", r.measurements, ">= 1"),
-      Field("samples", r.samples, ">= 1"), Field("trials", r.trials, FieldMark::apart),
+      Field("code", r.code, InDocuments{"name"}), Field("exposures", r.exposures, at_least(1)),
+      Field("taps", r.taps, at_least(1)), Field("measurements", r.measurements, at_least(1)),
+      Field("samples", r.samples, at_least(1)), Field("trials", r.trials, FieldMark::apart),
       Field("points_short_of_target", r.points_short_of_target, FieldMark::apart),
       Field("seed", r.seed, FieldMark::apart),
       Field("outlier_threshold_m", r.outlier_threshold_m, FieldMark::apart),
@@ -201,8 +204,8 @@ struct OperatingMultipathError {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<OperatingMultipathError> auto& e) {
-  return std::tuple(Field("linear_m", e.linear_m, "finite and >= 0"),
-                    Field("circular_m", e.circular_m, "finite and >= 0"));
+  return std::tuple(Field("linear_m", e.linear_m, at_least(0)),
+                    Field("circular_m", e.circular_m, at_least(0)));
 }
 
 /// Errors of a code in the operating multipath.

@@ -58,26 +58,27 @@ MultipathScene multipath_scene(std::string name, const SceneImage& truth, const 
 
 /// Which light comes back twice, and how error behind it is measured.
 struct MultipathErrorOptions {
-  std::vector<double> delay_m = {0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};  ///< of a second return [m]
-  std::vector<double> ratio = {0.1, 0.3, 0.6};                         ///< r = S2 / S1, in [0, 1]
-  std::vector<double> tail_m = {0.25, 0.5, 1.0};                       ///< mean delays of tails [m]
-  std::vector<double> signal_e_per_s = {1e4, 1e5};                     ///< S1
-  double ambient_e_per_s = 1e4;                                        ///< A
-  std::int64_t trials = 2000;                                          ///< per place of a map, >= 2
+  std::vector<double> delay_m = {0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};
+  std::vector<double> ratio = {0.1, 0.3, 0.6};  ///< r = S2 / S1
+  std::vector<double> tail_m = {0.25, 0.5, 1.0};
+  std::vector<double> signal_e_per_s = {1e4, 1e5};  ///< S1
+  double ambient_e_per_s = 1e4;                     ///< A
+  std::int64_t trials = 2000;
   std::uint64_t seed = 1;
   MultipathOptions decoding;  ///< tail_m is taken from each tail's own mean delay
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
-  return std::tuple(Field("delay_m", o.delay_m, "> 0"), Field("ratio", o.ratio, "in [0, 1]"),
-                    Field("tail_m", o.tail_m, "> 0"),
-                    Field("signal_e_per_s", o.signal_e_per_s, "finite and > 0"),
-                    Field("ambient_e_per_s", o.ambient_e_per_s, "finite and >= 0"),
-                    Field("trials", o.trials, "in [2, 1e7]"), Field("seed", o.seed),
-                    Field("decoding", o.decoding));
+  return std::tuple(
+      Field("delay_m", o.delay_m, above(0), Help{"delays of the second return [m]"}),
+      Field("ratio", o.ratio, closed(0, 1), Help{"ratios of the second return to the direct one"}),
+      Field("tail_m", o.tail_m, above(0), Help{"mean delays of tails [m]"}),
+      Field("signal_e_per_s", o.signal_e_per_s, above(0), Help{"light of the direct return [e/s]"}),
+      Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0), Help{"ambient light [e/s]"}),
+      Field("trials", o.trials, closed(2, 1e7), Help{"trials per cell of a map"}),
+      Field("seed", o.seed, Help{"seed of all trials"}), Field("decoding", o.decoding));
 }
 
 /// Error of direct depth in one kind of light: all errors the shorter way round the range.

@@ -35,12 +35,12 @@ struct RobustnessOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
   return std::tuple(
-      Field("bandwidth", o.bandwidth, "in [0, 1)"), Field("peak", o.peak, "in [0, 1)"),
-      Field("edge_jitter_s", o.edge_jitter_s, "in [0, 1]"),
-      Field("tap_mismatch", o.tap_mismatch, "in [0, 1)"), Field("clock_s", o.clock_s, "in [0, 1]"),
-      Field("droop", o.droop, "in [0, 1)"), Field("together", o.together),
-      Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed), Field("method", o.method),
-      Field("unwrap_weights", o.unwrap_weights));
+      Field("bandwidth", o.bandwidth, right_open(0, 1)), Field("peak", o.peak, right_open(0, 1)),
+      Field("edge_jitter_s", o.edge_jitter_s, closed(0, 1)),
+      Field("tap_mismatch", o.tap_mismatch, right_open(0, 1)),
+      Field("clock_s", o.clock_s, closed(0, 1)), Field("droop", o.droop, right_open(0, 1)),
+      Field("together", o.together), Field("trials", o.trials, closed(2, 4e9)),
+      Field("seed", o.seed), Field("method", o.method), Field("unwrap_weights", o.unwrap_weights));
 }
 
 /// A camera that is not quite what it was said to be.
@@ -92,10 +92,10 @@ struct PerturbedError {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PerturbedError> auto& e) {
   return std::tuple(Field("name", e.name),
-                    Field("calibrated_m", e.calibrated_m, "finite and >= 0", FieldMark::as_object,
+                    Field("calibrated_m", e.calibrated_m, at_least(0), FieldMark::as_object,
                           InDocuments{"calibrated"}),
-                    Field("uncalibrated_m", e.uncalibrated_m, "finite and >= 0",
-                          FieldMark::as_object, InDocuments{"uncalibrated"}));
+                    Field("uncalibrated_m", e.uncalibrated_m, at_least(0), FieldMark::as_object,
+                          InDocuments{"uncalibrated"}));
 }
 
 /// Depth error of a code when its camera is not quite what it was said to be.
@@ -112,11 +112,10 @@ struct RobustnessReport {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
-  return std::tuple(Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials),
-                    Field("seed", r.seed),
-                    Field("nominal_m", r.nominal_m, "finite and >= 0", FieldMark::as_object,
-                          InDocuments{"nominal"}),
-                    Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
+  return std::tuple(
+      Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials), Field("seed", r.seed),
+      Field("nominal_m", r.nominal_m, at_least(0), FieldMark::as_object, InDocuments{"nominal"}),
+      Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
 }
 
 /// Judges a code on the perturbations of its camera. Perturbations that change the code to one that

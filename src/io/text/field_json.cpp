@@ -22,25 +22,25 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate) {
 
 namespace detail {
 
-double read_number(const JsonReader& json, std::string_view rule) {
-  if (json.is_null() && rule == ">= 0") return infinity;
+double read_number(const JsonReader& json, const Range& range) {
+  if (json.is_null() && range.includes_infinity) return infinity;
   const double found = json.number();
-  if (!keeps(found, rule)) json.mistyped(fmt::format("a number {}", rule));
+  if (!range.contains(found)) json.mistyped(fmt::format("a number {}", range.text()));
   return found;
 }
 
-int read_integer(const JsonReader& json, std::string_view rule) {
+int read_integer(const JsonReader& json, const Range& range) {
   using Limits = std::numeric_limits<int>;
   const int found = json.integer(Limits::min(), Limits::max());
-  if (!keeps(found, rule)) json.mistyped(fmt::format("an integer {}", rule));
+  if (!range.contains(found)) json.mistyped(fmt::format("an integer {}", range.text(true)));
   return found;
 }
 
 void read_estimate(const JsonReader& object, const Field<Estimate>& field) {
   const auto read = [&](const JsonReader& json, std::string_view name) {
-    field.value.value = read_number(json.member(name), field.rule);
+    field.value.value = read_number(json.member(name), field.range);
     if (!field.is(FieldMark::without_error))
-      field.value.standard_error = read_number(json.member(error_name(name)), field.rule);
+      field.value.standard_error = read_number(json.member(error_name(name)), field.range);
   };
   if (field.is(FieldMark::as_object))
     read(object.member(field.document_name), value_name);

@@ -41,7 +41,7 @@ nlohmann::ordered_json row_json(const Struct& its) {
 }
 
 /// The same fields back, but those that are FieldMark::apart.
-/// @throws IoError naming file and member that is missing or breaks the field's rule
+/// @throws IoError naming file and member that is missing or outside the range of the field
 template <typename Struct>
 Struct fields_from_json(const JsonReader& json);
 template <typename Struct>
@@ -49,27 +49,27 @@ Struct row_from_json(const JsonReader& json);
 
 namespace detail {
 
-/// A number that keeps a rule; null is infinity where that does.
-double read_number(const JsonReader& json, std::string_view rule);
-int read_integer(const JsonReader& json, std::string_view rule);
+/// A number in a range; null is infinity if the range includes infinity.
+double read_number(const JsonReader& json, const Range& range);
+int read_integer(const JsonReader& json, const Range& range);
 void read_estimate(const JsonReader& object, const Field<Estimate>& field);
 
-inline void read_value(const JsonReader& json, double& value, std::string_view rule) {
-  value = read_number(json, rule);
+inline void read_value(const JsonReader& json, double& value, const Range& range) {
+  value = read_number(json, range);
 }
-inline void read_value(const JsonReader& json, int& value, std::string_view rule) {
-  value = read_integer(json, rule);
+inline void read_value(const JsonReader& json, int& value, const Range& range) {
+  value = read_integer(json, range);
 }
-inline void read_value(const JsonReader& json, std::int64_t& value, std::string_view) {
+inline void read_value(const JsonReader& json, std::int64_t& value, const Range&) {
   value = static_cast<std::int64_t>(json.unsigned_integer());
 }
-inline void read_value(const JsonReader& json, std::uint64_t& value, std::string_view) {
+inline void read_value(const JsonReader& json, std::uint64_t& value, const Range&) {
   value = json.unsigned_integer();
 }
-inline void read_value(const JsonReader& json, bool& value, std::string_view) {
+inline void read_value(const JsonReader& json, bool& value, const Range&) {
   value = json.boolean();
 }
-inline void read_value(const JsonReader& json, std::string& value, std::string_view) {
+inline void read_value(const JsonReader& json, std::string& value, const Range&) {
   value = json.text();
 }
 
@@ -99,7 +99,7 @@ void read_field(const JsonReader& object, const Field<Value>& field) {
     } else if constexpr (std::is_enum_v<Value>) {
       field.value = parse_word(json, Value{});
     } else {
-      read_value(json, field.value, field.rule);
+      read_value(json, field.value, field.range);
     }
   }
 }
@@ -129,7 +129,7 @@ Struct row_from_json(const JsonReader& json) {
   const std::vector<JsonReader> row = json.elements(count, names);
   count = 0;
   for_each_field(
-      its, [&](const auto& field) { detail::read_value(row[count++], field.value, field.rule); });
+      its, [&](const auto& field) { detail::read_value(row[count++], field.value, field.range); });
   return its;
 }
 

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace tofsmith {
+
+/// Interval of numbers that a setting accepts. The default accepts every number, NaN included; all
+/// other intervals are made by the functions below, which the compiler evaluates and checks.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool includes_low = true, includes_high = true;
+  bool is_restricted = false;      ///< false: accepts every number
+  bool includes_infinity = false;  ///< accepts infinity although `high` is infinite
+
+  bool contains(double value) const {
+    if (!is_restricted) return true;
+    if (std::isinf(value) && value > 0.0 && includes_infinity) return true;
+    return std::isfinite(value) && (includes_low ? value >= low : value > low) &&
+           (includes_high ? value <= high : value < high);
+  }
+  /// The interval in words: "finite and >= 0", "in (0, 1]", "finite"; of integers ">= 0".
+  std::string text(bool is_integer = false) const;
+
+  /// The same interval, with infinity as a further value.
+  consteval Range or_infinity() const {
+    Range range = *this;
+    range.includes_infinity = true;
+    return range;
+  }
+};
+
+namespace detail {
+consteval Range checked(Range range) {
+  range.is_restricted = true;
+  if (!(range.low < range.high)) throw "the lower end of a range must be below the upper end";
+  return range;
+}
+}  // namespace detail
+
+/// All numbers except NaN and infinity.
+consteval Range finite() { return detail::checked({}); }
+/// value >= low.
+consteval Range at_least(double low) { return detail::checked({.low = low}); }
+/// value > low.
+consteval Range above(double low) { return detail::checked({.low = low, .includes_low = false}); }
+/// low <= value <= high.
+consteval Range closed(double low, double high) {
+  return detail::checked({.low = low, .high = high});
+}
+/// low < value < high.
+consteval Range open(double low, double high) { return detail::checked({low, high, false, false}); }
+/// low <= value < high.
+consteval Range right_open(double low, double high) {
+  return detail::checked({low, high, true, false});
+}
+/// low < value <= high.
+consteval Range left_open(double low, double high) {
+  return detail::checked({low, high, false, true});
+}
+
+}  // namespace tofsmith
