@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "distance_arguments.hpp"
 #include "evaluation_table.hpp"
 #include "help_pages.hpp"
@@ -287,44 +288,23 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                    "families, or code files (.code.json .npz .csv; a pair LIGHT.npy,GATES.npy)")
       ->required();
   arguments->camera.add_to(*command);
-  const CLI::Range trials(std::int64_t{2}, std::int64_t{4'000'000'000});
-  command
-      ->add_option("--trials", arguments->options.trials,
-                   "trials per operating point; with a target, at first")
-      ->check(trials)
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--target-standard-error", arguments->options.target_standard_error,
-          "go on at every operating point until the standard error of its error (linear or "
-          "circular, as the camera's operating.error) is at most this share of it, such as "
-          "1% or 0.01")
+  EvaluateOptions& options = arguments->options;
+  const auto add = [&](std::string_view field, const std::string& option) {
+    return add_field_option(*command, options, field, option);
+  };
+  add("trials", "--trials");
+  add("target_standard_error", "--target-standard-error")
       ->transform(share_or_percentage(1e-5, 1.0));
-  command
-      ->add_option("--max-trials", arguments->options.max_trials,
-                   "with a target, trials per operating point after which to stop short of it")
-      ->check(trials)
-      ->capture_default_str()
-      ->group(for_experts);
-  command->add_option("--seed", arguments->options.seed, "seed of all trials")
-      ->capture_default_str();
+  add("max_trials", "--max-trials")->group(for_experts);
+  add("seed", "--seed");
   arguments->method.add_to(*command);
-  command
-      ->add_option("--outlier-threshold", arguments->options.outlier_threshold_m,
-                   "circular errors beyond this many metres are outliers")
-      ->check(number_from_0_on())
-      ->capture_default_str()
-      ->group(for_experts);
+  add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command
       ->add_flag("--on-bins", arguments->on_bins,
                  "true depths on bins only (flatters codes; for comparison with others)")
       ->group(for_experts);
-  command->add_flag("!--no-sub-bin", arguments->options.sub_bin, "decode to the nearest bin only")
-      ->group(for_experts);
-  command
-      ->add_flag("--clip-to-open-sensor", arguments->options.clip_to_open_sensor,
-                 "clip electrons to [0, T (S + A)], as the paper's authors' simulator does")
-      ->group(for_experts);
+  add("sub_bin", "!--no-sub-bin")->group(for_experts);
+  add("clip_to_open_sensor", "--clip-to-open-sensor")->group(for_experts);
   command
       ->add_flag("--best-rotation", arguments->best_rotation,
                  "move each code's origin of depth to where its linear error is least")

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "scene_source.hpp"
@@ -142,28 +143,22 @@ void add_multipath_command(CLI::App& app, Session& session) {
   command->add_option("CODE", arguments->codes, "families or code files (.code.json .npz .csv)")
       ->required();
   arguments->camera.add_to(*command);
-  const auto list = [&](const char* name, std::vector<double>& values, const char* help) {
-    command->add_option(name, values, help)
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->capture_default_str();
+  const auto add = [&](std::string_view field, const std::string& option) {
+    return add_field_option(*command, options, field, option);
   };
-  list("--delays", options.delay_m, "delays of the second return [m]");
-  list("--ratios", options.ratio, "its ratios to the direct one");
-  list("--tails", options.tail_m, "mean delays of tails [m]");
-  list("--signals", options.signal_e_per_s, "signals of the direct return [e/s]");
-  command->add_option("--ambient", options.ambient_e_per_s, "ambient light [e/s]")
-      ->capture_default_str();
+  add("delay_m", "--delays");
+  add("ratio", "--ratios");
+  add("tail_m", "--tails");
+  add("signal_e_per_s", "--signals");
+  add("ambient_e_per_s", "--ambient");
   command
       ->add_option("--threshold", options.decoding.threshold,
                    "how much chi^2 must fall for a second return to count")
       ->check(number_from_0_on())
       ->capture_default_str()
       ->group(for_experts);
-  command->add_option("--trials", options.trials, "trials per place of a map")
-      ->check(CLI::Range(std::int64_t{2}, std::int64_t{10'000'000}))
-      ->capture_default_str();
-  command->add_option("--seed", options.seed, "seed of all trials")->capture_default_str();
+  add("trials", "--trials");
+  add("seed", "--seed");
   add_scene(*command, *arguments);
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,

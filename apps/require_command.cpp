@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "distance_arguments.hpp"
 #include "fresh_directory.hpp"
 #include "method_arguments.hpp"
@@ -150,20 +151,14 @@ void add_require_command(CLI::App& app, Session& session) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(one_of({"bandwidth", "power", "exposure"}));
-  command
-      ->add_option("--max-factor", arguments->options.max_factor, "at most so many times as much")
-      ->check(number_that("> 1", [](double factor) { return factor > 1.0; }))
-      ->capture_default_str();
-  command->add_option("--effort", arguments->options.effort, "how long to search for each code")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
-  command->add_option("--trials", arguments->options.trials, "trials per operating point")
-      ->check(CLI::Range(1000, 100'000'000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->options.seed, "seed of every random choice")
-      ->capture_default_str();
-  command->add_flag("!--no-map", arguments->options.map,
-                    "no map of the error over bandwidth and power");
+  const auto add = [&](std::string_view field, const std::string& option) {
+    add_field_option(*command, arguments->options, field, option);
+  };
+  add("max_factor", "--max-factor");
+  add("effort", "--effort");
+  add("trials", "--trials");
+  add("seed", "--seed");
+  add("map", "!--no-map");
   command->add_option("-o,--output", arguments->output,
                       "write a page (.html), all numbers (.json), or a directory with both, the "
                       "codes found and the cameras that suffice");
