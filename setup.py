@@ -70,10 +70,11 @@ class CMakeBuild(build_ext):
         defines += shlex.split(os.environ.get("TOFSMITH_CMAKE_OPTIONS", ""))
         jobs = ["--parallel"] + ([str(self.parallel)] if self.parallel else [])
         subprocess.run(["cmake", "-S", root, "-B", build, "-G", "Ninja", *defines], check=True)
-        run_telling_progress(["cmake", "--build", build, "--target", "_tofsmith", "tofsmith_cli", *jobs])
+        run_telling_progress(["cmake", "--build", build, "--target", "tofsmith_python", "tofsmith_cli", *jobs])
         # Its file name contains the Python version that CMake built it for.
         built = next((build / "python" / "tofsmith").glob("_tofsmith*.so"))
         files = {built: target.with_name(built.name),
+                 built.with_name("_camera_fields.py"): target.with_name("_camera_fields.py"),
                  build / "apps" / "tofsmith": target.parent / "_prefix" / "bin" / "tofsmith"}
         lab_page = root / "build-lab" / "lab.html"  # of scripts/lab.sh
         if lab_page.exists():

@@ -68,6 +68,44 @@ void show_changed(const Session& session, const std::string& name_or_path, Setti
                           with, camera.range_m(), toml));
 }
 
+/// What a value can be, in words: "number [Hz], finite and > 0".
+std::string value_text(const nlohmann::ordered_json& key) {
+  std::string text = key["type"].get<std::string>();
+  std::replace(text.begin(), text.end(), '_', ' ');
+  if (key.contains("words")) {
+    const auto words = key["words"].get<std::vector<std::string>>();
+    text = text == "choice" ? fmt::format("{}", fmt::join(words, " | "))
+                            : fmt::format("number or {}", words.front());
+  }
+  const auto add = [&](const char* format, const std::string& what) {
+    if (!what.empty()) text += fmt::format(fmt::runtime(format), what);
+  };
+  add(" [{}]", key["unit"]);
+  add(", {}", key["range"]);
+  add("; only with {}", key["condition"]);
+  if (!key["example"].get<std::string>().empty())
+    add("; required, such as {}", key["example"]);
+  else if (key.contains("default") && !key["default"].is_null())
+    add("; default {}", key["default"].dump());
+  return text;
+}
+
+void list_keys(const Session& session) {
+  const auto keys = nlohmann::ordered_json::parse(camera_keys_json());
+  session.print_json(keys);
+  std::string text = "Keys of a camera file:\n";
+  for (const auto& key : keys) {
+    const auto help = key["help"].get<std::string>();
+    if (key["type"] == "table")
+      text += fmt::format("\n[{}]  {}\n", key["key"].get<std::string>(), help);
+    else
+      text += fmt::format("  {:40} {}\n  {:40}   {}\n", key["key"].get<std::string>(), help, "",
+                          value_text(key));
+  }
+  text.pop_back();  // say() ends the line
+  session.say(text);
+}
+
 void show_raw_format(const Session& session, const std::string& name) {
   if (name.empty())
     throw UsageError(fmt::format("--raw-format needs the NAME of a camera ({})",
@@ -84,13 +122,17 @@ void add_cameras_command(CLI::App& app, Session& session) {
   auto name = std::make_shared<std::string>();
   auto settings = std::make_shared<std::vector<std::string>>();
   auto raw_format = std::make_shared<bool>(false);
+  auto keys = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand(
       "cameras", "list the built-in cameras, or print one as TOML with its sources or defaults");
   command->add_option("NAME", *name, "a built-in camera, or a camera file (.toml)");
   add_settings_option(*command, *settings);
   command->add_flag("--raw-format", *raw_format,
                     "print how its raw frames run instead, as `decode --raw-format` takes it");
-  command->callback([name, settings, raw_format, &session] {
+  command->add_flag("--keys", *keys, "list all keys of a camera file with unit, range and default")
+      ->excludes(command->get_option("NAME"));
+  command->callback([name, settings, raw_format, keys, &session] {
+    if (*keys) return list_keys(session);
     if (!settings->empty() && (*raw_format || name->empty()))
       throw UsageError("--set changes the keys of the camera NAME that is printed");
     if (*raw_format) return show_raw_format(session, *name);

@@ -1,10 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes generated/commands: a page for every command of the tool, from what it says itself."""
+"""Writes generated/commands, a page for every command of the tool, from its help texts, and
+generated/camera_keys.md, the keys of a camera file."""
 
 from __future__ import annotations
 
+import json
 import re
+import subprocess
 from pathlib import Path
 
 from command_help import Command, Entry, all_commands
@@ -113,8 +116,39 @@ def write_pages(tool: str, folder: Path) -> list[str]:
     return [page.words[0] for page in pages]
 
 
+def camera_key_row(key: dict) -> str:
+    words = ", ".join(f"`{word}`" for word in key.get("words", []))
+    facts = "; ".join(filter(None, [
+        words, key["range"], key["condition"] and f"only with `{key['condition']}`",
+        key["example"] and f"required, such as `{key['example']}`"]))
+    name = key["key"].rpartition(".")[2]
+    default = "" if key["default"] is None else f"`{json.dumps(key['default'])}`"
+    help_text = plain(key["help"])
+    return f"| `{name}` | {help_text} | {key['unit']} | {facts} | {default} |"
+
+
+def camera_keys_page(tool: str) -> str:
+    """The keys of a camera file, a table of Markdown for each of its tables."""
+    keys = json.loads(subprocess.run([tool, "cameras", "--keys", "--json"], check=True,
+                                     capture_output=True, text=True).stdout)
+    head = "\n| key | meaning | unit | values | default |\n|---|---|---|---|---|"
+    lines = ["# Camera keys\n", "All keys of a [camera file](../cameras.md), as "
+             "`tofsmith cameras --keys` prints them.", head]
+    for table in [{"key": ""}] + [key for key in keys if key["type"] == "table"]:
+        if table["key"]:
+            lines += [f"\n## [{table['key']}]\n", plain(table["help"]) + ".", head]
+        lines += [camera_key_row(key) for key in keys
+                  if key["type"] != "table" and key["key"].rpartition(".")[0] == table["key"]]
+    return "\n".join(lines) + "\n"
+
+
+def write_generated_pages(tool: str, folder: Path) -> None:
+    write_pages(tool, folder / "commands")
+    (folder / "camera_keys.md").write_text(camera_keys_page(tool))
+
+
 def setup(app):
     app.add_config_value("tofsmith_tool", "tofsmith", "env")
-    app.connect("builder-inited", lambda app: write_pages(
-        app.config.tofsmith_tool, Path(app.srcdir) / "generated" / "commands"))
+    app.connect("builder-inited", lambda app: write_generated_pages(
+        app.config.tofsmith_tool, Path(app.srcdir) / "generated"))
     return {"version": "1", "parallel_read_safe": True}

@@ -74,8 +74,6 @@ double grid_steps(double edge_grid_s, double frequency_hz) {
 }
 
 void validate_edge_grid(const std::string& field, double edge_grid_s, double frequency_hz) {
-  require(std::isfinite(edge_grid_s) && edge_grid_s > 0.0, field, edge_grid_s,
-          "must be finite and > 0");
   const double steps = 1.0 / (edge_grid_s * frequency_hz);
   require(steps >= 2.0 - 1e-6 && steps <= max_points && std::abs(steps - std::round(steps)) <= 1e-6,
           field, edge_grid_s,
@@ -101,13 +99,7 @@ int Generator::points_in_table(double fundamental_frequency_hz) const {
 
 void Generator::validate(std::string_view field, double fundamental_frequency_hz) const {
   const std::string prefix = std::string(field) + ".";
-  require(std::isfinite(sample_rate_hz) && sample_rate_hz > 0.0, prefix + "sample_rate_hz",
-          sample_rate_hz, "must be finite and > 0");
-  require(amplitude_bits >= 1 && amplitude_bits <= 24, prefix + "amplitude_bits", amplitude_bits,
-          "must be in [1, 24]");
-  if (table_points)
-    require(*table_points >= 2 && *table_points <= max_points, prefix + "table_points",
-            *table_points, fmt::format("must be in [2, {:.0f}]", max_points));
+  check_ranges(*this, prefix);
   const double points = max_points_per_period(sample_rate_hz, fundamental_frequency_hz);
   require(points >= 2.0 && (table_points || points <= max_points), prefix + "sample_rate_hz",
           sample_rate_hz,

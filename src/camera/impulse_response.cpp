@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/camera/impulse_response.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
@@ -41,8 +42,8 @@ std::complex<double> measured_transfer(const ImpulseResponse& response, double f
   }
   return sum / total * sinc * sinc;
 }
-constexpr EnumWords<ImpulseResponse::Kind, 5> kind_words("ImpulseResponse::Kind", "kind", "none",
-                                                         "hann", "gaussian", "lowpass", "file");
+constexpr EnumWords<ImpulseResponse::Kind, 5> kind_words("ImpulseResponse::Kind", "kind",
+                                                         impulse_response_kinds);
 
 }  // namespace
 
@@ -65,31 +66,12 @@ std::complex<double> ImpulseResponse::transfer(double frequency_hz) const {
 }
 
 void ImpulseResponse::validate(std::string_view field) const {
-  const auto member = [&](const char* name) { return fmt::format("{}.{}", field, name); };
-  const auto positive = [&](const char* name, double value) {
-    require(std::isfinite(value) && value > 0.0, member(name), value,
-            fmt::format("must be finite and > 0 for kind = \"{}\"", name_of(kind)));
-  };
-  switch (kind) {
-    case Kind::none:
-      return;
-    case Kind::hann:
-      return positive("f_max_hz", f_max_hz);
-    case Kind::gaussian:
-    case Kind::lowpass:
-      return positive("cutoff_hz", cutoff_hz);
-    case Kind::file: {
-      positive("time_step_s", time_step_s);
-      require(!samples.empty(), member("samples"), "empty", "must hold at least one sample");
-      double total = 0.0;
-      for (const double sample : samples) {
-        require(std::isfinite(sample), member("samples"), sample, "must be finite");
-        total += sample;
-      }
-      require(total > 0.0, member("samples") + " sum", total, "must be > 0");
-      return;
-    }
-  }
+  check_ranges(*this, std::string(field) + ".");
+  if (kind != Kind::file) return;
+  const std::string name = fmt::format("{}.samples", field);
+  require(!samples.empty(), name, "empty", "must hold at least one sample");
+  const double total = std::accumulate(samples.begin(), samples.end(), 0.0);
+  require(total > 0.0, name + " sum", total, "must be > 0");
 }
 
 std::string_view name_of(ImpulseResponse::Kind kind) { return kind_words.of(kind); }

@@ -122,26 +122,13 @@ OperatingPoint capture_light(const Camera& camera, double reference_distance_m) 
 }
 
 void Optics::validate() const {
-  require_positive(source_power_w, "optics.source_power_w");
-  require(wavelength_m >= 200e-9 && wavelength_m <= 20e-6, "optics.wavelength_m", wavelength_m,
-          "must be in [200e-9, 20e-6]");
-  for (const double angle_deg : field_of_view_deg)
-    require(angle_deg > 0.0 && angle_deg < 180.0, "optics.field_of_view_deg", angle_deg,
-            "must be in (0, 180), the full angle");
-  require_positive(f_number, "optics.f_number");
-  require_positive(pixel_pitch_m, "optics.pixel_pitch_m");
-  require_share(quantum_efficiency, "optics.quantum_efficiency");
-  require_share(transmission, "optics.transmission");
-  require_share(fill_factor, "optics.fill_factor");
+  check_ranges(*this, "optics.");
   if (filter_width_m)
-    require(*filter_width_m > 0.0 && *filter_width_m < 2.0 * wavelength_m, "optics.filter_width_m",
-            *filter_width_m, "must be > 0 and below twice the wavelength");
+    require(*filter_width_m < 2.0 * wavelength_m, "optics.filter_width_m", *filter_width_m,
+            "must be below twice the wavelength");
   require(!sunlight_klux || !sunlight_w_per_m2_nm, "optics.sunlight_klux",
           sunlight_klux.value_or(0.0), "must be left out where sunlight_w_per_m2_nm is given");
-  if (sunlight_w_per_m2_nm)
-    require_not_negative(*sunlight_w_per_m2_nm, "optics.sunlight_w_per_m2_nm");
   if (sunlight_klux) {
-    require_not_negative(*sunlight_klux, "optics.sunlight_klux");
     const double half_m = filter_width_m.value_or(0.0) / 2.0;
     require(wavelength_m - half_m >= sun_first_m && wavelength_m + half_m <= sun_last_m,
             "optics.wavelength_m", wavelength_m,

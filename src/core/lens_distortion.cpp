@@ -20,8 +20,8 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr EnumWords<DistortionModel, 2> model_words("DistortionModel", "distortion_model", "opencv",
-                                                    "fisheye");
+constexpr EnumWords<DistortionModel, 2> model_words("DistortionModel", "distortion_model",
+                                                    distortion_models);
 
 /// A place and its image, and how the image moves with it.
 struct Imaged {

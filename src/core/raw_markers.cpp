@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/raw_markers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 

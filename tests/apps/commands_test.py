@@ -57,6 +57,18 @@ class Commands(CommandLineTest):
         self.refuse(["cameras", "kinect-v2", "--raw-format"], "interleaved", "arducam-tof")
         self.refuse(["cameras", "--raw-format"], "needs the NAME", code=2)
 
+    def test_the_keys_of_a_camera_are_listed_with_unit_range_and_default(self):
+        keys = {key["key"]: key for key in self.do_json("cameras", "--keys")}
+        peak = keys["light.peak_factor"]
+        self.assertEqual((peak["range"], peak["default"]), ("finite and >= 1", 15.0))
+        self.assertEqual(keys["sensor.read_noise_e"]["unit"], "e")
+        self.assertIn("hann", keys["light.impulse_response.f_max_hz"]["condition"])
+        text = self.do("cameras", "--keys")
+        for name, key in keys.items():
+            self.assertIn(name, text)
+            self.assertIn(key["help"], text)
+        self.refuse(["cameras", "kinect-v2", "--keys"], "--keys", code=2)
+
     def test_a_simulated_frame_has_its_camera_beside_it(self):
         truth = self.small_scene()
         far = ("--set", "fundamental_frequency_hz=7.5e6")

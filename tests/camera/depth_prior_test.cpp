@@ -122,7 +122,7 @@ TEST(DepthPrior, IsRefusedByCamerasWhereNoDepthCouldBeDrawn) {
   EXPECT_THAT(refusal(List{}), HasSubstr("operating.depths = []; must list at least one"));
   EXPECT_THAT(refusal(List{0.0, 0.0}),
               HasSubstr("operating.depths = weights that are all 0; must"));
-  EXPECT_THAT(refusal(List{1.0, -2.0}), HasSubstr("operating.depths[1] = -2; must be a finite"));
+  EXPECT_THAT(refusal(List{1.0, -2.0}), HasSubstr("operating.depths[1] = -2; must be finite"));
   EXPECT_THAT(refusal(List{1.0, no_number}), HasSubstr("operating.depths[1] = nan"));
   EXPECT_THAT(refusal(List{infinite}), HasSubstr("operating.depths[0] = inf"));
   EXPECT_THAT(refusal(List(10001, 1.0)), HasSubstr("operating.depths = 10001 weights; must be at"));

@@ -128,7 +128,7 @@ TEST(Optics, RefusesWhatNoCameraHas) {
   EXPECT_THAT(refusal([](Optics& o) { o.source_power_w = 0.0; }),
               HasSubstr("optics.source_power_w = 0; must be finite and > 0"));
   EXPECT_THAT(refusal([](Optics& o) { o.wavelength_m = 850.0; }),
-              HasSubstr("optics.wavelength_m = 850; must be in [200e-9, 20e-6]"));
+              HasSubstr("optics.wavelength_m = 850; must be in [2e-07, 2e-05]"));
   EXPECT_THAT(refusal([](Optics& o) { o.field_of_view_deg[1] = 180.0; }),
               HasSubstr("optics.field_of_view_deg = 180"));
   EXPECT_THAT(refusal([](Optics& o) { o.quantum_efficiency = 30.0; }),

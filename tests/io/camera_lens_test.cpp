@@ -60,12 +60,12 @@ TEST(CameraLens, IsRefusedWithThePlaceAndTheRule) {
                 "c.toml:2:1: found no lens.blur_sigma_px; expected a line such as "
                 "`blur_sigma_px = 0.5`"},
         BadLine{"lens.blur_sigma_px = 0.5",
-                "c.toml:2:22: lens.blur_sigma_px: has a meaning only with blur = \"gaussian\""},
+                "c.toml:2:22: lens.blur_sigma_px: is only valid with blur = \"gaussian\""},
         BadLine{"lens = { blur = \"gaussian\", blur_sigma_px = 0 }",
                 "c.toml:2:45: lens.blur_sigma_px = 0; must be in (0, 32]"},
         BadLine{"lens = { blur = \"disc\", focal_length_m = 1, f_number = 2, focus_distance_m = 1, "
                 "pixel_pitch_m = 1 }",
-                "c.toml:2:78: lens.focus_distance_m = 1; must be finite and > "
+                "c.toml:2:78: lens.focus_distance_m = 1; must be > "
                 "lens.focal_length_m: nothing nearer is ever sharp"},
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, distortion = [1, 2] }",
                 "c.toml:2:67: lens.distortion = [1, 2]; must be 4, 5, 8 or 12 numbers: k1 k2 p1 p2 "
@@ -78,7 +78,7 @@ TEST(CameraLens, IsRefusedWithThePlaceAndTheRule) {
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, width_px = 4 }",
                 "c.toml:2:65: lens.width_px = 4; goes with lens.height_px: both or neither"},
         BadLine{"lens = { rays = \"r.npy\", calibration = \"lens.yml\" }",
-                "c.toml:2:40: lens.calibration: has a meaning only with no rays beside it"},
+                "c.toml:2:40: lens.calibration: is only valid with no rays"},
         BadLine{"lens.pixel_samples = 17",
                 "c.toml:2:22: lens.pixel_samples = 17; must be in [1, 16]"}})
     EXPECT_EQ(

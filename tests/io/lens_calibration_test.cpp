@@ -147,7 +147,7 @@ TEST(LensCalibration, ACameraTakesItsLensFromTheFileBesideItAndIsWrittenWithTheN
   EXPECT_EQ(with_settings(camera, settings).lens->fx_px, 500.0);
   std::ofstream(path, std::ios::app) << "fx_px = 500\n";
   EXPECT_EQ(io_error_of([&] { read_camera_toml(path); }),
-            path.string() + ":4:9: lens.fx_px: has a meaning only with no calibration beside it");
+            path.string() + ":4:9: lens.fx_px: is only valid with no calibration");
 }
 
 }  // namespace

@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
     Textures, SceneTomlRefusesBesideABall,
     testing::Values(
         BadScene{"turn_centre_m = [0, 0, 1]",
-                 "s.toml:4:17: sphere[0].turn_centre_m: has a meaning only with turn_deg_per_s"},
+                 "s.toml:4:17: sphere[0].turn_centre_m: is only valid with turn_deg_per_s"},
         BadScene{"velocity_m_per_s = [1, 2]",
                  "s.toml:4:20: sphere[0].velocity_m_per_s: found 2 numbers; expected a list of"},
         BadScene{
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:4:10: sphere[0].albedo: found -0.1; expected a number in [0, 1]"},
         BadScene{"albedo = 1.5", "s.toml:4:10: sphere[0].albedo: found 1.5"},
         BadScene{"albedo = 0.5\ntexture = { pattern = \"uniform\" }",
-                 "s.toml:4:10: sphere[0].albedo: has a meaning only with no texture beside it"},
+                 "s.toml:4:10: sphere[0].albedo: is only valid with no texture beside it"},
         BadScene{"texture = { pattern = \"cheker\" }",
                  "s.toml:4:23: sphere[0].texture.pattern: found \"cheker\"; expected one of "
                  "\"uniform\", \"checker\", \"stripes\"; did you mean \"checker\"?"},
@@ -236,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"texture = { image = \"absent.png\" }",
                  "s.toml:4:21: sphere[0].texture.image: absent.png: there is no such file"},
         BadScene{"texture = { image = \"a.png\", pattern = \"checker\" }",
-                 "s.toml:4:40: sphere[0].texture.pattern: has a meaning only with"}));
+                 "s.toml:4:40: sphere[0].texture.pattern: is only valid with"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Views, SceneTomlRefusesBesideABall,
@@ -246,18 +246,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[view]\nhorizontal_angle_deg = 180",
                  "s.toml:5:24: view.horizontal_angle_deg: found 180; expected more than 0 and"},
         BadScene{"[view]\nfx_px = 5\nhorizontal_angle_deg = 18",
-                 "s.toml:6:24: view.horizontal_angle_deg: has a meaning only with no fx_px"},
+                 "s.toml:6:24: view.horizontal_angle_deg: is only valid with no fx_px"},
         BadScene{"[view]\nfx_px = 200\ndistortion = [-0.6, 0, 0, 0]",
                  "s.toml:6:14: view.distortion: found [-0.6, 0, 0, 0]; must not fold back inside"},
         BadScene{"[view]\ndistortion = [0, 0, 0, 0]",
-                 "s.toml:5:14: view.distortion: has a meaning only with fx_px"},
-        BadScene{"[view]\ncx_px = 5", "s.toml:5:9: view.cx_px: has a meaning only with fx_px"},
+                 "s.toml:5:14: view.distortion: is only valid with fx_px"},
+        BadScene{"[view]\ncx_px = 5", "s.toml:5:9: view.cx_px: is only valid with fx_px"},
         BadScene{"[camera]\nposition_m = [1, 2, 3]\nlook_at_m = [1, 2, 3]",
                  "s.toml:6:13: camera.look_at_m: is where the camera stands"},
         BadScene{"[camera]\nlook_at_m = [0, 1, 0]",
                  "s.toml:5:13: camera.look_at_m: is straight above or below"},
         BadScene{"[camera]\nlook_at_m = [0, 1, 1]\nrotation_deg = [0, 0, 0]",
-                 "s.toml:6:16: camera.rotation_deg: has a meaning only with no look_at_m"}));
+                 "s.toml:6:16: camera.rotation_deg: is only valid with no look_at_m"}));
 
 TEST(SceneToml, DamagedTexturesAreNamedWithTheirPixel) {
   const TemporaryDirectory directory;

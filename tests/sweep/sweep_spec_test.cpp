@@ -170,7 +170,7 @@ TEST(SweepSpec, RefusesWhatItDoesNotUnderstandAndSaysWhere) {
            {head + "trails = 5\n", "s.toml:2:1: unknown key trails; did you mean trials?"},
            {head + "trials = 1\n", "s.toml:2:10: trials: trials = 1; must be in"},
            {head + "method = \"zncc2\"\n", "s.toml:2:10: method: found \"zncc2\"; expected one of"},
-           {head + "codes = [\"a\"]\n", "s.toml:1:8: code: has a meaning only with no codes"},
+           {head + "codes = [\"a\"]\n", "s.toml:1:8: code: is only valid with no codes"},
            {"codes = []\n", "s.toml:1:9: codes: found an empty list"},
            {axis("key = \"peak_factor\"\nvalues = [1]\n"),
             "s.toml:3:7: axis[0].key: found unknown axis \"peak_factor\"; did you mean "
@@ -196,7 +196,7 @@ TEST(SweepSpec, RefusesWhatItDoesNotUnderstandAndSaysWhere) {
            {axis("key = \"exposures\"\nvalues = [3]\n"), "need each other"},
            {axis("keys = []\nvalues = [1]\n"), "s.toml:3:8: axis[0].keys: found an empty list"},
            {axis("keys = [\"seed\"]\nkey = \"seed\"\nvalues = [1]\n"),
-            "s.toml:4:7: axis[0].key: has a meaning only with no keys"},
+            "s.toml:4:7: axis[0].key: is only valid with no keys"},
            {axis("keys = [\"seed\", \"sampels\"]\nvalues = [1]\n"),
             "axis[0].keys: found unknown axis \"sampels\"; did you mean \"samples\"?"},
            {axis("keys = [\"seed\", \"seed\"]\nvalues = [1]\n"), "axis seed comes twice"},

@@ -2,108 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera_call.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 #include <string>
-#include <utility>
 
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith::lab {
 
 namespace {
-
-/// A key that most people change, and within what; all others are for experts.
-struct UsualRange {
-  std::string_view key;
-  double low, high;  ///< 0, 0: no number
-};
-constexpr std::array usual_ranges = {
-    UsualRange{"fundamental_frequency_hz", 1e6, 3e8},
-    UsualRange{"exposure_s", 1e-5, 1.0},
-    UsualRange{"samples", 60, 2000},
-    UsualRange{"light.peak_factor", 1, 60},
-    UsualRange{"light.binary", 0, 0},
-    UsualRange{"light.impulse_response.kind", 0, 0},
-    UsualRange{"light.impulse_response.f_max_hz", 1e7, 3e9},
-    UsualRange{"light.impulse_response.cutoff_hz", 1e7, 3e9},
-    UsualRange{"sensor.taps", 1, 4},
-    UsualRange{"sensor.binary", 0, 0},
-    UsualRange{"sensor.impulse_response.kind", 0, 0},
-    UsualRange{"sensor.impulse_response.f_max_hz", 1e7, 3e9},
-    UsualRange{"sensor.impulse_response.cutoff_hz", 1e7, 3e9},
-    UsualRange{"sensor.read_noise_e", 0, 100},
-    UsualRange{"sensor.noise", 0, 0},
-    UsualRange{"sensor.modulation_contrast", 0.1, 1},
-    UsualRange{"sensor.readout", 0, 0},
-    UsualRange{"operating.signal_e_per_s", 1e3, 1e7},
-    UsualRange{"operating.ambient_e_per_s", 1e2, 1e8},
-    UsualRange{"operating.error", 0, 0},
-    UsualRange{"operating.albedo", 0.05, 1},
-};
-
-/// The unit that a key ends with, as people write it; "" of a plain number.
-std::string_view unit_of(std::string_view key) {
-  // The longer ending first: electrons per second are no seconds.
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 17> units = {{
-      {"_e_per_s", "e/s"},
-      {"_e_per_dn", "e/DN"},
-      {"_w_per_m2_nm", "W/m2/nm"},
-      {"_m_per_c", "m/degree C"},
-      {"_per_c", "1/degree C"},
-      {"_hz", "Hz"},
-      {"_px", "px"},
-      {"_deg", "degrees"},
-      {"_klux", "klx"},
-      {"_bits", "bits"},
-      {"_dn", "DN"},
-      {"_s", "s"},
-      {"_e", "e"},
-      {"_m", "m"},
-      {"_w", "W"},
-      {"_c", "degrees C"},
-      {"_points", "points"},
-  }};
-  for (const auto& [ending, unit] : units)
-    if (key.ends_with(ending)) return unit;
-  return "";
-}
-
-/// The first number after `at` in a rule, such as the 24 of "1 .. 24".
-std::optional<double> number_after(std::string_view text, std::size_t at) {
-  at = std::min(text.find_first_not_of(' ', at), text.size());
-  text = text.substr(at, std::min(text.find_first_not_of("0123456789.-e^", at), text.size()) - at);
-  while (text.ends_with('.')) text.remove_suffix(1);
-  const std::size_t power = text.find('^');
-  // JSON's numbers are the same in every locale and every standard library.
-  const Json number = Json::parse(text.substr(0, power), nullptr, false);
-  if (!number.is_number()) return std::nullopt;
-  if (power == std::string_view::npos) return number.get<double>();
-  const Json exponent = Json::parse(text.substr(power + 1), nullptr, false);
-  if (!exponent.is_number()) return std::nullopt;
-  return std::pow(number.get<double>(), exponent.get<double>());
-}
-
-/// The bounds that a comment ends with: "> 0", ">= 1", "(0, 1]", "1 .. 24".
-std::pair<std::optional<double>, std::optional<double>> bounds_of(std::string_view doc) {
-  std::pair<std::optional<double>, std::optional<double>> bounds;
-  if (const std::size_t dots = doc.find(" .. "); dots != std::string_view::npos) {
-    const std::size_t before = doc.find_last_not_of("0123456789.", dots - 1);
-    bounds.first = number_after(doc, before == std::string_view::npos ? 0 : before + 1);
-    bounds.second = number_after(doc, dots + 4);
-  } else if (const std::size_t open = doc.find_last_of("(["); open != std::string_view::npos) {
-    const std::size_t comma = doc.find(',', open);
-    if (comma == std::string_view::npos) return bounds;
-    bounds.first = number_after(doc, open + 1);
-    bounds.second = number_after(doc, comma + 1);
-    if (!bounds.first || !bounds.second) return {};
-  } else if (const std::size_t above = doc.find('>'); above != std::string_view::npos) {
-    bounds.first = number_after(doc, above + (doc.substr(above).starts_with(">=") ? 2 : 1));
-  }
-  return bounds;
-}
 
 /// The value of "light.peak_factor" in a camera's document; null: it has none.
 Json value_at(const Json& document, std::string_view key) {
@@ -119,18 +25,38 @@ Json value_at(const Json& document, std::string_view key) {
   }
 }
 
-void add_bounds(Json& field, std::string_view doc, const UsualRange* usual) {
+/// The type of a field of the page: several types of values are lists there.
+std::string_view type_of(const KeyDescription& described, const Json& value) {
+  switch (described.type) {
+    case ValueType::numbers:
+    case ValueType::integers:
+    case ValueType::number_pair:
+    case ValueType::raw_numbers:
+      return "list";
+    case ValueType::number_or_list:
+      return value.is_array() ? "list" : "number";
+    case ValueType::number_or_word:
+      return "number";
+    case ValueType::path:
+      return "text";
+    default:
+      return name_of(described.type);
+  }
+}
+
+/// Adds the bounds of numbers, and the part of them that a slider covers.
+void add_bounds(Json& field, const Key& key) {
   if (field["type"] != "number" && field["type"] != "integer" && field["type"] != "list") return;
-  const auto [low, high] = bounds_of(doc);
-  if (low) field["low"] = *low;
-  if (high) field["high"] = *high;
+  const bool has_low = std::isfinite(key.range.low), has_high = std::isfinite(key.range.high);
+  if (has_low) field["low"] = key.range.low;
+  if (has_high) field["high"] = key.range.high;
   double from = 0.0, to = 1.0;
-  if (usual != nullptr && usual->high > usual->low) {
-    from = usual->low;
-    to = usual->high;
-  } else if (low && high) {
-    from = *low;
-    to = *high;
+  if (key.usual_high > key.usual_low) {
+    from = key.usual_low;
+    to = key.usual_high;
+  } else if (has_low && has_high) {
+    from = key.range.low;
+    to = key.range.high;
   } else if (const Json& value = field["value"]; value.is_number() && value.get<double>() > 0.0) {
     from = value.get<double>() / 10.0;
     to = value.get<double>() * 10.0;
@@ -141,23 +67,21 @@ void add_bounds(Json& field, std::string_view doc, const UsualRange* usual) {
   field["log"] = from > 0.0 && to / from >= 50.0;
 }
 
-Json field_json(const CameraKey& described, const Json& document, const Json& defaults) {
-  const std::string& key = described.key;
-  const std::size_t dot = key.rfind('.');
-  const std::string_view doc = doc_of_camera_key(key);
-  const auto* const usual = std::find_if(usual_ranges.begin(), usual_ranges.end(),
-                                         [&](const UsualRange& range) { return range.key == key; });
-  const bool is_usual = usual != usual_ranges.end();
-  Json field = {{"key", key},
-                {"section", dot == std::string::npos ? "" : key.substr(0, dot)},
-                {"unit", unit_of(key)},
-                {"doc", doc},
-                {"type", name_of(described.type)},
-                {"value", value_at(document, key)},
-                {"default", value_at(defaults, key)},
-                {"expert", !is_usual}};
+Json field_json(const KeyDescription& described, const Json& document, const Json& defaults) {
+  const std::string& name = described.name;
+  const Key& key = described.key;
+  const std::size_t dot = name.rfind('.');
+  const Json value = value_at(document, name);
+  Json field = {{"key", name},
+                {"section", dot == std::string::npos ? "" : name.substr(0, dot)},
+                {"unit", unit_of_key(name)},
+                {"doc", key.help},
+                {"type", type_of(described, value)},
+                {"value", value},
+                {"default", value_at(defaults, name)},
+                {"expert", !key.is_basic}};
   if (!described.words.empty()) field["choices"] = described.words;
-  add_bounds(field, doc, is_usual ? usual : nullptr);
+  add_bounds(field, key);
   return field;
 }
 
@@ -173,9 +97,9 @@ Answer camera_answer(const Camera& camera) {
   answer["toml"] = camera_to_toml(camera);
   answer["range_m"] = camera.range_m();
   Json& fields = answer["fields"] = Json::array();
-  for (const CameraKey& key : describe_camera_keys(camera))
-    if (key.applies && key.type != CameraKeyType::table)
-      fields.push_back(field_json(key, document, defaults));
+  for (const KeyDescription& described : describe_camera_keys(camera))
+    if (described.key.applies && described.type != ValueType::table)
+      fields.push_back(field_json(described, document, defaults));
   answer["warnings"] = Json::array();
   return answer;
 }

@@ -100,24 +100,6 @@ struct RawView {
   }
 };
 
-/// Special raw numbers, which a sensor or its driver writes in place of a measurement. They are
-/// compared before any arithmetic and may be NaN or infinite. Field names are keys of [raw] in a
-/// camera file.
-struct RawMarkers {
-  std::vector<double> saturated;  ///< the measurement is clipped
-  std::vector<double> invalid;    ///< there is no measurement, for example of a dead pixel
-
-  bool empty() const { return saturated.empty() && invalid.empty(); }
-  /// Returns true if the list names the number. NaN equals NaN.
-  bool mean_saturated(double number) const;
-  bool mean_invalid(double number) const;
-  /// @throws std::invalid_argument naming the field as raw.*, value and rule
-  void validate() const;
-
-  /// NaN equals NaN.
-  friend bool operator==(const RawMarkers& a, const RawMarkers& b);
-};
-
 /// Frame f of several.
 /// @throws std::invalid_argument if there is no such frame, or not as many values as the sizes say
 RawView view_of_frame(const RawFrames& raw, int frame);

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
+
+#include "tofsmith/core/field_visitor.hpp"
 
 namespace tofsmith {
 
@@ -15,6 +18,8 @@ enum class DistortionModel {
   fisheye,  ///< a polynomial of the angle off the axis
 };
 
+/// Words for the enumerators, in their order.
+inline constexpr std::array<std::string_view, 2> distortion_models = {"opencv", "fisheye"};
 /// "opencv", "fisheye".
 std::string_view name_of(DistortionModel model);
 /// @throws std::invalid_argument for any other word
@@ -50,5 +55,20 @@ struct LensDistortion {
 
   friend bool operator==(const LensDistortion&, const LensDistortion&) = default;
 };
+
+/// Keys of [lens] and of the view of a scene file.
+/// @param has_model, has_coefficients  false: `condition` is not met
+inline void describe(FieldVisitor& fields, LensDistortion& distortion, bool has_model = true,
+                     bool has_coefficients = true, std::string_view condition = {}) {
+  fields.choice(Key("distortion_model", "Formulas of the distortion").only(has_model, condition),
+                distortion.model, distortion_models);
+  fields.value(Key("distortion",
+                   "Coefficients in the order of OpenCV's calibrateCamera() or "
+                   "fisheye::calibrate()",
+                   finite())
+                   .required("[-0.3, 0.1, 0.0, 0.0]")
+                   .only(has_coefficients, condition),
+               distortion.coefficients);
+}
 
 }  // namespace tofsmith

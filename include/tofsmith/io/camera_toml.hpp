@@ -48,24 +48,14 @@ Camera load_camera(const std::string& name_or_path, Settings settings = {});
 /// The camera with some keys replaced. @throws IoError as parse_camera_toml()
 Camera with_settings(const Camera& camera, Settings settings);
 
-/// What the value of a camera's key is.
-enum class CameraKeyType { number, integer, boolean, text, choice, list, table };
-/// The enumerator's name.
-std::string_view name_of(CameraKeyType type);
-
-/// A key that a camera file can have.
-struct CameraKey {
-  std::string key;  ///< such as "light.impulse_response.f_max_hz"
-  CameraKeyType type = CameraKeyType::number;
-  std::vector<std::string> words = {};  ///< that it can be; of a number: instead of one
-  /// Whether it means anything beside the camera's other keys: f_max_hz does with kind = "hann".
-  bool applies = true;
-};
-
-/// Every key that a camera file can have, as it stands beside what the camera says.
-std::vector<CameraKey> describe_camera_keys(const Camera& camera);
-/// The keys alone.
+/// Descriptions of all keys that a camera file can contain, each as it applies to the camera.
+std::vector<KeyDescription> describe_camera_keys(const Camera& camera);
+/// Names of all keys that a camera file can contain.
 std::vector<std::string> camera_keys();
+/// The descriptions as a JSON list, in the order of a camera file: of each key its name `key`, its
+/// `part` of the table, `type`, `unit`, `help`, `range`, `condition`, `example` (of required keys),
+/// `default` (null: none) and `words`.
+std::string camera_keys_json();
 
 /// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.
 /// @throws std::invalid_argument if the camera is invalid

@@ -28,6 +28,10 @@ class EnumWords {
     static_assert(sizeof...(words) == Count, "one word for each value");
   }
 
+  constexpr EnumWords(std::string_view type, std::string_view field,
+                      const std::array<std::string_view, Count>& words)
+      : type_(type), field_(field), words_(words) {}
+
   /// In the order of the values.
   std::span<const std::string_view, Count> all() const { return words_; }
 

@@ -7,38 +7,15 @@
 #include <algorithm>
 #include <sstream>
 
-#include "io/documents/camera_fields.hpp"
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
-#include "io/text/table_writer.hpp"
+#include "io/text/shared/field_writer.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith {
 
-/// The file a response came from, or else its samples.
-void visit_measured_response(TableWriter& table, const ImpulseResponse& response) {
-  if (response.file.empty())
-    table.value("samples", response.samples);
-  else
-    table.value("file", response.file);
-  table.value("time_step_s", response.time_step_s);
-}
-
-bool visit_ray_map(TableWriter& table, const Lens& lens) {
-  if (lens.rays.empty()) return false;
-  table.value("rays", lens.rays);
-  return true;
-}
-
-/// A calibration's numbers are written, whatever file they came from.
-bool visit_lens_calibration(TableWriter& /*table*/, const Lens& /*lens*/) { return false; }
-
-nlohmann::ordered_json lens_document(const Lens& lens) {
-  TableWriter writer;
-  camera_fields::visit_pinhole(writer, lens);
-  return writer.document();
-}
+nlohmann::ordered_json lens_document(const Lens& lens) { return described_json(lens); }
 
 std::string lens_to_json(const Lens& lens) { return lens_document(lens).dump(); }
 
@@ -64,9 +41,7 @@ Lens lens_from_json(const JsonReader& json) {
 
 nlohmann::ordered_json camera_document(const Camera& camera) {
   camera.validate();
-  TableWriter writer;
-  camera_fields::visit_camera(writer, camera);
-  return writer.document();
+  return described_json(camera);
 }
 
 std::string camera_to_json(const Camera& camera) {

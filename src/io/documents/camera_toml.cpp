@@ -8,57 +8,13 @@
 #include <algorithm>
 
 #include "core/shared/text_numbers.hpp"
-#include "io/documents/camera_fields.hpp"
 #include "io/documents/lens_calibration.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/table_reader.hpp"
+#include "io/text/shared/field_reader.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
 
 namespace tofsmith {
-
-/// Samples from a file or from the table itself, never both.
-void visit_measured_response(TableReader& table, ImpulseResponse& response) {
-  std::optional<double> time_step_s;
-  table.value("time_step_s", time_step_s);
-  table.value("file", response.file);
-  table.value("samples", response.samples);
-  if (response.file.empty() == response.samples.empty())
-    table.fail("kind",
-               "found \"file\"; expected either file = \"response.csv\" or samples = "
-               "[..] beside it");
-  if (response.file.empty()) {
-    table.required("time_step_s", "1e-9");
-    response.time_step_s = *time_step_s;
-    return;
-  }
-  // Absolute, so that the camera can be written elsewhere and read back.
-  const auto path = std::filesystem::absolute(table.resolve("file", response.file));
-  response = read_impulse_response(path.lexically_normal(), time_step_s);
-}
-
-/// A file of rays, if the table names one.
-bool visit_ray_map(TableReader& table, Lens& lens) {
-  if (!table.contains("rays")) return false;
-  table.value("rays", lens.rays);
-  // Absolute, so that the camera can be written elsewhere and read back.
-  const auto path = std::filesystem::absolute(table.resolve("rays", lens.rays));
-  lens.rays = path.lexically_normal().string();
-  return true;
-}
-
-/// The lens of a calibration file, if the table names one.
-bool visit_lens_calibration(TableReader& table, Lens& lens) {
-  if (!table.contains("calibration")) return false;
-  std::string file;
-  table.value("calibration", file);
-  std::optional<DistortionModel> model;
-  if (table.contains("distortion_model"))
-    table.choice("distortion_model", model.emplace(),
-                 words_by_name<DistortionModel, 2>("DistortionModel", "distortion_model"));
-  lens = read_lens_calibration(table.resolve("calibration", file), model);
-  return true;
-}
 
 namespace {
 
@@ -75,6 +31,27 @@ std::string place_of_field(const std::string& field, const TableReader::Places& 
   return place;
 }
 
+/// Reads the measured response that a table names, if it names one.
+/// @param name  the table: "light.impulse_response"
+void load_response(const std::string& name, const FieldReader& reader,
+                   const TableReader::Places& places, ImpulseResponse& response) {
+  if (response.kind != ImpulseResponse::Kind::file) return;
+  const auto file = reader.files().find(name + ".file");
+  if (file == reader.files().end()) return;
+  std::optional<double> time_step_s;
+  if (places.contains(name + ".time_step_s")) time_step_s = response.time_step_s;
+  response = read_impulse_response(file->second, time_step_s);
+}
+
+/// Reads the calibration of the lens that the camera names, if it names one.
+void load_lens(const FieldReader& reader, std::optional<Lens>& lens) {
+  const auto file = reader.files().find("lens.calibration");
+  if (file == reader.files().end()) return;
+  std::optional<DistortionModel> model;
+  if (lens->distortion) model = lens->distortion->model;
+  lens = read_lens_calibration(file->second, model);
+}
+
 }  // namespace
 
 Camera parse_camera_toml(std::string_view text, std::string_view source_name, Settings settings) {
@@ -86,8 +63,12 @@ Camera parse_camera_toml(std::string_view text, std::string_view source_name, Se
   camera.operating = paper_operating_range();
   TableReader::Places places;
   TableReader table(document, places);
-  camera_fields::visit_camera(table, camera);
+  FieldReader reader(table);
+  describe(reader, camera);
   table.finish();
+  load_response("light.impulse_response", reader, places, camera.light.impulse_response);
+  load_response("sensor.impulse_response", reader, places, camera.sensor.impulse_response);
+  load_lens(reader, camera.lens);
   try {
     camera.validate();
   } catch (const InvalidArgument& error) {

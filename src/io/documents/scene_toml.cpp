@@ -8,10 +8,9 @@
 #include <numbers>
 #include <optional>
 
-#include "io/documents/camera_fields.hpp"
 #include "io/image_limits.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/table_reader.hpp"
+#include "io/text/shared/field_reader.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
@@ -163,8 +162,7 @@ void read_view(TableReader& table, PinholeView& view) {
   read_positive(table, "fy_px", view.fy_px);
   table.value("cx_px", view.cx_px);
   table.value("cy_px", view.cy_px);
-  table.part(view.distortion, {"distortion_model", "distortion"},
-             camera_fields::visit_distortion<TableReader>);
+  FieldReader(table).part(Key("distortion", "Distortion of the lens"), view.distortion);
   try {
     view.validate();
   } catch (const InvalidArgument& error) {

@@ -308,7 +308,7 @@ void TableReader::value(std::string_view key, std::vector<double>& target) {
   target = number_list(full(key), *node->as_array());
 }
 
-void TableReader::markers(std::string_view key, std::vector<double>& target) {
+void TableReader::raw_numbers(std::string_view key, std::vector<double>& target) {
   const toml::node* node = find(key);
   if (!node) return;
   if (!node->is_array()) mistyped(full(key), *node, "a list of numbers, such as [65535]");
@@ -411,8 +411,8 @@ void TableReader::number_or_word(std::string_view key, double& number, std::stri
   if (!is_word) number = finite_number(full(key), *node, fmt::format("a number or \"{}\"", word));
 }
 
-std::optional<std::size_t> TableReader::index_of_word(std::string_view key,
-                                                      std::span<const std::string_view> words) {
+std::optional<std::size_t> TableReader::word(std::string_view key,
+                                             std::span<const std::string_view> words) {
   const toml::node* node = find(key);
   if (!node) return std::nullopt;
   const auto* text = node->as_string();
@@ -459,7 +459,7 @@ TableReader& TableReader::required(std::string_view key, std::string_view exampl
 
 void TableReader::refuse(std::initializer_list<std::string_view> keys, std::string_view condition) {
   for (const std::string_view key : keys)
-    if (contains(key)) fail(key, fmt::format("has a meaning only with {}", condition));
+    if (contains(key)) fail(key, fmt::format("is only valid with {}", condition));
 }
 
 std::filesystem::path TableReader::resolve(std::string_view key, const std::string& path) const {

@@ -65,7 +65,6 @@ class TomlDocument {
 /// expected.
 class TableReader {
  public:
-  static constexpr bool reads = true;
   /// Where each value that was read stands, by its full key such as "light.peak_factor".
   using Places = std::map<std::string, std::string>;
 
@@ -95,14 +94,15 @@ class TableReader {
     if (contains(key)) value(key, target.emplace());
   }
 
-  /// One word of a fixed set.
+  /// Index of the word in a fixed set; none if the key is not there.
+  std::optional<std::size_t> word(std::string_view key, std::span<const std::string_view> words);
   template <typename Enum, std::size_t Count>
   void choice(std::string_view key, Enum& target, const EnumWords<Enum, Count>& words) {
-    if (const auto index = index_of_word(key, words.all())) target = static_cast<Enum>(*index);
+    if (const auto index = word(key, words.all())) target = static_cast<Enum>(*index);
   }
 
   /// A list of raw numbers, which may be NaN or infinite: nan, inf, -inf, or these words in quotes.
-  void markers(std::string_view key, std::vector<double>& target);
+  void raw_numbers(std::string_view key, std::vector<double>& target);
 
   /// A number, or a list of them.
   void number_or_list(std::string_view key, double& number, std::vector<double>& list);
@@ -122,15 +122,8 @@ class TableReader {
     if (contains(key)) table(key, target.emplace(), fields);
   }
 
-  /// Reads fields that stand in this table, when one of their keys is there.
-  template <typename Value, typename Fields>
-  void part(std::optional<Value>& target, std::initializer_list<std::string_view> keys,
-            Fields&& fields) {
-    bool is_there = false;
-    for (const std::string_view key : keys) is_there = contains(key) || is_there;
-    if (is_there) fields(*this, target.emplace());
-  }
-
+  /// The nested table, if it is there.
+  std::optional<TableReader> enter(std::string_view key);
   /// Reads every table of a list of them, [[key]]: `fields(TableReader&)`. They are called key[0],
   /// key[1] ..
   template <typename Fields>
@@ -148,6 +141,8 @@ class TableReader {
   void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
 
   bool contains(std::string_view key);
+  /// The key with the tables that contain it, such as "light.peak_factor".
+  std::string full(std::string_view key) const { return prefix_ + std::string(key); }
   /// Where the value of `key` was written, or the table if the key is not there.
   std::string place_of(std::string_view key) const;
   /// The path in `key`, from where it was written.
@@ -161,16 +156,12 @@ class TableReader {
   TableReader(const TomlDocument& document, Places& places, const toml::table& table,
               std::string prefix);
   const toml::node* find(std::string_view key);
-  std::optional<TableReader> enter(std::string_view key);
   std::vector<TableReader> enter_each(std::string_view key);
-  std::optional<std::size_t> index_of_word(std::string_view key,
-                                           std::span<const std::string_view> words);
   std::vector<double> numbers(std::string_view key, const toml::node& node, std::size_t count,
                               std::string_view expected) const;
   double finite_number(const std::string& name, const toml::node& node,
                        std::string_view expected) const;
   std::vector<double> number_list(const std::string& name, const toml::array& list) const;
-  std::string full(std::string_view key) const { return prefix_ + std::string(key); }
   [[noreturn]] void mistyped(const std::string& name, const toml::node& node,
                              std::string_view expected) const;
 

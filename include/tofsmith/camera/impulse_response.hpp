@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <complex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/field_visitor.hpp"
+
+namespace tofsmith {
+
+/// Impulse response of a light source or a sensor. Its transfer function is 1 at frequency 0, so
+/// that mean power and duty are preserved.
+struct ImpulseResponse {
+  enum class Kind { none, hann, gaussian, lowpass, file };
+
+  Kind kind = Kind::none;
+  /// Hann: frequency at which the window attenuates by 5 [Hz]. The window is 1.444 / f_max_hz wide
+  /// and its transfer function sinc(x) / (1 - x^2), x = f * width.
+  /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4.2 and Fig. 5
+  double f_max_hz = 0.0;
+  double cutoff_hz = 0.0;  ///< gaussian, lowpass: -3 dB frequency [Hz]
+  /// file: measured response, linear between samples; scaled to sum 1 where it is used. Nothing
+  /// passes above half the sampling rate.
+  std::vector<double> samples;
+  double time_step_s = 0.0;  ///< file: time between samples [s]
+  std::string file;          ///< file: path from which the samples were read; may be empty
+
+  /// Transfer function at a frequency [Hz]; 1 at 0.
+  std::complex<double> transfer(double frequency_hz) const;
+
+  /// @throws std::invalid_argument naming `field`.member, value and rule
+  void validate(std::string_view field) const;
+
+  friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
+};
+
+/// Words for the kinds, in their order.
+inline constexpr std::array<std::string_view, 5> impulse_response_kinds = {
+    "none", "hann", "gaussian", "lowpass", "file"};
+/// "none", "hann", "gaussian", "lowpass", "file".
+std::string_view name_of(ImpulseResponse::Kind kind);
+
+/// Keys of [light.impulse_response] and [sensor.impulse_response].
+inline void describe(FieldVisitor& fields, ImpulseResponse& response) {
+  using Kind = ImpulseResponse::Kind;
+  fields.choice(Key("kind", "Shape of the impulse response").required("\"hann\"").basic(),
+                response.kind, impulse_response_kinds);
+  const Kind kind = response.kind;
+  fields.value(Key("f_max_hz", "Frequency at which the Hann window attenuates by 5", above(0))
+                   .required("150e6")
+                   .only(kind == Kind::hann, "kind = \"hann\"")
+                   .usually(1e7, 3e9),
+               response.f_max_hz);
+  fields.value(Key("cutoff_hz", "-3 dB frequency", above(0))
+                   .required("100e6")
+                   .only(kind == Kind::gaussian || kind == Kind::lowpass,
+                         "kind = \"gaussian\" or \"lowpass\"")
+                   .usually(1e7, 3e9),
+               response.cutoff_hz);
+  const bool is_file = kind == Kind::file;
+  fields.value(
+      Key("file", "File with the measured response: .csv or .npy").only(is_file, "kind = \"file\""),
+      InputPath{response.file});
+  const bool has_file = !response.file.empty();
+  fields.value(Key("samples", "Measured response, linear between samples", finite())
+                   .required("[0.1, 0.5, 0.3, 0.1]")
+                   .only(is_file && !has_file, "kind = \"file\" and no file"),
+               response.samples);
+  Key time_step("time_step_s", "Time between samples; of a file without times", above(0));
+  if (!has_file) time_step.required("1e-9");
+  fields.value(time_step.only(is_file, "kind = \"file\""), response.time_step_s);
+}
+
+}  // namespace tofsmith

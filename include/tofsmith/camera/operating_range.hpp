@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/field_visitor.hpp"
+#include "tofsmith/core/fields.hpp"
+
+namespace tofsmith {
+
+/// Light levels, as photo-electron rates of a fully open sensor.
+struct OperatingPoint {
+  double signal_e_per_s = 0.0;   ///< S, modulated light
+  double ambient_e_per_s = 0.0;  ///< A, all other light
+
+  friend bool operator==(const OperatingPoint&, const OperatingPoint&) = default;
+};
+auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
+  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, at_least(0)),
+                    Field("ambient_e_per_s", p.ambient_e_per_s, at_least(0)));
+}
+
+/// Definition of the depth error.
+enum class DepthErrorKind {
+  linear,    ///< |decoded - true|, as in the paper: a wrap costs the whole range
+  circular,  ///< the shorter way around the range
+};
+/// Words for the kinds, in their order.
+inline constexpr std::array<std::string_view, 2> depth_error_kinds = {"linear", "circular"};
+/// The enumerator's name.
+constexpr std::string_view name_of(DepthErrorKind kind) {
+  return depth_error_kinds[static_cast<std::size_t>(kind)];
+}
+
+/// Multipath that a camera meets: one second return whose ratio and delay are uniform between their
+/// limits.
+struct OperatingMultipath {
+  std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, smallest and largest
+  std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, below the range [m]
+  /// Designs minimize E1^(1 - weight) E2^weight, where E1 is the error of single returns and E2 the
+  /// error with such a second return, decoded as a single one.
+  double weight = 0.2;
+
+  /// Ratio and delay for numbers that are uniform on [0, 1).
+  double ratio_at(double uniform) const { return ratio[0] + uniform * (ratio[1] - ratio[0]); }
+  double delay_at_m(double uniform) const {
+    return delay_m[0] + uniform * (delay_m[1] - delay_m[0]);
+  }
+
+  /// E1^(1 - weight) E2^weight.
+  double weighed(double single_return_error, double operating_multipath_error) const;
+
+  /// @throws std::invalid_argument naming the field as operating.multipath.*, value and rule
+  void validate(double range_m) const;
+
+  friend bool operator==(const OperatingMultipath&, const OperatingMultipath&) = default;
+};
+
+/// Keys of [operating.multipath].
+inline void describe(FieldVisitor& fields, OperatingMultipath& multipath) {
+  fields.value(Key("ratio", "Smallest and largest ratio of the second return to the direct one",
+                   closed(0, 1)),
+               multipath.ratio);
+  fields.value(Key("delay_m", "Shortest and longest delay behind the direct return", above(0)),
+               multipath.delay_m);
+  fields.value(
+      Key("weight", "Weight of the error with multipath in what designs minimize", open(0, 1)),
+      multipath.weight);
+}
+
+/// Conditions under which codes are evaluated: every pair of signal and ambient light.
+struct OperatingRange {
+  std::vector<double> signal_e_per_s;   ///< S [e/s]
+  std::vector<double> ambient_e_per_s;  ///< A [e/s]
+  DepthErrorKind error = DepthErrorKind::linear;
+  double albedo = 1.0;          ///< scales the signal
+  bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
+  /// Number of pixels of one depth that a filter adds before decoding: codes are evaluated on such
+  /// sums (judged_camera()).
+  int neighbours = 1;
+  /// Multipath that designs take into account; none: single returns.
+  std::optional<OperatingMultipath> multipath = {};
+  /// Nearest and farthest depth [m]; none: anywhere in the unambiguous range.
+  std::optional<std::array<double, 2>> working_distance_m = {};
+  /// Histogram of depths: weights of equal parts of the working distance, or of the range; none:
+  /// all depths are equally frequent.
+  std::optional<std::vector<double>> depths = {};
+
+  /// All pairs, in the order of the signals.
+  std::vector<OperatingPoint> points() const;
+  /// The pair in the middle of both lists.
+  OperatingPoint middle() const;
+
+  friend bool operator==(const OperatingRange&, const OperatingRange&) = default;
+};
+
+/// Keys of [operating].
+inline void describe(FieldVisitor& fields, OperatingRange& range) {
+  fields.value(Key("signal_e_per_s",
+                   "Levels of the modulated light, as rates of a fully open "
+                   "sensor",
+                   left_open(0, 1e18))
+                   .because("no sensor sees more electrons")
+                   .usually(1e3, 1e7),
+               range.signal_e_per_s);
+  fields.value(Key("ambient_e_per_s", "Levels of all other light", closed(0, 1e18))
+                   .because("no sensor sees more electrons")
+                   .usually(1e2, 1e8),
+               range.ambient_e_per_s);
+  fields.choice(Key("error",
+                    "Definition of the depth error: linear as in the paper, or the shorter "
+                    "way around the range")
+                    .basic(),
+                range.error, depth_error_kinds);
+  fields.value(Key("albedo",
+                   "Factor of the signal; \"uniform\": a fresh draw in (0, 1) for every "
+                   "trial",
+                   left_open(0, 1))
+                   .usually(0.05, 1),
+               NumberOrWord{range.albedo, "uniform", range.uniform_albedo});
+  fields.value(
+      Key("neighbours", "Pixels of one depth that a filter adds before decoding", closed(1, 10000)),
+      range.neighbours);
+  fields.value(Key("working_distance_m",
+                   "Nearest and farthest depth; without it, the unambiguous "
+                   "range",
+                   at_least(0)),
+               range.working_distance_m);
+  fields.value(Key("depths",
+                   "Histogram of depths: weights of equal parts of the working distance; "
+                   "without it, all depths are equally frequent",
+                   at_least(0)),
+               range.depths);
+  fields.table(Key("multipath", "Multipath that designs take into account"), range.multipath);
+}
+
+/// The 25 pairs of the paper: S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5}, A in {1e2, 1e3, 1e4, 10^4.5,
+/// 1e5}.
+OperatingRange paper_operating_range();
+
+}  // namespace tofsmith

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "tofsmith/camera/operating_range.hpp"
+#include "tofsmith/core/field_visitor.hpp"
+
+namespace tofsmith {
+
+/// Optics of a camera, which relate watts and lux to electrons. Surfaces are Lambertian and face
+/// the camera; the light fills its field of view evenly; objects are far from the lens.
+/// @see docs/optics.md for formulas and their sources
+struct Optics {
+  double source_power_w = 0.0;
+  double wavelength_m = 0.0;
+  std::array<double, 2> field_of_view_deg{};
+  double f_number = 0.0;
+  double pixel_pitch_m = 0.0;
+  double quantum_efficiency = 0.0;
+  double transmission = 1.0;
+  double fill_factor = 1.0;
+  std::optional<double> filter_width_m = {};
+  /// The global spectrum of ASTM G173-03 has 109.9 klx. Requires a filter within 800 to 1000 nm.
+  std::optional<double> sunlight_klux = {};
+  std::optional<double> sunlight_w_per_m2_nm = {};  ///< instead of sunlight_klux
+
+  /// S and A of a surface [e/s]:
+  ///   S = albedo E tau / (4 k^2) pitch^2 fill QE lambda / (h c),
+  ///   E = P / (4 d^2 tan(h / 2) tan(v / 2)); A likewise from the sunlight that the filter passes.
+  /// @throws std::invalid_argument naming field, value and rule
+  OperatingPoint light_at(double distance_m, double albedo = 1.0) const;
+  /// Distance at which a surface returns that signal [m].
+  double distance_m(double signal_e_per_s, double albedo = 1.0) const;
+  /// Mean optical power that returns that signal from that distance [W].
+  double source_power_for_w(double signal_e_per_s, double distance_m, double albedo = 1.0) const;
+
+  /// Irradiance by the light source on a surface that faces it [W / m2].
+  double source_w_per_m2(double distance_m) const;
+  /// Irradiance by the sunlight that the filter passes on such a surface [W / m2].
+  double sunlight_w_per_m2() const;
+  /// Electrons of a pixel per joule that falls on a square metre of white surface.
+  double electrons_per_j_per_m2() const;
+
+  /// @throws std::invalid_argument naming the field as optics.*, value and rule
+  void validate() const;
+
+  friend bool operator==(const Optics&, const Optics&) = default;
+};
+
+/// Keys of [optics].
+inline void describe(FieldVisitor& fields, Optics& optics) {
+  fields.value(
+      Key("source_power_w", "Mean optical power of the modulated light", above(0)).required("0.5"),
+      optics.source_power_w);
+  fields.value(Key("wavelength_m", "Wavelength of the modulated light", closed(200e-9, 20e-6))
+                   .required("850e-9"),
+               optics.wavelength_m);
+  fields.value(Key("field_of_view_deg", "Full horizontal and vertical angle of the illumination",
+                   open(0, 180))
+                   .required("[70, 55]"),
+               optics.field_of_view_deg);
+  fields.value(
+      Key("f_number", "Focal length divided by the aperture of the lens", above(0)).required("1.4"),
+      optics.f_number);
+  fields.value(Key("pixel_pitch_m", "Distance between pixel centres", above(0)).required("10e-6"),
+               optics.pixel_pitch_m);
+  fields.value(
+      Key("quantum_efficiency", "Electrons per photon on the sensitive area", left_open(0, 1))
+          .required("0.3"),
+      optics.quantum_efficiency);
+  fields.value(
+      Key("transmission", "Transmission of lens and filter at the wavelength", left_open(0, 1)),
+      optics.transmission);
+  fields.value(Key("fill_factor", "Sensitive share of a pixel", left_open(0, 1)),
+               optics.fill_factor);
+  fields.value(
+      Key("filter_width_m", "Bandwidth of the optical filter; required with sunlight", above(0)),
+      optics.filter_width_m);
+  fields.value(Key("sunlight_klux",
+                   "Illuminance of surfaces by sunlight; requires a filter within "
+                   "800 to 1000 nm",
+                   at_least(0)),
+               optics.sunlight_klux);
+  fields.value(Key("sunlight_w_per_m2_nm",
+                   "Irradiance of surfaces by sunlight within the band of "
+                   "the filter, instead of sunlight_klux",
+                   at_least(0)),
+               optics.sunlight_w_per_m2_nm);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text/shared/field_reader.hpp"
+
+#include <algorithm>
+
+#include "core/shared/overloaded.hpp"
+
+namespace tofsmith {
+
+void FieldReader::visit(const Key& key, const Value& value) {
+  if (!key.example.empty()) table().required(key.name, key.example);
+  std::visit(Overloaded{
+                 [&](WordChoice* choice) {
+                   if (const auto index = table().word(key.name, choice->words))
+                     choice->chosen = *index;
+                 },
+                 [&](const NumberOrList& either) {
+                   table().number_or_list(key.name, either.number, either.list);
+                 },
+                 [&](const NumberOrWord& either) {
+                   table().number_or_word(key.name, either.number, either.word, either.is_word);
+                 },
+                 [&](const RawNumberList& raw) { table().raw_numbers(key.name, raw.numbers); },
+                 [&](const InputPath& input) {
+                   table().value(key.name, input.path);
+                   if (input.path.empty()) return;
+                   // Absolute, so that the struct can be written elsewhere and read back.
+                   const auto path =
+                       std::filesystem::absolute(table().resolve(key.name, input.path));
+                   input.path = path.lexically_normal().string();
+                   files_[table().full(key.name)] = input.path;
+                 },
+                 [&](auto* target) { table().value(key.name, *target); },
+             },
+             value);
+}
+
+bool FieldReader::wants(const Key& key, bool /*is_there*/) { return table().contains(key.name); }
+
+bool FieldReader::enter_part(const Key& /*key*/, std::span<const std::string> names,
+                             bool /*is_there*/) {
+  // Every name becomes known, so that a wrong one gets the nearest as a suggestion.
+  return std::count_if(names.begin(), names.end(),
+                       [&](const auto& name) { return table().contains(name); }) > 0;
+}
+
+void FieldReader::refuse(const Key& key, const Value& /*value*/) {
+  table().refuse({key.name}, key.condition);
+}
+
+bool FieldReader::enter(const Key& key) {
+  auto inner = table().enter(key.name);
+  if (inner) inner_.push_back(std::move(*inner));
+  return inner.has_value();
+}
+
+void FieldReader::leave() {
+  inner_.back().finish();
+  inner_.pop_back();
+}
+
+}  // namespace tofsmith

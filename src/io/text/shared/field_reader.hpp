@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <list>
+#include <map>
+#include <string>
+
+#include "io/text/shared/table_reader.hpp"
+#include "tofsmith/core/field_visitor.hpp"
+
+namespace tofsmith {
+
+/// Reads described structs from a TOML document. Keys that the document does not contain keep their
+/// values. Errors are those of TableReader.
+class FieldReader : public FieldVisitor {
+ public:
+  /// @param table  must outlive the reader, and must be finished by the caller
+  explicit FieldReader(TableReader& table) : outer_(table) {}
+
+  /// Files named by keys, as absolute paths, by the full name of the key such as "lens.rays".
+  const std::map<std::string, std::filesystem::path>& files() const { return files_; }
+
+ protected:
+  void visit(const Key& key, const Value& value) override;
+  bool wants(const Key& key, bool is_there) override;
+  void refuse(const Key& key, const Value& value) override;
+  bool enter(const Key& key) override;
+  void leave() override;
+  bool enter_part(const Key& key, std::span<const std::string> names, bool is_there) override;
+
+ private:
+  TableReader& table() { return inner_.empty() ? outer_ : inner_.back(); }
+
+  TableReader& outer_;
+  std::list<TableReader> inner_;  ///< tables that were entered, the present one last
+  std::map<std::string, std::filesystem::path> files_;
+};
+
+}  // namespace tofsmith
