@@ -47,7 +47,7 @@ class Page(LabTest):
             new Set(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data).size);""")
         self.assertEqual(len(painted), 8)
         self.assertGreater(min(painted), 5)
-        self.assertEqual(self.text("#error-progress"), "20000 trials")
+        self.assertRegex(self.text("#error-progress"), r"^\d+ trials$")
 
     def test_every_field_changes_the_camera_and_undo_changes_it_back(self):
         # One code and few trials: less is drawn at each step.
