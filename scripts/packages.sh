@@ -86,7 +86,6 @@ packages_test=(
   patchelf                                   # wheels
   python3-h5py                               # writes what .h5 readers must read
   python3-opencv                             # distorts as lenses must
-  python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser
   locales                                    # one with a decimal comma
 )

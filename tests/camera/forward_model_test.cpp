@@ -29,16 +29,6 @@ TEST(CorrelationFunction, IsExactBetweenBins) {
   }
 }
 
-TEST(CorrelationFunction, HarmonicsAndCornersAgree) {
-  const CodeSet code = make_family("sinusoid-k3", {.samples = 60});
-  const Eigen::VectorXcd no_response = Eigen::VectorXcd::Ones(20001);
-  const CorrelationFunction corners(code.demodulation(1), code.modulation(1));
-  const CorrelationFunction harmonics(code.demodulation(1), code.modulation(1), no_response);
-  for (const double u : {0.0, 0.1234, 0.5, 0.987, 3.21, -0.3})
-    EXPECT_NEAR(corners(u), harmonics(u), 1e-6);
-  EXPECT_LT((corners.table(90) - harmonics.table(90)).cwiseAbs().maxCoeff(), 1e-6);
-}
-
 TEST(CorrelationFunction, IdealHamiltonianCodeWalksFromVertexToVertex) {
   const auto walk = hamiltonian_walk(3);
   const Camera camera = built_in_camera("paper-30x");
@@ -92,19 +82,6 @@ TEST(ForwardModel, MeanFollowsEquationFour) {
             1e-9);
   const Eigen::VectorXd variance = expected.array() + 20.0 * 20.0;
   EXPECT_LT((model.variance_e2(std::span(&r, 1), 1e3) - variance).cwiseAbs().maxCoeff(), 1e-9);
-}
-
-TEST(ForwardModel, TwoBucketsShareTheLight) {
-  Camera camera = built_in_camera("paper-10f0");
-  camera.sensor.taps = 2;
-  const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
-  EXPECT_EQ(model.measurements(), 8);
-  EXPECT_DOUBLE_EQ(model.exposure_s()[0], 0.3 / 4);
-  const Eigen::MatrixXd chi = model.correlation_table(240);
-  for (int e = 0; e < 4; ++e)
-    EXPECT_LT(
-        (chi.col(2 * e) + chi.col(2 * e + 1) - Eigen::VectorXd::Ones(240)).cwiseAbs().maxCoeff(),
-        1e-9);
 }
 
 TEST(ForwardModel, DifferenceCancelsTheAmbientMeanButNotItsNoise) {

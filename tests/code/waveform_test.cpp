@@ -135,15 +135,5 @@ TEST(CodeSet, RefusesWhatNoCameraCanPlay) {
       << "an electron cannot go to both taps";
 }
 
-TEST(CodeSet, TwoBucketsShareEveryElectron) {
-  const CodeSet code = CodeSet::create("x", 60, 1, {rectangular_pulse(0.1), rectangular_pulse(0.1)},
-                                       {square_wave(1, 0.0), square_wave(2, 0.1)})
-                           .with_two_buckets();
-  EXPECT_EQ(code.measurements(), 4);
-  EXPECT_EQ(code.exposure_of(3), 1);
-  const Eigen::MatrixXd d = code.demodulation_samples();
-  EXPECT_LT((d.col(2) + d.col(3) - Eigen::VectorXd::Ones(60)).cwiseAbs().maxCoeff(), 1e-12);
-}
-
 }  // namespace
 }  // namespace tofsmith

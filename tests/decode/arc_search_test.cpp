@@ -149,19 +149,6 @@ double expect_agreement_at_all_levels(const DirectionTable& directions, int coun
   return share;
 }
 
-TEST(ArcSearch, AgreesOnSmoothCurvesOfAllRanksAndLengths) {
-  for (int rank = 2; rank <= 12; ++rank)
-    for (const int samples : {8, 17, 100, 241, 1000, 3000}) {
-      if (samples <= rank) continue;
-      SCOPED_TRACE(std::to_string(rank) + " x " + std::to_string(samples));
-      const DirectionTable directions =
-          directions_of(random_smooth_curve(rank, samples, static_cast<std::uint64_t>(rank)));
-      const double proven =
-          expect_agreement_at_all_levels(directions, 32 + vectors_per_level * 20 / (samples + 300));
-      EXPECT_GT(proven, 0.9);
-    }
-}
-
 struct CodeCase {
   const char* code;
   int code_samples;
@@ -187,77 +174,6 @@ INSTANTIATE_TEST_SUITE_P(
                     CodeCase{"multifrequency-1x3-2x3-3x3-4x3", 240, 1000, 0.99},
                     CodeCase{"gray-k4", 240, 1000, 0.9}, CodeCase{"gray-k6", 256, 256, 0.9}));
 
-TEST(ArcSearch, ProvesTheLowestOfEqualDirections) {
-  for (int rank = 2; rank <= 7; ++rank) {
-    SCOPED_TRACE(rank);
-    const Curve smooth = random_smooth_curve(rank, 120, static_cast<std::uint64_t>(rank));
-    for (const Curve& curve : {with_plateaus(smooth, 7), twice_around(smooth), with_gaps(smooth),
-                               twice_around(with_gaps(with_plateaus(smooth, 3)))}) {
-      const double proven =
-          expect_agreement_at_all_levels(directions_of(curve), vectors_per_level / 8);
-      EXPECT_GT(proven, 0.95);
-    }
-  }
-}
-
-TEST(ArcSearch, AgreesOnCurvesThatJump) {
-  for (int rank = 2; rank <= 9; ++rank) {
-    RandomStream random(static_cast<std::uint64_t>(rank), 3);
-    Curve curve(300, rank);
-    for (double& value : curve.reshaped()) value = random.normal();
-    const double proven =
-        expect_agreement_at_all_levels(directions_of(curve), vectors_per_level / 8);
-    EXPECT_GT(proven, 0.9);
-  }
-}
-
-TEST(ArcSearch, AgreesWithArcsOfSeveralBlocks) {
-  // As very long curves have them.
-  for (const int samples : {30, 1000, 8000}) {
-    const DirectionTable directions = directions_of(random_smooth_curve(5, samples, 5));
-    const ArcSearch search(directions, 3);
-    expect_agreement(directions, search, noisy_vectors(directions, 0.1, vectors_per_level / 8, 6));
-  }
-}
-
-TEST(ArcSearch, AgreesWhereVectorsAreUncertain) {
-  const DirectionTable directions = directions_of("hamiltonian-k8", 252, 1000);
-  const ArcSearch search(directions);
-  double last = 1.0;
-  for (const double error : {1e-7, 1e-5, 1e-3, 1e-1, 3.0}) {
-    const double proven = expect_agreement(
-        directions, search, noisy_vectors(directions, 0.05, vectors_per_level, 7, error));
-    EXPECT_LE(proven, last);
-    last = proven;
-  }
-  EXPECT_EQ(last, 0.0);
-}
-
-TEST(ArcSearch, AgreesOnTies) {
-  // Small whole numbers tie often, and exactly, on a curve that turns through the axes.
-  Curve curve = Curve::Zero(48, 3);
-  for (int n = 0; n < curve.rows(); ++n) {
-    const int axis = n / 8 % 3;
-    curve(n, axis) = n < 24 ? 1.0 : -1.0;
-    curve(n, (axis + 1) % 3) = n % 8 / 8.0 * (n < 16 || n >= 40 ? 1.0 : -1.0);
-  }
-  const DirectionTable directions = directions_of(curve);
-  Vectors vectors = noisy_vectors(directions, 1.0, 1331, 8);
-  for (int i = 0; i < vectors.count(); ++i)
-    for (int j = 0; j < directions.rank(); ++j) {
-      const int value = (j == 0 ? i / 121 : j == 1 ? i / 11 : i) % 11 - 5;
-      vectors.exact[static_cast<std::size_t>(i * vectors.rank + j)] = value;
-      vectors.plane[static_cast<std::size_t>(i / tile_pixels * tile_pixels * vectors.rank +
-                                             j * tile_pixels + i % tile_pixels)] =
-          static_cast<float>(value);
-    }
-  std::fill(vectors.error.begin(), vectors.error.end(), 0.0f);
-  const std::size_t zero = 1331 / 2;  // has no unit vector
-  vectors.exact[zero * 3] = 1.0;
-  vectors.plane[zero / tile_pixels * tile_pixels * 3 + zero % tile_pixels] = 1.0f;
-  expect_agreement(directions, ArcSearch(directions), vectors);
-}
-
 TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
   const DirectionTable directions = directions_of(random_smooth_curve(5, 500, 9));
   const ArcSearch search(directions);
@@ -282,22 +198,6 @@ TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
   }
   const std::vector<double> zero(5, 0.0);
   EXPECT_EQ(search.choose(directions, zero.data(), 1, tie_tolerance), 0);
-}
-
-TEST(ArcSearch, LeavesOtherRowsAloneAndTakesAnyStride) {
-  const DirectionTable directions = directions_of(random_smooth_curve(6, 500, 11));
-  const ArcSearch search(directions);
-  const Vectors vectors = noisy_vectors(directions, 0.1, tile_pixels, 12);
-  const std::vector<std::int32_t> expected = search_all(search, vectors);
-  constexpr int stride = 37, pixels = 21;
-  std::vector<float> plane(6 * stride);
-  for (int j = 0; j < 6; ++j)
-    std::copy_n(&vectors.plane[static_cast<std::size_t>(j * tile_pixels)], pixels,
-                &plane[static_cast<std::size_t>(j * stride)]);
-  std::vector<std::int32_t> rows(pixels + 1, 77);
-  search.search(plane.data(), stride, vectors.error.data(), pixels, rows.data());
-  EXPECT_TRUE(std::equal(rows.begin(), rows.end() - 1, expected.begin()));
-  EXPECT_EQ(rows.back(), 77);
 }
 
 }  // namespace

@@ -19,25 +19,6 @@
 namespace tofsmith {
 namespace {
 
-TEST(BinMatcher, FindsTheSameBinsForFewPixelsAsForMany) {
-  const Camera camera = camera_with("paper-10f0");
-  for (const char* code : {"hamiltonian-k4", "hamiltonian-k5"}) {
-    const DecodeSetup setup(code, camera);
-    const DecodingTable& table = setup.decoder.table();
-    const AmbientProjection projection(table);
-    const BinMatcher of_many(table, projection), of_few(table, projection, true);
-    constexpr int pixels = 40 * pixels_per_tile;
-    const std::vector<float> raw = noisy_pixels(table, 3e3, 1e4, pixels, 7);
-    const RawView view = RawView::interleaved(raw.data(), 1, pixels, table.measurements());
-    const auto many = std::make_unique<PixelTile>(), few = std::make_unique<PixelTile>();
-    for (int first = 0; first < pixels; first += pixels_per_tile) {
-      of_many.match(view, first, pixels_per_tile, false, *many);
-      of_few.match(view, first, pixels_per_tile, false, *few);
-      for (int i = 0; i < pixels_per_tile; ++i) ASSERT_EQ(many->bin[i], few->bin[i]) << code;
-    }
-  }
-}
-
 /// K = 13 measurements whose curve lies in `rank` dimensions of them, so that most of what noise
 /// adds to a pixel is no matter of its depth.
 struct CurveInFewDimensions {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "decode/search/shared/pixel_tile.hpp"
 #include "output_setup.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

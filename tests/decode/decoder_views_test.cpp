@@ -251,19 +251,5 @@ TEST(Decoder, NumbersThatAreNoneAreInvalidInBothFloatingTypes) {
   }
 }
 
-TEST(Decoder, ClippedCountsAreSaturated) {
-  Camera camera = camera_with("paper-10f0");
-  camera.sensor.adc_bits = 8;
-  camera.sensor.gain_e_per_dn = 1.0;
-  const DecodeSetup setup("hamiltonian-k4", camera);
-  std::vector<float> raw = bytes_of_pixels(setup.decoder.table());
-  for (float& value : raw) value = std::min(value, 254.0f);
-  for (std::size_t i = 0; i < frame_pixels; i += 5) raw[4 * i + i % 4] = 255.0f;
-  const Frame<std::uint8_t> frame(raw, layouts(4).front());
-  const Outputs outputs = decoded(setup.decoder, frame.view);
-  for (std::size_t i = 0; i < frame_pixels; ++i)
-    ASSERT_EQ(outputs.status[i] == PixelStatus::saturated, i % 5 == 0) << i;
-}
-
 }  // namespace
 }  // namespace tofsmith

@@ -5,13 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <string_view>
 
 #include "likelihood_setup.hpp"
 #include "reference_likelihood.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -122,22 +120,6 @@ TEST(LikelihoodDecoder, PositionsBinsAndFramesAgreeHoweverPixelsAreGrouped) {
     EXPECT_EQ(bins[i], std::lround(alone) % 240);
     EXPECT_FLOAT_EQ(image.depth_m.pixels[i], static_cast<float>(alone * setup.camera.bin_m()));
   }
-}
-
-TEST(LikelihoodDecoder, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const LikelihoodSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
-  const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 3e3, 1e4, 10007, 5), 5);
-  const auto decode_on = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return setup.decoder.decode(frame);
-  };
-  const DepthImage one = decode_on(1), many = decode_on(4);
-  for (const auto plane :
-       {&DepthImage::depth_m, &DepthImage::confidence, &DepthImage::predicted_standard_deviation_m})
-    EXPECT_EQ(std::memcmp((one.*plane).pixels.data(), (many.*plane).pixels.data(),
-                          (one.*plane).pixels.size() * sizeof(float)),
-              0);
-  EXPECT_EQ(one.status.pixels, many.status.pixels);
 }
 
 TEST(LikelihoodDecoder, RefusesWhatDoesNotFitAndStopsWhenAsked) {

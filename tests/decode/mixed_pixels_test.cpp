@@ -10,7 +10,6 @@
 
 #include "decode_setup.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
@@ -266,17 +265,6 @@ TEST(MixedPixels, SinglePixelsAndFramesWithoutNumbersStay) {
   std::ranges::fill(raw.values, std::numeric_limits<float>::quiet_NaN());
   for (const PixelStatus status : marked(setup, raw, MixedPixels::drop).status.pixels)
     EXPECT_EQ(status, PixelStatus::invalid);
-}
-
-TEST(MixedPixels, AreTheSameForAnyNumberOfThreads) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
-  const DepthImage many = marked(setup, raw, MixedPixels::snap);
-  const ThreadLimit limit(1);
-  const DepthImage one = marked(setup, raw, MixedPixels::snap);
-  EXPECT_EQ(one.status.pixels, many.status.pixels);
-  EXPECT_EQ(one.depth_m.pixels, many.depth_m.pixels);
 }
 
 TEST(MixedPixels, NeedPlanesAndShapesThatFit) {

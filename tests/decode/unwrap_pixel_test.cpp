@@ -3,10 +3,7 @@
 // What the unwrapping decoder says of a pixel besides its depth.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "pixel_laws.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "unwrap_setup.hpp"
 
@@ -71,17 +68,6 @@ INSTANTIATE_TEST_SUITE_P(Codes, UnwrapEstimatesOf,
 TEST(UnwrapDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
   const UnwrapSetup setup("multifrequency-k5", camera_with("paper-30x"));
   expect_right_as_often_as_said(setup, {3e2, 6e2, 1.25e3, 2.5e3, 5e3, 1e4, 2e4}, 3e4, 0.08);
-}
-
-TEST(UnwrapDecoder, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const UnwrapSetup setup("multifrequency-k5", camera_with("paper-10f0"));
-  const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 3e3, 1e4, 10007, 5), 5);
-  const auto depths_on = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return setup.decoder.decode(frame).depth_m.pixels;
-  };
-  const std::vector<float> one = depths_on(1), many = depths_on(4);
-  EXPECT_EQ(std::memcmp(one.data(), many.data(), one.size() * sizeof(float)), 0);
 }
 
 TEST(DecodeMethod, HasAName) {

@@ -3,10 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "same_code.hpp"
 #include "small_design.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 namespace {
@@ -59,16 +57,6 @@ TEST(DesignMethods, BestLetsEveryMethodCompeteAndPicksTheLeastError) {
   EXPECT_FALSE(optimized.search->proved);
   EXPECT_FALSE(optimized.search->steps.empty());
   EXPECT_EQ(optimized.per_measurement.size(), 4u);
-}
-
-TEST(DesignMethods, OptimizedCodesAreTheSameOnAnyNumberOfThreads) {
-  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
-  std::vector<CodeSet> codes;
-  for (const int threads : {1, 3}) {
-    const ThreadLimit limit(threads);
-    codes.push_back(design(camera, quick(DesignMethod::optimize, {3})).find("optimized-k3")->code);
-  }
-  expect_same_code(codes[0], codes[1]);
 }
 
 TEST(DesignMethods, SearchesOnTheChipClockWithProof) {

@@ -11,7 +11,6 @@
 #include "same_code.hpp"
 #include "small_design.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 namespace {
@@ -91,23 +90,6 @@ TEST(Design, ErrorIsWhatEvaluateSaysOfTheCodeWithTheSameSeed) {
       evaluate(winner.code, camera, {.trials = options.trials, .seed = options.seed});
   EXPECT_EQ(again.linear.geometric_mean_m.value, winner.error.linear.geometric_mean_m.value);
   EXPECT_EQ(again.seed, winner.error.seed);
-}
-
-TEST(Design, SameSeedGivesTheSameBitsForAnyNumberOfThreads) {
-  const Camera camera = small_camera("paper-5f0");
-  std::vector<DesignResult> results;
-  for (const int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
-    results.push_back(design(camera, small_options()));
-  }
-  ASSERT_EQ(results[0].candidates.size(), results[1].candidates.size());
-  EXPECT_EQ(results[0].best, results[1].best);
-  for (std::size_t i = 0; i < results[0].candidates.size(); ++i) {
-    const Candidate &a = results[0].candidates[i], &b = results[1].candidates[i];
-    expect_same_code(a.code, b.code);
-    EXPECT_EQ(a.error.linear.geometric_mean_m.value, b.error.linear.geometric_mean_m.value);
-    EXPECT_EQ(a.rotation_bin, b.rotation_bin);
-  }
 }
 
 TEST(Design, AimsAtAUsersTarget) {

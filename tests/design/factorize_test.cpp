@@ -14,7 +14,6 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 namespace {
@@ -136,21 +135,6 @@ TEST(Factorize, UnreachableTargetsEndAsAResult) {
   EXPECT_FALSE(f.exact());
   EXPECT_GT(f.best().residual_rms, 0.3);
   EXPECT_THAT(f.message, testing::HasSubstr("leaves [0, 1]"));
-}
-
-TEST(Factorize, SameSeedSameBitsOnAnyNumberOfThreads) {
-  const CorrelationTarget target = hamiltonian_targets(4).measurements[2];
-  const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return factorize(target, camera_with_peak(5.0));
-  };
-  const Factorization one = run(1), two = run(2);
-  ASSERT_EQ(one.candidates.size(), two.candidates.size());
-  for (std::size_t i = 0; i < one.candidates.size(); ++i) {
-    EXPECT_EQ(one.candidates[i].residual_rms, two.candidates[i].residual_rms);
-    EXPECT_EQ(one.candidates[i].pair.modulation, two.candidates[i].pair.modulation);
-    EXPECT_EQ(one.candidates[i].pair.demodulation, two.candidates[i].pair.demodulation);
-  }
 }
 
 TEST(Factorize, StopsWhenAsked) {

@@ -9,7 +9,6 @@
 
 #include "same_code.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
@@ -127,22 +126,6 @@ TEST(Optimize, CountsMultipathWhereTheCameraHasIt) {
   EXPECT_LT(ranking_error_m(found, camera, {}), ranking_error_m(given, camera, {}));
   EXPECT_LT(found.multipath->two_return->circular_m.value,
             1.4 * given.multipath->two_return->circular_m.value);
-}
-
-TEST(Optimize, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const Camera camera = small_camera(DepthErrorKind::linear);
-  const auto with_threads = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return optimize(camera, 3, small_options());
-  };
-  const std::vector<Candidate> one = with_threads(1), four = with_threads(4);
-  ASSERT_EQ(one.size(), four.size());
-  for (std::size_t k = 0; k < one.size(); ++k) {
-    expect_same_code(one[k].code, four[k].code);
-    const std::vector<SearchStep>&a = one[k].search->steps, &b = four[k].search->steps;
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].error_m, b[i].error_m);
-  }
 }
 
 TEST(Optimize, KeepsEveryPulseAndGapAsLongAsAsked) {

@@ -425,16 +425,6 @@ TEST(LoadCamera, ResponsesAreFoundBesideTheFile) {
   EXPECT_EQ(parse_camera_toml(camera_to_toml(camera), "elsewhere/c.toml"), camera);
 }
 
-TEST(CameraToml, DamagedFilesAreReadOrRefused) {
-  const auto parse = [](std::span<const std::byte> bytes) {
-    parse_camera_toml({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "c.toml");
-  };
-  EXPECT_GT(expect_damage_read_or_refused(bytes_of(documented), 2000, 1, parse), 500);
-  EXPECT_GT(
-      expect_damage_read_or_refused(bytes_of(camera_to_toml(every_field_set())), 2000, 2, parse),
-      500);
-}
-
 TEST(CameraToml, EveryBeginningIsReadOrRefused) {
   for (std::size_t length = 0; length < documented.size(); ++length) {
     const std::string part(documented.substr(0, length));

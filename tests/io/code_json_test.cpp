@@ -206,13 +206,12 @@ TEST(CodeJson, WhatCannotBeReadIsNotWritten) {
   EXPECT_THROW(code_to_json(awkward_code().renamed("\xff")), std::invalid_argument);
 }
 
-TEST(CodeJson, DamagedFilesAreReadOrRefused) {
+TEST(CodeJson, RefusesEveryTruncation) {
   std::string text = code_to_json(awkward_code());
   text.pop_back();  // without the last line's end, every beginning is incomplete
   const auto parse = [](std::span<const std::byte> bytes) {
     parse_code_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "c.json");
   };
-  EXPECT_GT(expect_damage_read_or_refused(bytes_of(text), 4000, 1, parse), 1000);
   expect_truncations_refused(bytes_of(text), parse);
 }
 

@@ -155,28 +155,6 @@ TEST(EmbreeSearch, TrianglesWithoutAreaAreNeverSeen) {
   EXPECT_EQ(seen.shape(17, 17), 0);
 }
 
-TEST(EmbreeSearch, GivesTheSameImageForAnyNumberOfThreads) {
-  const std::vector<Shape> shapes = mixed_scene();
-  const PinholeView view = PinholeView::centred(75, 50, 1.3);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Eigen::Vector3d(0.1, -0.2, -5));
-  const auto seen = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return RayCaster(shapes, embree_search()).see(view, pose);
-  };
-  const SeenScene one = seen(1);
-  for (int repetition = 0; repetition < 5; ++repetition) {
-    const SeenScene many = seen(repetition);
-    EXPECT_EQ(many.shape.pixels, one.shape.pixels);
-    EXPECT_EQ(many.image.albedo.pixels, one.image.albedo.pixels);
-    EXPECT_EQ(many.image.cosine.pixels, one.image.cosine.pixels);
-    for (std::size_t i = 0; i < one.shape.size(); ++i) {
-      if (one.shape.pixels[i] < 0) continue;
-      ASSERT_EQ(many.image.depth_m.pixels[i], one.image.depth_m.pixels[i]);
-    }
-  }
-}
-
 TEST(EmbreeSearch, LeavesSmallNumbersAlone) {
   // Ray tracers like to run with denormal numbers flushed to zero; the threads are not theirs.
   const RayCaster caster(mixed_scene(), embree_search());

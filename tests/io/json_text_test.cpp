@@ -37,15 +37,5 @@ TEST(JsonText, ErrorsSayWhatWasFound) {
   EXPECT_THAT(refusal("[1 2]"), testing::Not(HasSubstr("json.exception")));
 }
 
-TEST(JsonText, DamagedTextIsReadOrRefused) {
-  EXPECT_GT(
-      expect_damage_read_or_refused(
-          bytes_of("{\"name\": \"a\", \"samples\": 240, \"x\": [1.5e3, true, null]}"), 2000, 11,
-          [](auto bytes) {
-            parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "a.json");
-          }),
-      500);
-}
-
 }  // namespace
 }  // namespace tofsmith

@@ -251,6 +251,8 @@ TEST_F(RawMarkersOfRecordings, ANoteOnElectronsIsLeftOutWhereALimitIsSet) {
   EXPECT_THAT(notes({"sensor.full_well_e=30000"}), testing::Each(Not(HasSubstr(words))));
   EXPECT_THAT(notes({"sensor.adc_bits=12", "sensor.gain_e_per_dn=1"}),
               testing::Each(Not(HasSubstr(words))));
+  write_array("m.npy", numbers<float>(4, 0.0));  // electrons may be floats, counts are whole
+  EXPECT_THAT(notes({}), testing::Each(Not(HasSubstr(words))));
 }
 
 TEST(RawMarkersOfCameras, AreReadAndWritten) {

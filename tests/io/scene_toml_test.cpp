@@ -271,12 +271,5 @@ TEST(SceneToml, DamagedTexturesAreNamedWithTheirPixel) {
   EXPECT_THAT(message, HasSubstr("row 1, column 2: found -0.25; expected a finite number >= 0"));
 }
 
-TEST(SceneToml, DamagedFilesAreReadOrRefused) {
-  const auto parse = [](std::span<const std::byte> bytes) {
-    parse_scene_toml({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "s.toml");
-  };
-  EXPECT_GT(expect_damage_read_or_refused(bytes_of(every_shape), 2000, 1, parse), 500);
-}
-
 }  // namespace
 }  // namespace tofsmith

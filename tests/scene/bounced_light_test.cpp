@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
@@ -161,19 +160,6 @@ TEST(BouncedLight, ComesFromLitSurfacesOnly) {
   EXPECT_LT(sum_of(bounced_light(looking(shapes, from, {0, 1.8, 0})), 0, 0, 0.0).ratio,
             1e-4 * open);
   EXPECT_TRUE(bounced_light(built_in_scene("wall", 4, 3)).empty()) << "a wall alone";
-}
-
-TEST(BouncedLight, HasTheSameBitsForAnyNumberOfThreads) {
-  const StagedScene scene = built_in_scene("room", 9, 7);
-  const MultipathReturns many = bounced_light(scene, {.rays = 32});
-  const ThreadLimit one(1);
-  const MultipathReturns alone = bounced_light(scene, {.rays = 32});
-  EXPECT_EQ(many.first, alone.first);
-  ASSERT_EQ(many.returns.size(), alone.returns.size());
-  for (std::size_t i = 0; i < many.returns.size(); ++i) {
-    EXPECT_EQ(many.returns[i].distance_m, alone.returns[i].distance_m);
-    EXPECT_EQ(many.returns[i].ratio, alone.returns[i].ratio);
-  }
 }
 
 TEST(BouncedLight, RefusesWhatCannotBe) {

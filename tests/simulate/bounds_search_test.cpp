@@ -139,29 +139,6 @@ TEST(ReceiverBoundSearch, HillClimbsOverPulseTrainsStayAboveItAndComeNear) {
   RecordProperty("nearest", std::to_string(nearest));
 }
 
-TEST(ReceiverBoundSearch, RandomWordsOfEveryDutyStayAboveIt) {
-  const Camera camera = camera_for("paper-5f0", 1, true, 5.0);
-  for (std::uint64_t item = 0; item < 12; ++item) {
-    RandomStream random(12, item);
-    std::vector<Waveform> words;
-    const double share = 0.02 + 0.96 * random.uniform();
-    for (int k = 0; k < 4; ++k) {
-      Eigen::VectorXd word(camera.samples);
-      for (double& x : word) x = random.uniform() < share ? 1.0 : 0.0;
-      words.push_back(Waveform::binary_from_samples(word, 1.0));
-    }
-    Eigen::VectorXd pulses(camera.samples);
-    for (double& x : pulses) x = random.uniform() < 0.3 ? 1.0 : 0.0;
-    pulses[0] = 1.0;
-    const double level = std::min(5.0, 1.0 / pulses.mean());
-    const CodeSet code = CodeSet::create("words", camera.samples, 1,
-                                         {4, Waveform::binary_from_samples(pulses, level)}, words);
-    for (const OperatingPoint& point :
-         {OperatingPoint{1e3, 1e2}, OperatingPoint{1e6, 1e3}, OperatingPoint{1e4, 1e7}})
-      EXPECT_GE(ratio_of(code, camera, point), 1.0) << item;
-  }
-}
-
 TEST(ReceiverBoundSearch, HoldsForEveryKindOfSensorAndLight) {
   // One good train on cameras that differ from the plain one in every way there is.
   TrainCode train{.frequency = 6, .pulse_duty = 0.3, .gate = {}, .begin = {0.0, 0.33, 0.66}};
@@ -246,23 +223,6 @@ TEST(ReceiverBoundSearch, CodesForDimLightStayAboveItAndComeNear) {
   }
   EXPECT_LT(nearest, 1.7) << "a bound no code comes near would say nothing";
   RecordProperty("nearest", std::to_string(nearest));
-}
-
-TEST(ReceiverBoundSearch, MonteCarloStaysAboveIt) {
-  Camera camera = camera_for("paper-10f0", 1, true, 15.0);
-  camera.samples = 120;
-  camera.operating.signal_e_per_s = {10.0, 1e3, 1e4, 1e5, 1e6};
-  camera.operating.ambient_e_per_s = {1e3, 1e5};
-  for (const int taps : {1, 2}) {
-    camera.sensor.taps = taps;
-    for (const char* name : {"sinusoid-k4", "hamiltonian-k4", "pulsed-multifrequency-k5"}) {
-      const CodeSet code = build_family(name, camera);
-      for (const PointDepthError& p : evaluate(code, camera, {.trials = 2000}).points)
-        EXPECT_GE(p.circular_mde_m.value + 4 * p.circular_mde_m.standard_error,
-                  p.receiver_bound_mae_m)
-            << name;
-    }
-  }
 }
 
 }  // namespace

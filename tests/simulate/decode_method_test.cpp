@@ -3,7 +3,6 @@
 // Depth error of the same code by ZNCC and by phase unwrapping.
 #include <gtest/gtest.h>
 
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
@@ -64,17 +63,6 @@ TEST(DecodeMethods, FrequencyWeightsCostMoreUnderABandLimit) {
   const double by_frequency = ratio_of("paper-10f0", {1e5, 1e2}, UnwrapWeights::frequency);
   EXPECT_GT(by_frequency, 1.1);
   EXPECT_LT(by_variance, by_frequency);
-}
-
-TEST(DecodeMethods, SameBitsForAnyNumberOfThreads) {
-  Camera camera = built_in_camera("paper-10f0");
-  camera.operating.signal_e_per_s = {1e4};
-  const CodeSet code = build_family("multifrequency-k5", camera);
-  const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return evaluate(code, camera, {.trials = 2000, .method = DecodeMethod::unwrap});
-  };
-  EXPECT_EQ(run(1).circular.mean_m.value, run(2).circular.mean_m.value);
 }
 
 TEST(DecodeMethods, WhatCannotBeUnwrappedIsRefused) {

@@ -10,7 +10,6 @@
 
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -132,25 +131,6 @@ TEST(Evaluate, AgreesWithTheReferenceImplementation) {
                 tolerance / row.cramer_rao_mm)
         << row.code;
   }
-}
-
-TEST(Evaluate, SameBitsForAnyNumberOfThreads) {
-  const Camera camera = camera_at("paper-10f0", {1e3, 1e5}, {1e3});
-  const CodeSet code = build_family("hamiltonian-k4", camera);
-  const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return evaluate(code, camera, {.trials = 5001});
-  };
-  const DepthErrorReport one = run(1), two = run(2);
-  EXPECT_EQ(one.trials, 5002);
-  for (std::size_t p = 0; p < 2; ++p) {
-    EXPECT_EQ(one.points[p].linear_mde_m.value, two.points[p].linear_mde_m.value);
-    EXPECT_EQ(one.points[p].linear_mde_m.standard_error, two.points[p].linear_mde_m.standard_error);
-    EXPECT_EQ(one.points[p].circular_mde_m.value, two.points[p].circular_mde_m.value);
-    EXPECT_EQ(one.points[p].outlier_rate.value, two.points[p].outlier_rate.value);
-  }
-  EXPECT_NE(one.linear.mean_m.value,
-            evaluate(code, camera, {.trials = 5001, .seed = 2}).linear.mean_m.value);
 }
 
 TEST(Evaluate, SlicedDepthsAreUnbiasedAndTheirStandardErrorIsHonest) {

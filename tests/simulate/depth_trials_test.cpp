@@ -242,26 +242,6 @@ TEST(AdaptiveTrials, MeetTheTargetOrSaySo) {
   for (const PointDepthError& point : capped.points) EXPECT_EQ(point.trials, 5000);
 }
 
-TEST(AdaptiveTrials, SameBitsForAnyNumberOfThreads) {
-  Camera camera = camera_at(1e4, 1e3);
-  camera.operating.signal_e_per_s = {1e3, 1e4};
-  const CodeSet code = build_family("hamiltonian-k3", camera);
-  const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return evaluate(code, camera, {.trials = 1000, .target_standard_error = 0.05});
-  };
-  const DepthErrorReport one = run(1), three = run(3);
-  for (std::size_t p = 0; p < 2; ++p) {
-    EXPECT_EQ(one.points[p].trials, three.points[p].trials);
-    EXPECT_EQ(one.points[p].linear_mde_m.value, three.points[p].linear_mde_m.value);
-    EXPECT_EQ(one.points[p].linear_mde_m.standard_error,
-              three.points[p].linear_mde_m.standard_error);
-    EXPECT_EQ(one.points[p].linear_rmse_m.value, three.points[p].linear_rmse_m.value);
-    EXPECT_EQ(one.points[p].circular_rmse_m.standard_error,
-              three.points[p].circular_rmse_m.standard_error);
-  }
-}
-
 TEST(AdaptiveTrials, StandardErrorsAreHonest) {
   // The spread over seeds is what is stated, though each run chose its trials by what it saw.
   const Camera camera = camera_at(3e3, 1e3);

@@ -10,7 +10,6 @@
 
 #include "simulate/lens_kernels.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/stray_light.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
 
@@ -260,19 +259,6 @@ TEST(Lens, NoiseIsDrawnOncePerPixelWithTheSameNumbers) {
   EXPECT_LT(
       largest_relative_difference(capture(scene, code_of(camera), camera, {.frames = 2}), sharp),
       1e-6);
-}
-
-TEST(Lens, SameBitsForAnyNumberOfThreads) {
-  const StagedScene scene = built_in_scene("table-top", 40, 30);
-  for (const LensBlur& blur : {gaussian, disc}) {
-    Camera camera = built_in_camera("paper-10f0");
-    camera.blur = blur;
-    const auto run = [&](int threads) {
-      const ThreadLimit limit(threads);
-      return capture(scene, code_of(camera), camera, {.frames = 2}).raw.values;
-    };
-    EXPECT_EQ(run(1), run(3));
-  }
 }
 
 TEST(Lens, AmbientLightThatVariesIsBlurredToo) {

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
 
 namespace tofsmith {
@@ -157,19 +155,6 @@ TEST(Motion, ScenesThatStandStillAreCapturedAsBefore) {
   // And a motion too slow to see goes through the moving capture to the same numbers.
   scene.camera_motion.velocity_m_per_s = {1e-30, 0, 0};
   EXPECT_EQ(capture(scene, code_of(plain), timed, options).raw.values, image.values);
-}
-
-TEST(Motion, SameBitsForAnyNumberOfThreads) {
-  Camera camera = timed_camera();
-  camera.blur =
-      LensBlur{.kind = LensBlur::Kind::gaussian, .blur_sigma_px = 0.6, .pixel_samples = 2};
-  const StagedScene scene = built_in_scene("moving-hand", 32, 24);
-  const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return capture(scene, code_of(camera), camera, {.frames = 2}).raw.values;
-  };
-  const auto one = run(1);
-  EXPECT_EQ(one, run(3));
 }
 
 TEST(Motion, LightByLongerWaysIsThatOfEachTime) {

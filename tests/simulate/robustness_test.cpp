@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
@@ -152,13 +151,6 @@ TEST(PerturbedCode, OfAnalogLightKeepsPowerAndScalesThePeak) {
   EXPECT_NEAR(deep.mean(), samples.mean(), 1e-12);
 }
 
-TEST(PerturbedCode, OfNoChangeIsTheCodeItself) {
-  const Camera camera = small_camera();
-  const CodeSet code = build_family("hamiltonian-k3", camera);
-  const CodeSet same = perturbed_code(code, with_peak(camera, 1.0));
-  EXPECT_EQ(same.modulation(0), code.modulation(0));
-}
-
 TEST(Robustness, OfNoPerturbationIsTheDepthErrorItself) {
   const Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k4", camera);
@@ -262,16 +254,6 @@ TEST(Robustness, GrowsWithThePerturbation) {
     }
   }
   EXPECT_GT(last, 1.2);
-}
-
-TEST(Robustness, IsTheSameForAnyNumberOfThreads) {
-  const Camera camera = small_camera();
-  const CodeSet code = build_family("hamiltonian-k3", camera);
-  const RobustnessReport all = robustness(code, camera, {.trials = 1500});
-  const ThreadLimit one(1);
-  const RobustnessReport single = robustness(code, camera, {.trials = 1500});
-  for (std::size_t i = 0; i < all.perturbed.size(); ++i)
-    EXPECT_EQ(all.perturbed[i].uncalibrated_m.value, single.perturbed[i].uncalibrated_m.value);
 }
 
 TEST(Robustness, StopsWhenAsked) {

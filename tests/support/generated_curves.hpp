@@ -28,26 +28,4 @@ inline Curve random_smooth_curve(int rank, int samples, std::uint64_t seed) {
   return curve;
 }
 
-/// Every direction `times` times in a row, in lengths that differ.
-inline Curve with_plateaus(const Curve& curve, int times) {
-  Curve repeated(curve.rows() * times, curve.cols());
-  for (Eigen::Index n = 0; n < repeated.rows(); ++n)
-    repeated.row(n) = curve.row(n / times) * (1.0 + static_cast<double>(n % times) / 3.0);
-  return repeated;
-}
-
-/// The whole curve twice, once around.
-inline Curve twice_around(const Curve& curve) {
-  Curve twice(2 * curve.rows(), curve.cols());
-  twice << curve, curve;
-  return twice;
-}
-
-/// Every fifth bin without contrast, the first ones too.
-inline Curve with_gaps(Curve curve) {
-  for (Eigen::Index n = 0; n < curve.rows(); n += 5) curve.row(n).setZero();
-  curve.topRows(3).setZero();
-  return curve;
-}
-
 }  // namespace tofsmith

@@ -11,8 +11,10 @@
 #include <limits>
 #include <vector>
 
-#include "decode/output/output_kernel.hpp"
+#include "decode/output/lobe_posterior.hpp"
+#include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
+#include "decode/output/residual_model.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/search/direction_table.hpp"
 #include "decode_setup.hpp"
@@ -20,8 +22,6 @@
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
-
-inline constexpr auto tile_size = static_cast<std::size_t>(pixels_per_tile);
 
 /// All planes of a row of pixels.
 struct Outputs {
@@ -84,7 +84,7 @@ inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes
   EXPECT_TRUE(same(some.residual, expected(7).residual));
 }
 
-/// A code's kernel, and pixels matched to bins in plain double arithmetic.
+/// Pixels matched to bins, and their outputs, in plain double arithmetic.
 class Matched {
  public:
   Matched(const DecodingTable& table, const std::vector<float>& raw,
@@ -96,38 +96,19 @@ class Matched {
         model_(table, projection_),
         posterior_(table, projection_),
         residuals_(table, projection_, options),
-        kernel_(table, projection_, options),
         scale_(table),
         raw_(raw),
         pixels_(raw.size() / k_count()) {
-    const std::size_t tiles = (pixels_ + tile_size - 1) / tile_size;
-    plane_.resize(tiles * rank() * tile_size);
-    electrons_.resize(tiles * k_count() * tile_size);
-    bin_.assign(tiles * tile_size, std::numeric_limits<std::int32_t>::max());
-    saturated_.resize(bin_.size());
-    for (std::size_t i = 0; i < pixels_; ++i) match(i);
+    for (std::size_t i = 0; i < pixels_; ++i) {
+      const Eigen::VectorXd y = electrons(i);
+      bin_.push_back(y.allFinite() ? best_bin(plane_of(y)) : -1);
+    }
   }
 
   const DecodingTable& table() const { return table_; }
   std::size_t pixels() const { return pixels_; }
   double brightest_e_per_s() const {
     return *std::max_element(raw_.begin(), raw_.end()) / table_.exposure_s.minCoeff();
-  }
-  const OutputKernel& kernel() const { return kernel_; }
-
-  MatchedTile tile(std::size_t first) const {
-    return {static_cast<int>(std::min(pixels_ - first, tile_size)), &plane_[first * rank()],
-            &electrons_[first * k_count()], &bin_[first], &saturated_[first]};
-  }
-
-  void write(const DecodedView& planes) const {
-    for (std::size_t first = 0; first < pixels_; first += tile_size)
-      kernel_.write(tile(first), planes.from(first));
-  }
-  Outputs outputs() const {
-    Outputs result(pixels_);
-    write(result.view());
-    return result;
   }
 
   /// The definition: the best bin, PixelModel and store_pixel.
@@ -159,7 +140,6 @@ class Matched {
 
  private:
   std::size_t k_count() const { return static_cast<std::size_t>(table_.measurements()); }
-  std::size_t rank() const { return static_cast<std::size_t>(projection_.rank()); }
 
   Eigen::VectorXd electrons(std::size_t pixel) const {
     Eigen::VectorXd y(table_.measurements());
@@ -189,23 +169,6 @@ class Matched {
     return 0;
   }
 
-  void match(std::size_t i) {
-    const Eigen::VectorXd y = electrons(i);
-    const Eigen::VectorXd q = plane_of(y);
-    const std::size_t first = i / tile_size * tile_size, lane = i - first;
-    for (std::size_t j = 0; j < rank(); ++j)
-      plane_[first * rank() + j * tile_size + lane] = static_cast<float>(q[static_cast<int>(j)]);
-    for (std::size_t k = 0; k < k_count(); ++k)
-      electrons_[first * k_count() + k * tile_size + lane] =
-          static_cast<float>(y[static_cast<int>(k)]);
-    const float* raw = &raw_[i * k_count()];
-    saturated_[i] = std::any_of(raw, raw + k_count(), [&](float value) {
-      return (table_.saturation_level && value >= *table_.saturation_level) ||
-             (table_.lower_saturation_level && value <= *table_.lower_saturation_level);
-    });
-    bin_[i] = y.allFinite() ? best_bin(q) : -1;
-  }
-
   DecodingTable table_;
   DecodeOptions options_;
   AmbientProjection projection_;
@@ -213,13 +176,10 @@ class Matched {
   PixelModel model_;
   LobePosterior posterior_;
   ResidualModel residuals_;
-  OutputKernel kernel_;
   RawScale scale_;
   std::vector<float> raw_;
   std::size_t pixels_;
-  std::vector<float> plane_, electrons_;
   std::vector<std::int32_t> bin_;
-  std::vector<std::uint8_t> saturated_;
 };
 
 /// Distance from the row of the definition, on the circle, in rows.

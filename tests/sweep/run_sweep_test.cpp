@@ -9,7 +9,6 @@
 
 #include "sweep_setup.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 namespace {
@@ -85,16 +84,6 @@ TEST(RunSweep, ComputesEqualItemsOnce) {
   std::int64_t computed = 0;
   swept(directory / "s.sqlite", small_list("12, 12.0, 15"), &computed);
   EXPECT_EQ(computed, 12);
-}
-
-TEST(RunSweep, GivesTheSameBitsForAnyNumberOfThreads) {
-  const TemporaryDirectory directory;
-  std::string one;
-  {
-    const ThreadLimit limit(1);
-    one = swept(directory / "1.sqlite", small_list());
-  }
-  EXPECT_EQ(swept(directory / "all.sqlite", small_list()), one);
 }
 
 TEST(RunSweep, TwoAtOnceShareTheWorkAndFindTheSame) {
