@@ -15,7 +15,7 @@ PACK = HERE.parents[2] / "apps" / "lab" / "page" / "pack.py"
 
 
 def handler_of(program):
-    """Answers each request by a process of its own, whose lines are sent as they come."""
+    """Answers each request with a separate process and forwards its lines immediately."""
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_POST(self):
             request = self.rfile.read(int(self.headers["Content-Length"]))
