@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "program_directory.hpp"
 #include "session.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -16,12 +17,6 @@ namespace tofsmith::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Where this program stands; empty where the system does not say.
-fs::path program_directory() {
-  std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
-}
 
 /// The page of an installation or, of a build, the one that scripts/lab.sh made.
 /// @throws IoError that says how to make it

@@ -129,4 +129,6 @@ Progress terminal_progress(std::string_view title) {
 
 void silence_progress() { is_silent = true; }
 
+bool is_progress_silent() { return is_silent; }
+
 }  // namespace tofsmith::apps

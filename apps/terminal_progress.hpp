@@ -14,5 +14,6 @@ Progress terminal_progress(std::string_view title);
 
 /// From now on progress says nothing; Ctrl-C stops work all the same.
 void silence_progress();
+bool is_progress_silent();
 
 }  // namespace tofsmith::apps

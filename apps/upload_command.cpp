@@ -8,14 +8,16 @@
 
 #include "commands.hpp"
 #include "help_pages.hpp"
-#include "interrupt.hpp"
 #include "number_checks.hpp"
+#include "python_module.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/instrument/upload.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
+#include "tofsmith/waveforms/upload_script.hpp"
 
 namespace tofsmith::apps {
 
@@ -60,40 +62,12 @@ double load_in(const std::string& text) {
   return ohm;
 }
 
-WaveformExport exported_for(const UploadArguments& arguments, const GeneratorModel& model) {
-  ExportOptions options = arguments.options;
-  if (!arguments.volts.empty()) {
-    options.low_v = arguments.volts[0];
-    options.high_v = arguments.volts[1];
-  }
-  const Camera camera = arguments.camera.load();
-  require_no_measured_table(arguments.code);
-  return export_for_model(load_code(arguments.code, camera, arguments.taps.file_options()), camera,
-                          model, options, arguments.request.true_arb);
-}
-
-/// What the channels get: of one exposure, or of all with one selected.
-UploadRequest request_for(const UploadArguments& arguments, const WaveformExport& exported) {
-  UploadRequest request = arguments.request;
-  request.load_ohm = load_in(arguments.load);
-  request.read_back = !arguments.no_read_back;
-  request.reset = !arguments.no_reset;
-  request.filter = parse_output_filter(arguments.filter);
-  request.wave_header = parse_wave_header(arguments.header);
-  request.channels = as_usage([&] { return selected_channels(exported, arguments.selection); });
-  return request;
-}
-
-nlohmann::ordered_json channels_json(const UploadRequest& request, const UploadReport& report) {
+nlohmann::ordered_json channels_json(const UploadRequest& request) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const UploadChannel& channel : request.channels) {
     const QuantizedWaveform& w = channel.selected_waveform();
-    nlohmann::ordered_json stored = nlohmann::ordered_json::array(), numbers;
+    nlohmann::ordered_json stored = nlohmann::ordered_json::array();
     for (const QuantizedWaveform& waveform : channel.stored) stored.push_back(waveform.name);
-    for (const ReadBackNumber& number : report.numbers)
-      if (number.channel == channel.channel)
-        numbers[number.quantity] = {{"requested", number.requested},
-                                    {"read_back", number.read_back}};
     json.push_back({{"channel", channel.channel},
                     {"arm", name_of(w.arm)},
                     {"plays", w.name},
@@ -104,27 +78,21 @@ nlohmann::ordered_json channels_json(const UploadRequest& request, const UploadR
                     {"repetition_hz", w.repetition_hz()},
                     {"low_v", w.low_v},
                     {"high_v", w.high_v},
-                    {"full_scale", w.full_scale},
-                    {"numbers", std::move(numbers)}});
+                    {"full_scale", w.full_scale}});
   }
   return json;
 }
 
-std::vector<std::vector<std::string>> channel_rows(const UploadRequest& request) {
-  std::vector<std::vector<std::string>> rows = {
-      {"channel", "plays", "points", "periods", "clock [MHz]", "low [V]", "high [V]"}};
-  for (const UploadChannel& channel : request.channels) {
-    const QuantizedWaveform& w = channel.selected_waveform();
-    rows.push_back({fmt::format("{}", channel.channel), w.name, fmt::format("{}", w.points()),
-                    fmt::format("{}", w.periods), fmt::format("{:.6g}", w.sample_rate_hz / 1e6),
-                    fmt::format("{:.4g}", w.low_v), fmt::format("{:.4g}", w.high_v)});
-  }
-  return rows;
-}
-
-void show_dry_run(const UploadArguments& arguments, const Session& session) {
+void show_dry_run(const UploadArguments& arguments, const CodeSet& code, const Camera& camera,
+                  const Session& session) {
   const GeneratorModel model = as_usage([&] { return generator_model(arguments.model); });
-  const UploadRequest request = request_for(arguments, exported_for(arguments, model));
+  UploadRequest request = arguments.request;
+  request.load_ohm = load_in(arguments.load);
+  request.filter = parse_output_filter(arguments.filter);
+  request.wave_header = parse_wave_header(arguments.header);
+  const WaveformExport exported =
+      export_for_model(code, camera, model, arguments.options, request.true_arb);
+  request.channels = as_usage([&] { return selected_channels(exported, arguments.selection); });
   const UploadScript script = upload_script(model, request);
   nlohmann::ordered_json messages = nlohmann::ordered_json::array();
   for (const UploadStep& step : script.steps)
@@ -132,53 +100,72 @@ void show_dry_run(const UploadArguments& arguments, const Session& session) {
         {{"what", step.what}, {"message", step.message}, {"data_bytes", step.data.size()}});
   session.print_json({{"model", model.name},
                       {"dry_run", true},
-                      {"channels", channels_json(request, {})},
+                      {"channels", channels_json(request)},
                       {"messages", std::move(messages)}});
   std::string text = script_text(script);
   text.pop_back();
   session.say(text);
 }
 
-void run(const UploadArguments& arguments, Session& session) {
-  check_usage(arguments);
-  if (arguments.dry_run) return show_dry_run(arguments, session);
-  const InstrumentAddress address =
-      as_usage([&] { return parse_instrument_address(arguments.address); });
-  const std::optional<GeneratorModel> given =
-      arguments.model.empty()
-          ? std::nullopt
-          : std::optional(as_usage([&] { return generator_model(arguments.model); }));
-  const StopCheck check_stop = [] {
-    if (interrupted()) throw Interrupted();
-  };
-  ScpiSession scpi(connect_instrument(address, arguments.timeout_s, check_stop),
-                   arguments.timeout_s, check_stop);
-  const InstrumentIdentity identity = identify(scpi);
-  const GeneratorModel& model = given ? *given : identified_model(identity, scpi.name());
-  const UploadRequest request = request_for(arguments, exported_for(arguments, model));
-  const UploadScript script = upload_script(model, request);
-  session.tells_what_is_kept = true;  // an instrument keeps its last settings
-  const UploadReport report = upload(scpi, script, terminal_progress("uploading"));
+template <typename Value>
+void set_if_given(nlohmann::ordered_json& json, const char* name,
+                  const std::optional<Value>& value) {
+  if (value) json[name] = *value;
+}
 
-  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
-  for (const UploadedStep& step : report.steps)
-    steps.push_back({{"what", step.what}, {"sent", step.sent}, {"answer", step.answer}});
-  session.print_json({{"instrument",
-                       {{"address", address.text()},
-                        {"vendor", identity.vendor},
-                        {"model", identity.model},
-                        {"serial", identity.serial},
-                        {"firmware", identity.firmware},
-                        {"treated_as", model.name}}},
-                      {"verified", report.verified},
-                      {"message", report.message},
-                      {"output_on", request.output_on},
-                      {"channels", channels_json(request, report)},
-                      {"steps", std::move(steps)}});
-  session.say(fmt::format("{} {} {} at {}:\n{}", identity.vendor, identity.model, identity.serial,
-                          address.text(), text_table(channel_rows(request))));
-  session.say(fmt::format("{}.\nOutputs are {}.", report.message,
-                          request.output_on ? "on" : "off (--output-on switches them on)"));
+/// The arguments of upload() in python/tofsmith/instruments.py.
+nlohmann::ordered_json upload_request(const UploadArguments& arguments, const CodeSet& code,
+                                      const Camera& camera, const Session& session) {
+  const UploadRequest& request = arguments.request;
+  const UploadSelection& selection = arguments.selection;
+  nlohmann::ordered_json tables = {{"low_v", arguments.options.low_v},
+                                   {"high_v", arguments.options.high_v}};
+  set_if_given(tables, "samples", arguments.options.samples);
+  set_if_given(tables, "sample_rate_hz", arguments.options.sample_rate_hz);
+  set_if_given(tables, "edge_grid_s", arguments.options.edge_grid_s);
+  set_if_given(tables, "periods", arguments.options.periods);
+  nlohmann::ordered_json model;
+  if (!arguments.model.empty()) model = arguments.model;
+  return {{"code", code_to_json(code)},
+          {"camera", camera_to_toml(camera)},
+          {"json", session.json},
+          {"quiet", is_progress_silent()},
+          {"load", arguments.load},
+          {"options",
+           {{"address", arguments.address},
+            {"model", std::move(model)},
+            {"timeout_s", arguments.timeout_s},
+            {"light_channel", selection.light_channel},
+            {"sensor_channel", selection.sensor_channel},
+            {"exposure", selection.exposure},
+            {"tap", selection.tap},
+            {"all", selection.all},
+            {"output_on", request.output_on},
+            {"read_back", request.read_back},
+            {"reset", request.reset},
+            {"true_arb", request.true_arb},
+            {"wave_header", arguments.header},
+            {"filter", arguments.filter},
+            {"tables", std::move(tables)}}}};
+}
+
+void run(UploadArguments& arguments, const Session& session) {
+  check_usage(arguments);
+  load_in(arguments.load);
+  if (!arguments.model.empty()) as_usage([&] { return generator_model(arguments.model); });
+  if (!arguments.volts.empty()) {
+    arguments.options.low_v = arguments.volts[0];
+    arguments.options.high_v = arguments.volts[1];
+  }
+  arguments.request.read_back = !arguments.no_read_back;
+  arguments.request.reset = !arguments.no_reset;
+  const Camera camera = arguments.camera.load();
+  require_no_measured_table(arguments.code);
+  const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
+  if (arguments.dry_run) return show_dry_run(arguments, code, camera, session);
+  const nlohmann::ordered_json request = upload_request(arguments, code, camera, session);
+  run_python_module("tofsmith._upload_command",
+                    request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
@@ -239,9 +226,10 @@ void add_upload_command(CLI::App& app, Session& session) {
       "upload", "play a code on a generator in the network: load, set, read back and compare");
   command->add_option("CODE", arguments->code, "a family or a code file (.code.json .npz .csv)")
       ->required();
-  command->add_option("--instrument", arguments->address,
-                      "host, host:port, tcp://host:port, vxi11://host or "
-                      "TCPIP::host::port::SOCKET (port 5025)");
+  command->add_option(
+      "--instrument", arguments->address,
+      "host or host:port (port 5025), vxi11://host, or a VISA resource name such as "
+      "USB0::...::INSTR");
   command
       ->add_option("--channel-light", arguments->selection.light_channel,
                    "channel that plays the light; 0: none")

@@ -10,7 +10,7 @@ set(tofsmith_gpu_folders gpu)
 set(tofsmith_design_folders design)
 set(tofsmith_io_folders io)
 set(tofsmith_report_folders report)
-set(tofsmith_lab_folders waveforms calibrate instrument)
+set(tofsmith_lab_folders waveforms calibrate)
 set(tofsmith_sweep_folders sweep)
 
 set(tofsmith_core_needs)
@@ -26,7 +26,7 @@ set(tofsmith_gpu_about "averaging, filtering and decoding on OpenCL devices")
 set(tofsmith_design_about "the search for codes")
 set(tofsmith_io_about "files, images and meshes")
 set(tofsmith_report_about "figures and HTML pages")
-set(tofsmith_lab_about "calibration, waveform formats and signal generators")
+set(tofsmith_lab_about "calibration, waveform formats and scripts for signal generators")
 set(tofsmith_sweep_about "sweeps of many conditions")
 
 set(TOFSMITH_COMPONENTS "" CACHE STRING

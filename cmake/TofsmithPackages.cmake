@@ -97,7 +97,7 @@ if(TARGET _tofsmith)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "${libraries}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-torch)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-torch, python3-pyvisa, python3-pyvisa-py")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
       "${PROJECT_SOURCE_DIR}/cmake/debian/postinst;${PROJECT_SOURCE_DIR}/cmake/debian/prerm")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION

@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::lab: calibration, waveform formats and generators. Includes
+/// All of tofsmith::lab: calibration, waveform formats and generator scripts. Includes
 /// tofsmith/report.hpp.
 
 #include "tofsmith/calibrate/calibration_camera.hpp"
@@ -12,9 +12,8 @@
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
-#include "tofsmith/instrument/scpi_session.hpp"
-#include "tofsmith/instrument/upload.hpp"
 #include "tofsmith/report.hpp"
 #include "tofsmith/waveforms/export_report.hpp"
+#include "tofsmith/waveforms/upload_script.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 #include "tofsmith/waveforms/write_export.hpp"

@@ -97,7 +97,7 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_reports(module);
   bind_reproduce(module);
   bind_training_set(module);
-  bind_instrument(module);
+  bind_upload_script(module);
 }
 
 }  // namespace tofsmith::python

@@ -17,9 +17,9 @@
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 #include "tofsmith/design/design.hpp"
-#include "tofsmith/instrument/upload.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/waveforms/upload_script.hpp"
 
 namespace tofsmith::python {
 

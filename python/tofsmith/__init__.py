@@ -6,7 +6,8 @@ The same words as the C++ library, the command line and the files: `Camera`, `Co
 `design`, `capture`, `Decoder`. SI units inside: names end in _m, _s, _hz, _e (photo-electrons),
 _e_per_s, _bin. Errors of arguments are ValueError or TypeError, of files OSError; long work takes
 `progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (Plotly).
-Gradients for learning: `tofsmith.torch` (PyTorch).
+Gradients for learning: `tofsmith.torch` (PyTorch). Waveform generators: `tofsmith.instruments`
+(PyVISA).
 
 Examples
 --------
@@ -98,17 +99,6 @@ from ._ideal_code_fit import (
     fit_ideal_codes,
     write_correlation_report,
 )
-from ._instrument import (
-    GeneratorModel,
-    ReadBackNumber,
-    UploadChannel,
-    UploadMessage,
-    UploadReport,
-    UploadScript,
-    generator_models,
-    upload,
-    upload_script,
-)
 from ._light import ExponentialTail, MultipathReturns, Transients
 from ._multipath import (
     MultipathBound,
@@ -162,8 +152,8 @@ __version__: str = _tofsmith.version
 
 
 def __getattr__(name: str) -> _ModuleType:
-    """tofsmith.plot, tofsmith.figures and tofsmith.torch, when they are first asked for."""
-    if name in ("figures", "plot", "torch"):
+    """Imports tofsmith.plot, figures, instruments and torch when they are first used."""
+    if name in ("figures", "instruments", "plot", "torch"):
         return _import_module(f"{__name__}.{name}")
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 
@@ -217,7 +207,6 @@ __all__ = [
     "ForwardModel",
     "Generator",
     "GeneratorLoss",
-    "GeneratorModel",
     "HarmonicRatio",
     "HistogramBound",
     "IdealCodeFit",
@@ -240,7 +229,6 @@ __all__ = [
     "PixelStatus",
     "Playback",
     "RawMarkers",
-    "ReadBackNumber",
     "ReceiverBound",
     "ReproducedItem",
     "RequirementMap",
@@ -261,10 +249,6 @@ __all__ = [
     "TimeFilter",
     "TrainingSetRun",
     "Transients",
-    "UploadChannel",
-    "UploadMessage",
-    "UploadReport",
-    "UploadScript",
     "Waveform",
     "WaveformFormat",
     "atlas",
@@ -293,7 +277,6 @@ __all__ = [
     "find_requirements",
     "fit_ideal_codes",
     "generator_loss",
-    "generator_models",
     "harmonics_used",
     "list_families",
     "load_code",
@@ -323,8 +306,6 @@ __all__ = [
     "single_path_bias_m",
     "suggested_exposures",
     "table_depth_error_m",
-    "upload",
-    "upload_script",
     "waveform_formats",
     "why_not_playable",
     "write_code",

@@ -12,10 +12,10 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/version.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
+#include "waveforms/keysight_arb.hpp"
 #include "waveforms/pattern_memory.hpp"
-#include "waveforms/shared/keysight_arb.hpp"
-#include "waveforms/shared/siglent_waveform.hpp"
-#include "waveforms/shared/tektronix_waveform.hpp"
+#include "waveforms/siglent_waveform.hpp"
+#include "waveforms/tektronix_waveform.hpp"
 
 namespace tofsmith {
 

@@ -59,19 +59,4 @@ std::string vhdl_package(const PatternMemory& memory);
 /// A C99 header.
 std::string c_header(const PatternMemory& memory);
 
-/// How a text holds a memory's words.
-enum class PatternSyntax { coe, mif, mem, systemverilog, vhdl, c };
-
-/// What a file says of a memory.
-struct PatternWords {
-  int word_bits = 0;  ///< 0 if the file does not say (.coe, .mem)
-  std::vector<std::uint64_t> words;
-};
-
-/// Reads what the writers above write, and .coe, .mif and .mem files that others wrote: any radix,
-/// ranges of addresses, comments.
-/// @param file  what errors call it
-/// @throws IoError "file: .." for what it does not understand
-PatternWords parse_pattern(std::string_view text, PatternSyntax syntax, std::string_view file);
-
 }  // namespace tofsmith

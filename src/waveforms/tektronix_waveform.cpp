@@ -1,17 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "waveforms/shared/tektronix_waveform.hpp"
+#include "waveforms/tektronix_waveform.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "io/shared/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
-#include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
-#include "waveforms/shared/ieee488_block.hpp"
+#include "waveforms/ieee488_block.hpp"
 
 namespace tofsmith {
 
@@ -26,13 +23,6 @@ constexpr std::size_t record_bytes = 5;
 
 void put_u32_big(std::span<std::byte> into, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) into[i] = static_cast<std::byte>(value >> (24 - 8 * i));
-}
-
-std::uint32_t take_u32_big(ByteCursor& cursor, std::string_view what) {
-  std::uint32_t value = 0;
-  for (const std::byte byte : cursor.take(4, what))
-    value = value << 8 | std::to_integer<std::uint32_t>(byte);
-  return value;
 }
 
 /// Least and largest value of every column of the picture that the generator shows.
@@ -75,33 +65,6 @@ std::vector<std::byte> tektronix_tfw(const QuantizedWaveform& waveform) {
   return file;
 }
 
-std::vector<std::int32_t> parse_tektronix_tfw(std::span<const std::byte> bytes,
-                                              std::string_view file) {
-  ByteCursor cursor(bytes, file);
-  if (cursor.take_text(tfw_magic.size(), "the header") != tfw_magic)
-    cursor.fail_at(0, fmt::format("found no '{}'; expected a .tfw file", tfw_magic));
-  cursor.take(tfw_fields_at - tfw_magic.size(), "the header");
-  if (const auto version = take_u32_big(cursor, "the version"); version != tfw_version)
-    cursor.fail_at(tfw_fields_at,
-                   fmt::format("found version {}; expected {}", version, tfw_version));
-  const std::size_t count = take_u32_big(cursor, "the number of points");
-  cursor.take(tfw_header_bytes - cursor.position(), "the header");
-  if (cursor.rest().size() != 2 * count || count < 2)
-    cursor.fail(
-        fmt::format("found {} bytes of points; expected {}, two for each of {} points (2 "
-                    "or more)",
-                    cursor.rest().size(), 2 * count, count));
-  std::vector<std::int32_t> points;
-  while (!cursor.at_end()) {
-    const auto pair = cursor.take(2, "a point");
-    points.push_back(std::to_integer<int>(pair[0]) << 8 | std::to_integer<int>(pair[1]));
-    if (points.back() >= tektronix_afg_full_levels)
-      cursor.fail_at(cursor.position() - 2,
-                     fmt::format("found the point {}; expected 14 bits", points.back()));
-  }
-  return points;
-}
-
 std::vector<std::byte> tektronix_wfm(const QuantizedWaveform& waveform,
                                      std::string_view end_of_line) {
   waveform.validate();
@@ -124,36 +87,6 @@ std::vector<std::byte> tektronix_wfm(const QuantizedWaveform& waveform,
   append(block);
   append(std::as_bytes(std::span(end)));
   return file;
-}
-
-TektronixWfm parse_tektronix_wfm(std::span<const std::byte> bytes, std::string_view file) {
-  ByteCursor cursor(bytes, file);
-  if (trimmed(cursor.take_until('\n', "the first line")) != "MAGIC 1000")
-    cursor.fail_at(0, "found no 'MAGIC 1000'; expected a .wfm file of an AWG");
-  const std::size_t begin = cursor.position();
-  const Ieee488Block block =
-      parse_ieee488_block(cursor.rest(), fmt::format("{} from {}", file, begin));
-  cursor.take(block.size, "the points");
-  if (block.data.size() % record_bytes != 0 || block.data.empty())
-    cursor.fail_at(
-        begin, fmt::format("found {} bytes of points; expected five for each", block.data.size()));
-  TektronixWfm wfm;
-  for (std::size_t at = 0; at < block.data.size(); at += record_bytes) {
-    const auto value = load_little_endian<float>(block.data.data() + at);
-    if (!(std::abs(value) <= 1.0F))
-      cursor.fail_at(begin + block.size - block.data.size() + at,
-                     fmt::format("found the value {}; expected -1 .. 1", value));
-    wfm.values.push_back(value);
-    wfm.markers.push_back(std::to_integer<std::uint8_t>(block.data[at + 4]));
-  }
-  if (cursor.at_end()) return wfm;  // an AWG plays it at the clock it has
-  const std::size_t clock_at = cursor.position();
-  const std::string_view clock = trimmed(cursor.take_until('\n', "the clock"));
-  const auto rate = clock.starts_with("CLOCK") ? finite_number_in(clock.substr(5)) : std::nullopt;
-  if (!rate || *rate <= 0.0 || !cursor.at_end())
-    cursor.fail_at(clock_at, "expected 'CLOCK', the points per second and the end of the file");
-  wfm.sample_rate_hz = *rate;
-  return wfm;
 }
 
 }  // namespace tofsmith

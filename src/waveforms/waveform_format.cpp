@@ -5,8 +5,8 @@
 #include <fmt/ranges.h>
 
 #include "tofsmith/core/error.hpp"
-#include "waveforms/shared/keysight_arb.hpp"
-#include "waveforms/shared/tektronix_waveform.hpp"
+#include "waveforms/keysight_arb.hpp"
+#include "waveforms/tektronix_waveform.hpp"
 
 namespace tofsmith {
 

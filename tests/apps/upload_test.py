@@ -1,64 +1,56 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 """tofsmith upload plays codes on a simulated generator, refuses what does not fit, and stops with
-outputs off.
+outputs off. What uploads do with faults is in tests/python/test_instruments.py.
 
-upload_test.py TOOL SIMULATED_GENERATOR"""
+upload_test.py TOOL"""
 
-import json
 import os
 import signal
 import socket
-import subprocess
 import sys
+import time
 import unittest
+import unittest.mock
+from pathlib import Path
 
 from command_line import CommandLineTest
 
-GENERATOR = os.path.abspath(sys.argv.pop(1))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from simulated_generator import SimulatedGenerator  # noqa: E402
+
 CODE = ("upload", "hamiltonian-k3", "--set", "samples=60")
 
 
 class Upload(CommandLineTest):
-    def generator(self, *arguments):
-        process = subprocess.Popen([GENERATOR, *arguments], stdin=subprocess.PIPE,
-                                   stdout=subprocess.PIPE, text=True)
-
-        def end():
-            process.stdin.close()
-            process.wait(timeout=60)
-            process.stdout.close()
-
-        self.addCleanup(end)
-        return process, "127.0.0.1:" + process.stdout.readline().strip()
-
     def test_every_family_plays_and_verifies(self):
         for family, model, more in (("siglent", "SDG6022X", ("--samples", "500")),
                                     ("keysight", "33622A", ("--periods", "1")),
                                     ("tektronix", "AFG3252C", ("--samples", "100"))):
-            process, address = self.generator(family, model)
-            report = self.do_json(*CODE, "--instrument", address, "--output-on", *more)
+            with SimulatedGenerator(family, model) as generator:
+                report = self.do_json(*CODE, "--instrument", generator.address, "--output-on", *more)
             self.assertTrue(report["verified"], report["message"])
             self.assertEqual(report["instrument"]["model"], model)
             light, sensor = report["channels"]
             self.assertEqual((light["plays"], sensor["plays"]), ("modulation_1", "demodulation_1"))
             self.assertAlmostEqual(light["numbers"]["amplitude_vpp"]["read_back"], 1.0, places=3)
-            self.assertEqual(process.stdout.readline(),
-                             f"outputs 1 1 points {light['points']} {sensor['points']} "
-                             f"waveforms {3 if family == 'tektronix' else 2}\n")
+            for n, channel in enumerate((light, sensor), 1):
+                self.assertTrue(generator.is_on(n))
+                self.assertEqual(len(generator.played(n)), 2 * channel["points"])
 
     def test_all_pairs_are_loaded_and_one_is_played_with_outputs_off(self):
-        process, address = self.generator("keysight", "33522B")
-        text = self.do(*CODE, "--instrument", "tcp://" + address, "--all", "--exposure", "3",
-                       "--volts", "0,2", "--load", "inf")
+        with SimulatedGenerator("keysight", "33522B") as generator:
+            text = self.do(*CODE, "--instrument", "tcp://" + generator.address, "--all",
+                           "--exposure", "3", "--volts", "0,2", "--load", "inf")
         self.assertIn("modulation_3", text)
         self.assertIn("all points and settings read back and equal", text)
         self.assertIn("Outputs are off", text)
-        self.assertRegex(process.stdout.readline(), r"^outputs 0 0 points \d+ \d+ waveforms 6\n")
+        self.assertFalse(generator.is_on(1) or generator.is_on(2))
+        self.assertEqual(len(generator.memory), 6)
 
     def test_points_that_are_not_read_back_are_unverified(self):
-        _, address = self.generator("keysight", "33522B")
-        report = self.do_json(*CODE, "--instrument", address, "--no-read-back")
+        with SimulatedGenerator("keysight", "33522B") as generator:
+            report = self.do_json(*CODE, "--instrument", generator.address, "--no-read-back")
         self.assertFalse(report["verified"])
         self.assertIn("unverified", report["message"])
 
@@ -81,32 +73,43 @@ class Upload(CommandLineTest):
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
-        self.refuse((*CODE, "--instrument", f"127.0.0.1:{port}"),
-                    f"tcp://127.0.0.1:{port}: cannot connect", "Connection refused")
+        self.refuse((*CODE, "--instrument", f"127.0.0.1:{port}", "--timeout", "1"),
+                    f"TCPIP::127.0.0.1::{port}::SOCKET", "check the address")
 
     def test_a_wrong_model_and_too_small_a_one(self):
-        process, address = self.generator("keysight", "34465A")
-        self.refuse((*CODE, "--instrument", address), "found the instrument 34465A of Keysight")
-        self.assertEqual(process.stdout.readline(), "outputs 1 1 points 0 0 waveforms 0\n")
-        _, address = self.generator("tektronix", "AFG3021B")
-        self.refuse((*CODE, "--instrument", address), "channel = 2; must be in [1, 1]")
-        _, address = self.generator("siglent", "SDG1032X")
-        self.refuse((*CODE, "--instrument", address, "--samples", "20000"),
-                    "points = 20000; must be in [8, 16384]")
+        with SimulatedGenerator("keysight", "34465A") as generator:
+            self.refuse((*CODE, "--instrument", generator.address),
+                        "found the instrument 34465A of Keysight")
+        self.assertTrue(generator.is_on(1) and generator.is_on(2))
+        with SimulatedGenerator("tektronix", "AFG3021B") as generator:
+            self.refuse((*CODE, "--instrument", generator.address), "channel = 2; must be in [1, 1]")
+        with SimulatedGenerator("siglent", "SDG1032X") as generator:
+            self.refuse((*CODE, "--instrument", generator.address, "--samples", "20000"),
+                        "points = 20000; must be in [8, 16384]")
 
     def test_a_hanging_instrument_and_an_interrupt(self):
-        _, address = self.generator("tektronix", "AFG3022C", "hangs", "0")
-        self.refuse((*CODE, "--instrument", address, "--timeout", "0.2"),
-                    "sent '*IDN?': no answer within 0.2 s")
-        process, address = self.generator("tektronix", "AFG3252C", "hangs", "12")
-        upload = self.start(*CODE, "--instrument", address, "--timeout", "600", "--samples", "100",
-                            "--output-on")
-        with self.assertRaises(subprocess.TimeoutExpired):
-            upload.communicate(timeout=2)
-        upload.send_signal(signal.SIGINT)
-        out, error = upload.communicate(timeout=60)
+        with SimulatedGenerator("tektronix", "AFG3022C", "hangs") as generator:
+            self.refuse((*CODE, "--instrument", generator.address, "--timeout", "0.2"),
+                        "sent '*IDN?': no answer within 0.2 s")
+        with SimulatedGenerator("tektronix", "AFG3252C", "hangs", 12) as generator:
+            upload = self.start(*CODE, "--instrument", generator.address, "--timeout", "600",
+                                "--samples", "100", "--output-on")
+            deadline = time.monotonic() + 60
+            while generator.messages < 12 and time.monotonic() < deadline:
+                time.sleep(0.05)
+            self.assertIsNone(upload.poll())
+            upload.send_signal(signal.SIGINT)
+            out, error = upload.communicate(timeout=60)
         self.assertEqual((upload.returncode, out, error), (130, b"", b"tofsmith: interrupted\n"))
-        self.assertTrue(process.stdout.readline().startswith("outputs 0 0 "))
+        self.assertFalse(generator.is_on(1) or generator.is_on(2))
+
+    def test_what_is_missing_is_named(self):
+        without_package = self.path(self.write("python", '#!/bin/sh\nexec /usr/bin/python3 -I "$@"\n'))
+        os.chmod(without_package, 0o755)
+        for interpreter, words in (("/nowhere/python3", "/nowhere/python3: cannot be started"),
+                                   (without_package, "apt install python3-tofsmith")):
+            with unittest.mock.patch.dict(os.environ, TOFSMITH_PYTHON=interpreter):
+                self.refuse((*CODE, "--instrument", "127.0.0.1:1"), words)
 
 
 if __name__ == "__main__":

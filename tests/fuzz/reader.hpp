@@ -87,7 +87,6 @@ std::vector<Reader> array_readers();
 std::vector<Reader> image_readers();
 std::vector<Reader> mesh_readers();
 std::vector<Reader> document_readers();
-std::vector<Reader> waveform_readers();
 std::vector<Reader> bench_readers();
 std::vector<Reader> sweep_readers();
 

@@ -18,7 +18,7 @@ namespace {
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
   for (auto&& some : {text_readers(), document_readers(), array_readers(), image_readers(),
-                      mesh_readers(), waveform_readers(), bench_readers(), sweep_readers()})
+                      mesh_readers(), bench_readers(), sweep_readers()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

@@ -23,7 +23,7 @@ Folders operator+(Folders a, const Folders& b) {
 
 const Folders data_types = {"core", "code", "scene", "camera", "decode", "simulate", "design"};
 const Folders products =
-    data_types + Folders{"gpu", "io", "report", "waveforms", "sweep", "calibrate", "instrument"};
+    data_types + Folders{"gpu", "io", "report", "waveforms", "sweep", "calibrate"};
 const Folders all = products + Folders{"paper"};
 
 /// The house: which other folders each folder may include. simulate never includes design: the
@@ -42,7 +42,6 @@ const std::map<std::string, Folders> may_include = {
     {"report", data_types + Folders{"io"}},
     {"waveforms", data_types + Folders{"io", "report"}},
     {"calibrate", data_types + Folders{"io", "report"}},
-    {"instrument", data_types + Folders{"io", "waveforms"}},
     {"paper", products},
     {"apps", all},
 };
@@ -58,7 +57,7 @@ const std::map<std::string, Component> components = {
     {"design", {{"design"}, "core"}},
     {"io", {{"io"}, "design"}},
     {"report", {{"report"}, "io"}},
-    {"lab", {{"waveforms", "calibrate", "instrument"}, "report"}},
+    {"lab", {{"waveforms", "calibrate"}, "report"}},
     {"sweep", {{"sweep"}, "io"}},
 };
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tofsmith as ts
+from tofsmith import instruments
 
 headers = Path(__file__).resolve().parents[2] / "include" / "tofsmith"
 quick = {"trials": 1000, "method": "factorize"}
@@ -85,13 +86,13 @@ def test_every_option_is_a_keyword(struct, header, of, elsewhere):
     assert fields(struct, header) - elsewhere <= parameters
 
 
-uploads = ("UploadRequest", "instrument/upload.hpp"), (
-    "UploadSelection", "instrument/upload.hpp")
+uploads = ("UploadRequest", "waveforms/upload_script.hpp"), (
+    "UploadSelection", "waveforms/upload_script.hpp")
 
 
 def test_every_option_of_an_upload_can_be_given():
     with pytest.raises(ValueError, match="the unknown name 'unknown'") as refused:
-        ts.upload_script("square-k4", "paper-10f0", "33522", unknown=1)
+        instruments.upload_script("square-k4", "paper-10f0", "33522", unknown=1)
     known = set(re.search(r"needs one of ([\w, ]+)", str(refused.value)).group(1).split(", "))
     assert known == set.union(*(fields(*struct) for struct in uploads)) - {"channels"} | {"tables"}
 

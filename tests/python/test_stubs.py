@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import tofsmith as ts
-from tofsmith import figures, plot
+from tofsmith import figures, instruments, plot
 
 root = Path(__file__).resolve().parents[2]
 
@@ -43,7 +43,7 @@ def public():
     for name in ts.__all__:
         if name != "Interrupted":
             yield f"tofsmith.{name}", getattr(ts, name)
-    for module in (figures, plot):
+    for module in (figures, instruments, plot):
         for name, value in vars(module).items():
             if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
                 yield f"{module.__name__}.{name}", value

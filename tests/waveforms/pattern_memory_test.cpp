@@ -7,6 +7,7 @@
 
 #include "damaged_files.hpp"
 #include "io/shared/read_file.hpp"
+#include "pattern_reader.hpp"
 
 namespace tofsmith {
 namespace {

@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "camera/shared/actual_code.hpp"
+#include "pattern_reader.hpp"
 #include "tofsmith/io/csv.hpp"
+#include "waveform_readers.hpp"
+#include "waveforms/keysight_arb.hpp"
 #include "waveforms/pattern_memory.hpp"
-#include "waveforms/shared/keysight_arb.hpp"
-#include "waveforms/shared/siglent_waveform.hpp"
-#include "waveforms/shared/tektronix_waveform.hpp"
+#include "waveforms/siglent_waveform.hpp"
+#include "waveforms/tektronix_waveform.hpp"
 
 namespace tofsmith {
 namespace {

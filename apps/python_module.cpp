@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "python_module.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+
+#include "program_directory.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* debian_python = "/usr/bin/python3";
+
+/// Runs the module that is its argument.
+constexpr const char* bootstrap =
+    "import importlib.util, runpy, sys\n"
+    "if importlib.util.find_spec('tofsmith') is None:\n"
+    "    sys.exit(f'tofsmith: {sys.executable} finds no package tofsmith, which this command "
+    "needs; '\n"
+    "             'on Debian: apt install python3-tofsmith')\n"
+    "try:\n"
+    "    runpy.run_module(sys.argv[1], run_name='__main__', alter_sys=True)\n"
+    "except KeyboardInterrupt:\n"
+    "    sys.stderr.write('tofsmith: interrupted\\n')\n"
+    "    sys.exit(130)\n";
+
+std::string interpreter() {
+  if (const char* const chosen = std::getenv("TOFSMITH_PYTHON"); chosen != nullptr) return chosen;
+  return fs::exists(debian_python) ? debian_python : "python3";
+}
+
+/// Makes Python find the package that belongs to this program.
+void add_package_to_path() {
+  const fs::path here = program_directory();
+  const std::array places = {here / "../python", here / "../lib/python3/dist-packages",
+                             here / "../../.."};
+  for (const fs::path& place : places) {
+    std::error_code ignored;
+    if (!fs::exists(place / "tofsmith/__init__.py", ignored)) continue;
+    std::string path = place.lexically_normal().string();
+    if (const char* const others = std::getenv("PYTHONPATH"); others != nullptr)
+      path += std::string(":") + others;
+    ::setenv("PYTHONPATH", path.c_str(), 1);
+    return;
+  }
+}
+
+[[noreturn]] void fail(std::string_view place, std::string_view problem) {
+  throw IoError(place, std::string(problem) + " (" + std::generic_category().message(errno) + ")");
+}
+
+void use_as_standard_input(const std::string& input) {
+  std::FILE* const file = std::tmpfile();
+  if (file == nullptr) fail("temporary file", "cannot be created");
+  if (std::fwrite(input.data(), 1, input.size(), file) != input.size() || std::fflush(file) != 0)
+    fail("temporary file", "cannot be written");
+  std::rewind(file);
+  if (::dup2(::fileno(file), STDIN_FILENO) < 0) fail("standard input", "cannot be replaced");
+}
+
+}  // namespace
+
+void run_python_module(const std::string& module, const std::string& input) {
+  add_package_to_path();
+  use_as_standard_input(input);
+  std::fflush(stdout);
+  const std::string python = interpreter();
+  ::execlp(python.c_str(), python.c_str(), "-c", bootstrap, module.c_str(), nullptr);
+  fail(python, "cannot be started; this command needs Python with the package tofsmith");
+}
+
+}  // namespace tofsmith::apps

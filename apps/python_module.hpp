@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace tofsmith::apps {
+
+/// Replaces this process with `python3 -m MODULE`, which reads `input` from its standard input. The
+/// package tofsmith is searched for next to this program (build, installation, wheel), then where
+/// Python itself searches; if it is missing, Python reports what to install. The environment
+/// variable TOFSMITH_PYTHON selects another interpreter.
+/// @throws IoError if Python cannot be started
+[[noreturn]] void run_python_module(const std::string& module, const std::string& input);
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/fields.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
+
+namespace tofsmith {
+
+/// Waveforms for one channel of a generator.
+struct UploadChannel {
+  int channel = 1;                        ///< 1, 2
+  std::vector<QuantizedWaveform> stored;  ///< tables for its memory, in this order
+  int selected = 0;                       ///< index of the table that the channel plays
+
+  /// @throws std::out_of_range if no stored waveform is selected
+  const QuantizedWaveform& selected_waveform() const;
+};
+
+/// Header of a waveform sent to a Siglent; sources disagree, see docs/instruments.md.
+enum class WaveHeader {
+  length,   ///< with LENGTH, so that the message defines its own end
+  plain,    ///< as in Siglent's application note
+  minimal,  ///< name and data only
+};
+
+/// Waveforms and settings for a generator.
+struct UploadRequest {
+  std::vector<UploadChannel> channels;
+  double load_ohm = 50.0;  ///< load that the voltages refer to, 1 .. 1e6, or infinity: open circuit
+  bool output_on = false;  ///< switch the outputs on at the end; otherwise they stay off
+  bool read_back = true;   ///< compare the points in the instrument; some models cannot
+  bool reset = true;       ///< reset first, so that no earlier setting remains
+  bool true_arb = false;   ///< Siglent: play every point instead of skipping some
+  WaveHeader wave_header = WaveHeader::length;  ///< Siglent
+  double settle_s = 0.5;                        ///< Siglent: pause after a waveform, 0 .. 60
+  double patience_s = 20.0;     ///< additional time for a reset and for files, 0 .. 600
+  std::string filter = "STEP";  ///< Keysight: STEP, NORM or OFF
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<UploadRequest> auto& r) {
+  return std::tuple(Field("channels", r.channels, FieldMark::from_above),
+                    Field("load_ohm", r.load_ohm), Field("output_on", r.output_on),
+                    Field("read_back", r.read_back), Field("reset", r.reset),
+                    Field("true_arb", r.true_arb), Field("wave_header", r.wave_header),
+                    Field("settle_s", r.settle_s, closed(0, 60)),
+                    Field("patience_s", r.patience_s, closed(0, 600)), Field("filter", r.filter));
+}
+
+/// Expected content of an answer.
+struct AnswerCheck {
+  int channel = 0;       ///< 0: none
+  std::string quantity;  ///< "amplitude_vpp", ...
+  std::string field;     ///< key of answers such as "C1:BSWV FRQ,1000HZ,AMP,4V"; empty: all of it
+  double wanted = 0.0;   ///< for a number
+  double tolerance = 0.0;
+  std::vector<std::string> texts;  ///< for a word: any of these, upper case
+  bool within = false;             ///< the word may be anywhere in the answer
+};
+
+/// A message to the instrument and the answer that it must get.
+struct UploadStep {
+  enum class Answer {
+    none,
+    line,       ///< a line of text that passes `checks`
+    block,      ///< a block whose bytes are `expected`
+    arb_file,   ///< a block with an .arb file whose points are the numbers in `expected`
+    wave_data,  ///< a header that passes `checks`, "WAVEDATA,", then the bytes `expected`
+  };
+  std::string what;     ///< "select the waveform of channel 1"
+  std::string message;  ///< without line end
+  std::string data;     ///< bytes after the message
+  bool line_end = true;
+  bool switches_on = false;  ///< an output
+  Answer answer = Answer::none;
+  std::vector<AnswerCheck> checks;
+  std::string expected;
+  double more_s = 0.0;   ///< additional time for the answer
+  double pause_s = 0.0;  ///< after the message
+};
+
+/// All messages of one upload, in order.
+struct UploadScript {
+  GeneratorModel model;
+  std::vector<UploadChannel> channels;
+  std::vector<UploadStep> steps;
+  std::vector<std::string> outputs_off;          ///< messages that make it safe
+  bool reads_back = true;                        ///< points of every waveform are compared
+  std::vector<std::string> cannot_be_read_back;  ///< what no answer confirms
+};
+
+/// @throws std::invalid_argument naming the channel, table, rate or voltage that does not fit the
+///         model
+UploadScript upload_script(const GeneratorModel& model, const UploadRequest& request);
+
+/// The messages as text, one per line, with data as a number of bytes.
+std::string script_text(const UploadScript& script);
+
+/// Voltage at a load for each volt into 50 ohm.
+double load_gain(double load_ohm);
+
+/// The exposures of a code to load and the one to play.
+struct UploadSelection {
+  int light_channel = 1;   ///< channel that plays the light; 0: none
+  int sensor_channel = 2;  ///< channel that plays the sensor's gain; 0: none
+  int exposure = 1;        ///< exposure to play, from 1
+  int tap = 1;             ///< tap that the sensor's channel plays, from 1
+  bool all = false;        ///< load all exposures
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<UploadSelection> auto& s) {
+  return std::tuple(Field("light_channel", s.light_channel, at_least(0)),
+                    Field("sensor_channel", s.sensor_channel, at_least(0)),
+                    Field("exposure", s.exposure, at_least(1)), Field("tap", s.tap, at_least(1)),
+                    Field("all", s.all));
+}
+
+/// A code as tables for a model: in its format and, unless the options contain a sample rate, at
+/// its highest rate (with `true_arb`: the highest rate at which every point is played).
+/// @throws std::invalid_argument naming the option that breaks a rule of the format or the model
+WaveformExport export_for_model(const CodeSet& code, const Camera& camera,
+                                const GeneratorModel& model, ExportOptions options, bool true_arb);
+
+/// The channels of a selection, each with the tables that it stores and the one that it plays.
+/// @throws std::invalid_argument if the code has no such exposure or tap
+std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
+                                             const UploadSelection& selection);
+
+/// "step", "normal" or "off" as in a Keysight's command. @throws std::invalid_argument
+std::string parse_output_filter(std::string_view word);
+/// "length", "plain" or "minimal". @throws std::invalid_argument for any other word
+WaveHeader parse_wave_header(std::string_view word);
+
+}  // namespace tofsmith

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/waveforms/waveform_export.hpp"
+
+namespace tofsmith {
+
+/// What the DAC of a 33500 or 33600 takes: -32767 .. 32767.
+inline constexpr std::int32_t keysight_levels = 65535;
+
+/// A waveform of `keysight_levels` levels as the text that a 33500 or 33600 loads.
+/// @param end_of_line  "\n" or "\r\n"
+/// @throws std::invalid_argument if the waveform is invalid or has other levels
+std::string keysight_arb_text(const QuantizedWaveform& waveform,
+                              std::string_view end_of_line = "\n");
+/// The points of that text alone, one per line.
+/// @throws std::invalid_argument as keysight_arb_text()
+std::string keysight_points_text(const QuantizedWaveform& waveform,
+                                 std::string_view end_of_line = "\n");
+/// The points as DATA:ARB:DAC takes them: big-endian 16-bit numbers (the default of FORM:BORD), for
+/// a block of ieee488_block.hpp.
+/// @throws std::invalid_argument as keysight_arb_text()
+std::vector<std::byte> keysight_dac_bytes(const QuantizedWaveform& waveform);
+
+}  // namespace tofsmith

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace tofsmith {
+
+/// Syntax of the words of a memory.
+enum class PatternSyntax { coe, mif, mem, systemverilog, vhdl, c };
+
+/// Content of a memory file.
+struct PatternWords {
+  int word_bits = 0;  ///< 0 if the file does not contain it (.coe, .mem)
+  std::vector<std::uint64_t> words;
+};
+
+/// Reads the files of pattern_memory.hpp, and .coe, .mif and .mem files of other tools: any radix,
+/// ranges of addresses, comments.
+/// @param file  name for errors
+/// @throws IoError "file: ..." for any other text
+PatternWords parse_pattern(std::string_view text, PatternSyntax syntax, std::string_view file);
+
+}  // namespace tofsmith

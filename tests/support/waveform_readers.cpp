@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "waveform_readers.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "io/shared/byte_cursor.hpp"
+#include "io/shared/byte_order.hpp"
+#include "io/text/shared/line_cursor.hpp"
+#include "tofsmith/core/error.hpp"
+#include "waveforms/keysight_arb.hpp"
+#include "waveforms/tektronix_waveform.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::int32_t largest = keysight_levels / 2;
+constexpr std::string_view tfw_magic = "TEKAFG3000";
+constexpr std::size_t tfw_header_bytes = 512, tfw_fields_at = 16;
+constexpr std::uint32_t tfw_version = 20050114;
+constexpr std::size_t record_bytes = 5;
+
+std::int16_t checked_point(LineCursor& lines, std::string_view text) {
+  const auto number = finite_number_in(text);
+  if (!number || *number != std::floor(*number) || std::abs(*number) > largest)
+    lines.fail(fmt::format("found '{}'; expected a whole number in [-32767, 32767]", text));
+  return static_cast<std::int16_t>(*number);
+}
+
+std::uint32_t take_u32_big(ByteCursor& cursor, std::string_view what) {
+  std::uint32_t value = 0;
+  for (const std::byte byte : cursor.take(4, what))
+    value = value << 8 | std::to_integer<std::uint32_t>(byte);
+  return value;
+}
+
+}  // namespace
+
+KeysightArb parse_keysight_arb(std::string_view text, std::string_view file) {
+  LineCursor lines(text, file);
+  KeysightArb arb;
+  std::optional<double> points;
+  bool has_format = false;
+  for (std::string_view line = lines.next(); line != "Data:"; line = lines.next()) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos)
+      lines.fail(fmt::format("found '{}'; expected 'Key:value', or 'Data:'", line));
+    const std::string_view key = line.substr(0, colon), value = line.substr(colon + 1);
+    const auto number = [&] {
+      const auto found = finite_number_in(value);
+      if (!found) lines.fail(fmt::format("{}: found '{}'; expected a number", key, value));
+      return *found;
+    };
+    if (key == "File Format")
+      has_format = trimmed(value) == "1.10";
+    else if (key == "Sample Rate")
+      arb.sample_rate_hz = number();
+    else if (key == "High Level")
+      arb.high_level_v = number();
+    else if (key == "Low Level")
+      arb.low_level_v = number();
+    else if (key == "Marker Point")
+      arb.marker_point = static_cast<int>(std::min(1e9, std::max(0.0, number())));
+    else if (key == "Data Points")
+      points = number();
+    else if (key == "Channel Count" && number() != 1.0)
+      lines.fail(fmt::format("found {} channels; expected 1", value));
+    else if (key == "Data Type" && trimmed(value) != "\"short\"" && trimmed(value) != "\"Short\"")
+      lines.fail(fmt::format("found the data type {}; expected \"short\"", value));
+  }
+  if (!has_format) lines.fail("found no 'File Format:1.10' above");
+  if (arb.sample_rate_hz <= 0.0) lines.fail("found no positive 'Sample Rate' above");
+  while (!lines.at_end()) {
+    const std::string_view line = lines.next();
+    if (line.empty()) continue;
+    arb.points.push_back(checked_point(lines, line));
+  }
+  if (!points || *points != static_cast<double>(arb.points.size()))
+    lines.fail(fmt::format("found {} points; expected {}, as Data Points says", arb.points.size(),
+                           points ? fmt::format("{}", *points) : "a number"));
+  return arb;
+}
+
+std::vector<std::int16_t> parse_keysight_dac_bytes(std::span<const std::byte> bytes,
+                                                   std::string_view place) {
+  if (bytes.size() % 2 != 0)
+    throw IoError(place, fmt::format("found {} bytes; expected two for each point", bytes.size()));
+  std::vector<std::int16_t> points;
+  for (std::size_t i = 0; i < bytes.size(); i += 2) {
+    const unsigned word =
+        std::to_integer<unsigned>(bytes[i]) << 8 | std::to_integer<unsigned>(bytes[i + 1]);
+    const auto point = static_cast<std::int16_t>(word);
+    if (point < -largest)
+      throw IoError(fmt::format("{}: byte {}", place, i),
+                    fmt::format("found {}; expected points in [-32767, 32767]", point));
+    points.push_back(point);
+  }
+  return points;
+}
+
+std::vector<std::int32_t> parse_tektronix_tfw(std::span<const std::byte> bytes,
+                                              std::string_view file) {
+  ByteCursor cursor(bytes, file);
+  if (cursor.take_text(tfw_magic.size(), "the header") != tfw_magic)
+    cursor.fail_at(0, fmt::format("found no '{}'; expected a .tfw file", tfw_magic));
+  cursor.take(tfw_fields_at - tfw_magic.size(), "the header");
+  if (const auto version = take_u32_big(cursor, "the version"); version != tfw_version)
+    cursor.fail_at(tfw_fields_at,
+                   fmt::format("found version {}; expected {}", version, tfw_version));
+  const std::size_t count = take_u32_big(cursor, "the number of points");
+  cursor.take(tfw_header_bytes - cursor.position(), "the header");
+  if (cursor.rest().size() != 2 * count || count < 2)
+    cursor.fail(
+        fmt::format("found {} bytes of points; expected {}, two for each of {} points (2 "
+                    "or more)",
+                    cursor.rest().size(), 2 * count, count));
+  std::vector<std::int32_t> points;
+  while (!cursor.at_end()) {
+    const auto pair = cursor.take(2, "a point");
+    points.push_back(std::to_integer<int>(pair[0]) << 8 | std::to_integer<int>(pair[1]));
+    if (points.back() >= tektronix_afg_full_levels)
+      cursor.fail_at(cursor.position() - 2,
+                     fmt::format("found the point {}; expected 14 bits", points.back()));
+  }
+  return points;
+}
+
+TektronixWfm parse_tektronix_wfm(std::span<const std::byte> bytes, std::string_view file) {
+  ByteCursor cursor(bytes, file);
+  if (trimmed(cursor.take_until('\n', "the first line")) != "MAGIC 1000")
+    cursor.fail_at(0, "found no 'MAGIC 1000'; expected a .wfm file of an AWG");
+  const std::size_t begin = cursor.position();
+  const Ieee488Block block =
+      parse_ieee488_block(cursor.rest(), fmt::format("{} from {}", file, begin));
+  cursor.take(block.size, "the points");
+  if (block.data.size() % record_bytes != 0 || block.data.empty())
+    cursor.fail_at(
+        begin, fmt::format("found {} bytes of points; expected five for each", block.data.size()));
+  TektronixWfm wfm;
+  for (std::size_t at = 0; at < block.data.size(); at += record_bytes) {
+    const auto value = load_little_endian<float>(block.data.data() + at);
+    if (!(std::abs(value) <= 1.0F))
+      cursor.fail_at(begin + block.size - block.data.size() + at,
+                     fmt::format("found the value {}; expected -1 .. 1", value));
+    wfm.values.push_back(value);
+    wfm.markers.push_back(std::to_integer<std::uint8_t>(block.data[at + 4]));
+  }
+  if (cursor.at_end()) return wfm;  // an AWG plays it at the clock it has
+  const std::size_t clock_at = cursor.position();
+  const std::string_view clock = trimmed(cursor.take_until('\n', "the clock"));
+  const auto rate = clock.starts_with("CLOCK") ? finite_number_in(clock.substr(5)) : std::nullopt;
+  if (!rate || *rate <= 0.0 || !cursor.at_end())
+    cursor.fail_at(clock_at, "expected 'CLOCK', the points per second and the end of the file");
+  wfm.sample_rate_hz = *rate;
+  return wfm;
+}
+
+Ieee488Block parse_ieee488_block(std::span<const std::byte> bytes, std::string_view place) {
+  ByteCursor cursor(bytes, place);
+  if (cursor.take_text(1, "a block's #") != "#")
+    cursor.fail_at(0, "found no '#'; expected a block of IEEE 488.2");
+  const char digits = cursor.take_text(1, "a block's number of digits").front();
+  if (digits < '1' || digits > '9')
+    cursor.fail_at(
+        1, fmt::format("found '{}'; expected the number of digits of the length, 1 to 9", digits));
+  std::size_t length = 0;
+  for (const char digit : cursor.take_text(static_cast<std::size_t>(digits - '0'), "the length")) {
+    if (digit < '0' || digit > '9')
+      cursor.fail_at(2, fmt::format("found '{}' in the length; expected digits", digit));
+    length = 10 * length + static_cast<std::size_t>(digit - '0');
+  }
+  const auto data = cursor.take(length, "the block's data");
+  return {data, cursor.position()};
+}
+
+}  // namespace tofsmith
