@@ -48,6 +48,12 @@ void say_report(const Session& session, const ExportedCode& exported) {
                           text_table(generator_loss_rows(*exported.loss, kind))));
 }
 
+/// "3 SCPI scripts, ", or nothing.
+std::string script_count(std::size_t scripts) {
+  if (scripts == 0) return "";
+  return fmt::format("{} SCPI script{}, ", scripts, scripts == 1 ? "" : "s");
+}
+
 void run(ExportArguments& arguments, const Session& session) {
   ExportRequest& request = arguments.request;
   if (!arguments.volts.empty()) {
@@ -69,11 +75,12 @@ void run(ExportArguments& arguments, const Session& session) {
                    request, terminal_progress("evaluating"));
   session.print_document(export_document(exported));
   say_report(session, exported);
-  const std::size_t tables = exported.files.size() - 2;  // and manifest.json and report.html
+  const std::size_t scripts = exported.scripts.size();
+  const std::size_t tables = exported.files.size() - scripts - 2;  // manifest.json, report.html
   session.say(one_file ? fmt::format("wrote {}", arguments.output)
-                       : fmt::format("wrote {} file{} of {}, manifest.json and report.html to {}",
+                       : fmt::format("wrote {} file{} of {}, {}manifest.json and report.html to {}",
                                      tables, tables == 1 ? "" : "s", request.options.format,
-                                     arguments.output));
+                                     script_count(scripts), arguments.output));
   for (const std::string& note : exported.notes) session.say("note: " + note);
 }
 

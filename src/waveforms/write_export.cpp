@@ -127,6 +127,10 @@ ExportedCode write_export(const CodeSet& code, const Camera& camera, const Expor
   if (request.loss) exported.loss = generator_loss(resampled, actual, *request.loss, progress);
   exported.generators = generator_report(resampled, actual);
   exported.notes = rate_notes(exported.waveforms, camera, request.options);
+  ExportedScripts scripts = export_scripts(exported.waveforms);
+  exported.scripts = std::move(scripts.files);
+  if (!scripts.problem.empty() && exported.notes.empty())
+    exported.notes.push_back("no SCPI script was written: " + scripts.problem);
   for (std::string& note : duty_notes(exported, camera, request.options))
     exported.notes.push_back(std::move(note));
 
@@ -139,6 +143,8 @@ ExportedCode write_export(const CodeSet& code, const Camera& camera, const Expor
     make_output_directory(request.output);
     for (const ExportedFile& file : files)
       products.emplace_back(request.output / file.name, file.bytes);
+    for (const ExportedScript& script : exported.scripts)
+      products.emplace_back(request.output / script.name, bytes_of(script.text));
     products.emplace_back(request.output / "manifest.json", bytes_of(exported.manifest));
     if (request.page) products.emplace_back(request.output / "report.html", bytes_of(page));
   }

@@ -12,6 +12,16 @@ QUICK = ("--trials", "200")
 
 
 class Export(CommandLineTest):
+    def test_scripts_of_generators_are_those_of_an_upload(self):
+        text = self.do("export", "hamiltonian-k3", "--format", "tek-tfw", "--samples", "16",
+                       "--periods", "4", "-o", "d", *QUICK)
+        self.assertIn("wrote 6 files of tek-tfw, 3 SCPI scripts, manifest.json and report.html", text)
+        script = self.bytes_of("d/AFG3022_exposure_2.scpi.txt").decode()
+        self.assertRegex(script, r"^# TEKTRONIX AFG3022, AFG3052, AFG3102, AFG3152, AFG3252; ")
+        upload = self.do("upload", "hamiltonian-k3", "--dry-run", "--model", "AFG3252", "--samples",
+                         "16", "--periods", "4", "--exposure", "2")
+        self.assertEqual(script.splitlines()[1:], upload.splitlines()[1:])
+
     def test_limits_that_hurt_are_reported(self):
         text = self.do("export", "hamiltonian-k5", "--format", "csv", "--rate", "360e6",
                        "--edge-grid", "2.777777777777778e-9", "-o", "w.csv", *QUICK)
@@ -46,7 +56,9 @@ class Export(CommandLineTest):
         self.refuse(["export", "hamiltonian-k4", "--format", "keysight-arb", "--rate", "100e6", "-o",
                      "e"], "points are 1/6 of a period; 12 points or more, 180 MHz, can")
         self.assertEqual(notes("--samples", "60"), [])
-        self.assertEqual(notes("--samples", "72", "--rate", "1.08e9"), [])
+        (note,) = notes("--samples", "72", "--rate", "1.08e9")  # keeps them, but is too fast
+        self.assertIn("no SCPI script was written: modulation_1 sample_rate_hz = 1.08e+09; must be "
+                      "at most 1e+09, what 33622 plays", note)
 
     def test_wrong_usage(self):
         for arguments, code, words in (

@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "core/shared/random.hpp"
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/code/families.hpp"
 
 namespace tofsmith {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 QuantizedWaveform random_waveform(const GeneratorModel& model, Arm arm, int index) {
@@ -100,6 +103,47 @@ TEST(GeneratorModel, IsFoundByTheModelNameThatAnInstrumentReports) {
     EXPECT_EQ(find_generator_model(other), nullptr) << other;
   EXPECT_THAT([] { generator_model("SDG2024X"); },
               testing::ThrowsMessage<std::invalid_argument>(HasSubstr("did you mean SDG2042X?")));
+}
+
+ExportedScripts scripts_of(const ExportOptions& options) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  return export_scripts(export_waveforms(code, exporting_camera(code, camera, options), options));
+}
+
+TEST(ExportScripts, EveryExposureHasOneForAllModelsThatTakeTheSameMessages) {
+  const ExportedScripts siglent =
+      scripts_of({.format = "siglent-wvdt16", .samples = 16, .periods = 4});
+  std::vector<std::string> names;
+  for (const ExportedScript& script : siglent.files) names.push_back(script.name);
+  EXPECT_THAT(names, ElementsAre("SDG1032X_exposure_1.scpi.txt", "SDG2042X_exposure_1.scpi.txt",
+                                 "SDG1032X_exposure_2.scpi.txt", "SDG2042X_exposure_2.scpi.txt",
+                                 "SDG1032X_exposure_3.scpi.txt", "SDG2042X_exposure_3.scpi.txt"));
+  EXPECT_THAT(siglent.files[1].text, HasSubstr("SDG2122X, SDG6022X, SDG6032X, SDG6052X\n"));
+  EXPECT_EQ(siglent.problem, "");
+  const ExportedScripts tektronix = scripts_of({.format = "tek-tfw", .samples = 16, .periods = 4});
+  ASSERT_EQ(tektronix.files.size(), 3u);
+  EXPECT_THAT(tektronix.files[2].text, HasSubstr("# load demodulation_3\n"));
+}
+
+TEST(ExportScripts, AreThoseOfAnUpload) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const ExportOptions options{.format = "keysight-arb", .samples = 16};
+  const WaveformExport exported =
+      export_waveforms(code, exporting_camera(code, camera, options), options);
+  const std::string text = export_scripts(exported).files.at(1).text;
+  UploadRequest request;
+  request.channels = selected_channels(exported, {.exposure = 2});
+  const std::string uploaded = script_text(upload_script(generator_model("33522"), request));
+  EXPECT_EQ(text.substr(text.find('\n')), uploaded.substr(uploaded.find('\n')));
+}
+
+TEST(ExportScripts, NameTheRuleWhereNoModelPlaysTheTables) {
+  const ExportedScripts none = scripts_of({.format = "keysight-arb", .samples = 100});
+  EXPECT_TRUE(none.files.empty());
+  EXPECT_THAT(none.problem, HasSubstr("sample_rate_hz = 1.5e+09; must be at most 1e+09"));
+  EXPECT_EQ(scripts_of({.format = "csv", .samples = 100}).problem, "");
 }
 
 }  // namespace

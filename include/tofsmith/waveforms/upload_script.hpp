@@ -138,4 +138,21 @@ std::string parse_output_filter(std::string_view word);
 /// "length", "plain" or "minimal". @throws std::invalid_argument for any other word
 WaveHeader parse_wave_header(std::string_view word);
 
+/// A script as a text file, for one exposure and for the models that accept the same messages.
+struct ExportedScript {
+  std::string name;  ///< "SDG2042X_exposure_1.scpi.txt", named after the first model
+  std::string text;
+};
+
+struct ExportedScripts {
+  std::vector<ExportedScript> files;
+  std::string
+      problem;  ///< the rule that the fastest model reports, if no model can play the tables
+};
+
+/// The scripts that load and select each exposure of a code on the two-channel generators that use
+/// the format of the tables: light on channel 1, the sensor's first tap on channel 2, outputs off.
+/// Models with equal scripts share one. Empty if no model uses this format.
+ExportedScripts export_scripts(const WaveformExport& exported);
+
 }  // namespace tofsmith

@@ -11,22 +11,24 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/waveforms/upload_script.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
 
 /// What became of a code on the hardware that it is exported for.
 struct ExportedCode {
-  CodeSet code;              ///< at the camera's samples
-  Camera actual;             ///< with the generators that play the tables
-  WaveformExport waveforms;  ///< the tables
-  std::string manifest;      ///< manifest.json
+  CodeSet code;                         ///< at the camera's samples
+  Camera actual;                        ///< with the generators that play the tables
+  WaveformExport waveforms;             ///< the tables
+  std::string manifest;                 ///< manifest.json
+  std::vector<ExportedScript> scripts;  ///< SCPI for the generators that can play the tables
   std::vector<GeneratorReport> generators;
-  std::optional<GeneratorLoss> loss;         ///< if it was asked for
-  std::vector<std::string> notes;            ///< what a user should know
-  std::filesystem::path output;              ///< as asked for
-  std::vector<std::filesystem::path> files;  ///< written: tables first; in a directory
-                                             ///< manifest.json behind them, and report.html
+  std::optional<GeneratorLoss> loss;  ///< if it was asked for
+  std::vector<std::string> notes;     ///< what a user should know
+  std::filesystem::path output;       ///< as asked for
+  /// Written files: tables first; in a directory then scripts, manifest.json and report.html.
+  std::vector<std::filesystem::path> files;
 };
 
 /// A code to be written for hardware.
