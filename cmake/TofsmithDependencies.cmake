@@ -67,17 +67,8 @@ if(TOFSMITH_HAS_gpu)
   endif()
 endif()
 
-set(TOFSMITH_HAS_LXI OFF)
 if(TOFSMITH_HAS_lab)
   pkg_check_modules(LIBMD REQUIRED IMPORTED_TARGET libmd)  # SHA-256
-  find_path(BOOST_ASIO_INCLUDE_DIR boost/asio.hpp REQUIRED)  # headers only
-  if(TOFSMITH_USE_LXI)
-    pkg_check_modules(LIBLXI IMPORTED_TARGET liblxi)  # VXI-11; can be missing
-    find_library(TIRPC_LIBRARY tirpc)
-    if(LIBLXI_FOUND AND TIRPC_LIBRARY)
-      set(TOFSMITH_HAS_LXI ON)
-    endif()
-  endif()
 endif()
 
 if(TOFSMITH_HAS_report)

@@ -50,7 +50,6 @@ packages_build=(
   "${packages_demo[@]}" "${packages_opencl[@]}"
   libsqlite3-dev      # sweep store
   libmd-dev           # SHA-256 of exported files
-  libboost-dev        # Asio: generators in the network
 )
 # The Python package, on top of the library.
 packages_python=(
@@ -69,10 +68,9 @@ packages_lab=(
 packages_package=(
   "${packages_python[@]}"
   libopenmpi-dev             # sweeps of several ranks
-  liblxi-dev libtirpc-dev    # generators by VXI-11
   dpkg-dev file              # what a package depends on
 )
-# scripts/wheel.sh: a wheel without MPI, OpenCL and VXI-11.
+# scripts/wheel.sh: a wheel without MPI and OpenCL.
 packages_wheel=(
   "${packages_python[@]}"
   patchelf
@@ -83,6 +81,7 @@ packages_test=(
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   pocl-opencl-icd                            # OpenCL on the processor
   python3-pytest mypy                        # the Python package
+  python3-pyvisa python3-pyvisa-py           # uploads to generators
   patchelf                                   # wheels
   python3-h5py                               # writes what .h5 readers must read
   python3-opencv                             # distorts as lenses must

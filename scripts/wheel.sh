@@ -10,8 +10,8 @@
 #
 #   --python VERSION   only the wheel for this Python, such as 3.13
 #
-# Wheels have no OpenCL, MPI or VXI-11, whose libraries belong to the system that they run on. The page
-# of `tofsmith lab` is included if scripts/lab.sh has built it.
+# Wheels have neither OpenCL nor MPI, whose libraries belong to the system that they run on. The page of
+# `tofsmith lab` is included if scripts/lab.sh has built it.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -67,7 +67,7 @@ for entry in "${releases[@]}"; do
   [[ -z "$wanted" || "$wanted" == "$version" ]] || continue
   dpkg --compare-versions "$version" ge "$own" || continue
   echo "Building the wheel for Python $version in $build"
-  options=(-DTOFSMITH_WERROR=ON -DBUILD_SHARED_LIBS=ON -DTOFSMITH_USE_OPENCL=OFF -DTOFSMITH_USE_MPI=OFF -DTOFSMITH_USE_LXI=OFF)
+  options=(-DTOFSMITH_WERROR=ON -DBUILD_SHARED_LIBS=ON -DTOFSMITH_USE_OPENCL=OFF -DTOFSMITH_USE_MPI=OFF)
   bundle=()
   if [[ "$version" != "$own" ]]; then
     headers=$build/python$version
