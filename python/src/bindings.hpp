@@ -20,6 +20,7 @@ void bind_simulate(py::module_& module);
 void bind_multipath(py::module_& module);
 void bind_bounds(py::module_& module);
 void bind_design(py::module_& module);
+void bind_factorize(py::module_& module);
 void bind_gradients(py::module_& module);
 void bind_files(py::module_& module);
 void bind_export(py::module_& module);

@@ -87,6 +87,7 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_multipath(module);
   bind_bounds(module);
   bind_design(module);
+  bind_factorize(module);
   bind_gradients(module);
   bind_files(module);
   bind_export(module);

@@ -22,6 +22,7 @@ from types import ModuleType as _ModuleType
 
 from . import _components  # isort: skip
 from . import _check, _tofsmith
+from ._actual_waveforms import GeneratorReport, actual_waveforms, arm_output, generator_report
 from ._bounds import CramerRaoBound, DirectTofBound, HistogramBound, ReceiverBound
 from ._camera import Camera, built_in_camera_names, camera_keys
 from ._camera_fields import (
@@ -75,6 +76,7 @@ from ._design import (
 )
 from ._evaluate import best_rotation, evaluate, generator_loss, robustness, table_depth_error_m
 from ._export import ExportedCode, WaveformFormat, export_waveforms, waveform_formats
+from ._factorize import Alternation, FactorizedPair, Factorization, alternate, factorize
 from ._files import (
     read_correlation_functions,
     read_depth,
@@ -179,6 +181,7 @@ def set_threads(threads: int) -> None:
 
 
 __all__ = [
+    "Alternation",
     "AtlasEntry",
     "CalibratedCorrelation",
     "CalibratedDepth",
@@ -203,10 +206,13 @@ __all__ = [
     "Estimate",
     "ExponentialTail",
     "ExportedCode",
+    "FactorizedPair",
+    "Factorization",
     "Filter",
     "ForwardModel",
     "Generator",
     "GeneratorLoss",
+    "GeneratorReport",
     "HarmonicRatio",
     "HistogramBound",
     "IdealCodeFit",
@@ -251,6 +257,9 @@ __all__ = [
     "Transients",
     "Waveform",
     "WaveformFormat",
+    "actual_waveforms",
+    "alternate",
+    "arm_output",
     "atlas",
     "best_rotation",
     "bounced_light",
@@ -274,9 +283,11 @@ __all__ = [
     "design",
     "evaluate",
     "export_waveforms",
+    "factorize",
     "find_requirements",
     "fit_ideal_codes",
     "generator_loss",
+    "generator_report",
     "harmonics_used",
     "list_families",
     "load_code",

@@ -185,7 +185,7 @@ def _candidate(values: dict[str, Any], camera: Camera) -> Candidate:
     return Candidate(**values)
 
 
-def _target(target: Target, camera: Camera, normalize: bool) -> _tofsmith.TargetSet:
+def target_of(target: Target, camera: Camera, normalize: bool) -> _tofsmith.TargetSet:
     if isinstance(target, np.ndarray):
         table = _check.finite_array(target, "target", "(N, K)")
         return _tofsmith.targets_from_table("target", table, camera.samples, normalize)
@@ -298,7 +298,7 @@ def design(
         "optimize": None if optimize is None else dict(optimize),
         "search": None if search is None else dict(search),
     }
-    targets = None if target is None else _target(target, camera, normalize)
+    targets = None if target is None else target_of(target, camera, normalize)
     result = _tofsmith.design(camera._handle, options, targets, _check.progress(progress))
     result["candidates"] = [_candidate(c, camera) for c in result["candidates"]]
     return DesignResult(**result)

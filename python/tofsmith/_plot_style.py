@@ -105,14 +105,22 @@ def short(value: float) -> str:
     return f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
-def draw_depth_maps(depths_m: dict[str, Any], figure: Optional[Figure] = None) -> Figure:
-    """Depth planes (H, W) side by side under their names, with one colour scale. Pixels without
-    depth are grey."""
+def draw_depth_maps(
+    depths_m: dict[str, Any],
+    figure: Optional[Figure] = None,
+    range_m: Optional[tuple[float, float]] = None,
+    columns: Optional[int] = None,
+    label: str = "depth (m)",
+) -> Figure:
+    """Depth planes (H, W) side by side under their names, with one colour scale; see
+    plot.depth_maps(). Pixels without depth are grey."""
     shown = np.concatenate([d[np.isfinite(d)] for d in depths_m.values()])
     low, high = np.percentile(shown, (0.5, 99.5)) if shown.size else (0.0, 1.0)
-    rows, columns = grid(len(depths_m))
+    low, high = (low, high) if range_m is None else range_m
+    count = len(depths_m)
+    rows, columns = grid(count) if columns is None else (-(-count // columns), columns)
     height, width = next(iter(depths_m.values())).shape
-    panel_in = (page_in - 0.8) / 3 if len(depths_m) > 1 else column_in - 0.8
+    panel_in = (page_in - 0.8) / max(3, columns) if count > 1 else column_in - 0.8
     figure = new_figure(figure, 0.8 + panel_in * columns, 0.3 + panel_in * height / width * rows)
     axes = figure.subplots(rows, columns, squeeze=False)
     picture = None
@@ -121,7 +129,7 @@ def draw_depth_maps(depths_m: dict[str, Any], figure: Optional[Figure] = None) -
         picture = axis.imshow(depth_m, vmin=low, vmax=high, interpolation="nearest")
         axis.set(title=name, xticks=[], yticks=[])
         axis.spines[:].set_visible(False)
-    for axis in axes.flat[len(depths_m) :]:
+    for axis in axes.flat[count:]:
         axis.axis("off")
-    figure.colorbar(picture, ax=axes, label="depth (m)")
+    figure.colorbar(picture, ax=axes, label=label, extend="neither" if range_m is None else "both")
     return figure

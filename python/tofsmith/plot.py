@@ -258,7 +258,9 @@ def depth_error_curves(
     for i, report in enumerate(listed):
         x, mde, se, bound, level = error_curve(report, kind, along, at)
         colour = colours[i % len(colours)]
-        axis.errorbar(x, 1e3 * mde, 1e3 * se, marker="o", ms=2.5, color=colour, label=report.code)
+        dash = ("-", "--", ":", "-.")[i // len(colours) % 4]
+        axis.errorbar(x, 1e3 * mde, 1e3 * se, marker="o", ms=2.5, ls=dash, color=colour,
+                      label=report.code)
         bounds[bound.tobytes()] = (x, bound)
     for i, (x, bound) in enumerate(bounds.values()):
         if (bound > 0).any():
@@ -316,12 +318,19 @@ def sweep_map(
 
 @styled
 def depth_maps(
-    depths: Union[Depth, dict[str, Depth]], *, figure: Optional[Figure] = None
+    depths: Union[Depth, dict[str, Depth]],
+    *,
+    range_m: Optional[tuple[float, float]] = None,
+    columns: Optional[int] = None,
+    label: str = "depth (m)",
+    figure: Optional[Figure] = None,
 ) -> Figure:
     """Depth maps side by side with one colour scale: one, or several of one shape by name. Pixels
-    without depth are grey."""
+    without depth are grey. `range_m`: ends of the colour scale; None: all but 1 % of the depths.
+    `columns`: maps per row."""
     named = named_depths(depths)
-    return draw_depth_maps(named if isinstance(depths, dict) else {"": named["depth"]}, figure)
+    shown = named if isinstance(depths, dict) else {"": named["depth"]}
+    return draw_depth_maps(shown, figure, range_m, columns, label)
 
 
 @styled

@@ -275,5 +275,37 @@ TEST(SettleOnPoints, LeavesAlonePairsOfNoGenerator) {
   EXPECT_FALSE(settle_on_points(model, naive_start(model).front().pair));
 }
 
+TEST(Alternate, ProjectsToTheCandidateOfTheSameStart) {
+  const CorrelationTarget target = hamiltonian_targets(4).measurements[2];
+  FactorizeOptions options = random_starts_only(7);
+  options.random_starts = 1;
+  options.refine_edges = false;
+  options.total_variation_weights = {3e-4};
+  const Factorization whole = factorize(target, camera_with_peak(15), options);
+  const Alternation one = alternate(target, camera_with_peak(15), 0, 3e-4, options);
+  EXPECT_EQ(one.playable.modulation, whole.best().pair.modulation);
+  EXPECT_EQ(one.playable.demodulation, whole.best().pair.demodulation);
+  EXPECT_EQ(std::ssize(one.history), whole.best().iterations);
+}
+
+TEST(Alternate, RelaxedWaveformsKeepTheBoundsWithoutTotalVariation) {
+  const Alternation one =
+      alternate(hamiltonian_targets(3).measurements[0], camera_with_peak(15), 2, 0.0);
+  EXPECT_LE(one.relaxed.modulation.peak(), 15 + 1e-9);
+  EXPECT_LE(one.relaxed.modulation.mean(), 1 + 1e-9);
+  EXPECT_GE(one.relaxed.demodulation.samples().minCoeff(), -1e-9);
+  EXPECT_FALSE(one.relaxed.modulation.is_binary());
+  EXPECT_TRUE(one.playable.modulation.is_binary());
+}
+
+TEST(Alternate, RefusesBadArguments) {
+  const CorrelationTarget target = hamiltonian_targets(3).measurements[0];
+  EXPECT_THROW(alternate(target, camera_with_peak(15), -1, 0.0), std::invalid_argument);
+  EXPECT_THROW(alternate(target, camera_with_peak(15), 0, -1e-4), std::invalid_argument);
+  Camera other = camera_with_peak(15);
+  other.samples = 120;
+  EXPECT_THROW(alternate(target, other, 0, 0.0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace tofsmith

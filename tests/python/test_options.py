@@ -23,6 +23,8 @@ structs = [
      lambda o: ts.robustness("square-k4", "paper-10f0", **o), set()),
     ("FactorizeOptions", "design/factorize.hpp",
      lambda o: ts.design("paper-10f0", **quick, factorize=o), {"seed"}),
+    ("FactorizeOptions", "design/factorize.hpp",
+     lambda o: ts.factorize("hamiltonian-k3", "paper-10f0", **o), set()),
     ("OptimizeOptions", "design/optimize.hpp",
      lambda o: ts.design("paper-10f0", **quick, optimize=o), {"seed"}),
     ("ChipSearchOptions", "design/chip_search.hpp",

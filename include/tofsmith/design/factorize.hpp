@@ -145,4 +145,20 @@ struct Factorization {
 Factorization factorize(const CorrelationTarget& target, const Camera& camera,
                         const FactorizeOptions& options = {}, const Progress& progress = {});
 
+/// One run of the alternation of convex steps.
+struct Alternation {
+  WaveformPair relaxed;                     ///< last iterate of the convex steps, N samples each
+  WaveformPair playable;                    ///< best projection to playable waveforms
+  std::vector<FactorizeIteration> history;  ///< one entry per pair of convex steps
+};
+
+/// Runs the alternation of factorize() once, without refining switching times afterwards.
+/// @param start  number of the random start, >= 0; waveforms depend on it, options.seed and N
+/// @param total_variation_weight  lambda >= 0; replaces options.total_variation_weights. 0 omits
+///        total variation.
+/// @param options  max_iterations, objective_tolerance, feed_back_projection and seed apply
+/// @throws std::invalid_argument for bad arguments, a bad camera or a target of other length than N
+Alternation alternate(const CorrelationTarget& target, const Camera& camera, int start,
+                      double total_variation_weight, const FactorizeOptions& options = {});
+
 }  // namespace tofsmith

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "core/shared/shared_progress.hpp"
+#include "design/factorize/shared/alternation.hpp"
 #include "design/factorize/edge_refinement.hpp"
 #include "design/factorize/point_settling.hpp"
-#include "design/factorize/shared/alternation.hpp"
 #include "design/factorize/shared/start_pool.hpp"
 #include "design/shortest_run.hpp"
 #include "tofsmith/core/error.hpp"
@@ -26,6 +26,12 @@ Waveform as_waveform(const Eigen::VectorXd& samples, bool binary, double level) 
   return Waveform::binary_from_samples(samples, level > 0.0 ? level : 1.0);
 }
 
+/// A projection as waveforms: binary where the arm is.
+WaveformPair playable_pair(const PairModel& model, const SampledPair& p) {
+  return {as_waveform(p.modulation, model.binary_modulation(), p.modulation.maxCoeff()),
+          as_waveform(p.demodulation, model.binary_demodulation(), 1.0)};
+}
+
 struct StartResult {
   PairCandidate candidate;
   std::vector<FactorizeIteration> history;
@@ -37,9 +43,7 @@ StartResult run_start(const PairModel& model, const FactorizeOptions& options, i
   const double weight = options.total_variation_weights[static_cast<std::size_t>(index) %
                                                         options.total_variation_weights.size()];
   AlternationResult found = alternate(model, start.pair, weight, options, solver);
-  const SampledPair& p = found.playable;
-  WaveformPair pair{as_waveform(p.modulation, model.binary_modulation(), p.modulation.maxCoeff()),
-                    as_waveform(p.demodulation, model.binary_demodulation(), 1.0)};
+  WaveformPair pair = playable_pair(model, found.playable);
   const double residual = model.residual_rms(pair);
   return {{std::move(pair), residual, start.name, static_cast<int>(found.history.size())},
           std::move(found.history)};
@@ -92,6 +96,13 @@ bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candi
   return true;
 }
 
+void check_target(const CorrelationTarget& target, const Camera& camera) {
+  camera.validate();
+  require(target.samples.size() == camera.samples, "length of the target", target.samples.size(),
+          fmt::format("must equal the camera's samples = {}", camera.samples));
+  require(target.samples.allFinite(), "target", "not finite", "must be finite");
+}
+
 std::string describe(const Factorization& f, const CorrelationTarget& target) {
   if (f.exact()) return "reached exactly";
   const double share = f.best().residual_rms / std::max(f.target_variation_rms, 1e-300);
@@ -117,10 +128,7 @@ void FactorizeOptions::validate() const {
 Factorization factorize(const CorrelationTarget& target, const Camera& camera,
                         const FactorizeOptions& options, const Progress& progress) {
   options.validate();
-  camera.validate();
-  require(target.samples.size() == camera.samples, "length of the target", target.samples.size(),
-          fmt::format("must equal the camera's samples = {}", camera.samples));
-  require(target.samples.allFinite(), "target", "not finite", "must be finite");
+  check_target(target, camera);
 
   // 1. What the camera makes of a pair, and how far that is from the target.
   const PairModel model(target, camera);
@@ -167,6 +175,24 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   result.message = describe(result, target);
   if (!playable) result.message += "; no pair found keeps the sensor's shortest_pulse_s";
   return result;
+}
+
+Alternation alternate(const CorrelationTarget& target, const Camera& camera, int start,
+                      double total_variation_weight, const FactorizeOptions& options) {
+  options.validate();
+  check_target(target, camera);
+  require(start >= 0, "start", start, "must be >= 0");
+  require(total_variation_weight >= 0.0 && std::isfinite(total_variation_weight),
+          "total_variation_weight", total_variation_weight, "must be finite and >= 0");
+
+  const PairModel model(target, camera);
+  CirculantTvSolver solver(model.samples());
+  AlternationResult found = alternate(model, random_start(model, options.seed, start).pair,
+                                      total_variation_weight, options, solver);
+  return {
+      {Waveform::sampled(found.relaxed.modulation), Waveform::sampled(found.relaxed.demodulation)},
+      playable_pair(model, found.playable),
+      std::move(found.history)};
 }
 
 }  // namespace tofsmith
