@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* debian_python = "/usr/bin/python3";
 
-/// Runs the module that is its argument.
+/// Runs the module that is its first argument with the others.
 constexpr const char* bootstrap =
     "import importlib.util, runpy, sys\n"
     "if importlib.util.find_spec('tofsmith') is None:\n"
@@ -29,7 +29,7 @@ constexpr const char* bootstrap =
     "needs; '\n"
     "             'on Debian: apt install python3-tofsmith')\n"
     "try:\n"
-    "    runpy.run_module(sys.argv[1], run_name='__main__', alter_sys=True)\n"
+    "    runpy.run_module(sys.argv.pop(1), run_name='__main__', alter_sys=True)\n"
     "except KeyboardInterrupt:\n"
     "    sys.stderr.write('tofsmith: interrupted\\n')\n"
     "    sys.exit(130)\n";
@@ -70,12 +70,18 @@ void use_as_standard_input(const std::string& input) {
 
 }  // namespace
 
-void run_python_module(const std::string& module, const std::string& input) {
+void run_python_module(const std::string& module, const std::string& input,
+                       const std::vector<std::string>& arguments) {
   add_package_to_path();
-  use_as_standard_input(input);
+  if (!input.empty()) use_as_standard_input(input);
   std::fflush(stdout);
   const std::string python = interpreter();
-  ::execlp(python.c_str(), python.c_str(), "-c", bootstrap, module.c_str(), nullptr);
+  std::vector<std::string> words = {python, "-c", bootstrap, module};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ::execvp(python.c_str(), pointers.data());
   fail(python, "cannot be started; this command needs Python with the package tofsmith");
 }
 

@@ -3,14 +3,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tofsmith::apps {
 
-/// Replaces this process with `python3 -m MODULE`, which reads `input` from its standard input. The
-/// package tofsmith is searched for next to this program (build, installation, wheel), then where
-/// Python itself searches; if it is missing, Python reports what to install. The environment
-/// variable TOFSMITH_PYTHON selects another interpreter.
+/// Replaces this process with `python3 -m MODULE ARGUMENTS`. The package tofsmith is searched for
+/// next to this program (build, installation, wheel), then where Python itself searches; if it is
+/// missing, Python reports what to install. The environment variable TOFSMITH_PYTHON selects
+/// another interpreter.
+/// @param input  what the module reads from its standard input; empty: that of this process
 /// @throws IoError if Python cannot be started
-[[noreturn]] void run_python_module(const std::string& module, const std::string& input);
+[[noreturn]] void run_python_module(const std::string& module, const std::string& input,
+                                    const std::vector<std::string>& arguments = {});
 
 }  // namespace tofsmith::apps

@@ -18,7 +18,7 @@ function(tofsmith_add_odr)
   endif()
   set(objects)
   list(TRANSFORM TOFSMITH_BUILT_COMPONENTS PREPEND tofsmith_ OUTPUT_VARIABLE libraries)
-  foreach(target IN LISTS libraries ITEMS tofsmith_paper tofsmith_demo_command
+  foreach(target IN LISTS libraries ITEMS tofsmith_demo_command
           tofsmith_other_commands tofsmith_cli _tofsmith)
     if(TARGET ${target})
       target_compile_options(${target} PRIVATE -flto -ffat-lto-objects)

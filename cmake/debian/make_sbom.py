@@ -23,10 +23,10 @@ import re
 import subprocess
 import sys
 
-# Where the objects of a component are. What reproduces the paper is in both programs.
+# Where the objects of a component are.
 OBJECTS = {
-    "tool": ["apps/CMakeFiles/", "src/CMakeFiles/tofsmith_paper.dir/"],
-    "python": ["python/CMakeFiles/_tofsmith.dir/", "src/CMakeFiles/tofsmith_paper.dir/"],
+    "tool": ["apps/CMakeFiles/"],
+    "python": ["python/CMakeFiles/_tofsmith.dir/"],
 }
 # Headers of C: they declare what shared libraries hold, and nothing of them is compiled in.
 DECLARATIONS = re.compile(

@@ -29,7 +29,6 @@ void bind_figures(py::module_& module);
 void bind_calibrate(py::module_& module);
 void bind_delay_sweep(py::module_& module);
 void bind_reports(py::module_& module);
-void bind_reproduce(py::module_& module);
 void bind_training_set(py::module_& module);
 void bind_upload_script(py::module_& module);
 

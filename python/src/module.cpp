@@ -96,7 +96,6 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_calibrate(module);
   bind_delay_sweep(module);
   bind_reports(module);
-  bind_reproduce(module);
   bind_training_set(module);
   bind_upload_script(module);
 }

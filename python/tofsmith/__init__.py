@@ -7,7 +7,7 @@ The same words as the C++ library, the command line and the files: `Camera`, `Co
 _e_per_s, _bin. Errors of arguments are ValueError or TypeError, of files OSError; long work takes
 `progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (Plotly).
 Gradients for learning: `tofsmith.torch` (PyTorch). Waveform generators: `tofsmith.instruments`
-(PyVISA).
+(PyVISA). The paper's figures: `tofsmith.paper`.
 
 Examples
 --------
@@ -121,7 +121,6 @@ from ._reports import (
     RobustnessReport,
     OperatingMultipathReport,
 )
-from ._reproduce import CheckedStatement, ReproducedItem, paper_items, reproduce
 from ._response_calibration import (
     CalibratedResponse,
     ParametricResponse,
@@ -154,8 +153,8 @@ __version__: str = _tofsmith.version
 
 
 def __getattr__(name: str) -> _ModuleType:
-    """Imports tofsmith.plot, figures, instruments and torch when they are first used."""
-    if name in ("figures", "instruments", "plot", "torch"):
+    """Imports tofsmith.figures, instruments, paper, plot or torch on first use."""
+    if name in ("figures", "instruments", "paper", "plot", "torch"):
         return _import_module(f"{__name__}.{name}")
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 
@@ -189,7 +188,6 @@ __all__ = [
     "CalibratedStrayLight",
     "Camera",
     "Candidate",
-    "CheckedStatement",
     "CodeSet",
     "CramerRaoBound",
     "DeadPixels",
@@ -236,7 +234,6 @@ __all__ = [
     "Playback",
     "RawMarkers",
     "ReceiverBound",
-    "ReproducedItem",
     "RequirementMap",
     "Requirements",
     "ResponseRecord",
@@ -294,7 +291,6 @@ __all__ = [
     "load_scene",
     "merge_exposures",
     "multipath_error",
-    "paper_items",
     "photon_transfer",
     "points_m",
     "radial_from_z",
@@ -309,7 +305,6 @@ __all__ = [
     "read_sweep",
     "read_sweep_export",
     "remove_stray_light",
-    "reproduce",
     "require_fits",
     "robustness",
     "run_sweep",

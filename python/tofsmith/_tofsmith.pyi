@@ -443,10 +443,6 @@ def write_directory_report(directory: str, path: str, overwrite: bool, /) -> Non
 def write_evaluation_report(
     path: str, codes: Sequence[CodeSet], camera: Camera, reports: list[_Dict], overwrite: bool, /
 ) -> None: ...
-def paper_items() -> list[tuple[str, str]]: ...
-def reproduce(
-    names: Sequence[str], directory: str, options: _Options, overwrite: bool, progress: _Progress, /
-) -> list[_Dict]: ...
 def write_training_set(
     directory: str, names: Sequence[str], load: Callable[[str], Mapping[str, Any]], code: CodeSet,
     camera: Camera, options: _Options, progress: _Progress, /

@@ -83,7 +83,8 @@ for use, kind in ((lambda: tofsmith.read_raw("missing.npz"), OSError),
         raise AssertionError(f"expected {kind}")
 
 if has_matplotlib:
-    from tofsmith import plot
+    from tofsmith import paper, plot
 
     plot.depth_maps({"decoded": image, "true": scene.depth_m}).savefig("depth.pdf")
+    assert paper.reproduce("fig5", "paper", fast=True)["fig5"][0].verdict == "holds"
 print("NumPy", np.__version__, "and matplotlib" if has_matplotlib else "without matplotlib")

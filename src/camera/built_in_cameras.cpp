@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "camera/shared/prototype.hpp"
+#include "camera/prototype.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/error.hpp"
 

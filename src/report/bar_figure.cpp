@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/shared/bar_figure.hpp"
+#include "report/bar_figure.hpp"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

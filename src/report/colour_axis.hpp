@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 
 namespace tofsmith::plotly {
 

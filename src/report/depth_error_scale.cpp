@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/shared/depth_error_scale.hpp"
+#include "report/depth_error_scale.hpp"
 
 #include "report/shared/level_text.hpp"
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <limits>
 
+#include "report/bar_figure.hpp"
 #include "report/error_sections.hpp"
 #include "report/scene_section.hpp"
-#include "report/shared/bar_figure.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/report/code_figures.hpp"

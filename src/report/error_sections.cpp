@@ -8,8 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "report/shared/bar_figure.hpp"
-#include "report/shared/depth_error_scale.hpp"
+#include "report/bar_figure.hpp"
+#include "report/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"

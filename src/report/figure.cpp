@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

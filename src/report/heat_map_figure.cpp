@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "report/colour_axis.hpp"
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

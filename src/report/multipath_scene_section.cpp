@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/shared/depth_error_scale.hpp"
+#include "report/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/scene_result.hpp"

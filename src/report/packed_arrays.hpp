@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 
 namespace tofsmith::plotly {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

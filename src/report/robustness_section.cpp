@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "report/shared/bar_figure.hpp"
+#include "report/bar_figure.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/figure.hpp"
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "report/shared/plotly_json.hpp"
+#include "report/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

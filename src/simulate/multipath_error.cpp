@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "camera/shared/depth_prior.hpp"
-#include "simulate/shared/pixel_capture.hpp"
+#include "simulate/pixel_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"

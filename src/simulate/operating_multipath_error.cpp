@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "camera/shared/depth_prior.hpp"
-#include "simulate/shared/pixel_capture.hpp"
+#include "simulate/pixel_capture.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"

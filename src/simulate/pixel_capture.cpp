@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/shared/pixel_capture.hpp"
+#include "simulate/pixel_capture.hpp"
 
 #include <cmath>
 

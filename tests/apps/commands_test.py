@@ -136,24 +136,6 @@ class Commands(CommandLineTest):
         self.write("odd.csv", "a,b\n1,2\n1,0\n")
         self.refuse(["evaluate", "odd.csv"], "measured table", ".csv with columns modulation_1")
 
-    def test_reproduce_writes_pages_and_resumes(self):
-        document = self.do_json("reproduce", "fig5", "--fast", "-o", "r")
-        self.assertEqual((document["fast"], document["seed"]), (True, 1))
-        item, = document["items"]
-        self.assertEqual(item["name"], "fig5")
-        for finding in item["findings"]:
-            self.assertEqual(list(finding), ["verdict", "statement", "measured", "why"])
-            self.assertEqual(finding["verdict"], "holds")
-        for name in ("r/index.html", "r/fig5/index.html", "r/fig5/data.npz",
-                     "r/fig5/findings.json"):
-            self.assertIn(name, self.files())
-        before = os.stat(self.path("r/fig5/index.html")).st_mtime_ns
-        self.assertIn("finished before", self.do("reproduce", "fig5", "--fast", "-o", "r"))
-        self.assertEqual(os.stat(self.path("r/fig5/index.html")).st_mtime_ns, before)
-        self.refuse(["reproduce", "fig5", "-o", "r"], "r/fig5/findings.json", "coarse", "--force")
-        self.do("reproduce", "fig5", "--fast", "--force", "-o", "r")
-        self.assertNotEqual(os.stat(self.path("r/fig5/index.html")).st_mtime_ns, before)
-
     def test_scenes_are_listed(self):
         self.assertIn("table-top", self.do("scene").split())
         self.assertIn("table-top", self.do_json("scene")["scenes"])

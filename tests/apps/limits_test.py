@@ -41,8 +41,7 @@ export hamiltonian-k5 --format keysight-arb --rate 660e6 -o bench
 design --effort 0.1 -o designed
 report designed -o page.html
 demo --effort 0.1 -o demo
-require --error 20mm --vary power --no-map -o need
-reproduce table1 --fast -o paper"""
+require --error 20mm --vary power --no-map -o need"""
 QUICK = [command for command in COMMANDS if not command.is_slow]
 
 

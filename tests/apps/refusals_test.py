@@ -101,9 +101,6 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--outlier-threshold", "nan"],
                  ["found nan; must be >= 0"]),
                 (["reproduce"], ["FIGURE"]),
-                (["reproduce", "fig99"], ["fig99", "must be all or one of fig2"]),
-                (["reproduce", "fgi5"], ["did you mean fig5?"]),
-                (["reproduce", "fig5", "--mesh", "cow.obj"], ["--mesh", "fig7"]),
                 (["report"], ["DIR"])):
             self.refuse(arguments, *words, code=2)
             self.refuse([*arguments, "--json"], *words, code=2)
@@ -179,15 +176,6 @@ class Refusals(CommandLineTest):
         np.savez(self.path("raw.npz"), a=good, b=good)
         self.refuse(decode("raw.npz"), "raw.npz", "raw")
         self.refuse(decode("absent.npy"), "absent.npy", "no such file")
-
-    def test_reproduce(self):
-        self.refuse(["reproduce", "fig7", "--mesh", "none.obj", "-o", "r"], "none.obj")
-        os.mkdir(self.path("r"))
-        self.write("r/index.html", "<html>mine</html>")
-        self.refuse(["reproduce", "fig5", "-o", "r"], "r/index.html", "--force")
-        self.assertEqual(self.bytes_of("r/index.html"), b"<html>mine</html>")
-        self.write("file", "")
-        self.refuse(["reproduce", "fig5", "-o", "file"], "file")
 
     def test_scenes(self):
         np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))

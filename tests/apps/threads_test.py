@@ -75,7 +75,6 @@ COMMANDS = {
     "calibrate temperature": ("calibrate", "temperature", "raw.npy", "--temperatures", "c.txt",
                               "--code", "sinusoid-k4", *CAMERA, "-o", "warm.toml"),
     "export": ("export", "hamiltonian-k3", "--format", "csv", "--samples", "64", "-o", "export"),
-    "reproduce": ("reproduce", "fig5", "--fast", "-o", "paper"),
 }
 # Without bytes of their own to compare: times, processes and machines are in it.
 IGNORED = re.compile(r"\.sqlite")

@@ -98,7 +98,6 @@ COMMANDS = (
              "d", is_slow=True, also="d/finished/"),
     _command(f"require {_CAMERA} --error 20mm --vary power --no-map --effort 0.01 --trials 1000 "
              "-o need", "need", is_slow=True),
-    _command("reproduce table1 --fast -o paper", "paper", is_slow=True),
     _command(f"demo {_CAMERA} --effort 0.01 --trials 1000 --width 8 --height 6 -o out", "out",
              is_slow=True, also="out/"),
 )

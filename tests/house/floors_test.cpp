@@ -24,7 +24,6 @@ Folders operator+(Folders a, const Folders& b) {
 const Folders data_types = {"core", "code", "scene", "camera", "decode", "simulate", "design"};
 const Folders products =
     data_types + Folders{"gpu", "io", "report", "waveforms", "sweep", "calibrate"};
-const Folders all = products + Folders{"paper"};
 
 /// The house: which other folders each folder may include. simulate never includes design: the
 /// judge does not know the candidate's maker.
@@ -42,8 +41,7 @@ const std::map<std::string, Folders> may_include = {
     {"report", data_types + Folders{"io"}},
     {"waveforms", data_types + Folders{"io", "report"}},
     {"calibrate", data_types + Folders{"io", "report"}},
-    {"paper", products},
-    {"apps", all},
+    {"apps", products},
 };
 
 /// What is installed together, and the component it stands on, as cmake/TofsmithComponents.cmake.
@@ -155,7 +153,7 @@ std::vector<std::string> borrowed_headers(const SourceFile& file) {
     const Place there = place_of(header);
     if (file.path.starts_with("include/"))
       found.push_back(violation(file, i, "a public header includes public ones only"));
-    else if (here == "apps" && there.floor != "paper")
+    else if (here == "apps")
       found.push_back(violation(file, i, "what users build upon is public: " + header));
     else if (there.floor != here && here != "apps" && !there.is_shared)
       found.push_back(
@@ -287,7 +285,6 @@ TEST(Rooms, ExamplesAreJudgedAsTheHouseSays) {
   EXPECT_FALSE(borrows("src/decode/x.cpp", "#include \"decode/search/x.hpp\""));
   EXPECT_FALSE(borrows("src/simulate/x.cpp", "#include \"decode/search/shared/x.hpp\""));
   EXPECT_FALSE(borrows("src/simulate/x.cpp", "#include \"core/shared/x.hpp\""));
-  EXPECT_FALSE(borrows("apps/x.cpp", "#include \"paper/x.hpp\""));
   EXPECT_FALSE(borrows("apps/x.cpp", "#include \"session.hpp\""));
   EXPECT_TRUE(borrows("src/simulate/x.cpp", "#include \"decode/search/x.hpp\""));
   EXPECT_TRUE(borrows("src/simulate/x.cpp", "#include \"core/x.hpp\""));

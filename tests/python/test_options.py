@@ -57,7 +57,6 @@ keywords = [
     ("CaptureOptions", "simulate/capture.hpp", ts.write_training_set,
      {"signal_e_per_s", "ambient_e_per_s"}),
     ("SceneSource", "io/scene_toml.hpp", ts.load_scene, {"scene"}),
-    ("ReproduceOptions", "../../src/paper/context.hpp", ts.reproduce, {"mesh_name"}),
 ]
 
 

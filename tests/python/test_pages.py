@@ -59,18 +59,6 @@ def test_a_design_is_written_as_the_command_writes_it(small, cli, tmp_path):
         pickle.loads(pickle.dumps(result)).write(tmp_path / "other")
 
 
-def test_the_paper_is_reproduced_as_by_the_command(cli, tmp_path):
-    names = dict(ts.paper_items())
-    assert {"fig2", "fig11", "table1", "text"} <= set(names)
-    made = ts.reproduce("fig5", tmp_path / "python", fast=True)
-    run(cli, tmp_path, "reproduce", "fig5", "--fast", "-o", "command")
-    files = [p.relative_to(tmp_path / "python") for p in (tmp_path / "python").rglob("*.*")]
-    assert len(files) > 3
-    for file in files:
-        assert (tmp_path / "command" / file).read_bytes() == (tmp_path / "python" / file).read_bytes()
-    assert (made[0].name, made[0].title, made[0].verdict) == ("fig5", names["fig5"], "holds")
-    assert made[0].findings[0].statement and not made[0].kept
-    assert ts.reproduce(["fig5"], tmp_path / "python", fast=True)[0].kept
 
 
 refusals = [
@@ -78,9 +66,6 @@ refusals = [
     (lambda: ts.write_evaluation_report("a.html", ["square-k4"], "paper-10f0", []), ValueError, "reports: got 0; needs one for each of 1 codes"),
     (lambda: ts.write_evaluation_report("a.html", ["square-k4"], "paper-10f0", [3]), TypeError, "reports: got int 3; needs a tofsmith.DepthErrorReport"),
     (lambda: ts.write_evaluation_report("a.html", "square-k4", "paper-10f0", ts.evaluate("square-k4", ts.Camera("paper-10f0", operating={"signal_e_per_s": [1e4]}), trials=10)), ValueError, "reports: got "),
-    (lambda: ts.reproduce("fig22", "out"), ValueError, "fig2"),
-    (lambda: ts.reproduce([], "out"), ValueError, "names: got none"),
-    (lambda: ts.reproduce("fig5", "out", fast=1), TypeError, "fast: got int 1; needs True or False"),
 ]
 
 

@@ -8,8 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "paper/surface_figure.hpp"
-#include "report/shared/bar_figure.hpp"
+#include "report/bar_figure.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -160,39 +159,6 @@ TEST(Curve3d, EndsWhereItBegins) {
   const json trace = json_of(curve_3d_figure(some_text, {curve}, {}, {}))["data"][0];
   EXPECT_EQ(trace["x"], json::parse("[1.0, 4.0, 1.0]"));
   EXPECT_EQ(trace["line"]["color"], json::parse("[7.0, 8.0, 7.0]"));
-}
-
-TEST(SurfaceFigure, DrawsANetAndWhatIsBetweenItsLines) {
-  Surface filled{"filled", Eigen::MatrixXd(2, 3), {.colour = "#d55e00"}};
-  filled.values << 1, 2, 3, 4, nan, 6;
-  Surface bare = filled;
-  bare.style.dash = Dash::dash;
-  const json figure = json_of(
-      surface_figure(some_text, {filled, bare}, {10, 100, 1000}, {5, 6},
-                     {Axis{.label = "S", .unit = "e/s", .logarithmic = true}, Axis{.label = "A"},
-                      Axis{.label = "error", .unit = "mm", .logarithmic = true}}));
-  ASSERT_EQ(figure["data"].size(), 3u);
-  const json &net = figure["data"][0], &surface = figure["data"][1];
-  EXPECT_EQ(net["type"], "scatter3d");
-  EXPECT_EQ(surface["type"], "surface");
-  EXPECT_EQ(surface["z"], json::parse("[[1.0, 2.0, 3.0], [4.0, null, 6.0]]"));
-  EXPECT_EQ(surface["x"], json::parse("[10.0, 100.0, 1000.0]"));
-  EXPECT_EQ(surface["colorscale"][1][1], "#d55e00");
-  // Two rows of 3 points and three columns of 2, each ended by a gap.
-  EXPECT_EQ(net["z"], json::parse("[1.0, 2.0, 3.0, null, 4.0, null, 6.0, null, 1.0, 4.0, null, "
-                                  "2.0, null, null, 3.0, 6.0, null]"));
-  EXPECT_EQ(net["x"].size(), 17u);
-  EXPECT_EQ(net["legendgroup"], surface["legendgroup"]);
-  EXPECT_EQ(figure["data"][2]["line"]["dash"], "dash");
-  EXPECT_EQ(figure["layout"]["scene"]["zaxis"]["type"], "log");
-  EXPECT_EQ(figure["layout"]["scene"]["xaxis"]["title"]["text"], "S (e/s)");
-}
-
-TEST(SurfaceFigure, RefusesValuesThatDoNotFitTheGrid) {
-  const Surface surface{"a", Eigen::MatrixXd::Ones(2, 3), {}};
-  EXPECT_NO_THROW(surface_figure(some_text, {surface}, {1, 2, 3}, {1, 2}, {}));
-  EXPECT_THROW(surface_figure(some_text, {}, {1, 2, 3}, {1, 2}, {}), std::invalid_argument);
-  EXPECT_THROW(surface_figure(some_text, {surface}, {1, 2}, {1, 2, 3}, {}), std::invalid_argument);
 }
 
 TEST(PointCloud, KeepsExactlyTheStatedNumberOfFinitePoints) {

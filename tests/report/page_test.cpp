@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <set>
 
+#include "report/plotly_json.hpp"
 #include "report/resources.hpp"
-#include "report/shared/plotly_json.hpp"
 #include "sample_page.hpp"
 #include "tofsmith/report/figure.hpp"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/shared/random.hpp"
-#include "report/shared/bar_figure.hpp"
+#include "report/bar_figure.hpp"
 #include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/factorize/shared/alternation.hpp"
+#include "design/factorize/alternation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "design/factorize/shared/pair_model.hpp"
+#include "design/factorize/pair_model.hpp"
 
 namespace tofsmith {
 

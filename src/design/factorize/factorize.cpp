@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "core/shared/shared_progress.hpp"
-#include "design/factorize/shared/alternation.hpp"
+#include "design/factorize/alternation.hpp"
 #include "design/factorize/edge_refinement.hpp"
 #include "design/factorize/point_settling.hpp"
-#include "design/factorize/shared/start_pool.hpp"
+#include "design/factorize/start_pool.hpp"
 #include "design/shortest_run.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/factorize/shared/pair_model.hpp"
+#include "design/factorize/pair_model.hpp"
 
 #include <cmath>
 #include <limits>

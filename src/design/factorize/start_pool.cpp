@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/factorize/shared/start_pool.hpp"
+#include "design/factorize/start_pool.hpp"
 
 #include <fmt/format.h>
 

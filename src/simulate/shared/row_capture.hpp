@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/shared/shared_progress.hpp"
-#include "simulate/shared/pixel_capture.hpp"
+#include "simulate/pixel_capture.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/simulate/capture.hpp"
 

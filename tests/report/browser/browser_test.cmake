@@ -3,11 +3,9 @@
 # The sample page in a browser, wide and light, narrow and dark. Included from tests/CMakeLists.txt.
 
 add_executable(write_sample_page report/browser/write_sample_page.cpp report/sample_page.cpp)
-target_link_libraries(write_sample_page PRIVATE tofsmith_paper tofsmith_build_options fmt::fmt)
-target_include_directories(write_sample_page PRIVATE report)
+target_link_libraries(write_sample_page PRIVATE tofsmith tofsmith_build_options fmt::fmt)
+target_include_directories(write_sample_page PRIVATE report ${PROJECT_SOURCE_DIR}/src)
 target_include_directories(write_sample_page SYSTEM PRIVATE ${RANDOM123_INCLUDE_DIR})
-# The sample page has the paper's surface figure, too.
-target_link_libraries(test_report PRIVATE tofsmith_paper)
 
 set(sample_page "${CMAKE_CURRENT_BINARY_DIR}/sample_page.html")
 set(browser_test /usr/bin/python3 "${CMAKE_CURRENT_SOURCE_DIR}/report/browser/browser_test.py")

@@ -1,0 +1,153 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Depth error over signal and ambient light, for Figs. 4 and 8."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import tofsmith
+from tofsmith import Camera, CodeSet, DepthErrorReport, plot
+
+from ._study import FAILS, HOLDS, IN_PART, Study
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Mean depth error of a code at its best origin of depth; arrays are (signal, ambient)."""
+
+    rotation_bin: int
+    report: DepthErrorReport
+
+    @property
+    def name(self) -> str:
+        return self.report.code
+
+    def grid(self, values: str) -> Any:
+        """Values of the report, such as "linear_mde_m", over the light levels."""
+        return getattr(self.report, values).reshape(len(self.signal), len(self.ambient))
+
+    @property
+    def signal(self) -> Any:
+        return np.unique(self.report.signal_e_per_s)
+
+    @property
+    def ambient(self) -> Any:
+        return np.unique(self.report.ambient_e_per_s)
+
+    @property
+    def linear_m(self) -> Any:
+        return self.grid("linear_mde_m")
+
+    @property
+    def mean_m(self) -> float:
+        """Geometric mean of the linear error over all light levels."""
+        return self.report.linear.geometric_mean_m
+
+    def by_signal(self) -> Any:
+        """Geometric mean over ambient light, (signal,)."""
+        return np.exp(np.log(self.linear_m).mean(axis=1))
+
+
+#: Surfaces of one camera by the names of codes, and of several cameras.
+Panel = dict[str, Surface]
+Panels = dict[str, Panel]
+
+
+def with_light_levels(study: Study, camera: Camera) -> Camera:
+    """The paper's 5 x 5 light levels, 3 x 3 of them with --fast; judged by the linear error."""
+    levels: Any = study.pick({}, {"signal_e_per_s": [10**3.5, 1e4, 1e5], "ambient_e_per_s": [1e2, 1e4, 1e5]})
+    return camera.replace(operating=levels | {"error": "linear"})
+
+
+def measure_surface(study: Study, code: CodeSet, camera: Camera, **trials: int) -> Surface:
+    """Depth error at every light level of the camera, to a relative standard error of 2 %."""
+    counts: Any = study.pick({"trials": 8000, "max_trials": 50_000_000, "rotation_trials": 20000},
+                        {"trials": 16000, "max_trials": 16000, "rotation_trials": 4000}) | trials
+    # 1. The best origin of depth, by other random numbers than it is judged by.
+    rotation, _ = tofsmith.best_rotation(code, camera, trials=counts.pop("rotation_trials"),
+                                         seed=study.seed + 1)
+    # 2. As many trials at every light level as the standard error requires.
+    report = tofsmith.evaluate(code.rotated(rotation), camera, seed=study.seed + 2,
+                               target_standard_error=study.pick(0.02, 0.1), **counts)
+    return Surface(rotation, report)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Error of another code over its own at all light levels, and at how many it is better, tied
+    (within two standard errors) and worse."""
+
+    ratio: Any
+    better: int
+    tied: int
+    worse: int
+
+    @property
+    def mean(self) -> float:
+        return float(np.exp(np.log(self.ratio).mean()))
+
+    @property
+    def verdict(self) -> str:
+        levels = self.ratio.size
+        return HOLDS if self.better == levels else IN_PART if 2 * self.better > levels else FAILS
+
+    def counts(self) -> str:
+        return (f"better at {self.better} of {self.ratio.size} light levels, tied at {self.tied}, "
+                f"worse at {self.worse}")
+
+    def factors(self) -> str:
+        return f"{self.ratio.min():.2f} to {self.ratio.max():.2f}"
+
+
+def compare(ours: Surface, *others: Surface) -> Comparison:
+    """Compares a code with the best of others at each light level."""
+    errors, deviations = (np.stack([other.grid(values) for other in others])
+                          for values in ("linear_mde_m", "linear_se_m"))
+    best = errors.argmin(axis=0)[None]
+    theirs, theirs_se = (np.take_along_axis(of_all, best, 0)[0] for of_all in (errors, deviations))
+    gain, margin = theirs - ours.linear_m, 2 * np.hypot(theirs_se, ours.grid("linear_se_m"))
+    better, worse = int((gain > margin).sum()), int((gain < -margin).sum())
+    return Comparison(theirs / ours.linear_m, better, gain.size - better - worse, worse)
+
+
+def together(comparisons: Sequence[Comparison]) -> Comparison:
+    """Comparisons on several cameras as one."""
+    return Comparison(np.concatenate([one.ratio.ravel() for one in comparisons]),
+                      *(sum(getattr(one, count) for one in comparisons)
+                        for count in ("better", "tied", "worse")))
+
+
+def draw_values(study: Study, panels: Panels) -> None:
+    """Pictures of every camera: maps of the linear error, and cuts at ambient light of 1e4 e/s."""
+    for title, panel in panels.items():
+        reports = [surface.report for surface in panel.values()]
+        name = title.replace(" ", "").replace(",", "-").replace("=", "")
+        study.picture(f"map-{name}", plot.depth_error_map(reports),
+                      f"{title}: linear mean depth error, each code at its best origin of depth.")
+        study.picture(f"curves-{name}", plot.depth_error_curves(reports, at=1e4),
+                      f"{title}: a cut at ambient light of 1e4 e/s.")
+
+
+def surface_rows(panels: Panels) -> list[dict[str, Any]]:
+    """One row per camera, code and light level, for a table."""
+    columns = ("signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m", "circular_mde_m")
+    return [{"setting": title, "code": name, "rotation_bin": surface.rotation_bin}
+            | dict(zip(columns, map(float, values)))
+            for title, panel in panels.items() for name, surface in panel.items()
+            for values in zip(*(getattr(surface.report, column) for column in columns))]
+
+
+def mean_rows(panels: Panels, **setting: str) -> list[dict[str, Any]]:
+    """One row per camera and code: geometric means over all light levels, and named levels."""
+    rows = []
+    for title, panel in panels.items():
+        for name, surface in panel.items():
+            row: dict[str, Any] = setting | {"setting": title, "code": name}
+            for kind in ("linear", "circular"):
+                row[f"{kind}_m"] = surface.report.of(kind).geometric_mean_m
+                row[f"{kind}_se_m"] = surface.report.of(kind).geometric_mean_se_m
+            rows.append(row)
+    return rows
