@@ -14,10 +14,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 
-import matplotlib
-
 from ._study import PAGE_MARK, Finding, Study, write_index
-from ._style import style
 
 __all__ = ["Finding", "UsageError", "items", "reproduce"]
 
@@ -63,6 +60,10 @@ def reproduce(
     Raises UsageError for an unknown name, and OSError if the directory holds pages of another program
     or figures made with other options.
     """
+    import matplotlib
+
+    from ._style import style
+
     chosen = _names_of([names] if isinstance(names, str) else names)
     if mesh is not None and "fig7" not in chosen:
         raise UsageError("--mesh: only fig7 shows a mesh")

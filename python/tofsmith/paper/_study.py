@@ -9,13 +9,15 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from matplotlib.figure import Figure
 
 import tofsmith
 from tofsmith import Camera, CodeSet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 HOLDS, IN_PART, FAILS = "holds", "holds in part", "does not hold"
 Value = TypeVar("Value")
@@ -74,7 +76,7 @@ class Study:
             holds = HOLDS if each.all() else IN_PART if each.any() else FAILS
         self.findings.append(Finding(holds, statement, measured, "" if holds == HOLDS else why))
 
-    def picture(self, name: str, figure: Figure, caption: str) -> None:
+    def picture(self, name: str, figure: "Figure", caption: str) -> None:
         """Writes NAME.png and NAME.pdf."""
         figure.savefig(self.directory / f"{name}.png", dpi=200)
         figure.savefig(self.directory / f"{name}.pdf", dpi=200, metadata={"CreationDate": None})
