@@ -115,10 +115,7 @@ void run(DecodeArguments& arguments, Session& session) {
                    arguments.method.unwrap_weights(), arguments.multipath.options());
   std::optional<RecordingDevice> on_device = arguments.device.device_for(decoder);
   DecodeRequest request = request_of(arguments, camera, session);
-  if (on_device) {
-    on_device->take(request);
-    on_device->overlap(request);
-  }
+  if (on_device) on_device->take(request);
   if (reads_pipe(arguments)) {
     for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", note);
     return decode_pipe(request, decoder, session);

@@ -21,12 +21,6 @@ class RecordingDevice {
 
   /// Has it do the work of a request, while this lives and stays where it is.
   void take(DecodeRequest& request);
-  /// Has it begin with each frame before the one before is finished; after take().
-  void overlap(DecodeRequest& request) {
-    under_way_.emplace(on_device_, filter_on_device_ ? &*filter_on_device_ : nullptr,
-                       frames_ ? &*frames_ : nullptr);
-    request.overlapped_by = FramesUnderWay::of(*under_way_);
-  }
   const DeviceInfo& info() const { return on_device_.device().info(); }
 
  private:
@@ -37,7 +31,6 @@ class RecordingDevice {
   std::optional<DeviceFilter> filter_on_device_;
   std::unique_ptr<const TimeFilter> time_filter_;
   std::optional<DeviceFrames> frames_;  // where frames are added up on the device
-  std::optional<DeviceFramesUnderWay> under_way_;
 };
 
 /// What computes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels that a device of OpenCL decodes per second, from its memory and from this computer's,
 // beside copies of the same bytes in the same run; and how many of them differ from the Decoder's.
-// Frames that it filters per second beside the processor's, and frames of recordings
-// one after another and two at a time; and from which size on it is the faster.
+// Frames that it filters per second beside the processor's; and from which size on it is the
+// faster.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <chrono>
 #include <cstring>
 #include <functional>
@@ -169,53 +168,6 @@ void report_filters(const Device& device, int runs) {
   }
 }
 
-/// Frames of a recording added up in time, looking ahead or not, and filtered: one after another,
-/// and with the next brought there and the one before brought back beside kernels.
-void report_recordings(const Device& device, int runs) {
-  constexpr int height = 480, width = 640, frames = 8;
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const std::vector<float> raw = frame_of_a_box(table, height, width);
-  const RawView view = RawView::interleaved(raw.data(), height, width, 4);
-  const DeviceDecoder on_device(device, setup.decoder);
-  const Filter filter(table, FilterOptions::of(FilterStrength::light));
-  const DeviceFilter filter_on_device(device, filter);
-  std::array<Planes, 2> planes{Planes(height * width), Planes(height * width)};
-  const auto tell = [&](std::string_view what, const DeviceFilter* in_space,
-                        const std::optional<TimeFilterOptions>& in_time) {
-    std::optional<TimeFilter> time_filter;
-    std::optional<DeviceFrames> added;
-    if (in_time) added.emplace(device, table, &time_filter.emplace(table, *in_time));
-    DeviceFramesUnderWay under_way(on_device, in_space, added ? &*added : nullptr);
-    const auto seconds = [&](std::size_t at_a_time) {
-      return seconds_of(
-          [&] {
-            std::size_t begun = 0, done = 0;
-            const auto begin = [&] {
-              under_way.start(view, planes[begun++ % 2].all());
-              if (begun - done == at_a_time) under_way.finish(), ++done;
-            };
-            for (int f = 0; f < frames; ++f) {
-              if (added) added->take(view);
-              if (!added || added->has_frame()) begin();
-            }
-            while (added && added->take_end()) begin();
-            while (done < begun) under_way.finish(), ++done;
-          },
-          runs);
-    };
-    const double alone = seconds(1), in_turns = seconds(2);
-    fmt::print(
-        "recordings, {:<42} VGA, K = 4: {:8.1f} frames/s one after another, {:8.1f} two at a "
-        "time\n",
-        what, frames / alone, frames / in_turns);
-  };
-  tell("filter light:", &filter_on_device, std::nullopt);
-  tell("in time:", nullptr, TimeFilterOptions{});
-  tell("in time and filter light:", &filter_on_device, TimeFilterOptions{.before_filter = true});
-  tell("in time, looking 4 frames ahead:", nullptr, TimeFilterOptions{.look_ahead = 4});
-}
-
 /// The smallest of some sizes from which on `there` takes less time than `here`; in words.
 std::string crossover(const std::function<double(int)>& there,
                       const std::function<double(int)>& here) {
@@ -283,7 +235,6 @@ int run(int argc, char** argv) {
   for (const char* code : {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5"})
     report(device, code, pixels, rate, runs);
   report_filters(device, runs);
-  report_recordings(device, runs);
   report_crossovers(device, runs);
   return 0;
 }

@@ -88,8 +88,6 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
 inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000;
 
 struct FrameSource;  ///< of the implementation
-class DeviceRaw;
-class DeviceTile;
 
 /// A Decoder whose work a device does. Bins and statuses are those of the Decoder, everywhere: what
 /// single precision does not prove on the device, the Decoder decides here. Planes of floats are
@@ -127,7 +125,6 @@ class DeviceDecoder {
  private:
   friend class DeviceFilter;
   friend class DeviceFrames;
-  friend class DeviceFramesUnderWay;
   std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
                              const DecodedView& decoded, const Progress& progress) const;
   std::unique_ptr<Plan> plan_;
@@ -173,9 +170,6 @@ class DeviceFilter {
 
  private:
   friend class DeviceFrames;
-  friend class DeviceFramesUnderWay;
-  bool start(const FrameSource& frame, DeviceRaw& brought, DeviceTile& decoded_in,
-             const DecodedView& decoded) const;
   std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
                              const DeviceDecoder& decoder, const DecodedView& decoded,
                              FilteredFrame* filtered, const Progress& progress,
@@ -189,15 +183,15 @@ class DeviceFilter {
 /// the device rounds quotients and roots correctly, else they differ in the last ones, and where a
 /// threshold lies between, by more.
 ///
-/// Keeps what was added up, and frames that wait, whole, whatever DeviceOptions::memory_mb says.
+/// Keeps what was added up whole, whatever DeviceOptions::memory_mb says.
 /// Not for several threads at once.
 class DeviceFrames {
  public:
   /// Compiles kernels for the table.
   /// @param table        must outlive this one; says from where on raw numbers are clipped
-  /// @param time_filter  must outlive this one; null: means alone
-  /// @throws std::invalid_argument for options, and a filter of other measurements; IoError if the
-  ///         device fails
+  /// @param time_filter  without look_ahead; must outlive this one; null: means alone
+  /// @throws std::invalid_argument for options, and a filter of other measurements or that looks
+  ///         ahead; IoError if the device fails
   DeviceFrames(const Device& device, const DecodingTable& table, const TimeFilter* time_filter,
                const DeviceOptions& options = {});
   ~DeviceFrames();
@@ -212,17 +206,12 @@ class DeviceFrames {
   /// @throws std::invalid_argument if the measurements or sizes differ, or the device has no
   ///         doubles; IoError if the device fails, after which the next frame is the first
   void add(const RawView& raw);
-  /// The mean of those is the next frame, which comes out or waits as that of take().
+  /// The mean of those is the next frame.
   /// @param averaged  of how many measurements the numbers of one are the mean
   /// @throws as add(); std::invalid_argument if there are none
   void take_mean(double averaged = 1.0);
-  /// The next frame, without a mean, of a time filter. One that looks ahead has it wait for later
-  /// ones, and the frame that is there then is the one so many before, or none. @throws as add()
+  /// The next frame, without a mean, of a time filter. @throws as add()
   void take(const RawView& raw);
-  /// After the last frame: the next of those that wait, as TimeFilter::add_end().
-  /// @return whether there is one; after the last, the next frame is the first again
-  /// @throws IoError if the device fails, after which none waits
-  bool take_end();
   /// The next frame is the first again, of any size.
   void forget();
 
@@ -246,44 +235,6 @@ class DeviceFrames {
                       const Progress& progress = {}, const Image<std::uint8_t>& left_out = {});
 
  private:
-  friend class DeviceFramesUnderWay;
-  struct Plan;
-  std::unique_ptr<Plan> plan_;
-};
-
-/// Filters and decodes frames of a recording on a device, two at a time: while kernels of one run,
-/// the next is brought there, and planes of the one before are brought back. Numbers are those of
-/// DeviceFilter::decode and DeviceFrames::decode. Frames that go in bands, or that are left to the
-/// processor, or are only decoded, go one after another.
-///
-/// Takes a frame's planes and raw numbers more on the device. Not for several threads at once; what
-/// it is made of may be used beside it.
-class DeviceFramesUnderWay {
- public:
-  /// @param decoder  must outlive this one, as the others
-  /// @param filter   on the same device; null: none
-  /// @param frames   likewise, of which the frames come; null: as they are
-  /// @throws std::invalid_argument for other devices
-  DeviceFramesUnderWay(const DeviceDecoder& decoder, const DeviceFilter* filter,
-                       DeviceFrames* frames);
-  ~DeviceFramesUnderWay();
-  DeviceFramesUnderWay(DeviceFramesUnderWay&&) noexcept;
-  DeviceFramesUnderWay& operator=(DeviceFramesUnderWay&&) noexcept;
-
-  /// Begins with the frame that `frames` has, else with `raw`, which is read no more after this.
-  /// @param decoded  must stay until finish() of this frame
-  /// @throws std::invalid_argument if two are under way, and as decode(); IoError if the device
-  ///         fails, after which none is, and the next is the first
-  void start(const RawView& raw, const DecodedView& decoded);
-  /// Has the planes of the frame that was started first written.
-  /// @return how many pixels were left to the Decoder
-  /// @throws std::invalid_argument if none is under way; IoError as start()
-  std::int64_t finish();
-  /// None is under way any more, and the next one is the first; planes are left as they are. To be
-  /// called where `frames` lost one, unless those before it are to be finished.
-  void forget();
-
- private:
   struct Plan;
   std::unique_ptr<Plan> plan_;
 };
@@ -303,8 +254,9 @@ std::optional<DeviceFilter> device_filter(std::string_view device, const Filter&
                                           const DeviceDecoder* after = nullptr);
 
 /// What makes means of frames and adds them up in time on the device of the decoder that follows;
-/// none where there is nothing to do, or that device cannot: means without doubles stay on the
-/// processor. `auto` leaves small frames to the processor, as device_decoder().
+/// none where there is nothing to do, or the device cannot do it: means without doubles and time
+/// filters that look ahead stay on the CPU. `auto` leaves small frames to the processor, as
+/// device_decoder().
 /// @param table, time_filter  must outlive what comes; the filter may be null
 /// @param makes_means         of several frames each
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,

@@ -195,7 +195,6 @@ struct BoundRequest : DecodeRequest {
   std::optional<DeviceFilter> on_device;
   std::unique_ptr<const TimeFilter> its_time_filter;
   std::optional<DeviceFrames> frames;
-  std::optional<DeviceFramesUnderWay> under_way;
 };
 
 std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
@@ -261,8 +260,6 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
   const DeviceFilter* filter = request.on_device ? &*request.on_device : nullptr;
   DeviceFrames* frames = request.frames ? &*request.frames : nullptr;
   decode_on(decoder.on_device(), filter, frames, request);
-  request.under_way.emplace(decoder.on_device(), filter, frames);
-  request.overlapped_by = FramesUnderWay::of(*request.under_way);
   return bound;
 }
 

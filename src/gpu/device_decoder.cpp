@@ -99,7 +99,7 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
   if (frame.means) {
     std::vector<std::int32_t> in_frame = open;
     for (std::int32_t& pixel : in_frame) pixel += static_cast<std::int32_t>(part.first);
-    exact = frame.means->numbers_of(in_frame, frame.mean);
+    exact = frame.means->numbers_of(in_frame);
     const float* const averaged = view.averaged;
     view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
     view.averaged = averaged;

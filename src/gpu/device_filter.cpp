@@ -64,9 +64,6 @@ struct DeviceFilter::Plan {
                         const DecodedView& decoded, FilteredRows* filtered,
                         const Progress& progress, const Image<std::uint8_t>& left_out);
 
-  bool start(const FrameSource& source, DeviceRaw& brought, DeviceTile& decoded_in,
-             const DecodedView& decoded);
-
   Device device;
   const Filter& filter;
   DeviceOptions options;
@@ -152,28 +149,6 @@ std::int64_t DeviceFilter::Plan::run(const FrameSource& source, DeviceDecoder::P
   return left_open;
 }
 
-/// Begins to filter a frame, whole, and to decode it. False: it is not to go so.
-bool DeviceFilter::Plan::start(const FrameSource& source, DeviceRaw& brought,
-                               DeviceTile& decoded_in, const DecodedView& decoded) {
-  const RawView& raw = source.raw;
-  const std::int64_t pixels = raw.pixels(),
-                     beside = decoded_in.bytes_per_pixel() + DeviceRaw::bytes_per_pixel(raw);
-  const auto bytes = static_cast<double>(frame.bytes(raw.height, raw.width) + pixels * beside);
-  if (bytes > memory_share * 1e6 * options.memory_mb) return false;
-  if (pixels < options.min_pixels && !source.on_device) return false;
-  FrameSource there = source;
-  if (!source.on_device) {  // by the other queue, beside kernels of this one
-    brought.upload(decoded_in.queue(), raw, 0, pixels);
-    there.on_device = &brought;
-  }
-  frame.filter(there, 0, raw.height, nullptr, [] {});
-  frame.write(0, raw.height, decoded_in.reserve_planes(pixels, plan_of(filter).noise_ratios()));
-  decoded_in.queue().follow(frame.queue().mark());
-  decoded_in.decode(decoded);
-  decoded_in.queue().flush();
-  return true;
-}
-
 std::int64_t DeviceFilter::Plan::run_here(const RawView& raw, const DeviceDecoder::Plan* after,
                                           const DecodedView& decoded, FilteredFrame* filtered,
                                           const Progress& progress,
@@ -217,13 +192,6 @@ std::int64_t DeviceFilter::decode(const RawView& raw, const DeviceDecoder& decod
   const MarkedRaw marked(raw, plan_of(plan_->filter).decoder.table().marking);
   return decode_source({.raw = marked.view()}, device(), decoder, decoded, filtered, progress,
                        left_out);
-}
-
-bool DeviceFilter::start(const FrameSource& frame, DeviceRaw& brought, DeviceTile& decoded_in,
-                         const DecodedView& decoded) const {
-  require_filterable(plan_of(plan_->filter), frame.raw, {});
-  const std::lock_guard lock(plan_->mutex);
-  return plan_->start(frame, brought, decoded_in, decoded);
 }
 
 std::int64_t DeviceFilter::decode_source(const FrameSource& frame, const Device& its_device,

@@ -103,9 +103,7 @@ void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
   const std::int64_t first = std::int64_t{first_row} * frame.raw.width,
                      pixels = std::int64_t{rows} * frame.raw.width;
   resize(rows, frame.raw.width);
-  const bool stays = frame.on_device && !frame.queue;
-  if (!stays) frame.bring(queue(), raw_, first, pixels);
-  numbers_ = stays ? frame.on_device : &raw_;
+  frame.bring(queue(), raw_, first, pixels);
   has_left_out_ = left_out != nullptr;
   if (has_left_out_)
     queue().upload(left_out + first, static_cast<std::size_t>(pixels),
@@ -113,7 +111,7 @@ void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
 
   read(0, FilterPlanes::usable, true);
   if (plan_.has_own_shot_noise)
-    run(find_hidden_noise_, parameters_, numbers_->averaged(), &planes_, light(0));
+    run(find_hidden_noise_, parameters_, raw_.averaged(), &planes_, light(0));
   int from = 0, to = 1;
   for (int window = 0; window < windows; ++window) {
     add_similar(from, to, window);
@@ -138,13 +136,13 @@ void DeviceFrame::write(int first_row, int rows, const DeviceRaw& to) const {
   ResultParameters r = result(result_, 1 - result_);
   r.first_row = first_row;
   r.rows = rows;
-  run(write_filtered_, parameters_, r, numbers_->tile(), &words_, numbers_->numbers(),
-      numbers_->averaged(), &planes_, to.numbers(), to.averaged());
+  run(write_filtered_, parameters_, r, raw_.tile(), &words_, raw_.numbers(), raw_.averaged(),
+      &planes_, to.numbers(), to.averaged());
 }
 
 void DeviceFrame::read(int set, FilterPlanes::Scalar usable, bool with_variance) const {
-  run(read_light_, parameters_, numbers_->tile(), &words_, numbers_->numbers(),
-      numbers_->averaged(), has_left_out_ ? &left_out_ : nullptr, &planes_, light(set), int{usable},
+  run(read_light_, parameters_, raw_.tile(), &words_, raw_.numbers(), raw_.averaged(),
+      has_left_out_ ? &left_out_ : nullptr, &planes_, light(set), int{usable},
       with_variance ? 1 : 0);
 }
 
@@ -178,7 +176,7 @@ void DeviceFrame::leave_dark(int set, int other) const {
 
 void DeviceFrame::find_depth(int from) {
   const DeviceRaw& raw = tile_.reserve_planes(std::int64_t{parameters_.height} * parameters_.width);
-  run(write_raw_, parameters_, result(from, from), &words_, numbers_->averaged(), &planes_,
+  run(write_raw_, parameters_, result(from, from), &words_, raw_.averaged(), &planes_,
       raw.numbers(), raw.averaged());
   float wanted = 0.0f;  // nothing is fetched
   tile_.decode({.depth_m = &wanted, .predicted_standard_deviation_m = &wanted});

@@ -27,8 +27,7 @@ class DeviceFrame {
   std::int64_t bytes(int rows, int width) const;
 
   /// Filters rows of a frame as if there were no others. Step by step, it does not wait for the
-  /// device, but where depths lie that hang on double precision. A frame on the device that stays
-  /// goes whole, and stays until this was done.
+  /// device, except for depths that need double precision.
   /// @param left_out  (H, W) of the whole frame, or null
   void filter(const FrameSource& frame, int first_row, int rows, const std::uint8_t* left_out,
               const StepDone& step_done);
@@ -68,7 +67,6 @@ class DeviceFrame {
   bool has_left_out_ = false;
   bool has_margins_ = false;  // of the size of the parameters, all 0
   DeviceRaw raw_;
-  const DeviceRaw* numbers_ = &raw_;  // that are filtered, or those of a frame that stays
   int result_ = 0;  // the set of light that is filtered; the other has it as measured
 };
 

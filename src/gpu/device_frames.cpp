@@ -16,6 +16,8 @@ DeviceFrames::Plan::Plan(const Device& device_, const DecodingTable& table_,
   if (!time_filter) return;
   require(time_filter->measurements() == table.measurements(), "time filter's measurements",
           time_filter->measurements(), "must be those of the table");
+  require(time_filter->options().look_ahead == 0, "look_ahead", time_filter->options().look_ahead,
+          "must be 0 on devices");
   filter.emplace(device, state_of(*time_filter));
 }
 
@@ -40,11 +42,7 @@ void DeviceFrames::Plan::forget() {
 FrameSource DeviceFrames::Plan::source() {
   require(has_frame, "frame on the device", "none", "must be taken before");
   if (filter) return {.raw = size, .on_device = &filter->result(), .queue = &filter->queue()};
-  return {.raw = size,
-          .on_device = &means->result(),
-          .queue = &means->queue(),
-          .means = &*means,
-          .mean = means->mean()};
+  return {.raw = size, .on_device = &means->result(), .queue = &means->queue(), .means = &*means};
 }
 
 DeviceFrames::DeviceFrames(const Device& device, const DecodingTable& table,
@@ -81,7 +79,8 @@ void DeviceFrames::take_mean(double averaged) {
     }
     const DeviceQueue &of_means = plan.means->queue(), &of_filter = plan.filter->queue();
     of_filter.follow(of_means.mark());
-    plan.has_frame = plan.filter->add(plan.means->result(), plan.size.height, plan.size.width);
+    plan.filter->add(plan.means->result(), plan.size.height, plan.size.width);
+    plan.has_frame = true;
     of_means.follow(of_filter.mark());
   });
 }
@@ -92,14 +91,8 @@ void DeviceFrames::take(const RawView& raw) {
           "is needed to take frames that are no means");
   plan.begin_frame(raw, plan.filter->is_empty());
   const MarkedRaw marked(raw, plan.table.marking);
-  plan.on_device([&] { plan.has_frame = plan.filter->add(marked.view()); });
-}
-
-bool DeviceFrames::take_end() {
-  Plan& plan = *plan_;
-  plan.has_frame = false;
-  if (plan.filter) plan.on_device([&] { plan.has_frame = plan.filter->add_end(); });
-  return plan.has_frame;
+  plan.on_device([&] { plan.filter->add(marked.view()); });
+  plan.has_frame = true;
 }
 
 void DeviceFrames::forget() { plan_->forget(); }
@@ -149,7 +142,8 @@ std::int64_t DeviceFrames::decode(const DeviceFilter& filter, const DeviceDecode
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
                                           const TimeFilter* time_filter, bool makes_means,
                                           const DeviceDecoder& after) {
-  const bool cannot = makes_means && !after.device().info().has_doubles;
+  const bool cannot = (makes_means && !after.device().info().has_doubles) ||
+                      (time_filter && time_filter->options().look_ahead > 0);
   if ((!time_filter && !makes_means) || cannot) return std::nullopt;
   DeviceOptions options;
   if (device == "auto") options.min_pixels = auto_min_pixels_to_decode;

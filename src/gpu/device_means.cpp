@@ -20,8 +20,7 @@ DeviceMeans::DeviceMeans(const Device& device, const SaturationLevels& levels)
 }
 
 void DeviceMeans::add(const RawView& raw) {
-  if (frames_ == 0 && std::exchange(keeps_sums_, false)) mean_ = 1 - mean_;
-  Sums& sums = sums_[static_cast<std::size_t>(mean_)];
+  Sums& sums = sums_;
   sums.pixels = static_cast<std::int32_t>(raw.pixels());
   measurements_ = raw.measurements;
   frame_.upload_exactly(queue_, raw);
@@ -32,7 +31,7 @@ void DeviceMeans::add(const RawView& raw) {
 }
 
 void DeviceMeans::finish(double averaged) {
-  Sums& sums = sums_[static_cast<std::size_t>(mean_)];
+  Sums& sums = sums_;
   sums.frames = std::exchange(frames_, 0);
   result_.reserve_planes(queue_, sums.pixels, measurements_, raw_rounded);
   queue_.run(write_means_, sums.pixels, sums.pixels, measurements_, sums.frames, levels_.lowest,
@@ -40,8 +39,8 @@ void DeviceMeans::finish(double averaged) {
              result_.numbers(), result_.averaged());
 }
 
-std::vector<double> DeviceMeans::numbers_of(const std::vector<std::int32_t>& pixels, int mean) {
-  const Sums& sums = sums_[static_cast<std::size_t>(mean)];
+std::vector<double> DeviceMeans::numbers_of(const std::vector<std::int32_t>& pixels) {
+  const Sums& sums = sums_;
   std::vector<double> numbers(pixels.size() * static_cast<std::size_t>(measurements_));
   const std::size_t bytes = numbers.size() * sizeof(double),
                     bytes_of_wanted = pixels.size() * sizeof(std::int32_t);
@@ -56,7 +55,7 @@ std::vector<double> DeviceMeans::numbers_of(const std::vector<std::int32_t>& pix
 }
 
 std::vector<double> DeviceMeans::numbers() const {
-  const Sums& sums = sums_[static_cast<std::size_t>(mean_)];
+  const Sums& sums = sums_;
   std::vector<double> numbers(static_cast<std::size_t>(sums.pixels) *
                               static_cast<std::size_t>(measurements_));
   queue_.download(sums.memory, numbers.size() * sizeof(double), numbers.data());

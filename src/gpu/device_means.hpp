@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <string_view>
 #include <vector>
 
@@ -31,12 +30,8 @@ class DeviceMeans {
 
   /// The mean, rounded to floats.
   const DeviceRaw& result() const { return result_; }
-  /// Which it is, for numbers_of().
-  int mean() const { return mean_; }
-  /// The next mean leaves the sums of this one alone; the one after it does not.
-  void keep_sums() { keeps_sums_ = true; }
-  /// A mean at some pixels, K each, not rounded. @param pixels  of the frame
-  std::vector<double> numbers_of(const std::vector<std::int32_t>& pixels, int mean);
+  /// The mean at some pixels, K each, not rounded. @param pixels  of the frame
+  std::vector<double> numbers_of(const std::vector<std::int32_t>& pixels);
   /// The same of all, one measurement after another.
   std::vector<double> numbers() const;
   const DeviceQueue& queue() const { return queue_; }
@@ -51,9 +46,7 @@ class DeviceMeans {
     DeviceMemory memory;
   };
   std::int32_t measurements_ = 0, frames_ = 0;
-  int mean_ = 0;
-  bool keeps_sums_ = false;
-  std::array<Sums, 2> sums_;  // the second once some were kept
+  Sums sums_;
   DeviceRaw frame_, result_;
   DeviceMemory wanted_, gathered_;
 };

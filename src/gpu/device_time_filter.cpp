@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "gpu/table_words.hpp"
 
 namespace tofsmith {
@@ -59,16 +57,10 @@ DeviceTimeFilter::DeviceTimeFilter(const Device& device, const TimeFilter::State
   find_shares_ = kernel("find_shares");
   weigh_by_shares_ = kernel("weigh_by_shares");
   add_frame_ = kernel("add_frame");
-  if (looks_ahead()) join_sides_ = kernel("join_sides");
   std::vector<std::uint32_t> words;
   parameters_ = parameters_of(state, words);
   words_ = queue_.allocate(words.size() * sizeof(std::uint32_t));
   queue_.upload(words.data(), words_.bytes, words_);
-}
-
-void DeviceTimeFilter::forget() {
-  past_.is_empty = true;
-  waiting_ = 0;
 }
 
 void DeviceTimeFilter::begin_frame(int height, int width) {
@@ -83,100 +75,40 @@ void DeviceTimeFilter::resize(int height, int width) {
   p.cell_columns = (width + cell_side - 1) / cell_side;
   const std::int64_t pixels = std::int64_t{height} * width, floats = sizeof(float),
                      cells = std::int64_t{p.cell_rows} * p.cell_columns;
-  resize(past_);
-  if (looks_ahead()) resize(future_);
+  means_.reserve_planes(queue_, pixels, state_.measurements);
+  reserve(queue_, weights_, floats * pixels);
   reserve(queue_, planes_, floats * pixels * (time_difference + state_.measurements));
   reserve(queue_, cells_, floats * cells * (state_.measurements + 1));
   reserve(queue_, cell_changes_, floats * cells);
 }
 
-void DeviceTimeFilter::resize(Side& side) {
-  const std::int64_t pixels = std::int64_t{parameters_.height} * parameters_.width;
-  side.means.reserve_planes(queue_, pixels, state_.measurements);
-  reserve(queue_, side.weights, pixels * std::int64_t{sizeof(float)});
-}
-
-bool DeviceTimeFilter::add(const RawView& raw) {
+void DeviceTimeFilter::add(const RawView& raw) {
   begin_frame(raw.height, raw.width);
-  DeviceRaw& now = next_slot();
-  now.upload(queue_, raw, 0, raw.pixels());
-  if (looks_ahead()) return frame_waits();
-  add(now, past_);
-  return true;
+  frame_.upload(queue_, raw, 0, raw.pixels());
+  add_frame(frame_);
 }
 
-bool DeviceTimeFilter::add(const DeviceRaw& raw, int height, int width) {
+void DeviceTimeFilter::add(const DeviceRaw& raw, int height, int width) {
   begin_frame(height, width);
-  if (looks_ahead()) {
-    next_slot().copy(queue_, raw, state_.measurements, 0, raw.pixels());
-    return frame_waits();
-  }
-  add(raw, past_);
-  return true;
+  add_frame(raw);
 }
 
-bool DeviceTimeFilter::add_end() {
-  if (waiting_ == 0) {
-    forget();
-    return false;
-  }
-  finish_oldest();
-  return true;
-}
-
-DeviceRaw& DeviceTimeFilter::waiting(int index) {
-  return slots_[(first_ + static_cast<std::size_t>(index)) % slots_.size()];
-}
-
-DeviceRaw& DeviceTimeFilter::next_slot() {
-  if (waiting_ == static_cast<int>(slots_.size())) {
-    std::rotate(slots_.begin(), slots_.begin() + static_cast<std::ptrdiff_t>(first_), slots_.end());
-    first_ = 0;
-    slots_.emplace_back();
-  }
-  return waiting(waiting_);
-}
-
-bool DeviceTimeFilter::frame_waits() {
-  if (++waiting_ <= state_.options.look_ahead) return false;
-  finish_oldest();
-  return true;
-}
-
-/// As TimeFilter::State::finish_oldest().
-void DeviceTimeFilter::finish_oldest() {
-  future_.is_empty = true;
-  for (int i = waiting_ - 1; i > 0; --i) add(waiting(i), future_);
-  const DeviceRaw& oldest = waiting(0);
-  weigh(oldest, past_);
-  weigh(oldest, future_);
-  run(join_sides_, parameters_.height, parameters_.width, oldest.tile(), oldest.numbers(),
-      oldest.averaged(), past_.means.numbers(), past_.means.averaged(), &past_.weights,
-      future_.means.numbers(), future_.means.averaged(), &future_.weights);
-  run(add_frame_, parameters_.height, parameters_.width, oldest.tile(), oldest.numbers(),
-      oldest.averaged(), &past_.weights, past_.means.numbers(), past_.means.averaged());
-  past_.is_empty = false;
-  first_ = (first_ + 1) % slots_.size();
-  --waiting_;
-}
-
-void DeviceTimeFilter::add(const DeviceRaw& raw, Side& side) {
-  weigh(raw, side);
+void DeviceTimeFilter::add_frame(const DeviceRaw& raw) {
+  weigh(raw);
   run(add_frame_, parameters_.height, parameters_.width, raw.tile(), raw.numbers(), raw.averaged(),
-      &side.weights, side.means.numbers(), side.means.averaged());
-  side.is_empty = false;
+      &weights_, means_.numbers(), means_.averaged());
+  is_empty_ = false;
 }
 
 /// How much of what was added to each pixel counts; of nothing, nothing.
-void DeviceTimeFilter::weigh(const DeviceRaw& raw, Side& side) {
-  if (side.is_empty) return queue_.clear(side.weights);
+void DeviceTimeFilter::weigh(const DeviceRaw& raw) {
+  if (is_empty_) return queue_.clear(weights_);
   const int height = parameters_.height, width = parameters_.width,
             cell_rows = parameters_.cell_rows, cell_columns = parameters_.cell_columns;
-  const DeviceMemory *const averaged = raw.averaged(),
-                            *const averaged_before = side.means.averaged(),
-                            *const weights = &side.weights;
+  const DeviceMemory *const averaged = raw.averaged(), *const averaged_before = means_.averaged(),
+                            *const weights = &weights_;
   run(compare_frames_, height, width, raw.tile(), &words_, raw.numbers(), averaged,
-      side.means.numbers(), averaged_before, &planes_);
+      means_.numbers(), averaged_before, &planes_);
   run(weigh_side_, height, width, averaged, averaged_before, &planes_, weights);
   if (!state_.options.before_filter) return;
   run(add_to_cells_, cell_rows, cell_columns, &planes_, &cells_);

@@ -10,9 +10,8 @@ namespace tofsmith {
 struct FrameSource {
   RawView raw;                           ///< of a frame on the device its size alone
   const DeviceRaw* on_device = nullptr;  ///< all of it
-  const DeviceQueue* queue = nullptr;    ///< whose work that is and changes it; null: it stays
+  const DeviceQueue* queue = nullptr;    ///< whose work writes it
   DeviceMeans* means = nullptr;          ///< of which that has the numbers, rounded
-  int mean = 0;                          ///< which of them, as DeviceMeans::mean()
 
   std::int64_t pixels() const { return raw.pixels(); }
   /// Has pixels first .. first + count - 1 in `to`. What is on the device is copied there once its
@@ -20,9 +19,9 @@ struct FrameSource {
   void bring(const DeviceQueue& to_queue, DeviceRaw& to, std::int64_t first,
              std::int64_t count) const {
     if (!on_device) return to.upload(to_queue, raw, first, count);
-    if (queue) to_queue.follow(queue->mark());
+    to_queue.follow(queue->mark());
     to.copy(to_queue, *on_device, raw.measurements, first, count);
-    if (queue) queue->follow(to_queue.mark());
+    queue->follow(to_queue.mark());
   }
 };
 

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A TimeFilter's steps, as time_kernel.cpp, time_filter_state.cpp and
-// time_filter_both_ways.cpp do them. Compiled behind
-// numbers.cl and time_parameters.h, with RANK, PATCH_REACH, CELL_SIDE and CELL_REACH. A work item
+// A TimeFilter's steps without look_ahead, as time_kernel.cpp and time_filter_state.cpp do them.
+// Compiled behind numbers.cl and time_parameters.h, with RANK, PATCH_REACH, CELL_SIDE and CELL_REACH. A work item
 // each has a pixel, or a cell. No product is added in one step, as none is on the processor.
 
 // As std::max and std::min, also of what is no number.
@@ -246,32 +245,4 @@ kernel void add_frame(const struct TimeParameters p, const struct TileParameters
   }
   const float both = (w + n) * (w + n) / (w * w / averaged_before[pixel] + n);
   averaged_before[pixel] = w > 0.0f ? both : n;
-}
-
-// ---- Frames that look ahead.
-
-/// A frame with what stays of both sides of it, in place of those after it. Neither side is tested
-/// against the other: what changes from one to the other cancels where both weigh the same.
-kernel void join_sides(const struct TimeParameters p, const struct TileParameters tile,
-                       global const uchar* raw_numbers, Floats averaged, Floats past_means,
-                       Floats past_averaged, Floats past_weights, global float* means,
-                       global float* future_averaged, Floats future_weights) {
-  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
-  if (x >= p.width || y >= p.height) return;
-  const int pixel = y * p.width + x;
-  const float w_past = past_weights[pixel], w_future = future_weights[pixel];
-  const float n = averaged_of(averaged, pixel);
-  for (int k = 0; k < MEASUREMENTS; ++k) {
-    const float now = raw_number(&tile, raw_numbers, pixel, k);
-    const float before = mean_of(&p, past_means, pixel, k), after = mean_of(&p, means, pixel, k);
-    // Sides of no weight may hold what is no number.
-    const float d_past = w_past > 0.0f ? w_past * (before - now) : 0.0f;
-    const float d_future = w_future > 0.0f ? w_future * (after - now) : 0.0f;
-    const float both = now + (d_past + d_future) / (w_past + w_future + n);
-    time_plane(&p, means, k)[pixel] = w_past + w_future > 0.0f ? both : now;
-  }
-  const float of_past = w_past > 0.0f ? w_past * w_past / past_averaged[pixel] : 0.0f;
-  const float of_future = w_future > 0.0f ? w_future * w_future / future_averaged[pixel] : 0.0f;
-  const float squares = of_past + of_future, all = w_past + w_future + n;
-  future_averaged[pixel] = w_past + w_future > 0.0f ? all * all / (squares + n) : n;
 }

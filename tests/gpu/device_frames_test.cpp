@@ -85,8 +85,6 @@ class DeviceFramesOf : public OnDevice {
       there.take(frame);
       expect_frame(here.add(frame));
     }
-    while (there.take_end()) expect_frame(here.add_end());
-    EXPECT_FALSE(here.add_end());
     EXPECT_EQ(came, frames.size());
   }
 };
@@ -126,11 +124,8 @@ TEST_F(DeviceFramesOf, AreAddedUpAsTheTimeFilterDoes) {
     for (const bool before_filter : {false, true}) {
       SCOPED_TRACE(testing::Message() << code << (before_filter ? " before a filter" : ""));
       for (const int max_frames : {1, 4, 64})
-        for (const int look_ahead : {0, 3})
-          expect_what_the_time_filter_gives(
-              table,
-              {.max_frames = max_frames, .before_filter = before_filter, .look_ahead = look_ahead},
-              views_of(frames));
+        expect_what_the_time_filter_gives(
+            table, {.max_frames = max_frames, .before_filter = before_filter}, views_of(frames));
     }
   }
 }
@@ -139,10 +134,8 @@ TEST_F(DeviceFramesOf, AreAddedUpAsByEveryInstructionSet) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<RawFrames> frames = frames_of_motion(setup.decoder.table(), 30, 41, 4);
   for_each_target([&] {
-    for (const int look_ahead : {0, 2})
-      expect_what_the_time_filter_gives(setup.decoder.table(),
-                                        {.before_filter = true, .look_ahead = look_ahead},
-                                        views_of(frames));
+    expect_what_the_time_filter_gives(setup.decoder.table(), {.before_filter = true},
+                                      views_of(frames));
   });
 }
 
@@ -167,37 +160,8 @@ TEST_F(DeviceFramesOf, MayBeMeansOfAnyTypeAndLayout) {
     views.push_back(RawView::planar(doubles[f].data(), 20, 31, 4));
     views.back().averaged = averaged.data();
   }
-  for (const int look_ahead : {0, 1, 2, 5, 6, 1000})
-    for (const bool before_filter : {false, true})
-      expect_what_the_time_filter_gives(
-          table, {.before_filter = before_filter, .look_ahead = look_ahead}, views);
-}
-
-TEST_F(DeviceFramesOf, ComeOutBackwardsOfARecordingPlayedBackwards) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  if (!device().info().divides_as_processor) GTEST_SKIP() << "it rounds otherwise";
-  const std::vector<RawFrames> frames = frames_of_motion(setup.decoder.table(), 25, 33, 5);
-  const TimeFilter filter(setup.decoder.table(), {.before_filter = true, .look_ahead = 5});
-  DeviceFrames there(device(), setup.decoder.table(), &filter);
-  const auto all_of = [&](const std::vector<RawView>& views) {
-    std::vector<std::vector<float>> came;
-    for (const RawView& view : views) there.take(view);
-    EXPECT_FALSE(there.has_frame());
-    while (there.take_end()) {
-      came.emplace_back(25 * 33 * 4);
-      copy_pixels(there.numbers(), 0, 25 * 33, came.back().data());
-      for (float& value : came.back())
-        if (std::isnan(value)) value = -1.0f;
-    }
-    return came;
-  };
-  std::vector<RawView> views = views_of(frames);
-  const auto forwards = all_of(views);
-  std::reverse(views.begin(), views.end());
-  auto backwards = all_of(views);
-  std::reverse(backwards.begin(), backwards.end());
-  EXPECT_EQ(forwards.size(), 5u);
-  EXPECT_EQ(forwards, backwards);
+  for (const bool before_filter : {false, true})
+    expect_what_the_time_filter_gives(table, {.before_filter = before_filter}, views);
 }
 
 TEST_F(DeviceFramesOf, ThatAreAddedUpStayForTheFilterAndTheDecoder) {
@@ -208,25 +172,19 @@ TEST_F(DeviceFramesOf, ThatAreAddedUpStayForTheFilterAndTheDecoder) {
   const Filter filter(table);
   Image<std::uint8_t> left_out(130, 40);
   for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 17 == 0;
-  for (const auto& [memory_mb, look_ahead] :  // in bands, and whole
-       std::vector<std::pair<double, int>>{{0.001, 0}, {512.0, 0}, {0.001, 1}, {512.0, 1}}) {
-    const TimeFilterOptions options{.before_filter = true, .look_ahead = look_ahead};
+  for (const double memory_mb : {0.001, 512.0}) {  // in bands, and whole
+    const TimeFilterOptions options{.before_filter = true};
     const TimeFilter time_filter(table, options);
     TimeFilter here(table, options);
     DeviceFrames there(device(), table, &time_filter);
     const DeviceDecoder decoder(device(), setup.decoder, {.memory_mb = memory_mb});
     const DeviceFilter on_device(device(), filter, {.memory_mb = memory_mb});
-    for (std::size_t f = 0; f < frames.size() + static_cast<std::size_t>(look_ahead); ++f) {
+    for (const RawFrames& frame : frames) {
       FilteredFrame filtered, expected;
       Outputs outputs(130 * 40), expected_outputs = outputs;
-      const bool is_there = f < frames.size();
-      if (is_there)
-        there.take(view_of_frame(frames[f], 0));
-      else
-        EXPECT_TRUE(there.take_end());
-      const std::optional<RawView> added =
-          is_there ? here.add(view_of_frame(frames[f], 0)) : here.add_end();
-      if (!added) continue;
+      there.take(view_of_frame(frame, 0));
+      const std::optional<RawView> added = here.add(view_of_frame(frame, 0));
+      ASSERT_TRUE(added);
       there.decode(on_device, decoder, outputs.view(), &filtered, {}, left_out);
       filter.apply(*added, expected, {}, left_out);
       EXPECT_EQ(filtered.averaged().pixels, expected.averaged().pixels);
@@ -304,27 +262,20 @@ TEST_F(DeviceFramesOf, AreMeansThatAreAddedUp) {
   if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
-  for (const int look_ahead : {0, 1, 2}) {
-    const TimeFilter filter(table, {.look_ahead = look_ahead});
-    TimeFilter here(table, filter.options());
-    DeviceFrames there(device(), table, &filter);
-    for (int f = 0; f < 4; ++f) {
-      const RawFrames a = frame_of_motion(table, 20, 30, f), b = frame_of_motion(table, 20, 30, f);
-      std::vector<double> means(a.values.begin(), a.values.end());
-      for (std::size_t i = 0; i < means.size(); ++i)
-        means[i] = (means[i] + double{b.values[i]}) / 2;
-      const std::vector<float> averaged(20 * 30, 2.0f);
-      RawView mean = RawView::interleaved(means.data(), 20, 30, 4);
-      mean.averaged = averaged.data();
-      there.add(view_of_frame(a, 0));
-      there.add(view_of_frame(b, 0));
-      there.take_mean();
-      const std::optional<RawView> expected = here.add(mean);
-      ASSERT_EQ(there.has_frame(), expected.has_value());
-      if (expected) expect_same_numbers(there.numbers(), *expected, true);
-    }
-    while (there.take_end()) expect_same_numbers(there.numbers(), *here.add_end(), true);
-    EXPECT_FALSE(here.add_end());
+  const TimeFilter filter(table);
+  TimeFilter here(table, filter.options());
+  DeviceFrames there(device(), table, &filter);
+  for (int f = 0; f < 4; ++f) {
+    const RawFrames a = frame_of_motion(table, 20, 30, f), b = frame_of_motion(table, 20, 30, f);
+    std::vector<double> means(a.values.begin(), a.values.end());
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] = (means[i] + double{b.values[i]}) / 2;
+    const std::vector<float> averaged(20 * 30, 2.0f);
+    RawView mean = RawView::interleaved(means.data(), 20, 30, 4);
+    mean.averaged = averaged.data();
+    there.add(view_of_frame(a, 0));
+    there.add(view_of_frame(b, 0));
+    there.take_mean();
+    expect_same_numbers(there.numbers(), *here.add(mean), true);
   }
 }
 
@@ -334,7 +285,7 @@ TEST_F(DeviceFramesOf, GoToTheDecodersDeviceWhereItCanAddThemUp) {
   const TimeFilter filter(table), looks_ahead(table, {.look_ahead = 1});
   const DeviceDecoder after(device(), setup.decoder);
   EXPECT_FALSE(device_frames("0", table, nullptr, false, after));
-  EXPECT_TRUE(device_frames("0", table, &looks_ahead, false, after));
+  EXPECT_FALSE(device_frames("0", table, &looks_ahead, false, after));
   EXPECT_TRUE(device_frames("0", table, &filter, false, after)->takes(1));
   EXPECT_FALSE(device_frames("auto", table, &filter, false, after)->takes(1));
   EXPECT_EQ(device_frames("0", table, nullptr, true, after).has_value(),
@@ -345,9 +296,12 @@ TEST_F(DeviceFramesOf, AreRefusedWhereTheyDoNotFit) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const DecodeSetup other("hamiltonian-k3", camera_with("paper-10f0"));
-  const TimeFilter of_other(other.decoder.table()), filter(table);
+  const TimeFilter of_other(other.decoder.table()), filter(table),
+      looks_ahead(table, {.look_ahead = 1});
   EXPECT_THAT([&] { DeviceFrames(device(), table, &of_other); },
               ThrowsMessage<InvalidArgument>(HasSubstr("must be those of the table")));
+  EXPECT_THAT([&] { DeviceFrames(device(), table, &looks_ahead); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("look_ahead = 1; must be 0 on devices")));
   EXPECT_THROW(DeviceFrames(device(), table, &filter, {.min_pixels = -1}), InvalidArgument);
   DeviceFrames there(device(), table, &filter, {.min_pixels = 100});
   EXPECT_TRUE(there.takes(100));

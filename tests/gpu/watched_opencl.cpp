@@ -22,7 +22,6 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
                               const size_t* offset, const size_t* global, const size_t* local,
                               cl_uint waits, const cl_event* list, cl_event* event) {
   if (const cl_int error = tofsmith::failure.next()) return error;
-  tofsmith::device_calls.push_back({tofsmith::DeviceCall::kernel, queue, 0});
   return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list,
                                       event);
 }
@@ -31,7 +30,6 @@ cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks
                            size_t bytes, void* to, cl_uint waits, const cl_event* list,
                            cl_event* event) {
   if (const cl_int error = tofsmith::failure.next()) return error;
-  tofsmith::device_calls.push_back({tofsmith::DeviceCall::read, queue, bytes});
   return REAL(clEnqueueReadBuffer)(queue, memory, blocks, offset, bytes, to, waits, list, event);
 }
 
@@ -39,7 +37,6 @@ cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool block
                             size_t bytes, const void* from, cl_uint waits, const cl_event* list,
                             cl_event* event) {
   if (const cl_int error = tofsmith::failure.next()) return error;
-  tofsmith::device_calls.push_back({tofsmith::DeviceCall::write, queue, bytes});
   return REAL(clEnqueueWriteBuffer)(queue, memory, blocks, offset, bytes, from, waits, list, event);
 }
 
@@ -84,7 +81,6 @@ cl_int clEnqueueBarrierWithWaitList(cl_command_queue queue, cl_uint waits, const
 
 cl_int clFinish(cl_command_queue queue) {
   if (const cl_int error = tofsmith::failure.next()) return error;
-  tofsmith::device_calls.push_back({tofsmith::DeviceCall::wait, queue, 0});
   return REAL(clFinish)(queue);
 }
 

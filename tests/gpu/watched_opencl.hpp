@@ -6,7 +6,6 @@
 #include <CL/cl.h>
 
 #include <limits>
-#include <vector>
 
 namespace tofsmith {
 
@@ -25,14 +24,5 @@ struct Failure {
   }
 };
 inline Failure failure;
-
-/// What was asked of a device.
-struct DeviceCall {
-  enum Kind { kernel, read, write, wait } kind;
-  cl_command_queue queue;
-  std::size_t bytes;
-};
-/// All of it since a test cleared it.
-inline std::vector<DeviceCall> device_calls;
 
 }  // namespace tofsmith

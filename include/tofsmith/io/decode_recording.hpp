@@ -75,9 +75,7 @@ struct FramesElsewhere {
   std::function<void(const RawView& raw)> add;     ///< to those of which the next mean is
   std::function<void(double averaged)> take_mean;  ///< of those; of so many measurements one is
   std::function<void(const RawView& raw)> take;    ///< one that is no mean
-  std::function<bool()> has_frame;   ///< whether one came of it: others wait for later ones
-  std::function<bool()> take_end;    ///< after the last: whether there is another one that waited
-  std::function<RawView()> numbers;  ///< of what came of it, where they are asked for
+  std::function<RawView()> numbers;                ///< of what came of it, where they are asked for
 
   explicit operator bool() const { return static_cast<bool>(takes); }
   /// @param frames  a DeviceFrames; must outlive what comes
@@ -87,28 +85,7 @@ struct FramesElsewhere {
             .add = [&frames](const RawView& raw) { frames.add(raw); },
             .take_mean = [&frames](double averaged) { frames.take_mean(averaged); },
             .take = [&frames](const RawView& raw) { frames.take(raw); },
-            .has_frame = [&frames] { return frames.has_frame(); },
-            .take_end = [&frames] { return frames.take_end(); },
             .numbers = [&frames] { return frames.numbers(); }};
-  }
-};
-
-/// What filters and decodes frames in place of DecodeRequest::decode_by and filter_by, as they do,
-/// and begins with one before the one before it is finished: a DeviceFramesUnderWay. Empty: nothing
-/// does.
-struct FramesUnderWay {
-  std::function<void(const RawView& raw, const DecodedView& decoded)> start;
-  std::function<void()> finish;  ///< the frame that was started first
-  std::function<void()> forget;  ///< those that are under way
-
-  explicit operator bool() const { return static_cast<bool>(start); }
-  /// @param frames  a DeviceFramesUnderWay; must outlive what comes
-  template <typename Frames>
-  static FramesUnderWay of(Frames& frames) {
-    return {.start = [&frames](const RawView& raw,
-                               const DecodedView& decoded) { frames.start(raw, decoded); },
-            .finish = [&frames] { frames.finish(); },
-            .forget = [&frames] { frames.forget(); }};
   }
 };
 
@@ -172,10 +149,6 @@ struct DecodeRequest {
       filter_by;
   /// Makes means of frames and filters them in time, where decode_by and filter_by are too.
   FramesElsewhere frames_by;
-  /// Does so with two frames at a time where they are added up there or filtered, whole, nobody
-  /// asks for numbers that were filtered, and planes of two fit into memory_mb. Streams, of which
-  /// each frame is written before the next is read, go without.
-  FramesUnderWay overlapped_by;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };

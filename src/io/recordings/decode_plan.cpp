@@ -157,7 +157,6 @@ MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& dec
     : decoder_(decoder),
       decode_by_(request.decode_by),
       filter_by_(request.filter ? request.filter_by : nullptr),
-      overlapped_by_(request.overlapped_by),
       table_(table_of(decoder)),
       maps_(load_maps(request, height, width)),
       mixed_(request.mixed) {
@@ -184,12 +183,6 @@ void MappedDecoder::filter_and_decode(const RawView& raw, const Band& band,
                                       const UnfilteredPixels& unfiltered) const {
   filter_by_(raw, decoded, filtered, progress, unfiltered.mixed);
   finish(filtered ? filtered->view() : raw, band, target, decoded, unfiltered);
-}
-
-void MappedDecoder::finish_first(const RawView& size, const Band& band, const DecodeTarget& target,
-                                 const DecodedView& decoded) const {
-  overlapped_by_.finish();
-  finish(size, band, target, decoded, {});
 }
 
 void MappedDecoder::finish(const RawView& raw, const Band& band, const DecodeTarget& target,
@@ -234,18 +227,6 @@ bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band
       },
       parts[1]);
   return true;
-}
-
-void start_decoding(const RawView& raw, const MappedDecoder& decoder, DecodedPlanes& planes) {
-  decoder.overlapped().start(raw, planes.view());
-  planes.keep_averaged(raw, 0);
-}
-
-void finish_first(const MappedDecoder& decoder, const Band& band, const DecodeTarget& target,
-                  DecodedPlanes& planes) {
-  const RawView size = RawView::interleaved(static_cast<const float*>(nullptr), band.rows,
-                                            target.view.width, decoder.table().measurements());
-  decoder.finish_first(size, band, target, planes.view());
 }
 
 }  // namespace tofsmith

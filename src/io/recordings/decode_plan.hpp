@@ -45,12 +45,6 @@ class MappedDecoder {
   void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
               const DecodedView& decoded, const Progress& progress,
               const UnfilteredPixels& unfiltered = {}) const;
-  /// What has two frames under way, if the request says so.
-  const FramesUnderWay& overlapped() const { return overlapped_by_; }
-  /// Finishes the frame that it began with first.
-  /// @param size  of its raw numbers, no more
-  void finish_first(const RawView& size, const Band& band, const DecodeTarget& target,
-                    const DecodedView& decoded) const;
   /// Whether it is the request's `filter_by` that filters.
   bool filters() const { return static_cast<bool>(filter_by_); }
   /// Filters and decodes a frame by that.
@@ -67,7 +61,6 @@ class MappedDecoder {
   const AnyDecoder& decoder_;
   decltype(DecodeRequest::decode_by) decode_by_;
   decltype(DecodeRequest::filter_by) filter_by_;  // empty without a filter
-  FramesUnderWay overlapped_by_;
   const DecodingTable& table_;
   PixelMaps maps_;
   std::optional<MixedPixels> mixed_;  // in bands that are whole frames
@@ -77,12 +70,6 @@ class MappedDecoder {
 /// Filtered frames of which mixed pixels are looked for are filtered once more without those.
 bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band& band,
                  const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress);
-
-/// The same in two steps, of bands that are frames, by what has two of them under way.
-/// @param raw  of PreparedFrames::next()
-void start_decoding(const RawView& raw, const MappedDecoder& decoder, DecodedPlanes& planes);
-void finish_first(const MappedDecoder& decoder, const Band& band, const DecodeTarget& target,
-                  DecodedPlanes& planes);
 
 /// What every decoder decodes with.
 const DecodingTable& table_of(const AnyDecoder& decoder);

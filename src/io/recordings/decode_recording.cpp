@@ -148,16 +148,6 @@ int rows_at_a_time(const BufferBytes& bytes, const DecodeTarget& target,
   return std::clamp(static_cast<int>(rows), 1, height);
 }
 
-/// Whether two frames may be under way: what of them is on a device, and planes of both here.
-bool may_overlap(const DecodeRequest& request, const DecodeTarget& target,
-                 const Preparation& preparation) {
-  const std::int64_t pixels = std::int64_t{target.view.height} * target.view.width;
-  const bool wants_filtered =
-      request.filter && std::ranges::count(target.planes, DecodedPlane::averaged) > 0;
-  return request.overlapped_by && target.frames > 1 && !target.find_mixed && !wants_filtered &&
-         ((request.filter && request.filter_by) || preparation.is_elsewhere(pixels));
-}
-
 /// Progress over all frames, which says how fast they come.
 class Pace {
  public:
@@ -195,71 +185,36 @@ class Pace {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// How frames of a recording go.
-struct DecodeSteps {
-  int rows = 1;           ///< of a band, at most
-  bool overlaps = false;  ///< the next frame is begun before the one before is finished
-};
-
 /// Decodes the target's frames.
-void decode_frames(const RawFramesReader& reader, const Preparation& preparation,
-                   const DecodeSteps& steps, const MappedDecoder& decoder, DecodeOutput& output,
-                   const Progress& progress, DecodedRecording& result) {
+void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
+                   const MappedDecoder& decoder, DecodeOutput& output, const Progress& progress,
+                   DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
-  std::vector<DecodedPlanes> planes;
-  planes.reserve(2);
-  while (planes.size() < (steps.overlaps ? 2U : 1U))
-    planes.emplace_back(target.needed_planes(), target.in_rows() ? steps.rows : height, width);
+  DecodedPlanes planes(target.needed_planes(), target.in_rows() ? rows : height, width);
   const std::vector<Band> bands =
-      bands_of(target.first_frame, target.first_frame + target.frames, height, steps.rows);
+      bands_of(target.first_frame, target.first_frame + target.frames, height, rows);
   ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
   PreparedFrames input([&] { return recorded.next(); }, decoder.table(), preparation,
                        reader.frames());
   const Pace pace(progress, target);
   StatusCounts statuses;
-  const auto take = [&](const Band& band, DecodedPlanes& decoded) {
-    if (target.undistortion) decoded.undistort(*target.undistortion, target.as_z);
+  for (const Band& band : bands) {
+    const Progress here = pace.of_band(band, result.pixels);
+    report(here, 0.0, "reading");
+    decode_next(input, decoder, band, target, planes, here);
+    if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)
-      statuses.add(std::span(decoded.statuses().pixels)
+      statuses.add(std::span(planes.statuses().pixels)
                        .subspan(target.first_pixel(band), static_cast<std::size_t>(pixels)));
-    output.take(band.frame, band.first_row, band.rows, decoded);
+    output.take(band.frame, band.first_row, band.rows, planes);
     result.pixels += pixels;
     result.seconds = pace.seconds();
-    if (band.first_row + band.rows < height) return;
+    if (band.first_row + band.rows < height) continue;
     result.frames.push_back(std::exchange(statuses, {}));
     if (!target.stack) result.files.push_back(target.frame_path(band.frame));
-  };
-  // All of the band before is written before a later one fails, or progress stops.
-  const auto finish = [&](std::size_t i) {
-    const Progress here = pace.of_band(bands[i], result.pixels);
-    finish_first(decoder, bands[i], target, planes[i % 2]);
-    take(bands[i], planes[i % 2]);
-    report(here, 1.0, "decoding");
-  };
-  if (steps.overlaps) decoder.overlapped().forget();
-  for (std::size_t i = 0; i < bands.size(); ++i) {
-    if (steps.overlaps) {
-      std::optional<RawView> raw;
-      try {
-        const Progress here = pace.of_band(bands[i], result.pixels);
-        report(here, 0.0, "reading");
-        raw = input.next(bands[i].frame, here);
-      } catch (...) {
-        if (i > 0) finish(i - 1);
-        throw;
-      }
-      start_decoding(raw.value(), decoder, planes[i % 2]);
-      if (i > 0) finish(i - 1);
-    } else {
-      const Progress here = pace.of_band(bands[i], result.pixels);
-      report(here, 0.0, "reading");
-      decode_next(input, decoder, bands[i], target, planes[0], here);
-      take(bands[i], planes[0]);
-    }
   }
-  if (steps.overlaps) finish(bands.size() - 1);
   output.finish();
   if (target.stack) result.files = target.paths();
   result.seconds = pace.seconds();
@@ -302,10 +257,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   const Preparation preparation = preparation_of(request);
   const double memory_bytes = 1e6 * request.memory_mb;
   const BufferBytes bytes = buffer_bytes(reader, target, preparation);
-  DecodeSteps steps{.rows = rows_at_a_time(bytes, target, preparation, memory_bytes)};
-  steps.overlaps =
-      may_overlap(request, target, preparation) && steps.rows == reader.height() &&
-      bytes.whole + bytes.row * steps.rows + bytes_of_planes(target, steps.rows) <= memory_bytes;
+  const int rows = rows_at_a_time(bytes, target, preparation, memory_bytes);
 
   result.height = reader.height();
   result.width = reader.width();
@@ -314,7 +266,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   result.frame_count = target.frames;
   result.outputs = target.planes;
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
-  decode_frames(reader, preparation, steps, mapped, output, progress, result);
+  decode_frames(reader, preparation, rows, mapped, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
   if (const auto note = inconsistent_note(result.total())) result.notes.push_back(*note);
 }

@@ -217,15 +217,11 @@ RawView PreparedFrames::frame_elsewhere(const RawView& raw) const {
 }
 
 /// What comes of the next frame or, after the last, of those that wait.
-std::optional<RawView> PreparedFrames::added_elsewhere(const std::optional<RawView>& raw) {
-  const FramesElsewhere& elsewhere = preparation_.elsewhere;
-  if (raw) {
-    frame_size_ = RawView::interleaved(static_cast<const float*>(nullptr), raw->height, raw->width,
-                                       raw->measurements);
-    if (preparation_.average == 1) elsewhere.take(*raw);  // means are there since they were made
-  }
-  const bool has_frame = raw ? elsewhere.has_frame() : elsewhere.take_end();
-  return has_frame ? std::optional(frame_elsewhere(frame_size_)) : std::nullopt;
+RawView PreparedFrames::added_elsewhere(const RawView& raw) {
+  frame_size_ = RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
+                                     raw.measurements);
+  if (preparation_.average == 1) preparation_.elsewhere.take(raw);  // means were made there
+  return frame_elsewhere(frame_size_);
 }
 
 /// Frame `frame` with what is the same in those around it.
@@ -242,8 +238,8 @@ std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progr
       ++frames_read_;
     else
       has_ended_ = true;
-    if (raw ? is_elsewhere(*raw) : is_elsewhere_.value_or(false))
-      added = added_elsewhere(raw);
+    if (is_elsewhere_.value_or(raw && is_elsewhere(*raw)))
+      added = raw ? std::optional(added_elsewhere(*raw)) : std::nullopt;
     else
       added = raw ? time_filter_->add(*raw) : time_filter_->add_end();
     if (!added && has_ended_) break;

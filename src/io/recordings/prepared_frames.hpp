@@ -116,7 +116,7 @@ class PreparedFrames {
   std::optional<RawView> read();
   std::optional<RawView> bracketed(const Progress& progress);
   std::optional<RawView> added_up(int frame, const Progress& progress);
-  std::optional<RawView> added_elsewhere(const std::optional<RawView>& raw);
+  RawView added_elsewhere(const RawView& raw);
   bool is_elsewhere(const RawView& raw);
   RawView frame_elsewhere(const RawView& raw) const;
 
