@@ -68,11 +68,11 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
 }
 
 /// Decodes all frames; if it does not come to the end of several, says how far it came.
-DecodedRecording decode_all(const DecodeRequest& request, const AnyDecoder& decoder,
+DecodedRecording decode_all(const DecodeRequest& request, const FrameBackend& backend,
                             Session& session) {
   DecodedRecording result;
   try {
-    decode_recording(request, decoder, terminal_progress("decoding"), result);
+    decode_recording(request, backend, terminal_progress("decoding"), result);
   } catch (const std::invalid_argument& error) {
     throw wrong_option(error);
   } catch (...) {
@@ -110,17 +110,15 @@ void run(DecodeArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
   const DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
-  const AnyDecoder decoder =
+  const std::unique_ptr<FrameBackend> backend = arguments.device.backend(
       make_decoder(arguments.method.method(), source.table, arguments.options,
-                   arguments.method.unwrap_weights(), arguments.multipath.options());
-  std::optional<RecordingDevice> on_device = arguments.device.device_for(decoder);
-  DecodeRequest request = request_of(arguments, camera, session);
-  if (on_device) on_device->take(request);
+                   arguments.method.unwrap_weights(), arguments.multipath.options()));
+  const DecodeRequest request = request_of(arguments, camera, session);
   if (reads_pipe(arguments)) {
     for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", note);
-    return decode_pipe(request, decoder, session);
+    return decode_pipe(request, *backend, session);
   }
-  const DecodedRecording result = decode_all(request, decoder, session);
+  const DecodedRecording result = decode_all(request, *backend, session);
   std::vector<std::string> notes = source.notes;
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
 
@@ -131,7 +129,7 @@ void run(DecodeArguments& arguments, Session& session) {
       {"range_m", source.table.range_m},
       {"range_source", source.range_source},
       {"method", name_of(arguments.method.method())},
-      {"device", on_device ? on_device->info().name : "cpu"},
+      {"device", backend->device()},
       {"average", request.average},
       {"averaged", request.averaged},
       {"hdr", request.hdr},
@@ -148,7 +146,7 @@ void run(DecodeArguments& arguments, Session& session) {
   document["notes"] = notes;
   session.print_json(document);
   std::string lines = decode_lines(request, result);
-  if (on_device) lines += "\ndevice " + on_device->info().name;
+  if (backend->device() != "cpu") lines += "\ndevice " + backend->device();
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
   if (camera_source) lines += "\ncamera " + *camera_source;

@@ -51,7 +51,7 @@ void write_output(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-void decode_pipe(const DecodeRequest& request, const AnyDecoder& decoder, Session& session) {
+void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Session& session) {
   if (session.json)
     throw UsageError("--json: standard output holds the frames of -o -; expected a file for it");
   if (isatty(STDOUT_FILENO) != 0)
@@ -69,7 +69,7 @@ void decode_pipe(const DecodeRequest& request, const AnyDecoder& decoder, Sessio
                    : "");
   };
   try {
-    decode_stream(request, decoder, read_input, write_output, terminal_progress("decoding"),
+    decode_stream(request, backend, read_input, write_output, terminal_progress("decoding"),
                   result);
   } catch (const std::invalid_argument& error) {
     throw wrong_option(error);

@@ -13,6 +13,6 @@ inline constexpr std::string_view pipe_word = "-";
 /// `decode - .. -o -`: frames from standard input to standard output, one after another; what there
 /// is to say goes to standard error.
 /// @throws UsageError as decode_all(); Interrupted, also while it waits for a frame
-void decode_pipe(const DecodeRequest& request, const AnyDecoder& decoder, Session& session);
+void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Session& session);
 
 }  // namespace tofsmith::apps

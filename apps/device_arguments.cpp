@@ -6,6 +6,8 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
 
 #include "help_pages.hpp"
 #include "session.hpp"
@@ -37,16 +39,6 @@ void list_devices(bool as_json) {
     fmt::print("{}\n", Device::none_found());
 }
 
-/// What is refused of a device is a wrong option.
-template <typename Make>
-auto made(const Make& make) {
-  try {
-    return make();
-  } catch (const std::invalid_argument& error) {
-    throw wrong_option(error);
-  }
-}
-
 }  // namespace
 
 void DeviceArguments::add_to(CLI::App& command) {
@@ -68,26 +60,13 @@ void DeviceArguments::add_to(CLI::App& command) {
       ->group(for_experts);
 }
 
-RecordingDevice::RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name)
-    : on_device_(std::move(on_device)), decoder_(decoder), name_(std::move(name)) {}
-
-void RecordingDevice::take(DecodeRequest& request) {
-  if (const std::optional<TimeFilterOptions> options = time_filter_of(request))
-    time_filter_ = std::make_unique<const TimeFilter>(decoder_.table(), *options);
-  frames_ =
-      device_frames(name_, decoder_.table(), time_filter_.get(), request.average > 1, on_device_);
-  if (request.filter) {
-    filter_ = std::make_unique<const Filter>(decoder_.table(), *request.filter);
-    filter_on_device_ = device_filter(name_, *filter_, &on_device_);
+std::unique_ptr<FrameBackend> DeviceArguments::backend(
+    std::unique_ptr<const DepthDecoder> decoder) const {
+  try {
+    return frame_backend(name_, std::move(decoder));
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
   }
-  decode_on(on_device_, filter_on_device_ ? &*filter_on_device_ : nullptr,
-            frames_ ? &*frames_ : nullptr, request);
-}
-
-std::optional<RecordingDevice> DeviceArguments::device_for(const AnyDecoder& decoder) const {
-  std::optional<DeviceDecoder> on_device = made([&] { return device_decoder(name_, decoder); });
-  if (!on_device) return std::nullopt;
-  return RecordingDevice(std::move(*on_device), std::get<Decoder>(decoder), name_);
 }
 
 }  // namespace tofsmith::apps

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "decode_setup.hpp"
+#include "gpu/device_filter.hpp"
 #include "gpu/device_tile.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -179,7 +180,8 @@ std::string crossover(const std::function<double(int)>& there,
   return from ? fmt::format("{} pixels", *from * *from) : "none up to 1048576 pixels";
 }
 
-/// From which size on the device is faster, copies included: what DeviceOptions::min_pixels is for.
+/// From which size on the device is faster, copies included: as auto_min_pixels_to_decode and
+/// auto_min_pixels_to_filter.
 void report_crossovers(const Device& device, int runs) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();

@@ -32,6 +32,7 @@
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/frame_pipeline.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/decode/merge_exposures.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"

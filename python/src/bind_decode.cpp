@@ -16,7 +16,6 @@
 #include "output_policy.hpp"
 #include "progress.hpp"
 #include "raw_array.hpp"
-#include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/gpu.hpp"
@@ -27,43 +26,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// A class of its own: pybind11 would take a variant apart.
-class BoundDecoder {
- public:
-  BoundDecoder(AnyDecoder any, std::string device)
-      : any_(std::make_unique<const AnyDecoder>(std::move(any))),
-        name_(std::move(device)),
-        on_device_(device_decoder(name_, *any_)) {}
-
-  const AnyDecoder& any() const { return *any_; }
-  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress) const {
-    if (on_device_)
-      on_device_->decode(raw, decoded, progress);
-    else
-      std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, *any_);
-  }
-  std::string device() const { return on_device_ ? on_device_->device().info().name : "cpu"; }
-  bool is_on_device() const { return on_device_.has_value(); }
-  /// What filters on its device, ahead of it. @param filter  outlives that
-  DeviceFilter on_its_device(const Filter& filter) const {
-    return std::move(*device_filter(name_, filter, &*on_device_));
-  }
-  /// What adds frames up on its device, if it has one and there is something to add.
-  std::optional<DeviceFrames> frames_on_its_device(const DecodeRequest& request,
-                                                   const TimeFilter* time_filter) const {
-    if (!on_device_) return std::nullopt;
-    return device_frames(name_, std::get<Decoder>(*any_).table(), time_filter, request.average > 1,
-                         *on_device_);
-  }
-  const DeviceDecoder& on_device() const { return *on_device_; }  ///< if it is
-
- private:
-  std::unique_ptr<const AnyDecoder> any_;  // stays where the device's looks for it
-  std::string name_;                       // of the device, as it was asked for
-  std::optional<DeviceDecoder> on_device_;
-};
-
-BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
+std::unique_ptr<FrameBackend> backend_of(const DecodingTable& table, const py::dict& values) {
   DecodeMethod method = DecodeMethod::zncc;
   DecodeOptions options;
   UnwrapWeights weights = UnwrapWeights::variance;
@@ -80,11 +43,7 @@ BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
       multipath_options(reader.table("multipath"), "multipath", table.range_m);
   reader.finish();
   const py::gil_scoped_release release;
-  return {make_decoder(method, table, options, weights, multipath), device};
-}
-
-const DecodingTable& table_of(const BoundDecoder& decoder) {
-  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder.any());
+  return frame_backend(device, make_decoder(method, table, options, weights, multipath));
 }
 
 /// The planes of a stack of frames, in arrays that Python allocated.
@@ -135,74 +94,39 @@ PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, cons
   return maps;
 }
 
-void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_planar,
+void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_planar,
             const py::dict& arrays, const py::object& averaged, const py::object& delay_offset_m,
             const py::object& gain, const std::string& mixed, const BoundFilter* filter,
             const py::object& callback) {
-  RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
+  const DecodingTable& table = backend.decoder().table();
+  RawArray raw = view_raw(raw_numbers, is_planar, table.measurements());
   const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
   if (!averaged.is_none()) raw.set_averaged(means);
   const Planes planes(arrays, raw);
-  const PixelMaps maps = maps_of(delay_offset_m, gain, raw);
-  std::optional<MixedPixels> marking;
-  if (!mixed.empty()) marking = parse_mixed_pixels(mixed);
+  PlaneCorrections corrections{maps_of(delay_offset_m, gain, raw), std::nullopt};
+  if (!mixed.empty()) corrections.mixed = parse_mixed_pixels(mixed);
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
-    const DecodingTable& table = table_of(decoder);
-    FilteredFrame filtered;
-    std::optional<DeviceFilter> on_device;
-    if (filter && decoder.is_on_device())
-      on_device.emplace(decoder.on_its_device(filter->filter()));
+    const std::unique_ptr<FramePipeline> pipeline =
+        backend.prepare({.filter = filter ? &filter->filter() : nullptr,
+                         .keeps_filtered = corrections.mixed.has_value()},
+                        raw.height, raw.width);
     std::vector<float> signal;  // where the correction alone needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
       signal.resize(pixels);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
       DecodedView decoded = planes.view().from(f * pixels);
       if (!signal.empty()) decoded.signal_e_per_s = signal.data();
-      const PixelStatus* const statuses = marking ? decoded.status : nullptr;
-      const auto finish = [&](const RawView& numbers, const UnfilteredPixels& unfiltered) {
-        if (table.correction)
-          apply(*table.correction, table.range_m, decoded, raw.height, raw.width, 0, pixels);
-        if (!maps.empty()) apply(maps, table.range_m, decoded, 0, pixels);
-        if (marking) mark_mixed_pixels(table, numbers, *marking, decoded, maps, {}, unfiltered);
-      };
-      const RawView& frame = raw.frames[f];
-      const auto filter_and_decode = [&](const UnfilteredPixels& unfiltered, const Progress& here) {
-        if (on_device) {
-          on_device->decode(frame, decoder.on_device(), decoded, marking ? &filtered : nullptr,
-                            here, unfiltered.mixed);
-        } else {
-          const ProgressParts of_both(here, {8.0, 1.0});  // about
-          filter->apply(frame, filtered, of_both[0], unfiltered.mixed);
-          decoder.decode(filtered.view(), decoded, of_both[1]);
-        }
-        finish(on_device && !marking ? frame : filtered.view(), unfiltered);
-      };
-      if (filter) {
-        decode_filtered(frame, filter_and_decode, statuses, parts[f]);
-      } else {
-        decoder.decode(frame, decoded, parts[f]);
-        finish(frame, {});
-      }
+      pipeline->submit(raw.frames[f]);
+      decode_frame(*pipeline, corrections, 0, raw.height, decoded, parts[f]);
     }
   });
 }
 
-/// A request with what filters on its decoder's device.
-struct BoundRequest : DecodeRequest {
-  std::unique_ptr<const Filter> its_filter;
-  std::optional<DeviceFilter> on_device;
-  std::unique_ptr<const TimeFilter> its_time_filter;
-  std::optional<DeviceFrames> frames;
-};
-
-std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
-                                         const std::vector<std::string>& raw,
-                                         const std::string& output, const py::object& lens,
-                                         const py::dict& values) {
-  auto bound = std::make_unique<BoundRequest>();
-  BoundRequest& request = *bound;
+DecodeRequest request_of(const std::vector<std::string>& raw, const std::string& output,
+                         const py::object& lens, const py::dict& values) {
+  DecodeRequest request;
   std::string raw_format, mixed, offset_map, gain_map, stray_light, rays;
   std::vector<std::string> outputs;
   bool overwrite = false;
@@ -243,24 +167,7 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
   request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
-  if (!decoder.is_on_device()) {
-    request.decode_by = [&decoder](const RawView& view, const DecodedView& decoded,
-                                   const Progress& progress) {
-      decoder.decode(view, decoded, progress);
-    };
-    return bound;
-  }
-  if (const std::optional<TimeFilterOptions> options = time_filter_of(request))
-    request.its_time_filter = std::make_unique<const TimeFilter>(table_of(decoder), *options);
-  request.frames = decoder.frames_on_its_device(request, request.its_time_filter.get());
-  if (request.filter) {
-    request.its_filter = std::make_unique<const Filter>(table_of(decoder), *request.filter);
-    request.on_device.emplace(decoder.on_its_device(*request.its_filter));
-  }
-  const DeviceFilter* filter = request.on_device ? &*request.on_device : nullptr;
-  DeviceFrames* frames = request.frames ? &*request.frames : nullptr;
-  decode_on(decoder.on_device(), filter, frames, request);
-  return bound;
+  return request;
 }
 
 std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
@@ -270,13 +177,12 @@ std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
   return counts;
 }
 
-py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::string>& raw,
+py::dict decode_a_recording(const FrameBackend& backend, const std::vector<std::string>& raw,
                             const std::string& output, const py::object& lens,
                             const py::dict& values, const py::object& callback) {
-  const auto bound = request_of(decoder, raw, output, lens, values);
-  const DecodeRequest& request = *bound;
+  const DecodeRequest request = request_of(raw, output, lens, values);
   const DecodedRecording result = without_gil(callback, [&](const Progress& progress) {
-    return decode_recording(request, decoder.any(), progress);
+    return decode_recording(request, backend, progress);
   });
   std::vector<std::string> files, outputs;
   for (const std::filesystem::path& file : result.files) files.push_back(file.string());
@@ -296,18 +202,17 @@ py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::
   return dict;
 }
 
-py::dict decode_a_stream(const BoundDecoder& decoder, const py::object& source,
+py::dict decode_a_stream(const FrameBackend& backend, const py::object& source,
                          const py::object& take, const py::object& write, const py::object& lens,
                          const py::dict& values, const py::object& callback) {
-  const auto bound = request_of(decoder, {}, "", lens, values);
-  const DecodeRequest& request = *bound;
+  const DecodeRequest request = request_of({}, "", lens, values);
   DecodedStream result;
   FrameSink sink(take, write,
                  request.outputs.empty() ? std::vector{DecodedPlane::depth} : request.outputs,
                  result);
   without_gil(callback, [&](const Progress& progress) {
     try {
-      decode_stream(request, decoder.any(), reading_from(source), sink.stream(), progress, result);
+      decode_stream(request, backend, reading_from(source), sink.stream(), progress, result);
     } catch (const FrameSink::Stopped&) {
       ++result.frames;  // that was taken
     }
@@ -321,19 +226,16 @@ py::dict decode_a_stream(const BoundDecoder& decoder, const py::object& source,
   return dict;
 }
 
-py::array_t<double> decode_depth_bins(const BoundDecoder& decoder, const Floats& measurements) {
-  const int needed = table_of(decoder).measurements();
+py::array_t<double> decode_depth_bins(const FrameBackend& backend, const Floats& measurements) {
+  const DepthDecoder& decoder = backend.decoder();
+  const int needed = decoder.table().measurements();
   if (measurements.ndim() != 2 || measurements.shape(1) != needed)
     refuse("measurements", "shape " + shape_of(measurements),
            "(pixels, " + std::to_string(needed) + ")");
   std::vector<double> depth_bin(static_cast<std::size_t>(measurements.shape(0)));
   {
     const py::gil_scoped_release release;
-    std::visit(
-        [&](const auto& d) {
-          d.decode_depth_bins(measurements.data(), measurements.shape(0), depth_bin.data());
-        },
-        decoder.any());
+    decoder.decode_depth_bins(measurements.data(), measurements.shape(0), depth_bin.data());
   }
   return adopt(std::move(depth_bin));
 }
@@ -406,10 +308,10 @@ void bind_table(py::module_& module) {
 
 void bind_decode(py::module_& module) {
   bind_table(module);
-  py::class_<BoundDecoder>(module, "Decoder")
-      .def(py::init(&decoder_of))
-      .def("device", &BoundDecoder::device)
-      .def("table", [](const BoundDecoder& decoder) { return table_of(decoder); })
+  py::class_<FrameBackend>(module, "Decoder")
+      .def(py::init(&backend_of))
+      .def("device", &FrameBackend::device)
+      .def("table", [](const FrameBackend& backend) { return backend.decoder().table(); })
       .def("decode", &decode)
       .def("decode_recording", &decode_a_recording)
       .def("decode_stream", &decode_a_stream)

@@ -88,12 +88,13 @@ py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measur
 
 py::tuple apply_filter(const BoundFilter& filter, const py::array& raw_numbers, bool is_planar,
                        const py::object& averaged, const py::object& callback) {
-  FilteredFrame filtered;
+  std::unique_ptr<FramePipeline> pipeline;
   return filter_frames(raw_numbers, is_planar, filter.filter().measurements(), averaged, callback,
                        false,
                        [&](const RawView& raw, const Progress& progress) -> std::optional<RawView> {
-                         filter.apply(raw, filtered, progress);
-                         return filtered.view();
+                         if (!pipeline) pipeline = filter.pipeline(raw.height, raw.width);
+                         pipeline->submit(raw);
+                         return pipeline->numbers(progress);
                        });
 }
 

@@ -3,34 +3,31 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 
 #include "tofsmith/gpu.hpp"
 
 namespace tofsmith::python {
 
-/// A filter, with the device that does its work, if there is one.
+/// A spatial filter with the backend that runs it.
 class BoundFilter {
  public:
-  /// @param device  "cpu", "auto" or a name, as device_filter() takes it
+  /// @param device  as of frame_backend()
   BoundFilter(Filter filter, const std::string& device)
       : filter_(std::make_unique<const Filter>(std::move(filter))),
-        on_device_(device_filter(device, *filter_)) {}
+        backend_(frame_backend(device, make_decoder(DecodeMethod::zncc, filter_->table()))) {}
 
   const Filter& filter() const { return *filter_; }
-  void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
-             const Image<std::uint8_t>& left_out = {}) const {
-    if (on_device_)
-      on_device_->apply(raw, filtered, progress, left_out);
-    else
-      filter_->apply(raw, filtered, progress, left_out);
+  /// Prepares to filter frames of this size, without other steps.
+  std::unique_ptr<FramePipeline> pipeline(int height, int width) const {
+    return backend_->prepare({.filter = filter_.get(), .keeps_filtered = true}, height, width);
   }
-  std::string device() const { return on_device_ ? on_device_->device().info().name : "cpu"; }
+  std::string device() const { return backend_->device(); }
 
  private:
-  std::unique_ptr<const Filter> filter_;  // stays where the device's looks for it
-  std::optional<DeviceFilter> on_device_;
+  std::unique_ptr<const Filter> filter_;  // pipelines point to it
+  std::unique_ptr<FrameBackend> backend_;
 };
 
 }  // namespace tofsmith::python

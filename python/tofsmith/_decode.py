@@ -61,10 +61,9 @@ class Decoder:
     unwrap_weights : {"variance", "frequency"}, optional
         Of unwrap.
     device : str, optional
-        What decodes, and filters and adds frames up as decode() and decode_recording() are asked
-        to: "cpu"; "gpu", the first one; "auto", that or else the processor, which small frames are
-        left to; a number or part of a name of the devices of OpenCL. Not the processor for zncc
-        alone. See docs/gpu.md.
+        OpenCL device that averages, filters and decodes: "cpu" (none); "gpu", the first one;
+        "auto", the first GPU, but the CPU for small frames and other methods; or a number or part
+        of a name. Only zncc runs on devices. See docs/gpu.md.
     multipath : dict, optional
         Of two-return and tail: threshold, shortest_delay_m, longest_delay_m, tail_m, and prior, a
         dict of single_probability, mean_delay_m, max_ratio; see docs/multipath.md.

@@ -87,7 +87,7 @@ class Filter(_OfTable):
         For experts, instead of what the strength says: windows, slope_rounds, max_difference_sigma,
         trusted_pixels, same_depth_sigma, own_light_sigma.
     device : str, optional
-        What filters, as Decoder's. See docs/gpu.md.
+        OpenCL device that filters, as for Decoder. See docs/gpu.md.
 
     Raises
     ------

@@ -206,10 +206,6 @@ std::int64_t DeviceDecoder::decode(const RawView& stored, const DecodedView& dec
   require_frame(stored, plan_->decoder.measurements());
   const MarkedRaw marked(stored, plan_->decoder.table().marking);
   const RawView& raw = marked.view();
-  if (raw.pixels() < plan_->options.min_pixels) {
-    plan_->decoder.decode(raw, decoded, progress);
-    return raw.pixels();
-  }
   const std::lock_guard lock(plan_->mutex);
   return plan_->decode_all({.raw = raw}, decoded, progress);
 }
@@ -228,20 +224,6 @@ DepthImage DeviceDecoder::decode(const RawFrames& raw, int frame, const Progress
   DepthImage image(raw.height, raw.width);
   decode(view_of_frame(raw, frame), DecodedView::of(image), progress);
   return image;
-}
-
-std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDecoder& decoder) {
-  if (device == "cpu") return std::nullopt;
-  const auto* zncc = std::get_if<Decoder>(&decoder);
-  if (device == "auto") {
-    const std::optional<Device> gpu = zncc ? Device::first_gpu() : std::nullopt;
-    if (!gpu) return std::nullopt;
-    const DeviceOptions options{.min_pixels = auto_min_pixels_to_decode};
-    return std::optional<DeviceDecoder>(std::in_place, *gpu, *zncc, options);
-  }
-  require(zncc != nullptr, "method", name_of(all_decode_methods[decoder.index()]),
-          "must be zncc, by which alone devices decode, or the device cpu");
-  return std::optional<DeviceDecoder>(std::in_place, Device::named(device), *zncc);
 }
 
 }  // namespace tofsmith

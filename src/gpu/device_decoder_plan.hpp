@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "gpu/device_decoder.hpp"
 #include "gpu/device_tile.hpp"
 
 namespace tofsmith {

@@ -5,6 +5,7 @@
 
 #include "decode/shared/marked_raw.hpp"
 #include "gpu/device_decoder_plan.hpp"
+#include "gpu/device_filter.hpp"
 #include "gpu/device_frame.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -57,9 +58,6 @@ struct DeviceFilter::Plan {
   std::int64_t run(const FrameSource& source, DeviceDecoder::Plan* after,
                    const DecodedView& decoded, FilteredFrame* filtered, const Progress& progress,
                    const Image<std::uint8_t>& left_out);
-  std::int64_t run_here(const RawView& raw, const DeviceDecoder::Plan* after,
-                        const DecodedView& decoded, FilteredFrame* filtered,
-                        const Progress& progress, const Image<std::uint8_t>& left_out);
   std::int64_t run_band(const FrameSource& source, IndexRange rows, DeviceDecoder::Plan* after,
                         const DecodedView& decoded, FilteredRows* filtered,
                         const Progress& progress, const Image<std::uint8_t>& left_out);
@@ -70,7 +68,6 @@ struct DeviceFilter::Plan {
   std::mutex mutex;  // of what follows
   DeviceFrame frame;
   DeviceRaw result;
-  FilteredFrame on_host;  // of small frames
   double memory_share = 1.0;
 };
 
@@ -118,8 +115,6 @@ std::int64_t DeviceFilter::Plan::run(const FrameSource& source, DeviceDecoder::P
                                      const Progress& progress,
                                      const Image<std::uint8_t>& left_out) {
   const RawView& raw = source.raw;
-  if (raw.pixels() < options.min_pixels && !source.on_device)
-    return run_here(raw, after, decoded, filtered, progress, left_out);
   std::optional<FilteredRows> wanted;
   if (filtered) wanted.emplace(plan_of(filter), raw, *filtered);
   std::int64_t left_open = 0;
@@ -147,17 +142,6 @@ std::int64_t DeviceFilter::Plan::run(const FrameSource& source, DeviceDecoder::P
     report(progress, static_cast<double>(first) / height, "filtering");
   }
   return left_open;
-}
-
-std::int64_t DeviceFilter::Plan::run_here(const RawView& raw, const DeviceDecoder::Plan* after,
-                                          const DecodedView& decoded, FilteredFrame* filtered,
-                                          const Progress& progress,
-                                          const Image<std::uint8_t>& left_out) {
-  FilteredFrame& numbers = filtered ? *filtered : on_host;
-  filter.apply(raw, numbers, progress, left_out);
-  if (!after) return raw.pixels();
-  after->decoder.decode(numbers.view(), decoded);
-  return raw.pixels();
 }
 
 DeviceFilter::DeviceFilter(const Device& device, const Filter& filter,
@@ -207,19 +191,6 @@ std::int64_t DeviceFilter::decode_source(const FrameSource& frame, const Device&
           decoder.plan_->decoder.measurements(), "must be those of the frame");
   const std::scoped_lock lock(plan_->mutex, decoder.plan_->mutex);
   return plan_->run(frame, decoder.plan_.get(), decoded, filtered, progress, left_out);
-}
-
-std::optional<DeviceFilter> device_filter(std::string_view device, const Filter& filter,
-                                          const DeviceDecoder* after) {
-  if (device == "cpu") return std::nullopt;
-  DeviceOptions options;
-  if (device == "auto") options.min_pixels = auto_min_pixels_to_filter;
-  std::optional<Device> on;
-  if (after)
-    on = after->device();
-  else
-    on = device == "auto" ? Device::first_gpu() : Device::named(device);
-  return on ? std::optional<DeviceFilter>(std::in_place, *on, filter, options) : std::nullopt;
 }
 
 }  // namespace tofsmith

@@ -54,7 +54,7 @@ DeviceFrames::~DeviceFrames() = default;
 DeviceFrames::DeviceFrames(DeviceFrames&&) noexcept = default;
 DeviceFrames& DeviceFrames::operator=(DeviceFrames&&) noexcept = default;
 
-bool DeviceFrames::takes(std::int64_t pixels) const { return pixels >= plan_->options.min_pixels; }
+int DeviceFrames::frames_of_mean() const { return plan_->frames_added; }
 
 void DeviceFrames::add(const RawView& raw) {
   Plan& plan = *plan_;
@@ -137,17 +137,6 @@ std::int64_t DeviceFrames::decode(const DeviceFilter& filter, const DeviceDecode
     return filter.decode_source(plan_->source(), plan_->device, decoder, decoded, filtered,
                                 progress, left_out);
   });
-}
-
-std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
-                                          const TimeFilter* time_filter, bool makes_means,
-                                          const DeviceDecoder& after) {
-  const bool cannot = (makes_means && !after.device().info().has_doubles) ||
-                      (time_filter && time_filter->options().look_ahead > 0);
-  if ((!time_filter && !makes_means) || cannot) return std::nullopt;
-  DeviceOptions options;
-  if (device == "auto") options.min_pixels = auto_min_pixels_to_decode;
-  return std::optional<DeviceFrames>(std::in_place, after.device(), table, time_filter, options);
 }
 
 }  // namespace tofsmith

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "gpu/device_frames.hpp"
 #include "gpu/device_time_filter.hpp"
 #include "gpu/frame_source.hpp"
 #include "tofsmith/core/error.hpp"

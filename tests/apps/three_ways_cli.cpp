@@ -50,21 +50,21 @@ void simulate() {
                    policy);
 }
 
-AnyDecoder decoder_of(DecodeMethod method, const std::string& code) {
-  return make_decoder(method, load_decoding_table(code, small_camera()).table);
+std::unique_ptr<FrameBackend> backend_of(DecodeMethod method, const std::string& code) {
+  return cpu_backend(make_decoder(method, load_decoding_table(code, small_camera()).table));
 }
 
 void decode() {
-  const AnyDecoder decoder = decoder_of(DecodeMethod::zncc, "hamiltonian-k4");
+  const std::unique_ptr<FrameBackend> backend = backend_of(DecodeMethod::zncc, "hamiltonian-k4");
   for (const char* output : {"d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply", "d.pcd"})
-    decode_recording({.raw = {"raw.npy"}, .output = output, .policy = policy}, decoder);
+    decode_recording({.raw = {"raw.npy"}, .output = output, .policy = policy}, *backend);
   decode_recording({.raw = {"raw.npy"},
                     .output = "z.npz",
                     .outputs = {DecodedPlane::bin, DecodedPlane::depth, DecodedPlane::deviation},
                     .kind = DepthKind::z,
                     .frame = 1,
                     .policy = policy},
-                   decoder);
+                   *backend);
   decode_recording({.raw = {"raw.npy"},
                     .output = "stack.npy",
                     .outputs = {DecodedPlane::depth, DecodedPlane::status},
@@ -73,20 +73,20 @@ void decode() {
                     .gain_map = "gain.npy",
                     .memory_mb = 0.05,
                     .policy = policy},
-                   decoder_of(DecodeMethod::ml, "hamiltonian-k4"));
+                   *backend_of(DecodeMethod::ml, "hamiltonian-k4"));
   decode_recording({.raw = {"planar.npy"},
                     .layout = RawLayout::planar,
                     .output = "measured.npy",
                     .policy = policy},
-                   decoder_of(DecodeMethod::zncc, "table.npy"));
+                   *backend_of(DecodeMethod::zncc, "table.npy"));
   decode_recording(
       {.raw = {"dump.bin"}, .raw_format = "dump.raw.toml", .output = "dump.npz", .policy = policy},
-      decoder);
+      *backend);
   decode_recording({.raw = {"p0.npy", "p1.npy", "p2.npy", "p3.npy"},
                     .output = "phases.npz",
                     .averaged = 12.5,
                     .policy = policy},
-                   decoder);
+                   *backend);
   FilterOptions options = FilterOptions::of(FilterStrength::strong);
   options.trusted_pixels = 8.0;
   decode_recording({.raw = {"raw.npy"},
@@ -95,19 +95,19 @@ void decode() {
                     .average = 2,
                     .filter = options,
                     .policy = policy},
-                   decoder);
+                   *backend);
   decode_recording({.raw = {"raw.npy"},
                     .output = "added.npz",
                     .outputs = {DecodedPlane::depth, DecodedPlane::averaged},
                     .time_filter = TimeFilterOptions{.max_frames = 2, .max_difference_sigma = 4.0},
                     .policy = policy},
-                   decoder);
+                   *backend);
   decode_recording({.raw = {"raw.npy"},
                     .output = "snapped.npz",
                     .outputs = {DecodedPlane::depth, DecodedPlane::status},
                     .mixed = MixedPixels::snap,
                     .policy = policy},
-                   decoder);
+                   *backend);
 }
 
 void evaluate_codes() {

@@ -24,6 +24,15 @@
 namespace tofsmith {
 namespace {
 
+/// Decodes pixels as one row.
+DepthImage decoded_row(DecodeMethod method, const DecodingTable& table,
+                       const std::vector<float>& raw) {
+  const RawFrames frame = frame_of(raw, table.measurements());
+  DepthImage image(frame.height, frame.width);
+  make_decoder(method, table)->decode(view_of_frame(frame, 0), DecodedView::of(image));
+  return image;
+}
+
 DecodingTable table_of(const std::string& code, const Camera& camera) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
@@ -135,13 +144,7 @@ TEST(LobePosterior, DecodersReportTwinsAsAmbiguous) {
   constexpr int pixels = 4000;
   const std::vector<float> raw = noisy_pixels(finely_sampled(table), 2e4, 0.0, pixels, 7);
   for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml}) {
-    const DepthImage image = std::visit(
-        [&](const auto& decoder) -> DepthImage {
-          if constexpr (requires { DepthImage(decoder.decode(RawFrames())); })
-            return decoder.decode(frame_of(raw, 4));
-          return {};
-        },
-        make_decoder(method, table));
+    const DepthImage image = decoded_row(method, table, raw);
     RandomStream random(7, 0);
     int ok = 0, wrong = 0;
     for (int i = 0; i < pixels; ++i) {
@@ -180,13 +183,7 @@ Reliability reliability_of(DecodingTable table, DecodeMethod method, int pixels)
     const double depth_bin = truth.back() * fine.bin_count() / table.samples();
     append_noisy_pixel(fine, signal, ambient, depth_bin, random, raw);
   }
-  const DepthImage image = std::visit(
-      [&](const auto& decoder) -> DepthImage {
-        if constexpr (requires { DepthImage(decoder.decode(RawFrames())); })
-          return decoder.decode(frame_of(raw, table.measurements()));
-        return {};
-      },
-      make_decoder(method, table));
+  const DepthImage image = decoded_row(method, table, raw);
   Reliability result;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double confidence = image.confidence.pixels[i];

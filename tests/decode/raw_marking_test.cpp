@@ -57,30 +57,26 @@ RawView row_of(const std::vector<Number>& raw, int measurements) {
                               measurements);
 }
 
-std::vector<PixelStatus> statuses_of(const AnyDecoder& decoder, const RawView& raw) {
+std::vector<PixelStatus> statuses_of(const DepthDecoder& decoder, const RawView& raw) {
   std::vector<PixelStatus> statuses(static_cast<std::size_t>(raw.pixels()));
-  std::visit([&](const auto& d) { d.decode(raw, {.status = statuses.data()}); }, decoder);
+  decoder.decode(raw, {.status = statuses.data()});
   return statuses;
 }
 
 template <typename Number>
-std::vector<PixelStatus> statuses_of(const AnyDecoder& decoder, const std::vector<Number>& raw,
+std::vector<PixelStatus> statuses_of(const DepthDecoder& decoder, const std::vector<Number>& raw,
                                      int measurements) {
   return statuses_of(decoder, row_of(raw, measurements));
 }
 
 /// Every method with a code that it decodes.
-std::vector<AnyDecoder> all_decoders(const Camera& camera) {
-  std::vector<AnyDecoder> decoders;
+std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& camera) {
+  std::vector<std::unique_ptr<const DepthDecoder>> decoders;
   for (const DecodeMethod method : all_decode_methods)
     decoders.push_back(make_decoder(
         method,
         table_of(camera, method == DecodeMethod::unwrap ? "sinusoid-k4" : "hamiltonian-k5")));
   return decoders;
-}
-
-const DecodingTable& table_of(const AnyDecoder& decoder) {
-  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
 }
 
 /// One pixel without clipped numbers, and one for each measurement and number that replaces it.
@@ -97,9 +93,9 @@ std::vector<float> with_each(const DecodingTable& table, const std::vector<float
 }
 
 /// The first pixel is decoded, and the status of all others is `status`.
-void expect_only_first_is_measured(const AnyDecoder& decoder, const std::vector<float>& numbers,
+void expect_only_first_is_measured(const DepthDecoder& decoder, const std::vector<float>& numbers,
                                    PixelStatus status) {
-  const DecodingTable& table = table_of(decoder);
+  const DecodingTable& table = decoder.table();
   std::vector<PixelStatus> found =
       statuses_of(decoder, with_each(table, numbers), table.measurements());
   EXPECT_NE(found.front(), status);
@@ -109,31 +105,31 @@ void expect_only_first_is_measured(const AnyDecoder& decoder, const std::vector<
 
 TEST(RawMarking, DifferencesAtTheRailsOfTheConverterAreSaturated) {
   for (const int bits : {10, 12, 16})
-    for (const AnyDecoder& decoder : all_decoders(converted(difference_camera(), bits))) {
+    for (const auto& decoder : all_decoders(converted(difference_camera(), bits))) {
       const auto half = static_cast<float>(1 << (bits - 1));
       const auto largest = static_cast<float>((1 << bits) - 1);
-      expect_only_first_is_measured(decoder, {half - 1.0f, -half, largest, -largest},
+      expect_only_first_is_measured(*decoder, {half - 1.0f, -half, largest, -largest},
                                     PixelStatus::saturated);
     }
 }
 
 TEST(RawMarking, NumbersOfMixersAtTheRailsAreSaturated) {
-  for (const AnyDecoder& decoder : all_decoders(converted(mixer_camera(), 11)))
-    expect_only_first_is_measured(decoder, {1023.0f, -1024.0f, 1500.0f, -1500.0f},
+  for (const auto& decoder : all_decoders(converted(mixer_camera(), 11)))
+    expect_only_first_is_measured(*decoder, {1023.0f, -1024.0f, 1500.0f, -1500.0f},
                                   PixelStatus::saturated);
-  for (const AnyDecoder& decoder : all_decoders(converted(mixer_camera(), 11, 1000.0)))
-    expect_only_first_is_measured(decoder, {0.0f, 2047.0f}, PixelStatus::saturated);
+  for (const auto& decoder : all_decoders(converted(mixer_camera(), 11, 1000.0)))
+    expect_only_first_is_measured(*decoder, {0.0f, 2047.0f}, PixelStatus::saturated);
   Camera wells = mixer_camera();
   wells.sensor.full_well_e = 2000.0;
-  for (const AnyDecoder& decoder : all_decoders(wells))
-    expect_only_first_is_measured(decoder, {2000.0f, -2000.0f}, PixelStatus::saturated);
+  for (const auto& decoder : all_decoders(wells))
+    expect_only_first_is_measured(*decoder, {2000.0f, -2000.0f}, PixelStatus::saturated);
 }
 
 TEST(RawMarking, ADifferenceOfTheWholeFullWellIsSaturated) {
   Camera camera = difference_camera();
   camera.sensor.full_well_e = 3000.0;
-  for (const AnyDecoder& decoder : all_decoders(camera))
-    expect_only_first_is_measured(decoder, {3000.0f, -3000.0f}, PixelStatus::saturated);
+  for (const auto& decoder : all_decoders(camera))
+    expect_only_first_is_measured(*decoder, {3000.0f, -3000.0f}, PixelStatus::saturated);
 }
 
 TEST(RawMarking, UnsignedDifferencesDecodeAsSignedOnes) {
@@ -162,15 +158,15 @@ TEST(RawMarking, UnsignedDifferencesDecodeAsSignedOnes) {
 TEST(RawMarking, MarkersHaveTheirMeaningInEveryDecoder) {
   for (Camera camera : {camera_with("paper-10f0", 2), difference_camera(), mixer_camera()}) {
     camera.raw = {.saturated = {32767.0, -32768.0}, .invalid = {-7777.0, 0.5}};
-    for (const AnyDecoder& decoder : all_decoders(camera)) {
-      expect_only_first_is_measured(decoder, {32767.0f, -32768.0f}, PixelStatus::saturated);
-      expect_only_first_is_measured(decoder, {-7777.0f, 0.5f, nan, float_infinity},
+    for (const auto& decoder : all_decoders(camera)) {
+      expect_only_first_is_measured(*decoder, {32767.0f, -32768.0f}, PixelStatus::saturated);
+      expect_only_first_is_measured(*decoder, {-7777.0f, 0.5f, nan, float_infinity},
                                     PixelStatus::invalid);
     }
     camera.raw = {.saturated = {std::numeric_limits<double>::quiet_NaN()}, .invalid = {}};
-    for (const AnyDecoder& decoder : all_decoders(camera)) {
-      expect_only_first_is_measured(decoder, {nan}, PixelStatus::saturated);
-      expect_only_first_is_measured(decoder, {float_infinity}, PixelStatus::invalid);
+    for (const auto& decoder : all_decoders(camera)) {
+      expect_only_first_is_measured(*decoder, {nan}, PixelStatus::saturated);
+      expect_only_first_is_measured(*decoder, {float_infinity}, PixelStatus::invalid);
     }
   }
 }
@@ -178,9 +174,9 @@ TEST(RawMarking, MarkersHaveTheirMeaningInEveryDecoder) {
 TEST(RawMarking, AMarkerComesBeforeTheConvertersRail) {
   Camera camera = converted(camera_with("paper-10f0", 2), 12);
   camera.raw.invalid = {4095.0};
-  for (const AnyDecoder& decoder : all_decoders(camera)) {
-    expect_only_first_is_measured(decoder, {4095.0f}, PixelStatus::invalid);
-    expect_only_first_is_measured(decoder, {4096.0f}, PixelStatus::saturated);
+  for (const auto& decoder : all_decoders(camera)) {
+    expect_only_first_is_measured(*decoder, {4095.0f}, PixelStatus::invalid);
+    expect_only_first_is_measured(*decoder, {4096.0f}, PixelStatus::saturated);
   }
 }
 

@@ -30,13 +30,12 @@ DecodingTable fine_table_of(const std::string& code, Camera camera) {
 DepthImage decode_row(DecodeMethod method, const DecodingTable& table,
                       const std::vector<float>& raw, const DecodeOptions& options = {},
                       const float* averaged = nullptr) {
-  const AnyDecoder decoder = make_decoder(method, table, options);
   const RawFrames frame = frame_of(raw, table.measurements());
   RawView view = view_of_frame(frame, 0);
   view.averaged = averaged;
   DepthImage image(1, frame.width);
   image.residual = image.depth_m;
-  std::visit([&](const auto& d) { d.decode(view, DecodedView::of(image)); }, decoder);
+  make_decoder(method, table, options)->decode(view, DecodedView::of(image));
   return image;
 }
 

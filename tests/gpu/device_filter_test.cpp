@@ -217,21 +217,6 @@ TEST_F(DeviceFiltering, FramesThatDoNotFitGoInBandsOfRows) {
                                    view_of_frame(raw, 0), {.memory_mb = memory_mb}, left_out);
 }
 
-TEST_F(DeviceFiltering, LeavesSmallFramesToTheProcessor) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 20, 20);
-  const Filter filter(setup.decoder.table());
-  const DeviceFilter on_device(device(), filter, {.min_pixels = 401});
-  const DeviceDecoder after(device(), setup.decoder, {.min_pixels = 401});
-  Outputs outputs(400), expected(400);
-  EXPECT_EQ(on_device.decode(view_of_frame(raw, 0), after, outputs.view()), 400);
-  setup.decoder.decode(filter.apply(raw).view(), expected.view());
-  expect_same(outputs, expected);
-  EXPECT_EQ(after.decode(view_of_frame(raw, 0), outputs.view()), 400);
-  setup.decoder.decode(view_of_frame(raw, 0), expected.view());
-  expect_same(outputs, expected);
-}
-
 TEST_F(DeviceFiltering, RefusesWhatIsNoFrameOfTheFilter) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const Filter filter(setup.decoder.table());
@@ -244,7 +229,7 @@ TEST_F(DeviceFiltering, RefusesWhatIsNoFrameOfTheFilter) {
                InvalidArgument);
   const RawView view = RawView::interleaved(raw.data(), 2, 5, 4);
   EXPECT_THROW(on_device.apply(view, filtered, {}, Image<std::uint8_t>(5, 2)), InvalidArgument);
-  EXPECT_THROW(DeviceFilter(device(), filter, {.min_pixels = -1}), InvalidArgument);
+  EXPECT_THROW(DeviceFilter(device(), filter, {.memory_mb = -1.0}), InvalidArgument);
   const DeviceDecoder elsewhere(Device::all().front(), setup.decoder);
   Outputs outputs(10);
   EXPECT_THROW(on_device.decode(view, elsewhere, outputs.view()), InvalidArgument);
@@ -267,16 +252,6 @@ TEST_F(DeviceFiltering, StopsWhereProgressSaysSoAndGoesOnAfterwards) {
   EXPECT_LT(last, 1.0);
   on_device.apply(view_of_frame(raw, 0), filtered);
   expect_alike(device(), filtered, filter.apply(raw));
-}
-
-TEST_F(DeviceFiltering, TheDeviceOfAUsersNameFiltersToo) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const Filter filter(setup.decoder.table());
-  EXPECT_FALSE(device_filter("cpu", filter));
-  EXPECT_EQ(device_filter("0", filter)->device().info().name, device().info().name);
-  EXPECT_THROW(device_filter("no such device", filter), IoError);
-  const DeviceDecoder after(device(), setup.decoder);
-  EXPECT_EQ(&device_filter("auto", filter, &after)->device().state(), &device().state());
 }
 
 }  // namespace

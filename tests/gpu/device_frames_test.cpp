@@ -279,19 +279,6 @@ TEST_F(DeviceFramesOf, AreMeansThatAreAddedUp) {
   }
 }
 
-TEST_F(DeviceFramesOf, GoToTheDecodersDeviceWhereItCanAddThemUp) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const TimeFilter filter(table), looks_ahead(table, {.look_ahead = 1});
-  const DeviceDecoder after(device(), setup.decoder);
-  EXPECT_FALSE(device_frames("0", table, nullptr, false, after));
-  EXPECT_FALSE(device_frames("0", table, &looks_ahead, false, after));
-  EXPECT_TRUE(device_frames("0", table, &filter, false, after)->takes(1));
-  EXPECT_FALSE(device_frames("auto", table, &filter, false, after)->takes(1));
-  EXPECT_EQ(device_frames("0", table, nullptr, true, after).has_value(),
-            device().info().has_doubles);
-}
-
 TEST_F(DeviceFramesOf, AreRefusedWhereTheyDoNotFit) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
@@ -302,10 +289,8 @@ TEST_F(DeviceFramesOf, AreRefusedWhereTheyDoNotFit) {
               ThrowsMessage<InvalidArgument>(HasSubstr("must be those of the table")));
   EXPECT_THAT([&] { DeviceFrames(device(), table, &looks_ahead); },
               ThrowsMessage<InvalidArgument>(HasSubstr("look_ahead = 1; must be 0 on devices")));
-  EXPECT_THROW(DeviceFrames(device(), table, &filter, {.min_pixels = -1}), InvalidArgument);
-  DeviceFrames there(device(), table, &filter, {.min_pixels = 100});
-  EXPECT_TRUE(there.takes(100));
-  EXPECT_FALSE(there.takes(99));
+  EXPECT_THROW(DeviceFrames(device(), table, &filter, {.memory_mb = -1.0}), InvalidArgument);
+  DeviceFrames there(device(), table, &filter);
   const std::vector<float> raw(400);
   EXPECT_THROW(there.take_mean(), InvalidArgument);
   EXPECT_THROW(there.take(RawView::interleaved(raw.data(), 2, 4, 5)), InvalidArgument);

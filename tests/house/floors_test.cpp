@@ -34,7 +34,7 @@ const std::map<std::string, Folders> may_include = {
     {"camera", {"core", "code"}},
     {"decode", {"core", "code", "camera"}},
     {"simulate", {"core", "code", "scene", "camera", "decode"}},
-    {"gpu", {"core", "code", "scene", "camera", "decode", "simulate"}},
+    {"gpu", {"core", "code", "scene", "camera", "decode"}},
     {"design", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"io", data_types},
     {"sweep", data_types + Folders{"io"}},

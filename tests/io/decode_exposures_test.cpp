@@ -34,15 +34,15 @@ class DecodeExposures : public testing::Test {
   TemporaryDirectory directory_;
   RawFrames raw_;
   DecodeRequest request_;
-  AnyDecoder decoder_ =
+  std::unique_ptr<FrameBackend> backend_ = cpu_backend(
       make_decoder(DecodeMethod::zncc,
-                   load_decoding_table("hamiltonian-k4", built_in_camera("paper-10f0")).table);
+                   load_decoding_table("hamiltonian-k4", built_in_camera("paper-10f0")).table));
 };
 
 TEST_F(DecodeExposures, AreMergedAsFramesInMemoryAre) {
   request_.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
-  EXPECT_EQ(decode_recording(request_, decoder_).frames.size(), 2u);
-  const Decoder& decoder = std::get<Decoder>(decoder_);
+  EXPECT_EQ(decode_recording(request_, *backend_).frames.size(), 2u);
+  const Decoder& decoder = *backend_->decoder().correlation_decoder();
   std::vector<float> depth_m, averaged;
   for (int group = 0; group < 2; ++group) {
     std::vector<RawView> frames;
@@ -63,7 +63,7 @@ TEST_F(DecodeExposures, RefusesGroupsThatCannotBe) {
   const auto refused = [&](const std::vector<double>& hdr, int average, const char* words) {
     request_.hdr = hdr;
     request_.average = average;
-    EXPECT_THAT([&] { decode_recording(request_, decoder_); },
+    EXPECT_THAT([&] { decode_recording(request_, *backend_); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr(words)));
   };
   refused({1.0, 2.0, 4.0, 8.0}, 1, "hdr = 4 exposures");  // of six frames

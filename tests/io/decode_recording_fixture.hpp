@@ -42,8 +42,8 @@ class DecodeRecording : public testing::Test {
   TemporaryDirectory directory_;
   RawFrames raw_;
   Camera camera_ = built_in_camera("paper-10f0");
-  AnyDecoder decoder_ =
-      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table);
+  std::unique_ptr<FrameBackend> backend_ = cpu_backend(
+      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
 };
 
 }  // namespace tofsmith

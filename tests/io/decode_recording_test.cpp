@@ -28,7 +28,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST_F(DecodeRecording, GivesWhatTheDecoderGives) {
-  const DecodedRecording result = decode_recording(request("d.npy"), decoder_);
+  const DecodedRecording result = decode_recording(request("d.npy"), *backend_);
   ASSERT_EQ(result.files.size(), 3u);
   EXPECT_EQ(result.frames.size(), 3u);
   EXPECT_EQ(result.total().pixels(), 3 * 6 * 5);
@@ -37,7 +37,7 @@ TEST_F(DecodeRecording, GivesWhatTheDecoderGives) {
     RawFrames frame = raw_;
     frame.frames = 1;
     frame.values.assign(raw_.frame(f), raw_.frame(f) + 6 * 5 * 4);
-    const DepthImage expected = std::get<Decoder>(decoder_).decode(frame);
+    const DepthImage expected = backend_->decoder().correlation_decoder()->decode(frame);
     EXPECT_EQ(read_depth(result.files[static_cast<std::size_t>(f)]).pixels,
               expected.depth_m.pixels);
   }
@@ -46,7 +46,7 @@ TEST_F(DecodeRecording, GivesWhatTheDecoderGives) {
 TEST_F(DecodeRecording, TellsHowFarItCameWhenItIsStopped) {
   DecodedRecording result;
   const Progress progress = [](double fraction, std::string_view) { return fraction < 0.5; };
-  EXPECT_THROW(decode_recording(request("d.npy"), decoder_, progress, result), Interrupted);
+  EXPECT_THROW(decode_recording(request("d.npy"), *backend_, progress, result), Interrupted);
   EXPECT_EQ(result.frame_count, 3);
   EXPECT_EQ(result.frames.size(), 1u);
   ASSERT_EQ(result.files.size(), 1u);
@@ -60,8 +60,8 @@ TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
   filtered.frame = 1;
   filtered.stack = true;
   filtered.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
-  decode_recording(filtered, decoder_);
-  const Decoder& decoder = std::get<Decoder>(decoder_);
+  decode_recording(filtered, *backend_);
+  const Decoder& decoder = *backend_->decoder().correlation_decoder();
   const FilteredFrame frame = Filter(decoder.table(), options).apply(raw_, 1);
   Image<float> depth_m(6, 5);
   decoder.decode(frame.view(), {.depth_m = depth_m.pixels.data()});
@@ -69,46 +69,57 @@ TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
   EXPECT_EQ(plane("f-averaged.npy", 0), frame.averaged().pixels);
 }
 
-TEST_F(DecodeRecording, IsFilteredByWhateverTheRequestSays) {
-  const Decoder& decoder = std::get<Decoder>(decoder_);
-  const Filter filter(decoder.table());
-  DecodeRequest filtered = request("f.npy");
-  filtered.filter = filter.options();
-  filtered.stack = true;
-  filtered.outputs = {DecodedPlane::depth};
-  decode_recording(filtered, decoder_);
-  int frames = 0;
-  filtered.output = filtered.output.parent_path() / "by.npy";
-  filtered.filter_by = [&](const RawView& raw, const DecodedView& decoded, FilteredFrame* numbers,
-                           const Progress& progress, const Image<std::uint8_t>& left_out) {
-    EXPECT_EQ(numbers, nullptr) << "nobody asked for them";
-    EXPECT_TRUE(left_out.empty());
-    FilteredFrame frame;
-    filter.apply(raw, frame, progress);
-    decoder.decode(frame.view(), decoded);
-    ++frames;
-  };
-  decode_recording(filtered, decoder_);
-  EXPECT_EQ(frames, 3);
-  for (std::size_t f = 0; f < 3; ++f) EXPECT_EQ(plane("by.npy", f), plane("f.npy", f));
-}
+/// Fails with the second frame.
+class FailingPipeline final : public FramePipeline {
+ public:
+  explicit FailingPipeline(std::unique_ptr<FramePipeline> works)
+      : FramePipeline(works->table(), works->steps(), works->height(), works->width()),
+        works_(std::move(works)) {}
+
+  FrameMemory memory(int recorded) const override { return works_->memory(recorded); }
+  bool submit(const RawView& raw, bool completes_mean) override {
+    return works_->submit(raw, completes_mean);
+  }
+  bool submit_end() override { return works_->submit_end(); }
+  void decode(const DecodedView& decoded, const Progress& progress,
+              const Image<std::uint8_t>& left_out) override {
+    works_->decode(decoded, progress, left_out);
+    if (++frames_ == 2) throw IoError("device", "is lost");
+  }
+  RawView measured() override { return works_->measured(); }
+  RawView numbers(const Progress& progress) override { return works_->numbers(progress); }
+
+ private:
+  std::unique_ptr<FramePipeline> works_;
+  int frames_ = 0;
+};
+
+class FailingBackend final : public FrameBackend {
+ public:
+  explicit FailingBackend(const FrameBackend& works) : works_(works) {}
+  const DepthDecoder& decoder() const override { return works_.decoder(); }
+  std::string device() const override { return "device"; }
+  std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
+                                         int width) const override {
+    return std::make_unique<FailingPipeline>(works_.prepare(steps, height, width));
+  }
+
+ private:
+  const FrameBackend& works_;
+};
 
 TEST_F(DecodeRecording, LeavesWholeFilesWhereADeviceFailsHalfWay) {
+  const FailingBackend failing(*backend_);
   for (const bool stack : {false, true}) {
-    DecodeRequest failing = request("d.npy");
-    failing.stack = stack;
-    int frames = 0;
-    failing.decode_by = [&](const RawView& raw, const DecodedView& decoded, const Progress&) {
-      std::get<Decoder>(decoder_).decode(raw, decoded);
-      if (++frames == 2) throw IoError("device", "is lost");
-    };
-    const std::filesystem::path folder = failing.output.parent_path();
+    DecodeRequest asked = request("d.npy");
+    asked.stack = stack;
+    const std::filesystem::path folder = asked.output.parent_path();
     const auto files = [&] {
       return std::distance(std::filesystem::directory_iterator(folder), {});
     };
     const auto before = files();
     DecodedRecording result;
-    EXPECT_THROW(decode_recording(failing, decoder_, {}, result), IoError);
+    EXPECT_THROW(decode_recording(asked, failing, {}, result), IoError);
     EXPECT_EQ(files() - before, stack ? 0 : 1);
     EXPECT_EQ(result.files.size(), stack ? 0u : 1u);
   }
@@ -121,8 +132,8 @@ TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
   added.filter = FilterOptions::of(FilterStrength::light);
   added.stack = true;
   added.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
-  EXPECT_EQ(decode_recording(added, decoder_).frames.size(), 3u);
-  const Decoder& decoder = std::get<Decoder>(decoder_);
+  EXPECT_EQ(decode_recording(added, *backend_).frames.size(), 3u);
+  const Decoder& decoder = *backend_->decoder().correlation_decoder();
   TimeFilterOptions before_filter = options;
   before_filter.before_filter = true;
   TimeFilter in_time(decoder.table(), before_filter);
@@ -151,8 +162,8 @@ TEST_F(DecodeRecording, AFrameHoldsThoseBeforeItWhenTheyAreAddedUp) {
       added->policy = OutputPolicy::overwrite;
     }
     one.frame = 1;
-    decode_recording(all, decoder_);
-    const DecodedRecording result = decode_recording(one, decoder_);
+    decode_recording(all, *backend_);
+    const DecodedRecording result = decode_recording(one, *backend_);
     EXPECT_EQ(result.first_frame, 1);
     EXPECT_EQ(plane("one.npy", 0), plane("all.npy", 1));
     EXPECT_EQ(plane("one-averaged.npy", 0), plane("all-averaged.npy", 1));
@@ -162,13 +173,13 @@ TEST_F(DecodeRecording, AFrameHoldsThoseBeforeItWhenTheyAreAddedUp) {
 }
 
 TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
-  TimeFilter both_ways(std::get<Decoder>(decoder_).table(),
+  TimeFilter both_ways(backend_->decoder().table(),
                        {.max_difference_sigma = 20.0, .look_ahead = 1});
   DecodeRequest all = request("all.npy");
   all.time_filter = both_ways.options();
   all.stack = true;
   all.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
-  EXPECT_EQ(decode_recording(all, decoder_).frames.size(), 3u);
+  EXPECT_EQ(decode_recording(all, *backend_).frames.size(), 3u);
   EXPECT_FALSE(both_ways.add(view_of_frame(raw_, 0)).has_value());
   for (int f = 0; f < 3; ++f) {
     const auto added = f < 2 ? both_ways.add(view_of_frame(raw_, f + 1)) : both_ways.add_end();
@@ -179,14 +190,14 @@ TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
     one.output = path("one.npy");
     one.frame = f;
     one.policy = OutputPolicy::overwrite;
-    decode_recording(one, decoder_);
+    decode_recording(one, *backend_);
     EXPECT_EQ(plane("one.npy", 0), plane("all.npy", static_cast<std::size_t>(f)));
   }
   // No more frames wait than there are, and a recording of one frame is what it is.
   all.time_filter->look_ahead = 1000;
   all.output = path("farther.npy");
   all.memory_mb = 0.1;
-  EXPECT_EQ(decode_recording(all, decoder_).frames.size(), 3u);
+  EXPECT_EQ(decode_recording(all, *backend_).frames.size(), 3u);
   EXPECT_EQ(plane("farther-averaged.npy", 0), std::vector<float>(6 * 5, 3.0F));
 }
 
@@ -196,7 +207,7 @@ TEST_F(DecodeRecording, NoMeanComesAfterTheLastToBeLookedAheadTo) {
   all.average = 2;
   all.stack = true;
   all.outputs = {DecodedPlane::averaged};
-  EXPECT_EQ(decode_recording(all, decoder_).frames.size(), 2u);
+  EXPECT_EQ(decode_recording(all, *backend_).frames.size(), 2u);
   for (std::size_t f = 0; f < 2; ++f)  // a mean of two and the frame that is left
     EXPECT_EQ(plane("all-averaged.npy", f), std::vector<float>(6 * 5, 3.0F));
 }
@@ -216,8 +227,8 @@ TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
       mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
   alone.frame = 0;
   mean.average = 3;
-  decode_recording(alone, decoder_);
-  const DecodedRecording result = decode_recording(mean, decoder_);
+  decode_recording(alone, *backend_);
+  const DecodedRecording result = decode_recording(mean, *backend_);
   EXPECT_EQ(result.frames.size(), 2u);
   for (std::size_t f = 0; f < 2; ++f) {
     const float frames = f == 0 ? 3.0F : 2.0F;  // the last mean is of those that are left
@@ -238,8 +249,8 @@ TEST_F(DecodeRecording, MeansMadeElsewhereHaveTheNoiseOfAsManyMeasurements) {
   DecodeRequest means = single;
   means.output = path("means.npy");
   means.averaged = 9.0;
-  decode_recording(single, decoder_);
-  decode_recording(means, decoder_);
+  decode_recording(single, *backend_);
+  decode_recording(means, *backend_);
   EXPECT_EQ(plane("means.npy", 2), plane("single.npy", 2));
   EXPECT_EQ(plane("means-averaged.npy", 2), std::vector<float>(6 * 5, 9.0F));
   const std::vector<float> more = plane("single-deviation.npy", 2),
@@ -248,7 +259,7 @@ TEST_F(DecodeRecording, MeansMadeElsewhereHaveTheNoiseOfAsManyMeasurements) {
     EXPECT_NEAR(3.0F * less[i], more[i], 2e-3F * more[i]);
   means.output = path("both.npy");
   means.average = 2;
-  decode_recording(means, decoder_);
+  decode_recording(means, *backend_);
   EXPECT_EQ(plane("both-averaged.npy", 0), std::vector<float>(6 * 5, 18.0F));
   EXPECT_EQ(plane("both-averaged.npy", 1), std::vector<float>(6 * 5, 9.0F));
 }
@@ -264,21 +275,21 @@ TEST_F(DecodeRecording, OneFilePerMeasurementIsTheRecordingThatTheyMakeTogether)
     apart.raw.push_back(path(("p" + std::to_string(k) + ".npy").c_str()));
     write_npy(apart.raw.back(), phase, OutputPolicy::refuse_existing);
   }
-  decode_recording(together, decoder_);
-  decode_recording(apart, decoder_);
+  decode_recording(together, *backend_);
+  decode_recording(apart, *backend_);
   EXPECT_TRUE(std::ranges::equal(read_npy(path("together.npy")).bytes(),
                                  read_npy(path("apart.npy")).bytes()));
   DecodeRequest bands = apart;
   bands.output = path("bands.npy");
   bands.memory_mb = 0.001;
-  decode_recording(bands, decoder_);
+  decode_recording(bands, *backend_);
   EXPECT_TRUE(
       std::ranges::equal(read_npy(path("bands.npy")).bytes(), read_npy(path("apart.npy")).bytes()));
   // An input among several is kept, too.
   bands.raw = apart.raw;
   bands.output = apart.raw[2];
   bands.policy = OutputPolicy::overwrite;
-  EXPECT_THROW(decode_recording(bands, decoder_), IoError);
+  EXPECT_THROW(decode_recording(bands, *backend_), IoError);
 }
 
 TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
@@ -286,10 +297,10 @@ TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
   mean.average = 2;
   mean.stack = true;
   mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation};
-  decode_recording(mean, decoder_);
+  decode_recording(mean, *backend_);
   mean.output = path("bands.npy");
   mean.memory_mb = 0.001;
-  decode_recording(mean, decoder_);
+  decode_recording(mean, *backend_);
   for (const char* plane : {".npy", "-deviation.npy"})
     EXPECT_TRUE(std::ranges::equal(read_npy(path("whole").string() + plane).bytes(),
                                    read_npy(path("bands").string() + plane).bytes()));
@@ -298,7 +309,7 @@ TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
   mean.output = path("filtered.npy");
   mean.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   mean.filter = FilterOptions::of(FilterStrength::light);
-  decode_recording(mean, decoder_);
+  decode_recording(mean, *backend_);
   for (std::size_t f = 0; f < 2; ++f)
     for (const float n : plane("filtered-averaged.npy", f)) {
       const float frames = f == 0 ? 2.0F : 1.0F;
@@ -309,8 +320,8 @@ TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
 
 TEST_F(DecodeRecording, WhatIsClippedOrInvalidInOneFrameIsSoInTheMean) {
   camera_.sensor.full_well_e = 5000.0;
-  const AnyDecoder decoder =
-      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table);
+  const std::unique_ptr<FrameBackend> backend = cpu_backend(
+      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
   const auto number = [&](int frame, int pixel) -> float& {
     return raw_.values[static_cast<std::size_t>((frame * 6 * 5 + pixel) * 4)];
   };
@@ -321,14 +332,14 @@ TEST_F(DecodeRecording, WhatIsClippedOrInvalidInOneFrameIsSoInTheMean) {
   DecodeRequest mean = request("d.npz");
   mean.raw = {path("some.npy")};
   mean.average = 3;
-  const DecodedRecording result = decode_recording(mean, decoder);
+  const DecodedRecording result = decode_recording(mean, *backend);
   EXPECT_EQ(result.total().of(PixelStatus::saturated), 1);
   EXPECT_EQ(result.total().of(PixelStatus::invalid), 2);
 }
 
 TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   const auto refused = [&](const DecodeRequest& wrong, const char* words) {
-    EXPECT_THAT([&] { decode_recording(wrong, decoder_); },
+    EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr(words)));
   };
   DecodeRequest wrong = request("d.npz");
@@ -367,13 +378,13 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   refused(wrong, "windows = 4; must be in [1, 3]");
   wrong.filter = FilterOptions{};
   wrong.memory_mb = 0.1;
-  EXPECT_THAT([&] { decode_recording(wrong, decoder_); },
+  EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
               ThrowsMessage<IoError>(HasSubstr("to be filtered and written so; expected at most "
                                                "0.1 MB (without filters, mixed and undistort")));
   wrong = request("raw.npy");
   wrong.frame = 0;
   wrong.policy = OutputPolicy::overwrite;
-  EXPECT_THAT([&] { decode_recording(wrong, decoder_); },
+  EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
               ThrowsMessage<IoError>(HasSubstr("choose another name")));
 }
 
@@ -413,10 +424,10 @@ TEST_F(DecodeRecording, CloudsHoldThePointsOfPixelsThatAreOk) {
   asked.frame = 0;
   asked.outputs = {DecodedPlane::signal};
   const auto points_of = [&] {
-    decode_recording(asked, decoder_);
+    decode_recording(asked, *backend_);
     return number_of_points(asked.output);
   };
-  DepthImage image = std::get<Decoder>(decoder_).decode(raw_, 0);
+  DepthImage image = backend_->decoder().correlation_decoder()->decode(raw_, 0);
   const auto ok =
       static_cast<std::size_t>(std::ranges::count(image.status.pixels, PixelStatus::ok));
   const auto with_depth = static_cast<std::size_t>(std::ranges::count_if(
@@ -429,7 +440,7 @@ TEST_F(DecodeRecording, CloudsHoldThePointsOfPixelsThatAreOk) {
 
   asked.output = path("d.pcd");
   asked.all_points = false;
-  decode_recording(asked, decoder_);
+  decode_recording(asked, *backend_);
   std::ifstream file(asked.output, std::ios::binary);
   const std::string content((std::istreambuf_iterator<char>(file)), {});
   const auto data = content.find("DATA binary\n") + 12;

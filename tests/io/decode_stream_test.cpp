@@ -50,7 +50,7 @@ class DecodeStream : public DecodeRecording {
     const WriteStream write = [&](std::span<const std::byte> bytes_of_plane) {
       written_.insert(written_.end(), bytes_of_plane.begin(), bytes_of_plane.end());
     };
-    decode_stream(request, decoder_, read, write, {}, result);
+    decode_stream(request, *backend_, read, write, {}, result);
     return result;
   }
   /// Planes of a stack as they stand in its files, frame by frame.
@@ -60,7 +60,7 @@ class DecodeStream : public DecodeRecording {
     request.output = path("stack.npy");
     request.stack = true;
     request.policy = OutputPolicy::overwrite;
-    const DecodedRecording result = decode_recording(request, decoder_);
+    const DecodedRecording result = decode_recording(request, *backend_);
     std::vector<std::byte> bytes;
     for (std::size_t frame = 0; frame < result.frames.size(); ++frame)
       for (const std::filesystem::path& file : result.files) {

@@ -49,9 +49,9 @@ DecodeRequest request_of(const RawFrames& raw, const std::string& name) {
   return request;
 }
 
-void expect_decoded(const DecodeRequest& request, const AnyDecoder& decoder,
+void expect_decoded(const DecodeRequest& request, const FrameBackend& backend,
                     const Image<float>& expected) {
-  decode_recording(request, decoder);
+  decode_recording(request, backend);
   const Image<float> depth = read_float_image(request.output, "depth");
   ASSERT_EQ(depth.size(), expected.size());
   for (std::size_t i = 0; i < depth.size(); ++i)
@@ -67,13 +67,14 @@ TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
   const RawFrames raw = edge_seen(model, 24, 31);
   DecodeRequest request = request_of(raw, "mixed_recording");
   const Decoder decoder(table);
-  const AnyDecoder any = make_decoder(DecodeMethod::zncc, table);
+  const std::unique_ptr<FrameBackend> backend =
+      cpu_backend(make_decoder(DecodeMethod::zncc, table));
   for (const MixedPixels mixed : all_mixed_pixels) {
     DepthImage expected = decoder.decode(raw);
     EXPECT_GT(mark_mixed_pixels(table, view_of_frame(raw, 0), mixed, DecodedView::of(expected)),
               raw.height - 3);
     request.mixed = mixed;
-    expect_decoded(request, any, expected.depth_m);
+    expect_decoded(request, *backend, expected.depth_m);
   }
 }
 
@@ -105,7 +106,8 @@ TEST(MixedRecording, FilteredFramesAreFilteredAgainWithoutMixedPixels) {
     decoder.decode(filtered.view(), DecodedView::of(expected));
     mark_mixed_pixels(table, filtered.view(), mixed, DecodedView::of(expected), {}, {}, unfiltered);
     request.mixed = mixed;
-    expect_decoded(request, make_decoder(DecodeMethod::zncc, table), expected.depth_m);
+    expect_decoded(request, *cpu_backend(make_decoder(DecodeMethod::zncc, table)),
+                   expected.depth_m);
   }
 }
 

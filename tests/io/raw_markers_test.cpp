@@ -24,14 +24,15 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// Recordings whose pixel 0 is clipped in one number, and pixel 1 invalid.
 class RawMarkersOfRecordings : public DecodeRecording {
  protected:
-  AnyDecoder decoder(const std::vector<std::string>& settings) {
+  std::unique_ptr<FrameBackend> backend(const std::vector<std::string>& settings) {
     camera_ = with_settings(camera_, settings);
-    return make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table);
+    return cpu_backend(
+        make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
   }
-  AnyDecoder difference_decoder(std::vector<std::string> settings = {}) {
+  std::unique_ptr<FrameBackend> difference_backend(std::vector<std::string> settings = {}) {
     for (const char* setting : {"sensor.taps=2", "sensor.readout=difference"})
       settings.emplace_back(setting);
-    return decoder(settings);
+    return backend(settings);
   }
 
   template <typename Number>
@@ -55,12 +56,12 @@ class RawMarkersOfRecordings : public DecodeRecording {
     return all;
   }
   /// Statuses of the first frame.
-  std::vector<std::uint8_t> statuses(DecodeRequest request, const AnyDecoder& decoder) {
+  std::vector<std::uint8_t> statuses(DecodeRequest request, const FrameBackend& backend) {
     request.output = path("out.npy");
     request.stack = true;
     request.policy = OutputPolicy::overwrite;
     request.outputs = {DecodedPlane::depth, DecodedPlane::status};
-    notes_ = decode_recording(request, decoder).notes;
+    notes_ = decode_recording(request, backend).notes;
     const NpyArray array = read_npy(path("out-status.npy"));
     std::vector<std::uint8_t> first(6 * 5);
     std::memcpy(first.data(), array.bytes().data(), first.size());
@@ -83,17 +84,18 @@ class RawMarkersOfRecordings : public DecodeRecording {
 };
 
 TEST_F(RawMarkersOfRecordings, MeanTheSameInEveryTypeOfNumber) {
-  const AnyDecoder of_markers = decoder({"raw.saturated=[255, 127]", "raw.invalid=[0, 126]"});
+  const std::unique_ptr<FrameBackend> of_markers =
+      backend({"raw.saturated=[255, 127]", "raw.invalid=[0, 126]"});
   const auto check = [&]<typename Number>(Number saturated, Number invalid) {
     std::vector<Number> raw = numbers<Number>(4, 0.0);
     raw[2] = saturated;
     raw[5] = invalid;
     write_array("m.npy", raw);
     DecodeRequest request{.raw = {path("m.npy")}};
-    expect_first_two(statuses(request, of_markers));
+    expect_first_two(statuses(request, *of_markers));
     request.average = 1;
     request.memory_mb = 0.05;  // in bands
-    expect_first_two(statuses(request, of_markers));
+    expect_first_two(statuses(request, *of_markers));
   };
   check(std::uint8_t{255}, std::uint8_t{0});
   check(std::uint16_t{255}, std::uint16_t{0});
@@ -105,16 +107,18 @@ TEST_F(RawMarkersOfRecordings, MeanTheSameInEveryTypeOfNumber) {
 }
 
 TEST_F(RawMarkersOfRecordings, NaNCanMeanSaturated) {
-  const AnyDecoder of_markers = decoder({"raw.saturated=[nan]", "raw.invalid=[inf]"});
+  const std::unique_ptr<FrameBackend> of_markers =
+      backend({"raw.saturated=[nan]", "raw.invalid=[inf]"});
   std::vector<float> raw = numbers<float>(4, 0.0);
   raw[3] = std::numeric_limits<float>::quiet_NaN();
   raw[4] = std::numeric_limits<float>::infinity();
   write_array("m.npy", raw);
-  expect_first_two(statuses({.raw = {path("m.npy")}}, of_markers));
+  expect_first_two(statuses({.raw = {path("m.npy")}}, *of_markers));
 }
 
 TEST_F(RawMarkersOfRecordings, CountBeforeFramesAreAveraged) {
-  const AnyDecoder of_markers = decoder({"raw.saturated=[65535]", "raw.invalid=[0]"});
+  const std::unique_ptr<FrameBackend> of_markers =
+      backend({"raw.saturated=[65535]", "raw.invalid=[0]"});
   std::vector<std::uint16_t> raw = numbers<std::uint16_t>(4, 0.0);
   std::vector<std::uint16_t> second = raw;
   second[1] = 65535;
@@ -123,18 +127,19 @@ TEST_F(RawMarkersOfRecordings, CountBeforeFramesAreAveraged) {
   write_array("two.npy", raw);
   DecodeRequest request{.raw = {path("two.npy")}};
   request.average = 2;
-  expect_first_two(statuses(request, of_markers));
+  expect_first_two(statuses(request, *of_markers));
   request.filter = FilterOptions::of(FilterStrength::light);
-  expect_first_two(statuses(request, of_markers));
+  expect_first_two(statuses(request, *of_markers));
   request.average = 1;
   request.filter.reset();
   request.hdr = {1.0, 1.0};
-  for (const std::uint8_t status : statuses(request, of_markers))
+  for (const std::uint8_t status : statuses(request, *of_markers))
     EXPECT_NE(static_cast<PixelStatus>(status), PixelStatus::invalid) << "one exposure is left";
 }
 
 TEST_F(RawMarkersOfRecordings, AreSoughtInEachFileOfOneMeasurement) {
-  const AnyDecoder of_markers = decoder({"raw.saturated=[65535]", "raw.invalid=[0]"});
+  const std::unique_ptr<FrameBackend> of_markers =
+      backend({"raw.saturated=[65535]", "raw.invalid=[0]"});
   const std::vector<std::uint16_t> raw = numbers<std::uint16_t>(4, 0.0);
   DecodeRequest request;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -146,13 +151,13 @@ TEST_F(RawMarkersOfRecordings, AreSoughtInEachFileOfOneMeasurement) {
     write_npy(request.raw.back(), NpyArray::of<std::uint16_t>({6, 5}, part),
               OutputPolicy::overwrite);
   }
-  expect_first_two(statuses(request, of_markers));
+  expect_first_two(statuses(request, *of_markers));
 }
 
 TEST_F(RawMarkersOfRecordings, CountBeforeTheBlackLevelOfADump) {
   // 12-bit numbers without a marker of the saturated ones: the converter's largest number is one.
-  const AnyDecoder of_markers =
-      decoder({"sensor.adc_bits=12", "sensor.gain_e_per_dn=5", "raw.invalid=[7]"});
+  const std::unique_ptr<FrameBackend> of_markers =
+      backend({"sensor.adc_bits=12", "sensor.gain_e_per_dn=5", "raw.invalid=[7]"});
   std::vector<std::uint16_t> raw = numbers<std::uint16_t>(4, 200.0);
   raw[0] = 4095;
   raw[4] = 7;
@@ -161,12 +166,12 @@ TEST_F(RawMarkersOfRecordings, CountBeforeTheBlackLevelOfADump) {
                                        "layout = 'interleaved'\nblack_level = 100\n";
   DecodeRequest request{.raw = {path("d.bin")}};
   request.raw_format = path("d.raw.toml");
-  expect_first_two(statuses(request, of_markers));
+  expect_first_two(statuses(request, *of_markers));
 }
 
 TEST_F(RawMarkersOfRecordings, TapsThatAreSubtractedCountOneByOne) {
-  const AnyDecoder of_taps =
-      difference_decoder({"sensor.adc_bits=12", "sensor.gain_e_per_dn=5", "raw.invalid=[0]"});
+  const std::unique_ptr<FrameBackend> of_taps =
+      difference_backend({"sensor.adc_bits=12", "sensor.gain_e_per_dn=5", "raw.invalid=[0]"});
   std::vector<std::uint16_t> raw = numbers<std::uint16_t>(8, 1500.0);
   raw[3] = 4095;
   raw[8] = 0;
@@ -176,7 +181,7 @@ TEST_F(RawMarkersOfRecordings, TapsThatAreSubtractedCountOneByOne) {
                                         "layout = 'interleaved'\ntaps = 'subtract'\n";
   DecodeRequest request{.raw = {path("ab.bin")}};
   request.raw_format = path("ab.raw.toml");
-  expect_first_two(statuses(request, of_taps));
+  expect_first_two(statuses(request, *of_taps));
 
   std::size_t at = 0;
   const auto bytes = std::as_bytes(std::span(raw));
@@ -184,7 +189,7 @@ TEST_F(RawMarkersOfRecordings, TapsThatAreSubtractedCountOneByOne) {
   DecodedStream result;
   request.outputs = {DecodedPlane::status};
   decode_stream(
-      request, of_taps,
+      request, *of_taps,
       [&](std::span<std::byte> into) {
         const std::size_t count = std::min(into.size(), bytes.size() - at);
         std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, into.begin());
@@ -203,12 +208,12 @@ TEST_F(RawMarkersOfRecordings, TapsThatAreSubtractedCountOneByOne) {
 TEST_F(RawMarkersOfRecordings, RailsOfDifferencesAreThoseOfTheStoredNumbers) {
   const std::vector<std::string> converter = {"sensor.adc_bits=12", "sensor.gain_e_per_dn=5",
                                               "raw.invalid=[1]"};
-  const AnyDecoder differences = difference_decoder(converter);
+  const std::unique_ptr<FrameBackend> differences = difference_backend(converter);
   std::vector<std::int16_t> of_both_signs = numbers<std::int16_t>(4, -60.0);
   of_both_signs[1] = -2048;
   of_both_signs[4] = 1;
   write_array("signed.npy", of_both_signs);
-  auto found = statuses({.raw = {path("signed.npy")}}, differences);
+  auto found = statuses({.raw = {path("signed.npy")}}, *differences);
   EXPECT_EQ(static_cast<PixelStatus>(found[0]), PixelStatus::saturated);
   EXPECT_EQ(static_cast<PixelStatus>(found[1]), PixelStatus::invalid);
 
@@ -216,15 +221,15 @@ TEST_F(RawMarkersOfRecordings, RailsOfDifferencesAreThoseOfTheStoredNumbers) {
   around[3] = 0;
   around[5] = 1;
   write_array("around.npy", around);
-  const AnyDecoder middle = difference_decoder({"sensor.black_level_dn=2048"});
-  expect_first_two(statuses({.raw = {path("around.npy")}}, middle));
+  const std::unique_ptr<FrameBackend> middle = difference_backend({"sensor.black_level_dn=2048"});
+  expect_first_two(statuses({.raw = {path("around.npy")}}, *middle));
 }
 
 TEST_F(RawMarkersOfRecordings, ThatCannotOccurAreRefused) {
   const auto refused = [&](const char* setting, const char* words) {
     camera_ = built_in_camera("paper-10f0");
-    const AnyDecoder of_markers = decoder({setting});
-    EXPECT_THAT([&] { statuses({.raw = {path("m.npy")}}, of_markers); },
+    const std::unique_ptr<FrameBackend> of_markers = backend({setting});
+    EXPECT_THAT([&] { statuses({.raw = {path("m.npy")}}, *of_markers); },
                 ThrowsMessage<IoError>(HasSubstr(words)));
   };
   write_array("m.npy", numbers<std::uint16_t>(4, 0.0));
@@ -243,7 +248,7 @@ TEST_F(RawMarkersOfRecordings, ANoteOnElectronsIsLeftOutWhereALimitIsSet) {
   const DecodeRequest request{.raw = {path("m.npy")}};
   const auto notes = [&](std::vector<std::string> settings) {
     camera_ = built_in_camera("paper-10f0");
-    statuses(request, difference_decoder(std::move(settings)));
+    statuses(request, *difference_backend(std::move(settings)));
     return notes_;
   };
   const char* const words = "no gain, black level or saturation is set";

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "gpu/device_frames.hpp"
 #include "output_setup.hpp"
-#include "tofsmith/gpu.hpp"
 
 namespace tofsmith {
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <string_view>
-#include <variant>
 
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
@@ -30,17 +31,33 @@ std::string_view name_of(DecodeMethod method);
 /// @throws std::invalid_argument for any other word
 DecodeMethod parse_decode_method(std::string_view name);
 
-/// A decoder of any method: they share table(), decode(), decode_depth_bins() and decode_bins().
-using AnyDecoder =
-    std::variant<Decoder, LikelihoodDecoder, UnwrapDecoder, TwoReturnDecoder, TailDecoder>;
+/// A decoder of any method.
+class DepthDecoder {
+ public:
+  DepthDecoder() = default;
+  DepthDecoder(const DepthDecoder&) = delete;
+  DepthDecoder& operator=(const DepthDecoder&) = delete;
+  virtual ~DepthDecoder() = default;
 
-/// The decoder of a method, with its defaults but for what is given.
+  virtual DecodeMethod method() const = 0;
+  virtual const DecodingTable& table() const = 0;
+  /// As Decoder::decode(), decode_depth_bins() and decode_bins().
+  virtual void decode(const RawView& raw, const DecodedView& decoded,
+                      const Progress& progress = {}) const = 0;
+  virtual void decode_depth_bins(const float* measurements, std::int64_t pixels,
+                                 double* depth_bin) const = 0;
+  virtual void decode_bins(const float* measurements, std::int64_t pixels,
+                           std::int32_t* bin) const = 0;
+  /// Returns the decoder itself for DecodeMethod::zncc, else null.
+  virtual const Decoder* correlation_decoder() const = 0;
+};
+
+/// Returns the decoder of a method, with defaults for all other options.
 /// @param unwrap_weights  of DecodeMethod::unwrap
-/// @param multipath       of DecodeMethod::two_return and tail, but for `status_thresholds`
+/// @param multipath       of DecodeMethod::two_return and tail, except for `status_thresholds`
 /// @throws std::invalid_argument if the method cannot decode this table
-AnyDecoder make_decoder(DecodeMethod method, DecodingTable table,
-                        const DecodeOptions& status_thresholds = {},
-                        UnwrapWeights unwrap_weights = UnwrapWeights::variance,
-                        const MultipathOptions& multipath = {});
+std::unique_ptr<const DepthDecoder> make_decoder(
+    DecodeMethod method, DecodingTable table, const DecodeOptions& status_thresholds = {},
+    UnwrapWeights unwrap_weights = UnwrapWeights::variance, const MultipathOptions& multipath = {});
 
 }  // namespace tofsmith

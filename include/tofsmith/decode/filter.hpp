@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -144,22 +143,5 @@ class Filter {
   friend const Plan& plan_of(const Filter& filter);
   std::unique_ptr<const Plan> plan_;
 };
-
-/// Filters a frame and has it decoded; where mixed pixels are found, once more without them, so
-/// that their neighbours take nothing from them.
-/// @param filtered  memory for it
-/// @param decode    called with the filtered numbers and what mark_mixed_pixels() asks beside them
-/// @param statuses  of the frame's pixels, as `decode` writes them; null: none will be mixed
-/// @throws std::invalid_argument as Filter::apply(); what `decode` throws
-void decode_filtered(
-    const Filter& filter, const RawView& raw, FilteredFrame& filtered,
-    const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
-    const PixelStatus* statuses, const Progress& progress = {});
-/// The same by what filters and decodes in one, as a DeviceFilter.
-/// @param filter_and_decode  leaves out the pixels that are mixed before; throws what it may
-void decode_filtered(
-    const RawView& raw,
-    const std::function<void(const UnfilteredPixels&, const Progress&)>& filter_and_decode,
-    const PixelStatus* statuses, const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -15,9 +15,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/decode/decode_method.hpp"
-#include "tofsmith/decode/filter.hpp"
-#include "tofsmith/decode/time_filter.hpp"
+#include "tofsmith/decode/frame_pipeline.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/scene_image.hpp"
@@ -67,28 +65,6 @@ DepthKind parse_depth_kind(std::string_view name);
 /// Whether an output of this name holds points: .ply, .pcd.
 bool holds_points(const std::filesystem::path& path);
 
-/// What makes means of frames and adds them up in time in place of this computer's processor, as it
-/// does, and keeps what comes of that for DecodeRequest::decode_by and filter_by, which then read
-/// no raw numbers here: a DeviceFrames. Empty: nothing does.
-struct FramesElsewhere {
-  std::function<bool(std::int64_t pixels)> takes;  ///< whether frames so large, for a recording
-  std::function<void(const RawView& raw)> add;     ///< to those of which the next mean is
-  std::function<void(double averaged)> take_mean;  ///< of those; of so many measurements one is
-  std::function<void(const RawView& raw)> take;    ///< one that is no mean
-  std::function<RawView()> numbers;                ///< of what came of it, where they are asked for
-
-  explicit operator bool() const { return static_cast<bool>(takes); }
-  /// @param frames  a DeviceFrames; must outlive what comes
-  template <typename Frames>
-  static FramesElsewhere of(Frames& frames) {
-    return {.takes = [&frames](std::int64_t pixels) { return frames.takes(pixels); },
-            .add = [&frames](const RawView& raw) { frames.add(raw); },
-            .take_mean = [&frames](double averaged) { frames.take_mean(averaged); },
-            .take = [&frames](const RawView& raw) { frames.take(raw); },
-            .numbers = [&frames] { return frames.numbers(); }};
-  }
-};
-
 /// A recording to be decoded into files.
 struct DecodeRequest {
   /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in
@@ -137,51 +113,9 @@ struct DecodeRequest {
   double offset_m = 0.0;                ///< of every pixel, beside that of its map [m]
   std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
   double memory_mb = 256.0;             ///< for frames under way [MB], > 0
-  /// Decodes frames in place of the decoder, and as it does: a DeviceDecoder; empty: the decoder.
-  std::function<void(const RawView& raw, const DecodedView& decoded, const Progress& progress)>
-      decode_by;
-  /// Filters frames by `filter`, if there is one, and decodes them, in place of a Filter and of the
-  /// decoder, and as they do: a DeviceFilter; empty: they do.
-  /// @param filtered  to hold the filtered numbers afterwards; null: they are not wanted
-  /// @param left_out  as Filter::apply
-  std::function<void(const RawView& raw, const DecodedView& decoded, FilteredFrame* filtered,
-                     const Progress& progress, const Image<std::uint8_t>& left_out)>
-      filter_by;
-  /// Makes means of frames and filters them in time, where decode_by and filter_by are too.
-  FramesElsewhere frames_by;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };
-
-/// Has a device do the work of a request.
-/// @param decoder  a DeviceDecoder
-/// @param filter   a DeviceFilter; null: the request has none
-/// @param frames   a DeviceFrames, which makes means and adds frames up; null: the processor does
-/// All must outlive the request.
-template <typename OnDevice, typename Filters, typename Frames>
-void decode_on(const OnDevice& decoder, const Filters* filter, Frames* frames,
-               DecodeRequest& request) {
-  if (frames) request.frames_by = FramesElsewhere::of(*frames);
-  request.decode_by = [&decoder, frames](const RawView& raw, const DecodedView& decoded,
-                                         const Progress& progress) {
-    if (frames && frames->has_frame())
-      frames->decode(decoder, decoded, progress);
-    else
-      decoder.decode(raw, decoded, progress);
-  };
-  if (!filter) return;
-  request.filter_by = [&decoder, filter, frames](const RawView& raw, const DecodedView& decoded,
-                                                 FilteredFrame* filtered, const Progress& progress,
-                                                 const Image<std::uint8_t>& left_out) {
-    if (frames && frames->has_frame())
-      frames->decode(*filter, decoder, decoded, filtered, progress, left_out);
-    else
-      filter->decode(raw, decoder, decoded, filtered, progress, left_out);
-  };
-}
-
-/// The request's filter in time as it is used: before a filter in space, if there is one.
-std::optional<TimeFilterOptions> time_filter_of(const DecodeRequest& request);
 
 /// How many pixels have which status.
 class StatusCounts {
@@ -218,18 +152,18 @@ struct DecodedRecording {
 /// Decodes a recording of any length in memory that does not grow with it, in bands of rows, the
 /// next of which is read meanwhile; with a filter, frame by frame. Each file appears whole or not
 /// at all.
-/// @param decoder  of make_decoder(); its table says what raw numbers are
+/// @param backend  its decoder's table defines the raw numbers
 /// @throws std::invalid_argument "field = value; rule" for a request that cannot be, before any
 ///         file is written
 /// @throws IoError as RawFramesReader, for maps that do not fit, outputs that exist, are inputs or
 ///         cannot hold the range, and frames that need more than `memory_mb`
 /// @throws Interrupted if progress says so; frames that are finished keep their files
 /// @note the same bits for any number of threads and any memory
-DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+DecodedRecording decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                                   const Progress& progress = {});
 /// The same, with what is finished in `result` also when it throws.
 /// @param result  filled frame by frame
-void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                       const Progress& progress, DecodedRecording& result);
 
 /// Fills bytes from a stream; gives how many, fewer only at its end.
@@ -256,8 +190,9 @@ struct DecodedStream {
 /// @param result   filled frame by frame, also when it throws
 /// @throws std::invalid_argument, IoError as decode_recording(); IoError if the stream ends in a
 ///         frame, or ahead of the first; what `read` and `write` throw; Interrupted
-void decode_stream(const DecodeRequest& request, const AnyDecoder& decoder, const ReadStream& read,
-                   const WriteStream& write, const Progress& progress, DecodedStream& result);
+void decode_stream(const DecodeRequest& request, const FrameBackend& backend,
+                   const ReadStream& read, const WriteStream& write, const Progress& progress,
+                   DecodedStream& result);
 
 /// Writes what a decoder gave of a frame, by extension as DecodeRequest::output.
 /// @param planes      of depth, signal, ambient, confidence, deviation, status; not of .npy .pfm

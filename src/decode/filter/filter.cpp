@@ -115,35 +115,4 @@ FilteredFrame Filter::apply(const RawFrames& raw, int frame, const Progress& pro
   return filtered;
 }
 
-void decode_filtered(
-    const Filter& filter, const RawView& raw, FilteredFrame& filtered,
-    const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
-    const PixelStatus* statuses, const Progress& progress) {
-  decode_filtered(
-      raw,
-      [&](const UnfilteredPixels& unfiltered, const Progress& here) {
-        constexpr double effort = 8.0;  // where decoding takes 1: about
-        const ProgressParts parts(here, {effort, 1.0});
-        filter.apply(raw, filtered, parts[0], unfiltered.mixed);
-        decode(filtered.view(), unfiltered, parts[1]);
-      },
-      statuses, progress);
-}
-
-void decode_filtered(
-    const RawView& raw,
-    const std::function<void(const UnfilteredPixels&, const Progress&)>& filter_and_decode,
-    const PixelStatus* statuses, const Progress& progress) {
-  const ProgressParts parts(progress, {1.0, statuses ? 1.0 : 0.0});
-  UnfilteredPixels unfiltered{.measured = &raw};
-  filter_and_decode(unfiltered, parts[0]);
-  if (!statuses) return;
-  const auto is_mixed = [](PixelStatus status) { return status == PixelStatus::mixed; };
-  const PixelStatus* const end = statuses + raw.pixels();
-  if (std::none_of(statuses, end, is_mixed)) return;
-  unfiltered.mixed = Image<std::uint8_t>(raw.height, raw.width);
-  std::transform(statuses, end, unfiltered.mixed.pixels.begin(), is_mixed);
-  filter_and_decode(unfiltered, parts[1]);
-}
-
 }  // namespace tofsmith

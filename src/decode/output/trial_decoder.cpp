@@ -71,13 +71,9 @@ void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
   }
   // The slower methods want the measurements of a pixel side by side.
   copy_pixels(view, 0, count, tile.raw);
-  std::visit(
-      [&](const auto& decoder) {
-        if (sub_bin) return decoder.decode_depth_bins(tile.raw, count, depth_bin);
-        decoder.decode_bins(tile.raw, count, tile.bin);
-        std::copy_n(tile.bin, count, depth_bin);
-      },
-      *other_);
+  if (sub_bin) return other_->decode_depth_bins(tile.raw, count, depth_bin);
+  other_->decode_bins(tile.raw, count, tile.bin);
+  std::copy_n(tile.bin, count, depth_bin);
 }
 
 void TrialDecoder::positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const {

@@ -20,9 +20,8 @@ namespace tofsmith {
 
 namespace {
 
-bool finds_multipath(const AnyDecoder& decoder) {
-  return std::holds_alternative<TwoReturnDecoder>(decoder) ||
-         std::holds_alternative<TailDecoder>(decoder);
+bool finds_multipath(const DepthDecoder& decoder) {
+  return decoder.method() == DecodeMethod::two_return || decoder.method() == DecodeMethod::tail;
 }
 
 /// Reads one map and checks it alone, so that errors name its file.
@@ -63,7 +62,7 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
 
 }  // namespace
 
-void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
+void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
   require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
@@ -86,7 +85,7 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   for (const DecodedPlane plane : request.outputs) {
     require(!is_multipath_plane(plane) || finds_multipath(decoder), "outputs", name_of(plane),
             fmt::format("goes with two-return or tail, which alone fill it; the method is {}",
-                        name_of(all_decode_methods[decoder.index()])));
+                        name_of(decoder.method())));
     require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
             name_of(plane),
             fmt::format("a {} file holds depth only; .npz, .exr and .ply hold other planes, and "
@@ -113,7 +112,8 @@ std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const 
   return Undistortion(view);
 }
 
-std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
+std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request,
+                                          const DepthDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
                                             : usual_planes(finds_multipath(decoder));
@@ -123,109 +123,51 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
   return planes;
 }
 
-std::optional<TimeFilterOptions> time_filter_of(const DecodeRequest& request) {
-  std::optional<TimeFilterOptions> options = request.time_filter;
-  if (options && request.filter) options->before_filter = true;
-  return options;
+std::optional<Filter> filter_of(const DecodeRequest& request, const DecodingTable& table) {
+  return request.filter ? std::optional<Filter>(std::in_place, table, *request.filter)
+                        : std::nullopt;
 }
 
-Preparation preparation_of(const DecodeRequest& request) {
+Preparation preparation_of(const DecodeRequest& request, const std::optional<Filter>& filter) {
   const bool wants_averaged =
       std::ranges::find(request.outputs, DecodedPlane::averaged) != request.outputs.end();
-  Preparation preparation{.average = request.average,
-                          .averaged = request.averaged,
-                          .time_filter = time_filter_of(request),
-                          .filter = request.filter,
-                          .filters_with_decoder = static_cast<bool>(request.filter_by),
+  Preparation preparation{.steps = {.average = request.average,
+                                    .averaged = request.averaged,
+                                    .time_filter = request.time_filter,
+                                    .filter = filter ? &*filter : nullptr,
+                                    .keeps_filtered = request.mixed || wants_averaged},
                           .find_mixed = request.mixed.has_value(),
                           .undistort = request.undistort,
                           .stray_kernel = {},
-                          .hdr = request.hdr,
-                          .elsewhere = request.frames_by,
-                          .wants_numbers = request.mixed || wants_averaged};
+                          .hdr = request.hdr};
+  if (preparation.steps.time_filter && filter) preparation.steps.time_filter->before_filter = true;
   if (!request.stray_light.empty())
     preparation.stray_kernel = read_stray_light(request.stray_light);
   return preparation;
 }
 
-const DecodingTable& table_of(const AnyDecoder& decoder) {
-  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
-}
-
-MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& decoder,
-                             const std::string& source, int height, int width)
-    : decoder_(decoder),
-      decode_by_(request.decode_by),
-      filter_by_(request.filter ? request.filter_by : nullptr),
-      table_(table_of(decoder)),
-      maps_(load_maps(request, height, width)),
-      mixed_(request.mixed) {
-  if (const auto& correction = table_.correction)
+PlaneCorrections corrections_of(const DecodeRequest& request, const DecodingTable& table,
+                                const std::string& source, int height, int width) {
+  PlaneCorrections corrections{load_maps(request, height, width), request.mixed};
+  if (const auto& correction = table.correction)
     if (correction->height != height || correction->width != width)
       throw IoError(source, fmt::format("found frames of {} x {} pixels; expected {} x {}, of "
                                         "which the table's depth correction is",
                                         height, width, correction->height, correction->width));
+  return corrections;
 }
 
-void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTarget& target,
-                           const DecodedView& decoded, const Progress& progress,
-                           const UnfilteredPixels& unfiltered) const {
-  if (decode_by_)
-    decode_by_(raw, decoded, progress);
-  else
-    std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
-  finish(raw, band, target, decoded, unfiltered);
-}
-
-void MappedDecoder::filter_and_decode(const RawView& raw, const Band& band,
-                                      const DecodeTarget& target, const DecodedView& decoded,
-                                      FilteredFrame* filtered, const Progress& progress,
-                                      const UnfilteredPixels& unfiltered) const {
-  filter_by_(raw, decoded, filtered, progress, unfiltered.mixed);
-  finish(filtered ? filtered->view() : raw, band, target, decoded, unfiltered);
-}
-
-void MappedDecoder::finish(const RawView& raw, const Band& band, const DecodeTarget& target,
-                           const DecodedView& decoded, const UnfilteredPixels& unfiltered) const {
-  const auto pixels = static_cast<std::size_t>(raw.pixels());
-  const std::size_t first =
-      static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width);
-  if (table_.correction)
-    apply(*table_.correction, table_.range_m, decoded, target.view.height, target.view.width, first,
-          pixels);
-  apply(maps_, table_.range_m, decoded, first, pixels);
-  if (mixed_) mark_mixed_pixels(table_, raw, *mixed_, decoded, maps_, {}, unfiltered);
-  if (target.as_z && decoded.depth_m)
-    turn_into_z(decoded.depth_m, band.first_row, band.rows, target.pixel_rays);
-}
-
-bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band& band,
+bool decode_next(PreparedFrames& input, const PlaneCorrections& corrections, const Band& band,
                  const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress) {
   const ProgressParts parts(progress, {input.effort(), input.decode_effort()});
-  const std::optional<RawView> raw = input.next(band.frame, parts[0]);
-  if (!raw) return false;
+  if (!input.next(band.frame, parts[0])) return false;
   const std::size_t first = target.first_pixel(band);
   const DecodedView decoded = planes.view().from(first);
-  const PixelStatus* const statuses = target.find_mixed ? decoded.status : nullptr;
-  if (decoder.filters()) {
-    const bool is_wanted = target.find_mixed || planes.has(DecodedPlane::averaged);
-    FilteredFrame* const filtered = is_wanted ? &input.filtered() : nullptr;
-    decode_filtered(
-        *raw,
-        [&](const UnfilteredPixels& unfiltered, const Progress& here) {
-          decoder.filter_and_decode(*raw, band, target, decoded, filtered, here, unfiltered);
-          if (filtered) planes.keep_averaged(filtered->view(), first);
-        },
-        statuses, parts[1]);
-    return true;
-  }
-  input.decode(
-      *raw, statuses,
-      [&](const RawView& numbers, const UnfilteredPixels& unfiltered, const Progress& here) {
-        decoder.decode(numbers, band, target, decoded, here, unfiltered);
-        planes.keep_averaged(numbers, first);
-      },
-      parts[1]);
+  FramePipeline& pipeline = input.pipeline();
+  decode_frame(pipeline, corrections, band.first_row, band.rows, decoded, parts[1]);
+  if (planes.has(DecodedPlane::averaged)) planes.keep_averaged(pipeline.numbers(), first);
+  if (target.as_z && decoded.depth_m)
+    turn_into_z(decoded.depth_m, band.first_row, band.rows, target.pixel_rays);
   return true;
 }
 

@@ -37,12 +37,14 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
   return RawFramesReader(request.raw, options);
 }
 
-DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
-                       const DecodingTable& table, const RawFramesReader& reader) {
+DecodeTarget target_of(const DecodeRequest& request, const DepthDecoder& decoder,
+                       const RawFramesReader& reader) {
+  const DecodingTable& table = decoder.table();
   const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
                                        reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
-  const Preparation preparation{.average = request.average, .hdr = request.hdr};
+  Preparation preparation{.hdr = request.hdr};
+  preparation.steps.average = request.average;
   const int frames = preparation.frames_of(reader.frames());
   require(request.hdr.empty() || reader.frames() % preparation.group() == 0, "hdr",
           fmt::format("{} exposures", request.hdr.size()), fmt::format("{}: not a multiple", held));
@@ -96,36 +98,33 @@ void check_range_fits(const std::filesystem::path& path, double range_m) {
                               range_m, largest_m));
 }
 
-/// What buffers take, whatever the rows, and for each row that is read and decoded at a time.
-struct BufferBytes {
-  double whole, row;
-};
-
 double bytes_of_planes(const DecodeTarget& target, int rows) {
   return static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width * rows;
 }
 
-BufferBytes buffer_bytes(const RawFramesReader& reader, const DecodeTarget& target,
-                         const Preparation& preparation) {
+/// Memory of all buffers; `row` is of rows that are read and decoded at a time.
+FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& target,
+                          const Preparation& preparation, const FramePipeline& pipeline) {
   const int height = target.view.height, width = target.view.width;
   const double row_planes = bytes_of_planes(target, 1);
   const bool in_rows = target.in_rows();
-  double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes() +
-                                     target.pixel_rays.bytes() +
-                                     (target.undistortion ? target.undistortion->bytes() : 0)) +
-                 preparation.frame_bytes(reader.frames(), height, width, reader.measurements()) +
-                 (in_rows ? 0.0 : row_planes * height);
-  double row =
-      (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
-      2.0 * static_cast<double>(reader.marked_row_bytes()) +
-      preparation.row_bytes(width, reader.measurements()) + (in_rows ? row_planes : 0.0);
-  if (preparation.needs_frames()) whole += row * height, row = 0.0;
-  return {whole, row};
+  const FrameMemory prepared = preparation.memory(height, width, reader.measurements()),
+                    processed = pipeline.memory(preparation.submitted_of(reader.frames()));
+  const auto of_files = static_cast<double>(
+      reader.bytes_in_memory() + target.writing_bytes() + target.pixel_rays.bytes() +
+      (target.undistortion ? target.undistortion->bytes() : 0));
+  FrameMemory all;
+  all.whole = of_files + prepared.whole + processed.whole + (in_rows ? 0.0 : row_planes * height);
+  all.row = (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
+            2.0 * static_cast<double>(reader.marked_row_bytes()) + prepared.row + processed.row +
+            (in_rows ? row_planes : 0.0);
+  if (!preparation.needs_frames()) return all;
+  return {.whole = all.whole + all.row * height, .row = 0.0};
 }
 
 /// How many rows are read and decoded at a time so that all buffers together fit.
 /// @throws IoError if a frame of this format, a frame to be filtered, or a single row, takes more
-int rows_at_a_time(const BufferBytes& bytes, const DecodeTarget& target,
+int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
                    const Preparation& preparation, double memory_bytes) {
   const int height = target.view.height, width = target.view.width;
   const auto [whole, row] = bytes;
@@ -136,7 +135,7 @@ int rows_at_a_time(const BufferBytes& bytes, const DecodeTarget& target,
             "frames of {} x {} pixels take {:.3g} MB to be {}written so; expected at most "
             "{:.3g} MB ({}fewer --outputs take less{}; --memory-mb allows more)",
             height, width, 1e-6 * (whole + row),
-            preparation.filter || preparation.time_filter ? "filtered and " : "",
+            preparation.steps.filter || preparation.steps.time_filter ? "filtered and " : "",
             1e-6 * memory_bytes,
             preparation.needs_frames()
                 ? "without filters, mixed and undistort they go in bands of rows; "
@@ -187,22 +186,21 @@ class Pace {
 
 /// Decodes the target's frames.
 void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
-                   const MappedDecoder& decoder, DecodeOutput& output, const Progress& progress,
-                   DecodedRecording& result) {
+                   FramePipeline& pipeline, const PlaneCorrections& corrections,
+                   DecodeOutput& output, const Progress& progress, DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
   DecodedPlanes planes(target.needed_planes(), target.in_rows() ? rows : height, width);
   const std::vector<Band> bands =
       bands_of(target.first_frame, target.first_frame + target.frames, height, rows);
   ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
-  PreparedFrames input([&] { return recorded.next(); }, decoder.table(), preparation,
-                       reader.frames());
+  PreparedFrames input([&] { return recorded.next(); }, preparation, pipeline, reader.frames());
   const Pace pace(progress, target);
   StatusCounts statuses;
   for (const Band& band : bands) {
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
-    decode_next(input, decoder, band, target, planes, here);
+    decode_next(input, corrections, band, target, planes, here);
     if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)
@@ -240,24 +238,27 @@ StatusCounts DecodedRecording::total() const {
   return sum;
 }
 
-void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                       const Progress& progress, DecodedRecording& result) {
   // All that can be wrong is found before the first frame.
   result = {};
+  const DepthDecoder& decoder = backend.decoder();
   check_request(request, decoder);
-  const DecodingTable& table = table_of(decoder);
+  const DecodingTable& table = decoder.table();
   const RawFramesReader reader = open_recording(request, table);
-  DecodeTarget asked = target_of(request, decoder, table, reader);
-  const MappedDecoder mapped(request, decoder, request.raw.front().string(), reader.height(),
-                             reader.width());
+  DecodeTarget asked = target_of(request, decoder, reader);
+  const PlaneCorrections corrections =
+      corrections_of(request, table, request.raw.front().string(), reader.height(), reader.width());
   check_inputs_are_kept(request, asked);
   check_range_fits(asked.path, table.range_m);
   DecodeOutput output(std::move(asked));
   const DecodeTarget& target = output.target();
-  const Preparation preparation = preparation_of(request);
-  const double memory_bytes = 1e6 * request.memory_mb;
-  const BufferBytes bytes = buffer_bytes(reader, target, preparation);
-  const int rows = rows_at_a_time(bytes, target, preparation, memory_bytes);
+  const std::optional<Filter> filter = filter_of(request, table);
+  const Preparation preparation = preparation_of(request, filter);
+  const std::unique_ptr<FramePipeline> pipeline =
+      backend.prepare(preparation.steps, reader.height(), reader.width());
+  const int rows = rows_at_a_time(buffer_memory(reader, target, preparation, *pipeline), target,
+                                  preparation, 1e6 * request.memory_mb);
 
   result.height = reader.height();
   result.width = reader.width();
@@ -266,15 +267,15 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   result.frame_count = target.frames;
   result.outputs = target.planes;
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
-  decode_frames(reader, preparation, rows, mapped, output, progress, result);
+  decode_frames(reader, preparation, rows, *pipeline, corrections, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
   if (const auto note = inconsistent_note(result.total())) result.notes.push_back(*note);
 }
 
-DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+DecodedRecording decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                                   const Progress& progress) {
   DecodedRecording result;
-  decode_recording(request, decoder, progress, result);
+  decode_recording(request, backend, progress, result);
   return result;
 }
 

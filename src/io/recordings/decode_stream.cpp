@@ -77,7 +77,7 @@ class StreamFrames {
 };
 
 /// What there is to a request for a stream.
-DecodeRequest checked(DecodeRequest request, const AnyDecoder& decoder) {
+DecodeRequest checked(DecodeRequest request, const DepthDecoder& decoder) {
   require(!request.raw_format.empty(), "raw_format", "none",
           "must be a file that describes the frames of the stream");
   require(!request.frame, "frame", request.frame.value_or(0), "goes with files only");
@@ -91,9 +91,11 @@ DecodeRequest checked(DecodeRequest request, const AnyDecoder& decoder) {
 
 }  // namespace
 
-void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const ReadStream& read,
+void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, const ReadStream& read,
                    const WriteStream& write, const Progress& progress, DecodedStream& result) {
   result = {};
+  const DepthDecoder& decoder = backend.decoder();
+  const DecodingTable& table = decoder.table();
   const DecodeRequest request = checked(asked, decoder);
   const RawFormat format = read_raw_format(request.raw_format);
   const std::string source = request.raw_format.string();
@@ -101,27 +103,29 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
   result.height = height;
   result.width = width;
   check_image_size(source, static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(width));
-  const int expected = table_of(decoder).measurements();
+  const int expected = table.measurements();
   if (format.output_measurements() != expected)
     throw IoError(source, fmt::format("the description gives {} measurements per pixel; expected "
                                       "{} as the code takes",
                                       format.output_measurements(), expected));
-  const MappedDecoder mapped(request, decoder, source, height, width);
+  const PlaneCorrections corrections = corrections_of(request, table, source, height, width);
   const PinholeView view = view_of_frames(request, source, width, height);
-  const auto& correction = mapped.table().correction;
   const DecodeTarget target{
       .planes = planes_to_write(request, decoder),
       .count_statuses = std::ranges::count(request.outputs, DecodedPlane::status) > 0,
       .find_mixed = request.mixed.has_value(),
-      .needs_signal = correction && correction->needs_signal(),
+      .needs_signal = table.correction && table.correction->needs_signal(),
       .as_z = request.kind == DepthKind::z,
       .view = view,
       .pixel_rays = request.kind == DepthKind::z ? rays_of(request.lens, view) : PixelRays(),
       .undistortion = undistortion_of(request, view)};
 
-  check_markers(mapped.table().marking.markers, format, source);
-  StreamFrames frames(read, format, mapped.table().marking);
-  PreparedFrames input([&] { return frames.next(); }, mapped.table(), preparation_of(request),
+  check_markers(table.marking.markers, format, source);
+  StreamFrames frames(read, format, table.marking);
+  const std::optional<Filter> filter = filter_of(request, table);
+  const Preparation preparation = preparation_of(request, filter);
+  const std::unique_ptr<FramePipeline> pipeline = backend.prepare(preparation.steps, height, width);
+  PreparedFrames input([&] { return frames.next(); }, preparation, *pipeline,
                        std::numeric_limits<int>::max());
   DecodedPlanes planes(target.needed_planes(), height, width);
   const auto start = std::chrono::steady_clock::now();
@@ -131,7 +135,7 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
     // A filter in time counts its frames up to an int's; nothing else looks at the number.
     const auto frame = static_cast<int>(
         std::min<std::int64_t>(result.frames, std::numeric_limits<int>::max() / 2));
-    if (!decode_next(input, mapped, {frame, 0, height}, target, planes, parts[0])) break;
+    if (!decode_next(input, corrections, {frame, 0, height}, target, planes, parts[0])) break;
     if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
     if (target.count_statuses) result.statuses.add(planes.statuses().pixels);
     for (const DecodedPlane plane : target.planes) write(planes.items(plane, height));

@@ -55,7 +55,7 @@ class TrialDecoder {
   int samples_;
   double bins_per_row_;
   std::unique_ptr<const Zncc> zncc_;
-  std::optional<AnyDecoder> other_;
+  std::unique_ptr<const DepthDecoder> other_;
 };
 
 }  // namespace tofsmith

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/time_filter.hpp"
+
+namespace tofsmith {
+
+/// Steps from recorded frames to the numbers that are decoded.
+struct FrameSteps {
+  int average = 1;        ///< recorded frames per mean; 1: frames are not averaged
+  double averaged = 1.0;  ///< equal measurements per recorded number, which is their mean already
+  std::optional<TimeFilterOptions> time_filter;  ///< of the means; none: not filtered in time
+  const Filter* filter = nullptr;  ///< spatial filter; must outlive the pipeline; null: none
+  bool keeps_filtered = false;     ///< whether numbers() is called
+};
+
+/// Host memory that a pipeline needs [bytes].
+struct FrameMemory {
+  double whole = 0.0;  ///< independent of the rows submitted at a time
+  double row = 0.0;    ///< for each row submitted at a time
+};
+
+/// Averages, filters and decodes the frames of one recording, one after another: submit() until a
+/// frame is ready, then decode() it. Made by FrameBackend::prepare().
+///
+/// Without filters, the same rows of consecutive frames may be submitted instead of whole frames.
+/// Not for several threads at once.
+class FramePipeline {
+ public:
+  FramePipeline(const DecodingTable& table, const FrameSteps& steps, int height, int width)
+      : table_(table), steps_(steps), height_(height), width_(width) {}
+  FramePipeline(const FramePipeline&) = delete;
+  FramePipeline& operator=(const FramePipeline&) = delete;
+  virtual ~FramePipeline() = default;
+
+  const DecodingTable& table() const { return table_; }
+  const FrameSteps& steps() const { return steps_; }
+  int height() const { return height_; }
+  int width() const { return width_; }
+
+  /// @param frames  to be submitted
+  virtual FrameMemory memory(int frames) const = 0;
+
+  /// Submits the next recorded frame.
+  /// @param raw             valid until the next submit() or submit_end()
+  /// @param completes_mean  the last frame of its mean; true without means
+  /// @return whether a frame is ready
+  /// @throws std::invalid_argument if the measurements or sizes differ; IoError if the device fails
+  virtual bool submit(const RawView& raw, bool completes_mean = true) = 0;
+  /// After the last recorded frame: completes a mean of fewer frames, or finishes the next frame
+  /// that waited for later ones. @return whether a frame is ready
+  virtual bool submit_end() = 0;
+
+  /// Filters and decodes the frame that is ready. May be repeated.
+  /// @param left_out  (H, W), or empty: as Filter::apply()
+  /// @throws Interrupted if progress says so; IoError if the device fails, with some planes written
+  virtual void decode(const DecodedView& decoded, const Progress& progress = {},
+                      const Image<std::uint8_t>& left_out = {}) = 0;
+  /// Returns the numbers ahead of the spatial filter, valid until the next submit().
+  virtual RawView measured() = 0;
+  /// Returns the numbers that are decoded, valid until the next submit() or decode(). With a
+  /// spatial filter, requires FrameSteps::keeps_filtered; filters the frame unless decode() did.
+  virtual RawView numbers(const Progress& progress = {}) = 0;
+
+ private:
+  const DecodingTable& table_;
+  FrameSteps steps_;
+  int height_, width_;
+};
+
+/// A decoder and the processor that runs it: the CPU or an OpenCL device. Safe to use from many
+/// threads at once.
+class FrameBackend {
+ public:
+  FrameBackend() = default;
+  FrameBackend(const FrameBackend&) = delete;
+  FrameBackend& operator=(const FrameBackend&) = delete;
+  virtual ~FrameBackend() = default;
+
+  virtual const DepthDecoder& decoder() const = 0;
+  /// Returns the name of the device, or "cpu".
+  virtual std::string device() const = 0;
+  /// @return a pipeline for frames of this size, valid while the backend lives
+  /// @throws std::invalid_argument if a step does not fit the decoder; IoError if the device fails
+  virtual std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
+                                                 int width) const = 0;
+};
+
+/// Returns the backend of the CPU. Backends of devices: frame_backend() (gpu.hpp).
+std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> decoder);
+
+/// Corrections of decoded planes.
+struct PlaneCorrections {
+  PixelMaps maps;                    ///< of whole frames, beside the table's depth correction
+  std::optional<MixedPixels> mixed;  ///< marks mixed pixels, in whole frames; none: not looked for
+};
+
+/// Decodes the frame that is ready, or rows of it, and corrects its planes. If a filtered frame has
+/// mixed pixels, it is filtered again without them, so that their neighbours take nothing from
+/// them.
+/// @param first_row, rows  that were submitted
+/// @param decoded          planes whose first value belongs to the first of the rows
+/// @throws as FramePipeline::decode()
+void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,
+                  int rows, const DecodedView& decoded, const Progress& progress = {});
+
+}  // namespace tofsmith

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/frame_pipeline.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/shared/working_threads.hpp"
+#include "decode/shared/frame_accumulator.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+class CpuPipeline final : public FramePipeline {
+ public:
+  CpuPipeline(const DepthDecoder& decoder, const FrameSteps& frame_steps, int height, int width)
+      : FramePipeline(decoder.table(), frame_steps, height, width),
+        decoder_(decoder),
+        accumulator_(decoder.table(), frame_steps) {}
+
+  FrameMemory memory(int recorded) const override {
+    FrameMemory memory = accumulator_.memory(recorded, height(), width());
+    if (const Filter* filter = steps().filter)
+      memory.whole += static_cast<double>(Filter::memory_bytes(
+          filter->options(), height(), width(), filter->measurements(), working_threads()));
+    return memory;
+  }
+
+  bool submit(const RawView& raw, bool completes_mean) override {
+    is_filtered_ = false;
+    ready_ = accumulator_.submit(raw, completes_mean);
+    return ready_.has_value();
+  }
+  bool submit_end() override {
+    is_filtered_ = false;
+    ready_ = accumulator_.submit_end();
+    return ready_.has_value();
+  }
+
+  void decode(const DecodedView& decoded, const Progress& progress,
+              const Image<std::uint8_t>& left_out) override {
+    if (!steps().filter) return decoder_.decode(measured(), decoded, progress);
+    constexpr double effort = 8.0;  // relative to decoding, roughly
+    const ProgressParts parts(progress, {effort, 1.0});
+    filter_frame(parts[0], left_out);
+    decoder_.decode(filtered_.view(), decoded, parts[1]);
+  }
+  RawView measured() override { return ready_.value(); }
+  RawView numbers(const Progress& progress) override {
+    if (!steps().filter) return measured();
+    if (!is_filtered_) filter_frame(progress, {});
+    return filtered_.view();
+  }
+
+ private:
+  void filter_frame(const Progress& progress, const Image<std::uint8_t>& left_out) {
+    steps().filter->apply(measured(), filtered_, progress, left_out);
+    is_filtered_ = true;
+  }
+
+  const DepthDecoder& decoder_;
+  FrameAccumulator accumulator_;
+  std::optional<RawView> ready_;
+  FilteredFrame filtered_;
+  bool is_filtered_ = false;
+};
+
+class CpuBackend final : public FrameBackend {
+ public:
+  explicit CpuBackend(std::unique_ptr<const DepthDecoder> decoder) : decoder_(std::move(decoder)) {}
+
+  const DepthDecoder& decoder() const override { return *decoder_; }
+  std::string device() const override { return "cpu"; }
+  std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
+                                         int width) const override {
+    return std::make_unique<CpuPipeline>(*decoder_, steps, height, width);
+  }
+
+ private:
+  std::unique_ptr<const DepthDecoder> decoder_;
+};
+
+/// Filters and decodes once, and corrects the planes.
+void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, std::size_t first,
+                 std::size_t pixels, const DecodedView& decoded, const UnfilteredPixels& unfiltered,
+                 const Progress& progress) {
+  pipeline.decode(decoded, progress, unfiltered.mixed);
+  const DecodingTable& table = pipeline.table();
+  if (table.correction)
+    apply(*table.correction, table.range_m, decoded, pipeline.height(), pipeline.width(), first,
+          pixels);
+  apply(corrections.maps, table.range_m, decoded, first, pixels);
+  if (corrections.mixed)
+    mark_mixed_pixels(table, pipeline.numbers(), *corrections.mixed, decoded, corrections.maps, {},
+                      unfiltered);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> decoder) {
+  return std::make_unique<CpuBackend>(std::move(decoder));
+}
+
+void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,
+                  int rows, const DecodedView& decoded, const Progress& progress) {
+  const auto width = static_cast<std::size_t>(pipeline.width()),
+             first = static_cast<std::size_t>(first_row) * width,
+             pixels = static_cast<std::size_t>(rows) * width;
+  if (!pipeline.steps().filter || !corrections.mixed)
+    return decode_once(pipeline, corrections, first, pixels, decoded, {}, progress);
+  const ProgressParts parts(progress, {1.0, 1.0});
+  const RawView measured = pipeline.measured();
+  UnfilteredPixels unfiltered{.measured = &measured};
+  decode_once(pipeline, corrections, first, pixels, decoded, unfiltered, parts[0]);
+  const auto is_mixed = [](PixelStatus status) { return status == PixelStatus::mixed; };
+  const PixelStatus* const statuses = decoded.status;
+  if (!statuses || std::none_of(statuses, statuses + pixels, is_mixed)) return;
+  unfiltered.mixed = Image<std::uint8_t>(rows, pipeline.width());
+  std::transform(statuses, statuses + pixels, unfiltered.mixed.pixels.begin(), is_mixed);
+  decode_once(pipeline, corrections, first, pixels, decoded, unfiltered, parts[1]);
+}
+
+}  // namespace tofsmith
