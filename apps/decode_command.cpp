@@ -168,70 +168,68 @@ std::vector<std::string> all_plane_names() {
   return names;
 }
 
-}  // namespace
-
-void add_decode_command(CLI::App& app, Session& session) {
-  auto arguments = std::make_shared<DecodeArguments>();
-  CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
+/// Options of the recording and its code.
+void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
   command
-      ->add_option(
-          "RAW", arguments->raw,
+      .add_option(
+          "RAW", arguments.raw,
           "raw frames (.npy .npz .h5): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
           "K files, one a measurement in their order, (H,W) or (F,H,W) each; or - for frames "
           "of --raw-format from standard input, with -o -")
       ->required();
   CLI::Option* const layout =
       command
-          ->add_option(
-              "--layout", arguments->layout,
+          .add_option(
+              "--layout", arguments.layout,
               "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
           ->check(one_of({"interleaved", "planar"}))
           ->capture_default_str();
   CLI::Option* const dataset =
       command
-          ->add_option("--dataset", arguments->request.dataset,
-                       "which array of an .npz, or data set of an .h5, RAW is (the one called "
-                       "raw, or the only one)")
+          .add_option("--dataset", arguments.request.dataset,
+                      "which array of an .npz, or data set of an .h5, RAW is (the one called "
+                      "raw, or the only one)")
           ->group(for_experts);
   command
-      ->add_option("--raw-format", arguments->raw_format,
-                   "RAW is a sensor's dump without header, as this .raw.toml file describes it "
-                   "(docs/raw_formats.md)")
+      .add_option("--raw-format", arguments.raw_format,
+                  "RAW is a sensor's dump without header, as this .raw.toml file describes it "
+                  "(docs/raw_formats.md)")
       ->excludes(layout)
       ->excludes(dataset);
   command
-      ->add_option(
-          "--code", arguments->code,
+      .add_option(
+          "--code", arguments.code,
           "the code that the camera used: a family or a file; or a measured table (.npz .npy .csv)")
       ->required();
-  arguments->camera.add_to(*command);
-  arguments->camera.add_temperature_to(*command);
-  arguments->taps.add_to(*command);
-  arguments->table.add_to(*command);
-  command->add_option("--offset-map", arguments->offset_map,
-                      "how much too far each pixel decodes in metres (.npy .npz .exr .pfm), taken "
-                      "off its depth; NaN marks a dead pixel");
+}
+
+/// Options of maps and stray light.
+void add_map_options(CLI::App& command, DecodeArguments& arguments) {
+  command.add_option("--offset-map", arguments.offset_map,
+                     "how much too far each pixel decodes in metres (.npy .npz .exr .pfm), taken "
+                     "off its depth; NaN marks a dead pixel");
   command
-      ->add_option("--offset-m", arguments->request.offset_m,
-                   "how much too far every pixel decodes in metres, taken off its depth")
+      .add_option("--offset-m", arguments.request.offset_m,
+                  "how much too far every pixel decodes in metres, taken off its depth")
       ->capture_default_str()
       ->group(for_experts);
   command
-      ->add_option("--gain-map", arguments->gain_map,
-                   "response of each pixel over that of a usual one, taken out of signal and "
-                   "ambient; NaN marks a dead pixel")
+      .add_option("--gain-map", arguments.gain_map,
+                  "response of each pixel over that of a usual one, taken out of signal and "
+                  "ambient; NaN marks a dead pixel")
       ->group(for_experts);
   command
-      ->add_option("--stray-light", arguments->stray_light,
-                   "light that the lens scatters, of calibrate stray-light (.npy .npz .exr "
-                   ".pfm), taken off the raw numbers before all else")
+      .add_option("--stray-light", arguments.stray_light,
+                  "light that the lens scatters, of calibrate stray-light (.npy .npz .exr "
+                  ".pfm), taken off the raw numbers before all else")
       ->group(for_experts);
-  arguments->method.add_to(*command);
-  arguments->multipath.add_to(*command);
-  arguments->device.add_to(*command);
+}
+
+/// Options of the planes to write.
+void add_plane_options(CLI::App& command, DecodeArguments& arguments) {
   command
-      ->add_option(
-          "--outputs", arguments->planes,
+      .add_option(
+          "--outputs", arguments.planes,
           "planes to write: depth,signal,ambient,confidence,deviation,status (by default as "
           "many as OUTPUT holds), bin, averaged (measurements added), residual (chi-square per "
           "degree of freedom); of two-return and tail also "
@@ -240,99 +238,131 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->delimiter(',')
       ->check(one_of(all_plane_names()));
   command
-      ->add_option(
-          "--kind", arguments->kind,
+      .add_option(
+          "--kind", arguments.kind,
           "depth to write: radial distance, as the camera measures it, or z along the axis "
           "(what simulate and demo take a depth image for); .ply and .pcd hold points either way")
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
-  arguments->filter.add_to(*command);
+}
+
+/// Options of the frames: which ones, and how they are combined.
+void add_frame_options(CLI::App& command, DecodeArguments& arguments) {
   command
-      ->add_option("--mixed", arguments->mixed,
-                   "find pixels at edges of depth that see two surfaces: label (status mixed, the "
-                   "depth stays), snap (to the depth of the one that gives more light) or drop (no "
-                   "depth) (off)")
+      .add_option("--mixed", arguments.mixed,
+                  "find pixels at edges of depth that see two surfaces: label (status mixed, the "
+                  "depth stays), snap (to the depth of the one that gives more light) or drop (no "
+                  "depth) (off)")
       ->check(one_of(mixed_words()));
   command
-      ->add_option("--average", arguments->request.average,
-                   "decode the means of so many consecutive frames; the last one is of those left")
+      .add_option("--average", arguments.request.average,
+                  "decode the means of so many consecutive frames; the last one is of those left")
       ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
       ->capture_default_str();
   command
-      ->add_option("--hdr", arguments->request.hdr,
-                   "RAW holds groups of frames at these exposures over the shortest, which is the "
-                   "camera's, such as 1,4,16: each group is decoded as one frame, of what is not "
-                   "saturated, by its noise")
+      .add_option("--hdr", arguments.request.hdr,
+                  "RAW holds groups of frames at these exposures over the shortest, which is the "
+                  "camera's, such as 1,4,16: each group is decoded as one frame, of what is not "
+                  "saturated, by its noise")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->group(for_experts);
   command
-      ->add_option("--averaged", arguments->request.averaged,
-                   "RAW holds means of so many equal measurements already: their noise is so much "
-                   "smaller")
+      .add_option("--averaged", arguments.request.averaged,
+                  "RAW holds means of so many equal measurements already: their noise is so much "
+                  "smaller")
       ->check(positive_number(1e9))
       ->capture_default_str()
       ->group(for_experts);
   command
-      ->add_option(
-          "--frame", arguments->request.frame,
+      .add_option(
+          "--frame", arguments.request.frame,
           "decode this frame only, counted from 0; with --average this mean; with --time-filter "
           "frames before it count in")
       ->check(number_from_0_on())
       ->group(for_experts);
+}
+
+/// Thresholds of the statuses.
+void add_status_options(CLI::App& command, DecodeArguments& arguments) {
   command
-      ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,
-                   "signals below this many standard deviations are marked low_signal")
+      .add_option("--low-signal-sigma", arguments.options.low_signal_sigma,
+                  "signals below this many standard deviations are marked low_signal")
       ->capture_default_str()
       ->group(for_experts);
   command
-      ->add_option("--min-confidence", arguments->options.min_confidence,
-                   "pixels below are marked ambiguous")
+      .add_option("--min-confidence", arguments.options.min_confidence,
+                  "pixels below are marked ambiguous")
       ->capture_default_str()
       ->group(for_experts);
   command
-      ->add_option("--false-alarm-rate", arguments->options.false_alarm_rate,
-                   "share of consistent pixels that are marked inconsistent; 0: no pixel is")
+      .add_option("--false-alarm-rate", arguments.options.false_alarm_rate,
+                  "share of consistent pixels that are marked inconsistent; 0: no pixel is")
       ->capture_default_str()
       ->group(for_experts);
   command
-      ->add_option("--model-error-percent", arguments->options.model_error_percent,
-                   "error of the camera model, such as wiggling, that is not marked inconsistent, "
-                   "in percent of the signal's part of the measurements; a larger one of the table "
-                   "replaces it")
+      .add_option("--model-error-percent", arguments.options.model_error_percent,
+                  "error of the camera model, such as wiggling, that is not marked inconsistent, "
+                  "in percent of the signal's part of the measurements; a larger one of the table "
+                  "replaces it")
       ->capture_default_str()
       ->group(for_experts);
+}
+
+/// Options of the output.
+void add_output_options(CLI::App& command, DecodeArguments& arguments) {
   command
-      ->add_option(
-          "-o,--output", arguments->output,
+      .add_option(
+          "-o,--output", arguments.output,
           "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd; several frames get numbers; - "
           "writes the --outputs (depth) of each frame to standard output, as they are in "
           ".npy without its header")
       ->required();
   command
-      ->add_option("--rays", arguments->rays,
-                   "rays of points and z as the maker gives them, in place of the camera's "
-                   "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions")
+      .add_option("--rays", arguments.rays,
+                  "rays of points and z as the maker gives them, in place of the camera's "
+                  "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions")
       ->group(for_experts);
   command
-      ->add_flag("--all-points", arguments->request.all_points,
-                 "in .ply and .pcd also points of pixels that are not ok")
+      .add_flag("--all-points", arguments.request.all_points,
+                "in .ply and .pcd also points of pixels that are not ok")
       ->group(for_experts);
   command
-      ->add_flag("--undistort", arguments->request.undistort,
-                 "planes without the distortion of the camera's lens: each pixel takes the values "
-                 "of the nearest one; those that the lens does not see are invalid")
+      .add_flag("--undistort", arguments.request.undistort,
+                "planes without the distortion of the camera's lens: each pixel takes the values "
+                "of the nearest one; those that the lens does not see are invalid")
       ->group(for_experts);
-  command->add_flag("--stack", arguments->request.stack,
-                    "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
-                    "plane but depth in a file of its own, NAME-PLANE.npy");
+  command.add_flag("--stack", arguments.request.stack,
+                   "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
+                   "plane but depth in a file of its own, NAME-PLANE.npy");
   command
-      ->add_option("--memory-mb", arguments->request.memory_mb,
-                   "memory for frames under way [MB]; larger frames go in bands of rows. The "
-                   "program itself takes some 50 MB more")
+      .add_option("--memory-mb", arguments.request.memory_mb,
+                  "memory for frames under way [MB]; larger frames go in bands of rows. The "
+                  "program itself takes some 50 MB more")
       ->check(positive_number(1e9))
       ->capture_default_str()
       ->group(for_experts);
+}
+
+}  // namespace
+
+void add_decode_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<DecodeArguments>();
+  CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
+  add_recording_options(*command, *arguments);
+  arguments->camera.add_to(*command);
+  arguments->camera.add_temperature_to(*command);
+  arguments->taps.add_to(*command);
+  arguments->table.add_to(*command);
+  add_map_options(*command, *arguments);
+  arguments->method.add_to(*command);
+  arguments->multipath.add_to(*command);
+  arguments->device.add_to(*command);
+  add_plane_options(*command, *arguments);
+  arguments->filter.add_to(*command);
+  add_frame_options(*command, *arguments);
+  add_status_options(*command, *arguments);
+  add_output_options(*command, *arguments);
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 
