@@ -5,7 +5,7 @@ command line, which is installed inside the package, in _prefix/.
 
 Environment variables:
 TOFSMITH_CMAKE_BUILD    the build directory (build/pip)
-TOFSMITH_CMAKE_OPTIONS  further options for CMake, such as "-DTOFSMITH_USE_MPI=OFF"
+TOFSMITH_CMAKE_OPTIONS  further options for CMake, such as "-DTOFSMITH_USE_OPENCL=OFF"
 """
 
 import os

@@ -192,7 +192,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     is_done = true;
-    if (interrupted() && !session.follows) throw Interrupted();
+    if (interrupted()) throw Interrupted();
     if (list_commands) fmt::print("{}\n", command_listing(app).dump(1));
     if (list_commands || !app.get_subcommands().empty()) return finish_output();
     fmt::print(stderr, "{}", app.help());

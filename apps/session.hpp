@@ -29,7 +29,6 @@ UsageError wrong_option(const std::invalid_argument& error);
 struct Session {
   bool json = false;                ///< one JSON document on stdout and nothing else there
   bool force = false;               ///< overwrite output files
-  bool follows = false;             ///< another process of the same job speaks for this one
   bool tells_what_is_kept = false;  ///< the command says what an interrupt leaves, if anything
   int threads = 0;                  ///< 0 = every core
   std::string command_line;         ///< as typed, for reports

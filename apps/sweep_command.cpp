@@ -7,8 +7,6 @@
 #include <string>
 
 #include "commands.hpp"
-#include "interrupt.hpp"
-#include "number_checks.hpp"
 #include "session.hpp"
 #include "sweep_page.hpp"
 #include "sweep_shard.hpp"
@@ -27,7 +25,6 @@ struct SweepArguments {
   std::string sweep, store, report, shard;
   std::vector<std::string> exports;
   bool status = false, yes = false;
-  SweepStoreOptions store_options;
 };
 
 struct MergeArguments {
@@ -108,21 +105,20 @@ void print(const SweepArguments& arguments, std::int64_t items, const SweepCount
   if (!arguments.report.empty()) session.say("report: " + arguments.report);
 }
 
-void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) {
+void run(const SweepArguments& arguments, Session& session) {
   if (arguments.sweep.empty()) throw UsageError("SWEEP is required");
   if (arguments.store.empty()) throw UsageError("--store is required");
-  SweepRunOptions options{.shard = parse_shard(arguments.shard),
-                          .lease_s = arguments.store_options.lease_s};
+  const SweepRunOptions options{.shard = parse_shard(arguments.shard)};
   const OutputPolicy policy = check_outputs(arguments, session);
   const WorkList list = read_list(arguments);
   const Progress progress = terminal_progress("sweep");
   const std::vector<std::string> keys = list.keys(progress);
-  SweepStore store = arguments.status ? SweepStore::read(arguments.store)
-                                      : SweepStore::open(arguments.store, arguments.store_options);
+  SweepStore store =
+      arguments.status ? SweepStore::read(arguments.store) : SweepStore::open(arguments.store);
   SweepRun done;
   if (!arguments.status) {
     session.directory = arguments.store;
-    done = run_sweep(list, keys, store, options, progress, &ranks);
+    done = run_sweep(list, keys, store, options, progress);
   }
   report(progress, 1.0, "done");
   const SweepCounts counts = store.count(keys);
@@ -133,23 +129,7 @@ void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) 
                                          done.failures.size(), list.size(), done.failures.front()));
 }
 
-void follow(const std::string& sweep, Session& session, SweepRanks& ranks) {
-  session.follows = true;
-  work_for_sweep(
-      ranks, [&] { return WorkList(read_sweep_toml(sweep)); },
-      [](double, std::string_view) { return !interrupted(); });
-}
-
-/// Under mpirun every rank comes here, and rank 0 leads: it alone prints, reads and writes.
-void run(const SweepArguments& arguments, Session& session) {
-  SweepRanks ranks = SweepRanks::join(terminal_progress("sweep"));
-  if (ranks.rank() != 0) return follow(arguments.sweep, session, ranks);
-  lead(arguments, session, ranks);
-}
-
 void merge(const MergeArguments& arguments, Session& session) {
-  SweepRanks ranks = SweepRanks::join();
-  if (ranks.rank() != 0) return follow("", session, ranks);  // there is no work to share
   session.check_output(arguments.output);
   AtomicFile file(arguments.output, session.output_policy());
   try {
@@ -183,11 +163,6 @@ void add_sweep_command(CLI::App& app, Session& session) {
   command->add_option("--report", arguments->report, "write a page (.html)");
   command->add_option("--shard", arguments->shard,
                       "i/n: compute only the i-th of n parts, to merge their stores later");
-  command
-      ->add_option("--lease", arguments->store_options.lease_s,
-                   "seconds of silence after which a worker of another machine counts as dead")
-      ->check(positive_number(1e6))
-      ->capture_default_str();
   command->add_flag("--yes", arguments->yes, "go on even with more than 1e7 items");
 
   auto merging = std::make_shared<MergeArguments>();

@@ -75,18 +75,8 @@ if(TOFSMITH_HAS_report)
   find_package(ZLIB REQUIRED)
 endif()
 
-set(TOFSMITH_HAS_MPI OFF)
 if(TOFSMITH_HAS_sweep)
   find_package(SQLite3 REQUIRED)
-  if(TOFSMITH_USE_MPI)
-    set(MPI_CXX_SKIP_MPICXX ON)  # the C interface is used
-    find_package(MPI COMPONENTS CXX)  # can be missing
-    if(MPI_CXX_FOUND)
-      set(TOFSMITH_HAS_MPI ON)
-    else()
-      message(STATUS "MPI not found: sweeps run in one process a machine")
-    endif()
-  endif()
 endif()
 
 if(TOFSMITH_BUILD_APPS OR TOFSMITH_BUILD_BENCHMARKS)

@@ -5,11 +5,10 @@
 # Makes the atlas of best codes, src/design/atlas/atlas.txt: designs a code for each of its cameras
 # by sweeps (scripts/atlas/*.toml) that keep what is finished, so stop it whenever you like and run
 # it again. Entries that are there stay where nothing better was found: another --seed is another
-# pass. MPI's ranks work together as in any sweep.
+# pass.
 #
 #   scripts/atlas.sh [--shard 3/8] [--seed 2] [STORES]       a folder; build-atlas without one
 #   scripts/atlas.sh --collect [STORES]                      write what is finished, compute nothing
-#   TOFSMITH='mpirun -n 64 tofsmith' scripts/atlas.sh        by many processes
 #
 # Shards have stores of their own; `tofsmith sweep merge` makes one of them.
 set -euo pipefail

@@ -67,10 +67,9 @@ packages_lab=(
 # Debian packages of all of it, with every optional feature.
 packages_package=(
   "${packages_python[@]}"
-  libopenmpi-dev             # sweeps of several ranks
   dpkg-dev file              # what a package depends on
 )
-# scripts/wheel.sh: a wheel without MPI and OpenCL.
+# scripts/wheel.sh: a wheel without OpenCL.
 packages_wheel=(
   "${packages_python[@]}"
   patchelf
@@ -78,7 +77,6 @@ packages_wheel=(
 packages_test=(
   "${packages_python[@]}"
   libgtest-dev libgmock-dev
-  libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   pocl-opencl-icd                            # OpenCL on the processor
   python3-pytest mypy                        # the Python package
   python3-pyvisa python3-pyvisa-py           # uploads to generators
@@ -106,6 +104,11 @@ packages_check=(
   clang-format clang-tidy shellcheck
 )
 
+# scripts/test_executors.sh.
+packages_executors=(
+  python3-distributed python3-mpi4py openmpi-bin
+  slurmctld slurmd slurm-client munge
+)
 # scripts/fuzz.sh.
 packages_fuzz=(
   "${packages_build[@]}"

@@ -42,7 +42,7 @@ if [[ "$4" == all ]]; then cmake --build "$2"; fi
 ctest --test-dir "$2" --output-on-failure --no-tests=error --parallel "$(nproc)" -L "${4/#all/.}"'
 
 # Packages that a component must do without.
-forbidden=(tomlplusplus OpenEXR PNG embree OpenCL SQLite3 MPI CLI11 pybind11)
+forbidden=(tomlplusplus OpenEXR PNG embree OpenCL SQLite3 CLI11 pybind11)
 
 for component in "${components[@]}"; do
   mapfile -t packages < <(packages_of "$component")

@@ -10,7 +10,7 @@
 #
 #   --python VERSION   only the wheel for this Python, such as 3.13
 #
-# Wheels have neither OpenCL nor MPI, whose libraries belong to the system that they run on. The page of
+# Wheels do not contain OpenCL, whose libraries belong to the system that they run on. The page of
 # `tofsmith lab` is included if scripts/lab.sh has built it.
 set -euo pipefail
 
@@ -67,7 +67,7 @@ for entry in "${releases[@]}"; do
   [[ -z "$wanted" || "$wanted" == "$version" ]] || continue
   dpkg --compare-versions "$version" ge "$own" || continue
   echo "Building the wheel for Python $version in $build"
-  options=(-DTOFSMITH_WERROR=ON -DBUILD_SHARED_LIBS=ON -DTOFSMITH_USE_OPENCL=OFF -DTOFSMITH_USE_MPI=OFF)
+  options=(-DTOFSMITH_WERROR=ON -DBUILD_SHARED_LIBS=ON -DTOFSMITH_USE_OPENCL=OFF)
   bundle=()
   if [[ "$version" != "$own" ]]; then
     headers=$build/python$version

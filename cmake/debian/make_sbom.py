@@ -31,7 +31,7 @@ OBJECTS = {
 # Headers of C: they declare what shared libraries hold, and nothing of them is compiled in.
 DECLARATIONS = re.compile(
     r"libc6-dev|linux-libc-dev|libcrypt-dev|libpng-dev|zlib1g-dev|libzip-dev|libhdf5-dev|"
-    r"libsqlite3-dev|libmd-dev|libopenmpi-dev|libfftw3-dev|libpython3\.\d+-dev|"
+    r"libsqlite3-dev|libmd-dev|libfftw3-dev|libpython3\.\d+-dev|"
     r"opencl-c-headers|python3-numpy|python3-numpy-dev")
 DISTRIBUTION = platform.freedesktop_os_release().get("VERSION_CODENAME", "debian")
 SPDX_NAMES = {"Expat": "MIT", "BSD-2-clause": "BSD-2-Clause", "BSD-3-clause": "BSD-3-Clause"}

@@ -1,11 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <pybind11/stl.h>
+
+#include <optional>
+#include <stdexcept>
+#include <tuple>
 
 #include "bindings.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "shared_thread_limit.hpp"
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith::python {
 
@@ -84,9 +92,85 @@ py::dict read(const std::string& sweep, bool is_text, const std::string& path,
   return stored_dict(stored, list.size());
 }
 
+using ItemTuple = std::tuple<std::int64_t, std::string>;
+using OutcomeTuple = std::tuple<std::string, std::string, std::string, double>;
+
+std::vector<OutcomeTuple> compute(const WorkList& list, const std::vector<ItemTuple>& items,
+                                  int threads) {
+  const py::gil_scoped_release release;
+  std::vector<ClaimedItem> claimed;
+  for (const auto& [item, key] : items) claimed.push_back({item, key});
+  const SharedThreadLimit limit(threads);
+  std::vector<OutcomeTuple> outcomes;
+  for (ItemOutcome& outcome : compute_items(list, claimed))
+    outcomes.emplace_back(std::move(outcome.key), std::move(outcome.result),
+                          std::move(outcome.message), outcome.seconds);
+  return outcomes;
+}
+
+/// A sweep with its store and the queue of its unfinished items, which others compute.
+class BoundSweepRun {
+ public:
+  BoundSweepRun(const std::string& sweep, bool is_text, const std::string& path,
+                const py::object& callback)
+      : list_(list_of(sweep, is_text)) {
+    without_gil(callback, [&](const Progress& progress) {
+      keys_ = list_.keys(progress);
+      store_.emplace(SweepStore::open(path));
+      queue_.emplace(list_, keys_, *store_, SweepShard{}, progress);
+      return 0;
+    });
+  }
+
+  SweepQueue& queue() {
+    if (!queue_) throw std::logic_error("the run was released");
+    return *queue_;
+  }
+  std::vector<ItemTuple> claim(std::size_t max_items) {
+    const py::gil_scoped_release release;
+    std::vector<ItemTuple> items;
+    for (ClaimedItem& claimed : queue().claim(max_items))
+      items.emplace_back(claimed.item, std::move(claimed.key));
+    return items;
+  }
+  void finish(const std::vector<OutcomeTuple>& tuples) {
+    const py::gil_scoped_release release;
+    std::vector<ItemOutcome> outcomes;
+    for (const auto& [key, result, message, seconds] : tuples)
+      outcomes.push_back({key, result, message, seconds});
+    queue().finish(outcomes);
+  }
+  void release() { queue_.reset(); }
+  py::dict results() { return stored_dict(look(list_, keys_, *store_), list_.size()); }
+
+ private:
+  WorkList list_;
+  std::vector<std::string> keys_;
+  std::optional<SweepStore> store_;
+  std::optional<SweepQueue> queue_;
+};
+
 }  // namespace
 
 void bind_sweep(py::module_& module) {
+  py::class_<WorkList>(module, "SweepList")
+      .def(py::init([](const std::string& text, const std::string& source_name) {
+        return WorkList(parse_sweep_toml(text, source_name));
+      }))
+      .def("compute", &compute);
+  py::class_<BoundSweepRun>(module, "SweepRun")
+      .def(py::init<const std::string&, bool, const std::string&, const py::object&>())
+      .def_property_readonly("size", [](BoundSweepRun& run) { return run.queue().size(); })
+      .def_property_readonly("left", [](BoundSweepRun& run) { return run.queue().left(); })
+      .def_property_readonly("settled", [](BoundSweepRun& run) { return run.queue().settled(); })
+      .def("claim", &BoundSweepRun::claim)
+      .def("finish", &BoundSweepRun::finish)
+      .def("release", &BoundSweepRun::release)
+      .def("results", &BoundSweepRun::results);
+  module.def("worker_build", [] {
+    return std::pair(fmt::format("{} (results {})", TOFSMITH_VERSION, sweep_result_version),
+                     dispatch_target());
+  });
   module.def("run_sweep", &run);
   module.def("read_sweep", &read);
 }

@@ -5,9 +5,10 @@
 from __future__ import annotations
 
 import csv
+import functools
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Optional
 
@@ -16,6 +17,7 @@ import numpy.typing as npt
 
 from . import _check, _tofsmith
 from ._check import Path, Progress
+from ._executor import Dispatcher, ExecutorLike, require_build
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,61 @@ def _of_store(values: dict[str, Any]) -> SweepResults:
     return SweepResults(_texts_joined(values.pop("arrays")), **values)
 
 
-def run_sweep(sweep: Path, store: Path, *, progress: Progress = None) -> SweepResults:
-    """Finishes all items of a sweep that are unfinished, with all processes that work on the store.
+#: Place in the list, and key.
+_Item = tuple[int, str]
+#: Key, result, message of a failure, and seconds.
+_Outcome = tuple[str, str, str, float]
+
+
+@functools.lru_cache(maxsize=2)
+def _list_in_worker(text: str, source_name: str) -> _tofsmith.SweepList:
+    return _tofsmith.SweepList(text, source_name)
+
+
+def _compute_items(
+    text: str, source_name: str, build: tuple[str, str], threads: int, items: Sequence[_Item]
+) -> Sequence[_Outcome]:
+    """Runs in a worker of an executor."""
+    require_build(build)
+    return _list_in_worker(text, source_name).compute(items, threads)
+
+
+def _run_on_executor(
+    run: _tofsmith.SweepRun, sweep: tuple[str, bool], executor: ExecutorLike, threads: int,
+    progress: Progress
+) -> list[str]:
+    """Returns the messages of items that failed."""
+    failures: list[str] = []
+    text, source_name = sweep[0], os.path.abspath("sweep")
+    if not sweep[1]:
+        source_name = os.path.abspath(sweep[0])
+        with open(source_name, encoding="utf-8") as file:
+            text = file.read()
+
+    def keep(outcomes: Sequence[_Outcome]) -> None:
+        run.finish(outcomes)
+        failures.extend(message for _, _, message, _ in outcomes if message)
+
+    def report() -> None:
+        step = f"{run.settled} of {run.size} items"
+        if progress and progress(run.settled / run.size, step) is False:
+            raise _tofsmith.Interrupted("interrupted")
+
+    compute = functools.partial(
+        _compute_items, text, source_name, _tofsmith.worker_build(), threads)
+    Dispatcher(executor, compute, run.claim, lambda: run.left, keep).run(report)
+    return failures
+
+
+def run_sweep(
+    sweep: Path,
+    store: Path,
+    *,
+    executor: Optional[ExecutorLike] = None,
+    threads: int = 1,
+    progress: Progress = None,
+) -> SweepResults:
+    """Computes all unfinished items of a sweep, on this machine or on an executor.
 
     Parameters
     ----------
@@ -94,17 +149,42 @@ def run_sweep(sweep: Path, store: Path, *, progress: Progress = None) -> SweepRe
         A TOML file, or its text (with a line break); see docs/sweeps.md.
     store : str or path
         SQLite file of results, made if it is missing; what is finished there is not computed again.
+    executor : concurrent.futures.Executor or a function that starts one, optional
+        Computes the items, in pieces of about one second: a process pool, Dask's
+        ``Client.get_executor()``, ``mpi4py.futures.MPIPoolExecutor``. Its workers need the same
+        version of tofsmith and the files that the sweep names. Lost pieces are repeated up to
+        three times. A function is called again when a pool breaks, because a process pool that
+        lost a worker cannot be used any more. None: all cores of this machine.
+    threads : int, optional
+        Threads of each worker of the executor; 0: as many as there are cores.
     progress : callable, optional
         What is finished when it stops the work is kept.
 
     Raises
     ------
     OSError
-        For what the sweep's file may not say, with line and column, or if the store fails.
+        For errors in the sweep's file, with line and column, or if the store fails.
+    RuntimeError
+        If the executor breaks or a piece fails four times. Finished items are kept.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ProcessPoolExecutor  # doctest: +SKIP
+    >>> with ProcessPoolExecutor(8) as pool:  # doctest: +SKIP
+    ...     results = run_sweep("sweep.toml", "store.sqlite", executor=pool)
     """
-    source, is_text = _source(sweep)
+    source = _source(sweep)
+    path = _check.path(store, "store")
     callback = _check.progress(progress)
-    return _of_store(_tofsmith.run_sweep(source, is_text, _check.path(store, "store"), callback))
+    if executor is None:
+        return _of_store(_tofsmith.run_sweep(*source, path, callback))
+    _check.whole(threads, "threads", 0, 65536)
+    run = _tofsmith.SweepRun(*source, path, callback)
+    try:
+        failures = _run_on_executor(run, source, executor, threads, callback)
+    finally:
+        run.release()
+    return _of_store(run.results() | {"failures": failures})
 
 
 def read_sweep(sweep: Path, store: Path, *, progress: Progress = None) -> SweepResults:

@@ -27,7 +27,6 @@ std::vector<std::string> compiled_targets() {
 std::vector<std::string> compiled_features() {
   std::vector<std::string> names;
   if (TOFSMITH_BUILD_TBB) names.emplace_back("TBB");
-  if (TOFSMITH_BUILD_MPI) names.emplace_back("MPI");
   if (TOFSMITH_BUILD_FFTW) names.emplace_back("FFTW");
   return names;
 }

@@ -22,7 +22,7 @@
 #include <system_error>
 
 #include "core/shared/hash.hpp"
-#include "io/shared/process_identity.hpp"
+#include "io/process_identity.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/shared/process_identity.hpp"
+#include "io/process_identity.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -28,13 +28,40 @@ std::string computed(const WorkItem& item, const Progress& progress) {
   throw std::runtime_error(fmt::format("no code of {} exposures was found", exposures));
 }
 
+ItemOutcome outcome_of(const WorkList& list, const ClaimedItem& claimed, const Progress& progress) {
+  ItemOutcome outcome{.key = claimed.key};
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    const WorkItem item = list.item(claimed.item);
+    if (item.key != claimed.key)
+      throw IoError(list.spec().source_name,
+                    "a file that the sweep reads has changed since it started");
+    outcome.result = computed(item, progress);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {
+    outcome.message = error.what();
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return outcome;
+}
+
 }  // namespace
+
+std::vector<ItemOutcome> compute_items(const WorkList& list, std::span<const ClaimedItem> items) {
+  std::vector<ItemOutcome> outcomes(items.size());
+  parallel_for(static_cast<std::int64_t>(items.size()), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    outcomes[at] = outcome_of(list, items[at], {});
+  });
+  return outcomes;
+}
 
 ItemBatch::ItemBatch(const WorkList& list, std::vector<ClaimedItem> items)
     : list_(list), items_(std::move(items)), thread_([this] { compute_all(); }) {}
 
 ItemBatch::~ItemBatch() {
-  stop();
+  stop_ = true;
   thread_.join();
 }
 
@@ -44,9 +71,11 @@ std::vector<ItemOutcome> ItemBatch::wait(std::chrono::milliseconds max_wait) {
   return std::exchange(outcomes_, {});
 }
 
-void ItemBatch::wait_until_done() {
+std::vector<ItemOutcome> ItemBatch::stop() {
+  stop_ = true;
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return done_.load(); });
+  return std::exchange(outcomes_, {});
 }
 
 void ItemBatch::compute_all() {
@@ -64,23 +93,13 @@ void ItemBatch::compute(const ClaimedItem& claimed) {
     if (is_alone) fraction_ = fraction;
     return !stop_;
   };
-  ItemOutcome outcome{.key = claimed.key};
-  const auto begin = std::chrono::steady_clock::now();
   try {
-    const WorkItem item = list_.item(claimed.item);
-    if (item.key != claimed.key)
-      throw IoError(list_.spec().source_name,
-                    "a file that the sweep reads has changed since it started");
-    outcome.result = computed(item, progress);
-  } catch (const Interrupted&) {
-    return;
-  } catch (const std::exception& error) {
-    outcome.message = error.what();
+    ItemOutcome outcome = outcome_of(list_, claimed, progress);
+    const std::lock_guard lock(mutex_);
+    outcomes_.push_back(std::move(outcome));
+    changed_.notify_all();
+  } catch (const Interrupted&) {  // by stop()
   }
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::lock_guard lock(mutex_);
-  outcomes_.push_back(std::move(outcome));
-  changed_.notify_all();
 }
 
 }  // namespace tofsmith

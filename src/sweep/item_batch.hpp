@@ -13,14 +13,8 @@
 
 namespace tofsmith {
 
-/// An item that was claimed.
-struct ClaimedItem {
-  std::int64_t item;
-  std::string key;
-};
-
-/// Computes items on all threads while the thread that made it goes on: that one stores what comes
-/// out. The destructor stops the work.
+/// Computes items on all threads in the background, so that the thread that made it can store
+/// outcomes as they come. The destructor stops the work.
 class ItemBatch {
  public:
   ItemBatch(const WorkList& list, std::vector<ClaimedItem> items);
@@ -28,14 +22,12 @@ class ItemBatch {
   ItemBatch(const ItemBatch&) = delete;
   ItemBatch& operator=(const ItemBatch&) = delete;
 
-  /// Waits at most so long for something to come out, and takes what did.
+  /// Waits up to `max_wait` for outcomes. @return the new ones
   std::vector<ItemOutcome> wait(std::chrono::milliseconds max_wait);
-  /// Waits for the end, and takes nothing.
-  void wait_until_done();
-  /// Whether all is computed. What came out last may still be waiting.
+  /// True after the end of the work. wait() may still return outcomes.
   bool is_done() const { return done_; }
-  /// Asks all work to stop; wait() gives what was finished nevertheless.
-  void stop() { stop_ = true; }
+  /// Ends the work. @return the outcomes that wait() did not return
+  std::vector<ItemOutcome> stop();
   /// How much of a batch of one item is done, in [0, 1]; 0 of larger ones.
   double fraction() const { return fraction_; }
 

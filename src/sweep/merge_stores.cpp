@@ -21,13 +21,13 @@ class Merger {
   explicit Merger(SqliteDatabase& into)
       : find_(into.prepare("SELECT status, result, seconds FROM items WHERE key = ?")),
         replace_(into.prepare("INSERT OR REPLACE INTO items (key, settings, status, result, "
-                              "checksum, message, host, started, finished, seconds) "
-                              "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
+                              "checksum, message, finished, seconds) "
+                              "VALUES (?, ?, ?, ?, ?, ?, ?, ?)")) {}
 
   void take_all(SqliteDatabase& part, const std::filesystem::path& path) {
     SqliteStatement rows = part.prepare(
-        "SELECT key, settings, status, result, checksum, message, seconds, host, started, finished "
-        "FROM items ORDER BY key");
+        "SELECT key, settings, status, result, checksum, message, seconds, finished FROM items "
+        "ORDER BY key");
     while (rows.step()) take(rows, stored_item(rows, path), path);
   }
 
@@ -54,9 +54,7 @@ class Merger {
         .bind(5, row.text(4))
         .bind(6, item.message)
         .bind(7, row.text(7))
-        .bind(8, row.text(8))
-        .bind(9, row.text(9))
-        .bind(10, item.seconds)
+        .bind(8, item.seconds)
         .run();
   }
 

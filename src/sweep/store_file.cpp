@@ -18,7 +18,9 @@ namespace tofsmith {
 namespace {
 
 constexpr int application_id = 0x746f6673;  // "tofs"
-constexpr int schema_version = 1;
+/// Version 1 had columns and a table of the processes that worked on the store. Stores of both
+/// versions are read and continued.
+constexpr int schema_version = 2, oldest_schema_version = 1;
 constexpr std::size_t header_bytes = 100;
 constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
 
@@ -56,11 +58,7 @@ std::string schema(const std::string& target) {
       "CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
       "INSERT INTO meta VALUES ('tofsmith', '{}'), ('results', '{}'), ('target', '{}');"
       "CREATE TABLE items (key TEXT PRIMARY KEY, settings TEXT NOT NULL, status TEXT NOT NULL,"
-      " result TEXT, checksum TEXT, message TEXT, worker TEXT, host TEXT, started TEXT,"
-      " finished TEXT, seconds REAL);"
-      // A worker lives as long as its beat goes on counting.
-      "CREATE TABLE workers (id TEXT PRIMARY KEY, host TEXT, machine TEXT, process INTEGER,"
-      " process_start TEXT, beat INTEGER NOT NULL) WITHOUT ROWID;",
+      " result TEXT, checksum TEXT, message TEXT, finished TEXT, seconds REAL);",
       application_id, schema_version, TOFSMITH_VERSION, sweep_result_version, target);
 }
 
@@ -174,7 +172,8 @@ StoreHead read_store_head(SqliteDatabase& database, const std::filesystem::path&
   const std::string schema = database.text_of("PRAGMA user_version");
   const std::string version = database.text_of("SELECT value FROM meta WHERE name = 'tofsmith'");
   const std::string results = database.text_of("SELECT value FROM meta WHERE name = 'results'");
-  if (schema != fmt::format("{}", schema_version) ||
+  if ((schema != fmt::format("{}", schema_version) &&
+       schema != fmt::format("{}", oldest_schema_version)) ||
       results != fmt::format("{}", sweep_result_version))
     throw IoError(path.string(),
                   fmt::format("is of tofsmith {} (store version {}, results {}); this is tofsmith "

@@ -27,10 +27,6 @@ constexpr std::string_view utc_now = "strftime('%Y-%m-%dT%H:%M:%SZ', 'now')";
 
 }  // namespace
 
-void SweepStoreOptions::validate() const {
-  require(lease_s > 0.0, "lease_s", lease_s, "must be > 0");
-}
-
 std::string checksum_of(std::string_view key, std::string_view result) {
   return fmt::format("{:016x}", fnv1a_64(fmt::format("{}\n{}", key, result)));
 }
@@ -53,22 +49,13 @@ StoredItem stored_item(const SqliteStatement& row, const std::filesystem::path& 
 
 SweepStore::SweepStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SweepStore::SweepStore(SweepStore&&) noexcept = default;
-SweepStore::~SweepStore() {
-  if (!state_ || !state_->is_registered) return;
-  try {
-    release();
-  } catch (const std::exception&) {  // then others see that this process is gone
-  }
-}
+SweepStore::~SweepStore() = default;
 
 SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreOptions& options) {
-  options.validate();
   const std::string here = dispatch_target();
   const std::string network = options.network_file_system.value_or(network_file_system_at(path));
-  auto state = std::make_unique<State>(State{path,
-                                             {nullptr, open_store_file(path, here, network)},
-                                             {},
-                                             WorkerWatch(WorkerIdentity::own(), options.lease_s)});
+  auto state =
+      std::make_unique<State>(State{path, {nullptr, open_store_file(path, here, network)}, {}});
   state->head = read_store_head(state->database(), path);
   if (state->head.target != here)
     throw IoError(path.string(),
@@ -76,13 +63,11 @@ SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreO
                               "in their last digits; set TOFSMITH_TARGET={} if this machine has "
                               "it, or use another store",
                               state->head.target, here, state->head.target));
-  state->register_worker();
   return SweepStore(std::move(state));
 }
 
 SweepStore SweepStore::read(const std::filesystem::path& path) {
-  auto state = std::make_unique<State>(
-      State{path, read_store_file(path), {}, WorkerWatch(WorkerIdentity::own(), 1.0)});
+  auto state = std::make_unique<State>(State{path, read_store_file(path), {}});
   state->head = read_store_head(state->database(), path);
   return SweepStore(std::move(state));
 }
@@ -107,38 +92,29 @@ void SweepStore::add(std::span<const std::string> keys,
   }
 }
 
-std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys,
-                                           std::size_t max_items) {
+std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys, std::size_t max_items,
+                                           bool takes_running) {
   SqliteDatabase& database = state_->database();
   SqliteTransaction transaction(database);
-  SqliteStatement find = database.prepare("SELECT status, worker FROM items WHERE key = ?");
-  SqliteStatement take = database.prepare(fmt::format(
-      "UPDATE items SET status = 'running', worker = ?, host = ?, started = {} WHERE key = ?",
-      utc_now));
-  const WorkerIdentity& own = state_->watch.own();
+  SqliteStatement find = database.prepare("SELECT status FROM items WHERE key = ?");
+  SqliteStatement mark = database.prepare("UPDATE items SET status = 'running' WHERE key = ?");
   std::vector<ClaimAnswer> answers;
-  std::set<std::string> living, gone;  // asked once per transaction
   std::size_t ours = 0;
   for (const std::string& key : keys.first(std::min(keys.size(), max_at_once))) {
     if (ours == max_items) break;
     if (!find.bind(1, key).step())
       throw IoError(state_->path.string(), fmt::format("holds no item {} any more", key));
-    const std::string status = find.text(0), worker = find.text(1);
+    const std::string status = find.text(0);
     find.reset();
     if (status == "finished") {
       answers.push_back(ClaimAnswer::finished);
-      continue;
+    } else if (status == "running" && !takes_running) {
+      answers.push_back(ClaimAnswer::running);
+    } else {
+      mark.bind(1, key).run();
+      answers.push_back(ClaimAnswer::ours);
+      ++ours;
     }
-    if (status == "running" && worker != own.id && !living.contains(worker) &&
-        !gone.contains(worker))
-      (state_->watch.may_live(database, worker) ? living : gone).insert(worker);
-    if (status == "running" && (worker == own.id || living.contains(worker))) {
-      answers.push_back(ClaimAnswer::taken);
-      continue;
-    }
-    take.bind(1, own.id).bind(2, own.host).bind(3, key).run();
-    answers.push_back(ClaimAnswer::ours);
-    ++ours;
   }
   transaction.commit();
   return answers;
@@ -149,8 +125,8 @@ void SweepStore::finish(std::span<const ItemOutcome> outcomes) {
   SqliteDatabase& database = state_->database();
   SqliteTransaction transaction(database);
   SqliteStatement store = database.prepare(fmt::format(
-      "UPDATE items SET status = ?, result = ?, checksum = ?, message = ?, seconds = ?, worker = "
-      "NULL, host = ?, finished = {} WHERE key = ? AND status <> 'finished'",
+      "UPDATE items SET status = ?, result = ?, checksum = ?, message = ?, seconds = ?, "
+      "finished = {} WHERE key = ? AND status <> 'finished'",
       utc_now));
   for (const ItemOutcome& outcome : outcomes)
     store.bind(1, outcome.result.empty() ? "failed" : "finished")
@@ -158,31 +134,19 @@ void SweepStore::finish(std::span<const ItemOutcome> outcomes) {
         .bind(3, checksum_of(outcome.key, outcome.result))
         .bind(4, outcome.message)
         .bind(5, outcome.seconds)
-        .bind(6, state_->watch.own().host)
-        .bind(7, outcome.key)
+        .bind(6, outcome.key)
         .run();
   transaction.commit();
 }
 
-void SweepStore::beat() {
-  state_->database()
-      .prepare("UPDATE workers SET beat = beat + 1 WHERE id = ?")
-      .bind(1, state_->watch.own().id)
-      .run();
-}
-
-void SweepStore::release() {
+void SweepStore::release(std::span<const std::string> keys) {
+  if (keys.empty()) return;
   SqliteDatabase& database = state_->database();
   SqliteTransaction transaction(database);
-  database
-      .prepare(
-          "UPDATE items SET status = 'pending', worker = NULL WHERE status = 'running' AND "
-          "worker = ?")
-      .bind(1, state_->watch.own().id)
-      .run();
-  database.prepare("DELETE FROM workers WHERE id = ?").bind(1, state_->watch.own().id).run();
+  SqliteStatement unmark =
+      database.prepare("UPDATE items SET status = 'pending' WHERE key = ? AND status = 'running'");
+  for (const std::string& key : keys) unmark.bind(1, key).run();
   transaction.commit();
-  state_->is_registered = false;
 }
 
 std::optional<StoredItem> SweepStore::find(std::string_view key) {

@@ -97,7 +97,6 @@ class Limits(unittest.TestCase):
         self.assertRegex(away.stderr, r"^tofsmith: /c.npz: .*Read-only file system\n$")
 
     def test_too_little_memory_is_told(self):
-        # With 8 MB, libraries of Debian 13 (UCX, below MPI) fail before main().
         for megabytes in (16, 20, 24):
             done = self.run_bare(["simulate", "table-top", "--code", "sinusoid-k4", "--width",
                                   "1600", "--height", "1200", "-o", "raw.npy"],

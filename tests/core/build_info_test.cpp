@@ -40,8 +40,8 @@ TEST(BuildInfo, TextSaysWhenNothingOptionalIsIn) {
   BuildInfo info = build_info();
   info.features = {};
   EXPECT_THAT(to_text(info), testing::EndsWith("with no optional features"));
-  info.features = {"MPI", "FFTW"};
-  EXPECT_THAT(to_text(info), testing::EndsWith("with MPI, FFTW"));
+  info.features = {"TBB", "FFTW"};
+  EXPECT_THAT(to_text(info), testing::EndsWith("with TBB, FFTW"));
 }
 
 }  // namespace

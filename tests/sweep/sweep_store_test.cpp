@@ -11,7 +11,6 @@
 #include "sweep/file_system.hpp"
 #include "sweep/item_result.hpp"
 #include "sweep/sqlite.hpp"
-#include "sweep/worker_identity.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -62,18 +61,20 @@ TEST(SweepStore, KeepsWhatWasStored) {
   EXPECT_EQ(counts.seconds, 1.5);
 }
 
-TEST(SweepStore, NoItemIsGivenToTwoThatLive) {
+TEST(SweepStore, ItemsThatRunElsewhereAreClaimedOnlyOnRequest) {
   const TemporaryDirectory directory;
   SweepStore first = with_items(directory / "s.sqlite");
   SweepStore second = with_items(directory / "s.sqlite");
   EXPECT_THAT(first.claim(keys, 1), ElementsAre(ClaimAnswer::ours));
-  EXPECT_THAT(second.claim(keys, 1), ElementsAre(ClaimAnswer::taken, ClaimAnswer::ours));
+  EXPECT_THAT(second.claim(keys, 1), ElementsAre(ClaimAnswer::running, ClaimAnswer::ours));
   first.finish(std::vector<ItemOutcome>{{"aa", "{}", "", 1.0}});
   EXPECT_THAT(second.claim(keys, 5),
-              ElementsAre(ClaimAnswer::finished, ClaimAnswer::taken, ClaimAnswer::ours));
-  second.release();
-  EXPECT_THAT(first.claim(keys, 5),
+              ElementsAre(ClaimAnswer::finished, ClaimAnswer::running, ClaimAnswer::ours));
+  EXPECT_THAT(first.claim(keys, 5, true),
               ElementsAre(ClaimAnswer::finished, ClaimAnswer::ours, ClaimAnswer::ours));
+  second.release(std::vector<std::string>{"aa", "bb"});
+  EXPECT_THAT(first.claim(keys, 5),
+              ElementsAre(ClaimAnswer::finished, ClaimAnswer::ours, ClaimAnswer::running));
 }
 
 TEST(SweepStore, AFinishedItemStaysAsItIs) {
@@ -84,36 +85,27 @@ TEST(SweepStore, AFinishedItemStaysAsItIs) {
   EXPECT_EQ(store.find("aa")->result, "{}");
 }
 
-/// Puts another worker's row in place of who has the items.
-void give_all_to(const std::filesystem::path& path, const std::string& machine,
-                 std::int64_t process) {
-  run_sql(path, "INSERT INTO workers VALUES ('other', 'host', '" + machine + "', " +
-                    std::to_string(process) +
-                    ", 'never', 7);"
-                    "UPDATE items SET status = 'running', worker = 'other'");
-}
-
-TEST(SweepStore, TakesOverFromAProcessOfThisMachineThatIsGone) {
+TEST(SweepStore, ContinuesAndMergesAStoreOfVersion1) {
   const TemporaryDirectory directory;
-  SweepStore store = with_items(directory / "s.sqlite");
-  const ProcessIdentity own = ProcessIdentity::own();
-  if (own.machine.empty()) GTEST_SKIP() << "this system does not tell";
-  give_all_to(directory / "s.sqlite", own.machine, own.number);  // started at another time
-  EXPECT_THAT(store.claim(keys, 1), ElementsAre(ClaimAnswer::ours));
-}
-
-TEST(SweepStore, TakesOverFromAnotherMachineOnlyAfterItsSilence) {
-  const TemporaryDirectory directory;
-  SweepStore patient = with_items(directory / "s.sqlite", {.lease_s = 1e6});
-  SweepStore hasty = with_items(directory / "s.sqlite", {.lease_s = 1e-9});
-  give_all_to(directory / "s.sqlite", "elsewhere", 1);
-  EXPECT_THAT(patient.claim(keys, 1), testing::Each(ClaimAnswer::taken));
-  EXPECT_THAT(hasty.claim(std::vector<std::string>{"aa"}, 1), ElementsAre(ClaimAnswer::taken))
-      << "silence counts from the first time on";
-  run_sql(directory / "s.sqlite", "UPDATE workers SET beat = beat + 1 WHERE id = 'other'");
-  EXPECT_THAT(hasty.claim(std::vector<std::string>{"aa"}, 1), ElementsAre(ClaimAnswer::taken))
-      << "it has just moved";
-  EXPECT_THAT(hasty.claim(std::vector<std::string>{"aa"}, 1), ElementsAre(ClaimAnswer::ours));
+  const auto path = directory / "old.sqlite";
+  { const SweepStore store = with_items(path); }
+  run_sql(path,
+          "PRAGMA user_version = 1;"
+          "DROP TABLE items;"
+          "CREATE TABLE items (key TEXT PRIMARY KEY, settings TEXT NOT NULL, status TEXT NOT NULL,"
+          " result TEXT, checksum TEXT, message TEXT, worker TEXT, host TEXT, started TEXT,"
+          " finished TEXT, seconds REAL);"
+          "CREATE TABLE workers (id TEXT PRIMARY KEY, host TEXT, machine TEXT, process INTEGER,"
+          " process_start TEXT, beat INTEGER NOT NULL) WITHOUT ROWID;"
+          "INSERT INTO items (key, settings, status, worker) VALUES ('aa', '{}', 'running', 'x')");
+  {
+    SweepStore store = with_items(path);
+    EXPECT_THAT(store.claim(keys, 5),
+                ElementsAre(ClaimAnswer::running, ClaimAnswer::ours, ClaimAnswer::ours));
+    store.finish(std::vector<ItemOutcome>{{"aa", "{}", "", 1.0}});
+  }
+  SweepStore::merge(directory / "new.sqlite", std::vector<std::filesystem::path>{path});
+  EXPECT_EQ(SweepStore::read(directory / "new.sqlite").find("aa")->result, "{}");
 }
 
 TEST(SweepStore, RefusesWhatIsNoStoreAndLeavesItAlone) {

@@ -17,7 +17,7 @@ struct BuildInfo {
   std::string build_type;             ///< "Release"
   std::string library;                ///< "shared" or "static"
   std::vector<std::string> targets;   ///< instruction sets with kernels of their own, best first
-  std::vector<std::string> features;  ///< what can be left out and was not: "TBB", "MPI"
+  std::vector<std::string> features;  ///< optional ones of this build: "TBB", "FFTW"
 };
 
 BuildInfo build_info();

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -104,17 +105,11 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name =
 /// @throws IoError as parse_sweep_toml(), or if the file cannot be read
 SweepSpec read_sweep_toml(const std::filesystem::path& path);
 
-/// How a store is used.
+/// Options of SweepStore::open().
 struct SweepStoreOptions {
-  /// A worker of another machine that gave no sign of life for so long counts as dead, and its
-  /// unfinished items are done again [s], > 0. No two clocks are compared: each process times by
-  /// its own how long others stay silent.
-  double lease_s = 60.0;
-  /// What network file system the store is on ("NFS"), or "" for none; found out if absent.
+  /// Name of the network file system that holds the store ("NFS"), or "" for none; detected if
+  /// absent.
   std::optional<std::string> network_file_system = {};
-
-  /// @throws std::invalid_argument naming field, value and rule
-  void validate() const;
 };
 
 /// How far items have come.
@@ -142,24 +137,28 @@ struct ItemOutcome {
   double seconds = 0.0;
 };
 
-/// Whether an item that was asked for is ours to do.
-enum class ClaimAnswer { ours, finished, taken };
+/// Answer of SweepStore::claim() for one item.
+enum class ClaimAnswer {
+  ours,      ///< the caller is to compute it
+  finished,  ///< nobody needs to compute it
+  running,   ///< another process computes it, or was ended while it did
+};
 
 /// Results of sweeps in one SQLite file, under the keys of their items. Many processes may work on
-/// one store; a killed one, at any moment, loses nothing but its unfinished items. The file is in
-/// WAL mode, or with a rollback journal where a network file system holds it.
+/// one store; a process that is killed loses its unfinished items only. The file is in WAL mode, or
+/// has a rollback journal on a network file system.
 /// @note one object must not be used by two threads at a time
 class SweepStore {
  public:
-  /// Opens a store to work on it; makes it if it is missing or empty.
+  /// Opens a store to work on it; creates it if it is missing or empty.
   /// @throws IoError if the file is no store, damaged, of another version or instruction set, in
   ///         WAL mode on a network file system, or if it cannot be written
   static SweepStore open(const std::filesystem::path& path, const SweepStoreOptions& options = {});
-  /// Opens a store to look at it; the file and its directory may be read-only.
+  /// Opens a store to read it; the file and its directory may be read-only.
   /// @throws IoError if the file is missing, no store, damaged or of another version
   static SweepStore read(const std::filesystem::path& path);
-  /// Makes a store of what is in others: all items, finished where they are so in any. It depends
-  /// on their content alone, not on their order.
+  /// Creates a store from the content of others: all items, finished where they are finished in
+  /// any. It depends on their content alone, not on their order.
   /// @param path  of a new or empty file
   /// @throws IoError as open() and read(), or if two of them differ in a result
   static void merge(const std::filesystem::path& path,
@@ -171,24 +170,24 @@ class SweepStore {
   const std::string& target() const;
 
   /// Adds items that are not there yet.
-  /// @param settings  JSON of the i-th, for people
+  /// @param settings  returns JSON of the i-th item, for people
   void add(std::span<const std::string> keys,
            const std::function<std::string(std::size_t)>& settings);
 
-  /// Makes unfinished items ours, unless another worker that lives has them. Looks at a few
-  /// thousand of `keys` at most, and no further once `most` are ours; answers for those it looked
-  /// at.
-  std::vector<ClaimAnswer> claim(std::span<const std::string> keys, std::size_t most);
-  /// Stores what became of items. One that is finished already stays as it is.
+  /// Marks unfinished items as running. Looks at the first few thousand of `keys` at most, and at
+  /// no further ones once `max_items` are ours.
+  /// @param takes_running  whether also items that are marked already become ours
+  /// @return answers for the keys that it looked at
+  std::vector<ClaimAnswer> claim(std::span<const std::string> keys, std::size_t max_items,
+                                 bool takes_running = false);
+  /// Stores outcomes of items. A finished item keeps its result.
   void finish(std::span<const ItemOutcome> outcomes);
-  /// Shows the others that we live; due a few times per lease.
-  void beat();
-  /// Gives back what is ours and unfinished.
-  void release();
+  /// Removes the marks of items that are still unfinished.
+  void release(std::span<const std::string> keys);
 
   /// @throws IoError if the entry is damaged
   std::optional<StoredItem> find(std::string_view key);
-  /// Of the items with these keys, each counted once; those not in the store are pending.
+  /// Counts the items with these keys, each once; those not in the store are pending.
   SweepCounts count(std::span<const std::string> keys);
 
  private:
@@ -241,38 +240,6 @@ class WorkList {
   std::int64_t size_;
 };
 
-/// The processes (ranks) that one `mpirun` started to finish a sweep together, as one of them sees
-/// them. Rank 0 runs the sweep: it alone opens the store, and gives items to the others, which call
-/// work_for_sweep().
-/// @note at most one in the life of a process; use it from one thread
-class SweepRanks {
- public:
-  /// Finds the others; waits for them all. Without mpirun, there are none.
-  /// @throws std::runtime_error if there are others, but no MPI was there to build with; or on rank
-  ///         0, if another rank has another version or instruction set, see dispatch_target()
-  static SweepRanks join(const Progress& progress = {});
-  /// Leaves: rank 0 sends the others home first.
-  ~SweepRanks();
-  SweepRanks(SweepRanks&&) noexcept;
-
-  int rank() const;
-  int count() const;
-
-  struct State;
-  State& state() { return *state_; }
-
- private:
-  explicit SweepRanks(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
-};
-
-/// Computes what rank 0 asks for, until it says that nothing remains. What goes wrong here is
-/// reported by rank 0.
-/// @param list      reads the sweep that rank 0 runs; called once there is work
-/// @param progress  when it asks to stop, so does the whole job
-void work_for_sweep(SweepRanks& ranks, const std::function<WorkList()>& list,
-                    const Progress& progress = {});
-
 /// One part of a sweep that is cut in parts for machines that share nothing.
 struct SweepShard {
   int index = 1;  ///< 1 .. count
@@ -287,34 +254,75 @@ struct SweepShard {
   void validate() const;
 };
 
+/// An item that was claimed to be computed.
+struct ClaimedItem {
+  std::int64_t item;  ///< its place in the list
+  std::string key;
+};
+
+/// Computes items on all threads. An item that fails has a message instead of a result.
+std::vector<ItemOutcome> compute_items(const WorkList& list, std::span<const ClaimedItem> items);
+
+/// The unfinished items of a sweep, for a process that computes them or has them computed. Several
+/// processes may have a queue of one store: items that are marked as running come last, so two
+/// processes compute few items twice, and the items of a process that was killed are computed by
+/// the others. The destructor gives back the items that were claimed and not finished.
+class SweepQueue {
+ public:
+  /// Adds the items to the store.
+  /// @param keys   of all items of the list; must outlive this, as must the store
+  /// @param shard  the part of the items that the queue contains
+  /// @throws IoError if the store fails; Interrupted if progress asks to stop
+  SweepQueue(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
+             const SweepShard& shard = {}, const Progress& progress = {});
+  ~SweepQueue();
+  SweepQueue(const SweepQueue&) = delete;
+  SweepQueue& operator=(const SweepQueue&) = delete;
+
+  /// Claims up to `max_items`; none only if no item is left to compute.
+  std::vector<ClaimedItem> claim(std::size_t max_items);
+  /// Stores outcomes of claimed items.
+  void finish(std::span<const ItemOutcome> outcomes);
+
+  std::size_t size() const { return size_; }  ///< items of this part
+  /// Items that were not claimed yet.
+  std::size_t left() const { return items_.size() - next_ + running_.size(); }
+  /// Items that are finished or failed.
+  std::size_t settled() const { return size_ - left() - claimed_.size(); }
+
+ private:
+  std::vector<std::string> keys_of(std::span<const std::int64_t> items) const;
+
+  std::span<const std::string> keys_;
+  SweepStore& store_;
+  std::vector<std::int64_t> items_;    ///< to ask the store for, from next_ on
+  std::vector<std::int64_t> running_;  ///< marked by others when the store was asked
+  bool takes_running_ = false;
+  std::size_t next_ = 0, size_ = 0;
+  std::set<std::string, std::less<>> claimed_;
+};
+
 struct SweepRunOptions {
   SweepShard shard;
-  double lease_s = SweepStoreOptions{}.lease_s;  ///< of the store, whose worker must show life
-  double batch_s = 1.0;  ///< work that is taken at a time, so lost when killed [s], > 0
-  /// Of a job of more ranks than that, rank 0 hands out and stores only; it computes too in smaller
-  /// ones. >= 1
-  int max_ranks_computing = 64;
+  double batch_s = 1.0;  ///< work that is claimed at a time, so lost when killed [s], > 0
 
+  /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
 
-/// What a run did.
+/// Result of run_sweep().
 struct SweepRun {
   std::int64_t computed = 0;          ///< items that this run finished
   std::vector<std::string> failures;  ///< one line for each item that this run could not finish
 };
 
-/// Finishes all items of a sweep that are unfinished, together with all other processes that work
-/// on the store; waits for items that others have at the end. Results have the same bits whatever
-/// the number of threads and processes.
+/// Computes all unfinished items of a sweep on all threads. Results have the same bits whatever the
+/// number of threads and processes.
 /// @param keys      of all items, WorkList::keys()
 /// @param progress  called about 20 times a second. When it asks to stop, what is finished is kept
-/// @param ranks     of which this is rank 0, and which compute too; null if there are no others
-/// @throws IoError if the store fails; Interrupted if progress says so, here or on another rank;
-///         std::runtime_error if another rank cannot go on
+/// @throws IoError if the store fails; Interrupted if progress asks to stop
 SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
-                   const SweepRunOptions& options = {}, const Progress& progress = {},
-                   SweepRanks* ranks = nullptr);
+                   const SweepRunOptions& options = {}, const Progress& progress = {});
 
 /// A finished item of a sweep.
 struct SweepResult {
