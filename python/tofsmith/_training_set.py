@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import functools
+import os
+import pickle
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Optional, Union
@@ -13,8 +16,10 @@ import numpy.typing as npt
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
+from ._camera_fields import Lens
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
+from ._executor import Dispatcher, ExecutorLike, require_build
 from ._scene import Scene, centred_lens, lens_dict, scene_named, scene_planes
 
 #: As of capture(), or a function that returns one when its turn comes.
@@ -42,6 +47,64 @@ class TrainingSetRun:
     index: FilePath
 
 
+#: Name, entry of the index, problem, and whether it was written now.
+_Outcome = tuple[str, str, str, bool]
+
+
+def _planes(scenes: Mapping[str, SceneLike], lens: Optional[Lens], name: str) -> dict[str, Any]:
+    """Planes and lens of a scene."""
+    given = scenes[name]
+    scene = scene_named(given() if callable(given) else given, lens)
+    planes: dict[str, Any] = dict(scene_planes(scene))
+    height, width = planes["depth_m"].shape
+    return planes | {"lens": lens_dict(scene.lens or lens or centred_lens(width, height))}
+
+
+@functools.lru_cache(maxsize=1)
+def _set_in_worker(plan: bytes) -> tuple[_tofsmith.TrainingSet, Optional[Lens]]:
+    folder, code, camera, options = pickle.loads(plan)
+    return _tofsmith.TrainingSet(folder, code._handle, camera._handle, options), camera.lens
+
+
+def _write_scenes(
+    plan: bytes, build: tuple[str, str], threads: int, items: Sequence[tuple[str, SceneLike]]
+) -> Sequence[_Outcome]:
+    """Runs in a worker of an executor."""
+    require_build(build)
+    training_set, lens = _set_in_worker(plan)
+    load = functools.partial(_planes, dict(items), lens)
+    return training_set.write([name for name, _ in items], load, threads)
+
+
+def _write_on_executor(
+    plan: tuple[Any, ...], scenes: Mapping[str, SceneLike], names: Sequence[str],
+    executor: ExecutorLike, threads: int, progress: Progress
+) -> dict[str, Any]:
+    """Returns the fields of TrainingSetRun."""
+    folder, code, camera, options = plan
+    training_set = _tofsmith.TrainingSet(folder, code._handle, camera._handle, options)
+    names = training_set.names_of_shard(names)
+    waiting = list(reversed(names))
+    outcomes: dict[str, _Outcome] = {}
+
+    def claim(max_items: int) -> Sequence[tuple[str, SceneLike]]:
+        claimed = [waiting.pop() for _ in range(min(max_items, len(waiting)))]
+        return [(name, scenes[name]) for name in claimed]
+
+    def report() -> None:
+        step = f"{len(outcomes)} of {len(names)} scenes"
+        if progress and progress(len(outcomes) / max(1, len(names)), step) is False:
+            raise _tofsmith.Interrupted("interrupted")
+
+    def keep(written: Sequence[_Outcome]) -> None:
+        outcomes.update((outcome[0], outcome) for outcome in written)
+
+    compute = functools.partial(
+        _write_scenes, pickle.dumps(plan), _tofsmith.worker_build(), threads)
+    Dispatcher(executor, compute, claim, lambda: len(waiting), keep).run(report)
+    return training_set.write_index([outcomes[name] for name in names])
+
+
 def write_training_set(
     directory: Path,
     scenes: Mapping[str, SceneLike],
@@ -55,6 +118,8 @@ def write_training_set(
     seed: Optional[int] = None,
     frames: Optional[int] = None,
     shard: Optional[tuple[int, int]] = None,
+    executor: Optional[ExecutorLike] = None,
+    threads: int = 1,
     progress: Progress = None,
 ) -> TrainingSetRun:
     """Captures and decodes every scene; writes KEY.npz (raw, depth_m, true_depth_m, albedo) and
@@ -77,6 +142,11 @@ def write_training_set(
         Of the whole set (1): noise and light depend on it and the scene's name and content alone.
     shard : (index, count), optional
         One part of the work, from 1, by the scenes' names.
+    executor : concurrent.futures.Executor or a function that starts one, optional
+        Writes the scenes, as of run_sweep(). Its workers must see the directory under the same
+        path, and functions among the scenes must pickle.
+    threads : int, optional
+        Threads of each worker of the executor; 0: as many as there are cores.
     progress : callable, optional
         What is finished when it stops the work is kept.
 
@@ -86,6 +156,8 @@ def write_training_set(
         For options that break a rule. A scene that fails is listed in `failures`.
     OSError
         If a file cannot be written.
+    RuntimeError
+        If the executor breaks or a piece of the work fails four times. Finished scenes are kept.
 
     Examples
     --------
@@ -105,20 +177,17 @@ def write_training_set(
     if not isinstance(scenes, Mapping) or not scenes:
         raise TypeError(f"scenes: got {_check.shown(scenes)}; needs a dict of names and scenes")
     names = sorted(_check.text(name, "scenes") for name in scenes)
-
-    def load(name: str) -> dict[str, Any]:
-        given = scenes[name]
-        scene = scene_named(given() if callable(given) else given, known.lens)
-        planes: dict[str, Any] = dict(scene_planes(scene))
-        height, width = planes["depth_m"].shape
-        lens = scene.lens or known.lens or centred_lens(width, height)
-        return planes | {"lens": lens_dict(lens)}
-
     folder = _check.path(directory, "directory")
-    handle = code_of(code, known)._handle
+    known_code = code_of(code, known)
     callback = _check.progress(progress)
-    values = _tofsmith.write_training_set(
-        folder, names, load, handle, known._handle, options, callback
-    )
+    if executor is None:
+        load = functools.partial(_planes, scenes, known.lens)
+        values = _tofsmith.write_training_set(
+            folder, names, load, known_code._handle, known._handle, options, callback
+        )
+    else:
+        _check.whole(threads, "threads", 0, 65536)
+        plan = (os.path.abspath(folder), known_code, known, options)
+        values = _write_on_executor(plan, scenes, names, executor, threads, callback)
     values["index"] = FilePath(values["index"])
     return TrainingSetRun(**values)

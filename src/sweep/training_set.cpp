@@ -5,11 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
 #include "core/shared/hash.hpp"
 #include "core/shared/random.hpp"
@@ -92,117 +93,20 @@ NpzArrays arrays_of(const Example& example, const RawFrames& raw, const Decoder&
   return arrays;
 }
 
-/// What came of one scene: its entry in the index, or a problem.
-struct SceneOutcome {
-  Json entry;
-  std::string problem;
+/// A scene that cannot be loaded.
+struct UnusableScene : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
-class TrainingSet {
- public:
-  TrainingSet(fs::path directory, const CodeSet& code, const Camera& camera,
-              const TrainingSceneLoader& load, const TrainingSetOptions& options)
-      : directory_(std::move(directory)),
-        code_(code),
-        camera_(camera),
-        load_(load),
-        options_(options),
-        setup_(setup_key(camera, code)),
-        decoder_(make_decoding_table(ForwardModel(code, camera), camera)) {}
-
-  /// @throws IoError if its files cannot be written
-  SceneOutcome write(const TrainingScene& scene) {
-    try {
-      return {write(scene, prepared(scene)), ""};
-    } catch (const UnusableScene& error) {
-      return {Json(), error.what()};
-    }
+LoadedTrainingScene loaded(const TrainingScene& scene, const TrainingSceneLoader& load) {
+  try {
+    return load(scene);
+  } catch (const std::runtime_error& error) {
+    throw UnusableScene(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw UnusableScene(error.what());
   }
-
-  std::int64_t written() const { return written_; }
-  std::int64_t kept() const { return kept_; }
-  const std::string& setup() const { return setup_; }
-
- private:
-  struct UnusableScene : std::runtime_error {
-    using std::runtime_error::runtime_error;
-  };
-
-  LoadedTrainingScene loaded(const TrainingScene& scene) const {
-    try {
-      return load_(scene);
-    } catch (const std::runtime_error& error) {
-      throw UnusableScene(error.what());
-    } catch (const std::invalid_argument& error) {
-      throw UnusableScene(error.what());
-    }
-  }
-
-  /// The scene's entry in the index.
-  Json write(const TrainingScene& scene, const Example& example) {
-    const std::string stem = fmt::format("{}/{}", example.key.substr(0, 2), example.key);
-    const fs::path arrays = directory_ / (stem + ".npz"),
-                   parameters = directory_ / (stem + ".json");
-    Json entry = parameters_of(scene, example, stem);
-    if (fs::exists(parameters) && fs::exists(arrays)) {
-      ++kept_;
-      return entry;
-    }
-    make_output_directory(arrays.parent_path());
-    const RawFrames raw = capture(example.scene.image, code_, camera_, example.capture);
-    write_npz(arrays, arrays_of(example, raw, decoder_), OutputPolicy::overwrite);
-    // Last: it says that all is there.
-    write_file_atomically(parameters,
-                          entry.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
-                          OutputPolicy::overwrite);
-    ++written_;
-    return entry;
-  }
-
-  Example prepared(const TrainingScene& scene) const {
-    Example example{"", options_.capture, loaded(scene)};
-    const std::string identity = identity_of(scene, example.scene, options_.capture);
-    CaptureOptions& capture = example.capture;
-    capture.seed = key_number(identity);
-    RandomStream stream(capture.seed, key_number(std::string_view(identity).substr(16)));
-    capture.signal_e_per_s = drawn(options_.signal, stream.uniform());
-    capture.ambient_e_per_s = drawn(options_.ambient, stream.uniform());
-    example.key = fnv1a_128_hex(fmt::format(
-        "{}\n{}\n{} {} {} {} {}", identity, setup_, capture.signal_e_per_s, capture.ambient_e_per_s,
-        capture.reference_distance_m, capture.falloff, capture.frames));
-    return example;
-  }
-
-  Json parameters_of(const TrainingScene& scene, const Example& example,
-                     const std::string& stem) const {
-    const CaptureOptions& capture = example.capture;
-    return {{"name", scene.name},
-            {"key", example.key},
-            {"file", stem + ".npz"},
-            {"frames", capture.frames},
-            {"height", example.scene.image.height()},
-            {"width", example.scene.image.width()},
-            {"measurements", code_.measurements()},
-            {"code", code_.name()},
-            {"camera", camera_.name},
-            {"signal_e_per_s", capture.signal_e_per_s},
-            {"ambient_e_per_s", capture.ambient_e_per_s},
-            {"reference_distance_m", capture.reference_distance_m},
-            {"falloff", capture.falloff},
-            {"seed", capture.seed},
-            {"beyond_range_share", scene_extent(example.scene.image, camera_).beyond_range_share()},
-            {"lens", lens_document(lens_of(example.scene.view))}};
-  }
-
-  fs::path directory_;
-  const CodeSet& code_;
-  const Camera& camera_;
-  const TrainingSceneLoader& load_;
-  const TrainingSetOptions& options_;
-  std::string setup_;
-  Decoder decoder_;
-  std::atomic<std::int64_t> written_ = 0, kept_ = 0;
-};
+}
 
 std::string index_name(const SweepShard& shard) {
   return shard.count == 1 ? "index.json"
@@ -210,6 +114,124 @@ std::string index_name(const SweepShard& shard) {
 }
 
 }  // namespace
+
+struct TrainingSetWriter::State {
+  fs::path directory;
+  CodeSet code;
+  Camera camera;
+  TrainingSetOptions options;
+  std::string setup;
+  Decoder decoder;
+
+  /// The scene with its key and the light that is drawn for it.
+  Example prepared(const TrainingScene& scene, const TrainingSceneLoader& load) const;
+  /// Content of the scene's JSON file and its entry in the index.
+  Json parameters_of(const TrainingScene& scene, const Example& example,
+                     const std::string& stem) const;
+};
+
+Example TrainingSetWriter::State::prepared(const TrainingScene& scene,
+                                           const TrainingSceneLoader& load) const {
+  Example example{"", options.capture, loaded(scene, load)};
+  const std::string identity = identity_of(scene, example.scene, options.capture);
+  CaptureOptions& capture = example.capture;
+  capture.seed = key_number(identity);
+  RandomStream stream(capture.seed, key_number(std::string_view(identity).substr(16)));
+  capture.signal_e_per_s = drawn(options.signal, stream.uniform());
+  capture.ambient_e_per_s = drawn(options.ambient, stream.uniform());
+  example.key = fnv1a_128_hex(fmt::format(
+      "{}\n{}\n{} {} {} {} {}", identity, setup, capture.signal_e_per_s, capture.ambient_e_per_s,
+      capture.reference_distance_m, capture.falloff, capture.frames));
+  return example;
+}
+
+Json TrainingSetWriter::State::parameters_of(const TrainingScene& scene, const Example& example,
+                                             const std::string& stem) const {
+  const CaptureOptions& capture = example.capture;
+  return {{"name", scene.name},
+          {"key", example.key},
+          {"file", stem + ".npz"},
+          {"frames", capture.frames},
+          {"height", example.scene.image.height()},
+          {"width", example.scene.image.width()},
+          {"measurements", code.measurements()},
+          {"code", code.name()},
+          {"camera", camera.name},
+          {"signal_e_per_s", capture.signal_e_per_s},
+          {"ambient_e_per_s", capture.ambient_e_per_s},
+          {"reference_distance_m", capture.reference_distance_m},
+          {"falloff", capture.falloff},
+          {"seed", capture.seed},
+          {"beyond_range_share", scene_extent(example.scene.image, camera).beyond_range_share()},
+          {"lens", lens_document(lens_of(example.scene.view))}};
+}
+
+TrainingSetWriter::~TrainingSetWriter() = default;
+TrainingSetWriter::TrainingSetWriter(fs::path directory, CodeSet code, Camera camera,
+                                     TrainingSetOptions options) {
+  options.validate();
+  std::string setup = setup_key(camera, code);
+  Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+  state_ = std::make_unique<State>(State{std::move(directory), std::move(code), std::move(camera),
+                                         std::move(options), std::move(setup), std::move(decoder)});
+}
+
+std::vector<TrainingScene> TrainingSetWriter::scenes_of_shard(
+    std::span<const TrainingScene> scenes) const {
+  std::vector<TrainingScene> ours;
+  for (const TrainingScene& scene : scenes)
+    if (state_->options.shard.holds(fnv1a_128_hex(scene.name))) ours.push_back(scene);
+  return ours;
+}
+
+TrainingSceneOutcome TrainingSetWriter::write(const TrainingScene& scene,
+                                              const TrainingSceneLoader& load) const {
+  Example example;
+  try {
+    example = state_->prepared(scene, load);
+  } catch (const UnusableScene& error) {
+    return {"", error.what()};
+  }
+  const std::string stem = fmt::format("{}/{}", example.key.substr(0, 2), example.key);
+  const fs::path arrays = state_->directory / (stem + ".npz"),
+                 parameters = state_->directory / (stem + ".json");
+  const Json entry = state_->parameters_of(scene, example, stem);
+  TrainingSceneOutcome outcome{entry.dump(-1, ' ', false, Json::error_handler_t::replace), ""};
+  if (fs::exists(parameters) && fs::exists(arrays)) return outcome;
+  make_output_directory(arrays.parent_path());
+  const RawFrames raw = capture(example.scene.image, state_->code, state_->camera, example.capture);
+  write_npz(arrays, arrays_of(example, raw, state_->decoder), OutputPolicy::overwrite);
+  // Last, because the file marks the scene as finished.
+  write_file_atomically(parameters,
+                        entry.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+                        OutputPolicy::overwrite);
+  outcome.is_new = true;
+  return outcome;
+}
+
+TrainingSetRun TrainingSetWriter::write_index(
+    std::span<const TrainingScene> scenes, std::span<const TrainingSceneOutcome> outcomes) const {
+  Json index = {
+      {"tofsmith", TOFSMITH_VERSION}, {"training_set", training_set_version},
+      {"setup", state_->setup},       {"camera", Json::parse(camera_to_json(state_->camera))},
+      {"code", state_->code.name()},  {"seed", state_->options.capture.seed},
+      {"scenes", Json::array()},      {"failures", Json::array()}};
+  TrainingSetRun run{.scenes = static_cast<std::int64_t>(scenes.size())};
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const TrainingSceneOutcome& outcome = outcomes[i];
+    if (outcome.problem.empty()) {
+      index["scenes"].push_back(Json::parse(outcome.entry));
+      ++(outcome.is_new ? run.written : run.kept);
+    } else {
+      index["failures"].push_back({{"name", scenes[i].name}, {"problem", outcome.problem}});
+      run.failures.push_back(fmt::format("{}: {}", scenes[i].name, outcome.problem));
+    }
+  }
+  run.index = state_->directory / index_name(state_->options.shard);
+  write_file_atomically(run.index, index.dump(1, ' ', false, Json::error_handler_t::replace) + "\n",
+                        OutputPolicy::overwrite);
+  return run;
+}
 
 std::optional<BrokenRule> LightRange::broken_rule(const std::string& which) const {
   if (!(std::isfinite(low_e_per_s) && low_e_per_s >= 0.0))
@@ -234,39 +256,19 @@ TrainingSetRun write_training_set(const fs::path& directory, std::span<const Tra
                                   const CodeSet& code, const Camera& camera,
                                   const TrainingSceneLoader& load,
                                   const TrainingSetOptions& options, const Progress& progress) {
-  options.validate();
-  std::vector<TrainingScene> ours;
-  for (const TrainingScene& scene : scenes)
-    if (options.shard.holds(fnv1a_128_hex(scene.name))) ours.push_back(scene);
-  TrainingSet set(directory, code, camera, load, options);
-  TrainingSetRun run{.scenes = static_cast<std::int64_t>(ours.size())};
-  Json index = {{"tofsmith", TOFSMITH_VERSION}, {"training_set", training_set_version},
-                {"setup", set.setup()},         {"camera", Json::parse(camera_to_json(camera))},
-                {"code", code.name()},          {"seed", options.capture.seed},
-                {"scenes", Json::array()},      {"failures", Json::array()}};
-  for (std::int64_t begin = 0; begin < run.scenes; begin += scenes_at_once) {
-    report(progress, static_cast<double>(begin) / static_cast<double>(run.scenes),
-           fmt::format("{} of {} scenes", begin, run.scenes));
-    std::vector<SceneOutcome> outcomes(
-        static_cast<std::size_t>(std::min(scenes_at_once, run.scenes - begin)));
-    parallel_for(static_cast<std::int64_t>(outcomes.size()), [&](std::int64_t i) {
-      outcomes[static_cast<std::size_t>(i)] = set.write(ours[static_cast<std::size_t>(begin + i)]);
+  const TrainingSetWriter writer(directory, code, camera, options);
+  const std::vector<TrainingScene> ours = writer.scenes_of_shard(scenes);
+  const auto count = static_cast<std::int64_t>(ours.size());
+  std::vector<TrainingSceneOutcome> outcomes(ours.size());
+  for (std::int64_t begin = 0; begin < count; begin += scenes_at_once) {
+    report(progress, static_cast<double>(begin) / static_cast<double>(count),
+           fmt::format("{} of {} scenes", begin, count));
+    parallel_for(std::min(scenes_at_once, count - begin), [&](std::int64_t i) {
+      const auto scene = static_cast<std::size_t>(begin + i);
+      outcomes[scene] = writer.write(ours[scene], load);
     });
-    for (std::size_t i = 0; i < outcomes.size(); ++i) {
-      if (outcomes[i].problem.empty()) {
-        index["scenes"].push_back(std::move(outcomes[i].entry));
-        continue;
-      }
-      const std::string& name = ours[static_cast<std::size_t>(begin) + i].name;
-      index["failures"].push_back({{"name", name}, {"problem", outcomes[i].problem}});
-      run.failures.push_back(fmt::format("{}: {}", name, outcomes[i].problem));
-    }
   }
-  run.written = set.written();
-  run.kept = set.kept();
-  run.index = directory / index_name(options.shard);
-  write_file_atomically(run.index, index.dump(1, ' ', false, Json::error_handler_t::replace) + "\n",
-                        OutputPolicy::overwrite);
+  const TrainingSetRun run = writer.write_index(ours, outcomes);
   report(progress, 1.0, "scenes written");
   return run;
 }

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sweeps on executors: the same bytes on any of them, and after lost workers."""
+"""Sweeps and training sets on executors: the same bytes on any of them, and after lost workers."""
 
 import multiprocessing
 import os
@@ -10,6 +10,7 @@ import sqlite3
 import subprocess
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 
+import numpy as np
 import pytest
 
 import tofsmith as ts
@@ -180,6 +181,43 @@ def test_items_that_fail_are_listed(tmp_path):
 def test_workers_of_other_builds_are_refused():
     with pytest.raises(RuntimeError, match="0.0 on ABACUS: results would differ"):
         _executor.require_build(("0.0", "ABACUS"))
+
+
+scenes = {f"{metres} m": np.full((6, 8), float(metres)) for metres in range(1, 8)}
+
+
+def written(directory, given=scenes, **options):
+    run = ts.write_training_set(directory, given, "square-k4", "paper-10f0", seed=3,
+                                signal_range=(1e4, 1e6), **options)
+    files = {p.relative_to(directory): p.read_bytes() for p in directory.rglob("*.*")}
+    return run, files
+
+
+@pytest.mark.parametrize("name", ["spawn", "threads", "inline"])
+def test_training_sets_have_the_same_files(name, tmp_path):
+    given = scenes | {"flat": np.ones(3), "eye": "table-top"}
+    run, files = written(tmp_path / "alone", given)
+    with executors[name]() as executor:
+        other, others = written(tmp_path / name, given, executor=executor)
+        assert others == files
+        assert (other.scenes, other.written, other.kept) == (run.scenes, run.written, run.kept)
+        assert other.failures == run.failures and other.failures[0].startswith("flat: ")
+        again, _ = written(tmp_path / name, given, executor=executor)
+    assert (again.written, again.kept) == (0, len(given) - 1)
+
+
+def test_shards_of_training_sets_on_executors(tmp_path):
+    for index in (1, 2):
+        written(tmp_path / "alone", shard=(index, 2))
+        written(tmp_path / "shards", shard=(index, 2), executor=Inline())
+    assert written(tmp_path / "alone")[1] == written(tmp_path / "shards", executor=Inline())[1]
+
+
+def test_an_interrupted_training_set_continues(tmp_path):
+    with pytest.raises(ts.Interrupted):
+        written(tmp_path / "set", executor=Inline(), progress=lambda fraction, step: False)
+    run, files = written(tmp_path / "set", executor=Inline())
+    assert run.kept > 0 and files == written(tmp_path / "alone")[1]
 
 
 @pytest.mark.parametrize("executor, threads, message", [

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,6 +65,40 @@ struct LoadedTrainingScene {
   PinholeView view;
 };
 using TrainingSceneLoader = std::function<LoadedTrainingScene(const TrainingScene&)>;
+
+/// Result of one scene.
+struct TrainingSceneOutcome {
+  std::string entry;    ///< of the index: JSON; "" for a scene that could not be simulated
+  std::string problem;  ///< why it could not be simulated
+  bool is_new = false;  ///< whether its files were written now, and not found finished
+};
+
+/// Writes the scenes of a training set in any order, and the index at the end. Several processes
+/// may write into one directory. write_training_set() does all of it in one process.
+class TrainingSetWriter {
+ public:
+  /// @throws std::invalid_argument as TrainingSetOptions::validate()
+  TrainingSetWriter(std::filesystem::path directory, CodeSet code, Camera camera,
+                    TrainingSetOptions options);
+  ~TrainingSetWriter();
+  TrainingSetWriter(const TrainingSetWriter&) = delete;
+  TrainingSetWriter& operator=(const TrainingSetWriter&) = delete;
+
+  /// The scenes that belong to the shard of the options, in their order.
+  std::vector<TrainingScene> scenes_of_shard(std::span<const TrainingScene> scenes) const;
+  /// Writes the files of a scene unless they are finished. Thread-safe.
+  /// @param load  an error that it throws becomes the problem of the outcome
+  /// @throws IoError if an output cannot be written
+  TrainingSceneOutcome write(const TrainingScene& scene, const TrainingSceneLoader& load) const;
+  /// Writes the index of the scenes, in their order.
+  /// @throws IoError if it cannot be written
+  TrainingSetRun write_index(std::span<const TrainingScene> scenes,
+                             std::span<const TrainingSceneOutcome> outcomes) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Captures and decodes every scene, and writes into `directory`, for each, KEY.npz (raw, depth_m,
 /// true_depth_m, albedo) and then KEY.json (parameters), below a folder of the first two digits of
