@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/shared/byte_cursor.hpp"
+#include "io/byte_cursor.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "io/shared/byte_cursor.hpp"
+#include "io/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
 #include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <cstring>
 
-#include "io/shared/byte_cursor.hpp"
+#include "io/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -16,8 +16,8 @@
 #include <span>
 #include <string_view>
 
+#include "io/byte_cursor.hpp"
 #include "io/image_limits.hpp"
-#include "io/shared/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"

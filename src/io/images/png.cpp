@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
+#include "io/byte_cursor.hpp"
 #include "io/image_limits.hpp"
-#include "io/shared/byte_cursor.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 

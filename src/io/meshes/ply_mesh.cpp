@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "io/byte_cursor.hpp"
 #include "io/meshes/ply_types.hpp"
 #include "io/meshes/polygon_soup.hpp"
-#include "io/shared/byte_cursor.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/shared/byte_cursor.hpp"
+#include "io/byte_cursor.hpp"
 
 namespace tofsmith {
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/shared/text_numbers.hpp"
+#include "io/byte_cursor.hpp"
 #include "io/meshes/polygon_soup.hpp"
-#include "io/shared/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
 #include "tofsmith/core/error.hpp"
 
