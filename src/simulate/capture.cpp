@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "simulate/lens_light.hpp"
-#include "simulate/shared/row_capture.hpp"
+#include "simulate/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

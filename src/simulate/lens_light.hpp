@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "simulate/shared/row_capture.hpp"
+#include "simulate/row_capture.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/shared/row_capture.hpp"
+#include "simulate/row_capture.hpp"
 
 #include <algorithm>
 #include <cmath>
