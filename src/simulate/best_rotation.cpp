@@ -7,7 +7,7 @@
 #include <span>
 
 #include "camera/shared/actual_code.hpp"
-#include "simulate/shared/depth_trials.hpp"
+#include "simulate/depth_trials.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 
 namespace tofsmith {

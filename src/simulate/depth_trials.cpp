@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/shared/depth_trials.hpp"
+#include "simulate/depth_trials.hpp"
 
 #include <array>
 #include <cmath>

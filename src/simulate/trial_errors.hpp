@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "simulate/shared/depth_trials.hpp"
+#include "simulate/depth_trials.hpp"
 
 namespace tofsmith {
 

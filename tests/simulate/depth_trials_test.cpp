@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // The engine of the trials, beside plain references.
-#include "simulate/shared/depth_trials.hpp"
+#include "simulate/depth_trials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "simulate/shared/depth_trials.hpp"
+#include "simulate/depth_trials.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
 
