@@ -51,7 +51,8 @@ ExportedScripts export_scripts(const WaveformExport& exported) {
       try {
         add(scripts, upload_script(model, request));
       } catch (const std::invalid_argument& error) {
-        result.problem = error.what();
+        // Of the last model, which plays most, for the first exposure.
+        if (exposure == 1) result.problem = error.what();
       }
     }
     for (const SharedScript& script : scripts)
