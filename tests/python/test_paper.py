@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """tofsmith.paper: verdicts at low effort, resuming, and the command `tofsmith reproduce`."""
 
+import html
 import json
 import os
 import shutil
@@ -57,7 +58,7 @@ def test_figure(name, output):
     for picture, caption in document["pictures"]:
         assert (output / name / f"{picture}.png").read_bytes().startswith(b"\x89PNG")
         assert (output / name / f"{picture}.pdf").read_bytes().startswith(b"%PDF") and caption
-    assert f"<h2>{name}: {paper.items[name]}</h2>" in (output / "index.html").read_text()
+    assert f"<h2>{name}: {html.escape(paper.items[name])}</h2>" in (output / "index.html").read_text()
 
 
 def test_finished_figures_are_kept_unless_options_differ(tmp_path):
