@@ -49,7 +49,8 @@ def attribute(key):
     kind = TYPES[key["type"]]
     facts = [f"{key['help']}" + (f" [{key['unit']}]" if key["unit"] else "")]
     if "words" in key:
-        facts.append(" or ".join(key["words"]) if key["type"] == "choice" else "")
+        *most, last = key["words"]
+        facts.append(f"{', '.join(most)} or {last}" if key["type"] == "choice" else "")
     facts += [key["range"], f"only with {key['condition']}" if key["condition"] else ""]
     text = "; ".join(filter(None, facts)) + "."
     default = key["default"]
@@ -64,6 +65,10 @@ def attribute(key):
 
 def class_text(name, help_text, keys):
     attributes = [attribute(key) for key in keys]
+    if name == "ImpulseResponse":
+        help_text = "Impulse response of a light source or a sensor"
+    elif name == "Generator":
+        help_text = "Waveform generator of a light source or a sensor"
     lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{help_text}.', "",
              "    Attributes", "    ----------"]
     for member, annotation, _, text in attributes:

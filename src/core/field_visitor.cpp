@@ -44,7 +44,8 @@ std::string_view name_of(ValueType type) {
 }
 
 KeyDescription& KeyList::add(const Key& key, ValueType type) {
-  const bool may_be_absent = std::exchange(is_optional_, false);
+  // A part of a part is absent by default.
+  const bool may_be_absent = std::exchange(is_optional_, false) || parts_.size() > 2;
   return keys.emplace_back(KeyDescription{.name = prefixes_.back() + std::string(key.name),
                                           .part = parts_.back(),
                                           .type = type,

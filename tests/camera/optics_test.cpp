@@ -130,7 +130,7 @@ TEST(Optics, RefusesWhatNoCameraHas) {
   EXPECT_THAT(refusal([](Optics& o) { o.wavelength_m = 850.0; }),
               HasSubstr("optics.wavelength_m = 850; must be in [2e-07, 2e-05]"));
   EXPECT_THAT(refusal([](Optics& o) { o.field_of_view_deg[1] = 180.0; }),
-              HasSubstr("optics.field_of_view_deg = 180"));
+              HasSubstr("optics.field_of_view_deg[1] = 180"));
   EXPECT_THAT(refusal([](Optics& o) { o.quantum_efficiency = 30.0; }),
               HasSubstr("optics.quantum_efficiency = 30; must be in (0, 1]"));
   EXPECT_THAT(refusal([](Optics& o) {

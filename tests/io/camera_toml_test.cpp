@@ -183,8 +183,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:3:1: unknown key light.peak_facter; did you mean light.peak_factor?"},
         BadLine{"[lihgt]", "c.toml:2:2: unknown key lihgt; did you mean light?"},
         BadLine{"[lens]\nzzzzzz = 1\nfx_px=1\nfy_px=1\ncx_px=1\ncy_px=1",
-                "c.toml:3:1: unknown key lens.zzzzzz; expected fx_px, fy_px, cx_px, cy_px, "
-                "distortion_model, distortion, width_px, height_px, calibration, rays, blur, "
+                "c.toml:3:1: unknown key lens.zzzzzz; expected rays, calibration, fx_px, fy_px, "
+                "cx_px, cy_px, distortion_model, distortion, width_px, height_px, blur, "
                 "blur_sigma_px, focal_length_m, f_number, focus_distance_m, pixel_pitch_m, "
                 "pixel_samples"},
         BadLine{"sensor.readout_gap_s = -1e-3",
@@ -254,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:2:26: found no light.impulse_response.samples; expected a line such as "
                 "`samples = [0.1, 0.5, 0.3, 0.1]`"},
         BadLine{"light.impulse_response = { kind = \"file\", file = \"a.csv\", samples = [1] }",
-                "c.toml:2:70: light.impulse_response.samples: is only valid with kind = \"file\" "
+                "c.toml:2:69: light.impulse_response.samples: is only valid with kind = \"file\" "
                 "and no file"},
         BadLine{"light.impulse_response = { kind = \"file\", samples = [1, 2] }",
                 "c.toml:2:26: found no light.impulse_response.time_step_s; expected a line such "

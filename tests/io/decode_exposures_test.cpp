@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "temporary_directory.hpp"
+#include "tofsmith/decode/merge_exposures.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/npy.hpp"

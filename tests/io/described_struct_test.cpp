@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/text/shared/field_reader.hpp"
-#include "io/text/shared/field_writer.hpp"
+#include "io/text/field_reader.hpp"
+#include "io/text/field_writer.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -63,7 +63,7 @@ def test_depths_and_markers_are_keywords(camera):
 
 def test_a_lens_is_a_pinhole_and_a_blur(camera):
     blurred = camera.replace(lens={"blur": "gaussian", "blur_sigma_px": 0.5})
-    assert blurred.lens is None and blurred.blur == ts.LensBlur("gaussian", 1, 0.5)
+    assert blurred.lens is None and blurred.blur == ts.LensBlur(blur="gaussian", blur_sigma_px=0.5)
     pinhole = ts.centred_lens(4, 3)
     assert camera.replace(lens=pinhole).lens == pinhole and camera.replace(lens=pinhole).blur is None
 

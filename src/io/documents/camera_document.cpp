@@ -9,7 +9,7 @@
 
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
-#include "io/text/shared/field_writer.hpp"
+#include "io/text/field_writer.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 

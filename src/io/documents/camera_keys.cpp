@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "io/text/shared/field_writer.hpp"
+#include "io/text/field_writer.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith {

@@ -10,7 +10,7 @@
 #include "core/shared/text_numbers.hpp"
 #include "io/documents/lens_calibration.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/field_reader.hpp"
+#include "io/text/field_reader.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "io/image_limits.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/field_reader.hpp"
+#include "io/text/field_reader.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"

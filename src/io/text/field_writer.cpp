@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/text/shared/field_writer.hpp"
+#include "io/text/field_writer.hpp"
 
 #include <cmath>
 
