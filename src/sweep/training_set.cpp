@@ -173,7 +173,7 @@ TrainingSetWriter::TrainingSetWriter(fs::path directory, CodeSet code, Camera ca
   std::string setup = setup_key(camera, code);
   Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
   state_ = std::make_unique<State>(State{std::move(directory), std::move(code), std::move(camera),
-                                         std::move(options), std::move(setup), std::move(decoder)});
+                                         options, std::move(setup), std::move(decoder)});
 }
 
 std::vector<TrainingScene> TrainingSetWriter::scenes_of_shard(
@@ -268,7 +268,7 @@ TrainingSetRun write_training_set(const fs::path& directory, std::span<const Tra
       outcomes[scene] = writer.write(ours[scene], load);
     });
   }
-  const TrainingSetRun run = writer.write_index(ours, outcomes);
+  TrainingSetRun run = writer.write_index(ours, outcomes);
   report(progress, 1.0, "scenes written");
   return run;
 }
