@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sweeps and training sets on executors: the same bytes on any of them, and after lost workers."""
 
+import contextlib
 import multiprocessing
 import os
 import re
@@ -134,7 +135,8 @@ class KilledPool:
     def progress(self, fraction, _):
         if len(self.pools) == 1 and fraction > 0.1:
             for process in list(self.pools[0]._processes)[:1]:
-                os.kill(process, signal.SIGKILL)
+                with contextlib.suppress(ProcessLookupError):  # killed before
+                    os.kill(process, signal.SIGKILL)
 
 
 def test_a_new_pool_continues_after_a_killed_worker(sweep, export, expected, tmp_path):
