@@ -68,7 +68,7 @@ void show_changed(const Session& session, const std::string& name_or_path, Setti
                           with, camera.range_m(), toml));
 }
 
-/// What a value can be, in words: "number [Hz], finite and > 0".
+/// Type, unit, range, condition and default of a key: "number [Hz], finite and > 0; default 1.0".
 std::string value_text(const nlohmann::ordered_json& key) {
   std::string text = key["type"].get<std::string>();
   std::replace(text.begin(), text.end(), '_', ' ');

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/number_checks.hpp"
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/listed_exposures.hpp"
 #include "tofsmith/code/families.hpp"

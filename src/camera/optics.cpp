@@ -7,7 +7,6 @@
 #include <numbers>
 #include <string_view>
 
-#include "camera/number_checks.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -37,13 +36,13 @@ double sunlight_between(double first_m, double last_m) {
   return sum / (last_m - first_m);
 }
 
-void require_share(double value, std::string_view field) {
-  require(value > 0.0 && value <= 1.0, field, value, "must be in (0, 1]");
+void require_positive(double value, std::string_view field) {
+  require(std::isfinite(value) && value > 0.0, field, value, "must be finite and > 0");
 }
 
 void require_sight(double distance_m, double albedo) {
   require_positive(distance_m, "distance_m");
-  require_share(albedo, "albedo");
+  require(albedo > 0.0 && albedo <= 1.0, "albedo", albedo, "must be in (0, 1]");
 }
 
 }  // namespace
