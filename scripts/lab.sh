@@ -39,7 +39,7 @@ licences=() # of what is compiled in: headers, and the C and C++ libraries of em
 for package in emscripten libeigen3-dev libhwy-dev libfmt-dev librandom123-dev libtomlplusplus-dev nlohmann-json3-dev; do
   licences+=(--licence "/usr/share/doc/$package/copyright")
 done
-apps/lab/page/pack.py --worker build-lab/lab/engine.js --worker apps/lab/engine/worker.js \
+viewer/pack.py --page apps/lab/page/index.html --worker build-lab/lab/engine.js --worker apps/lab/engine/worker.js \
   --wasm build-lab/lab/engine.wasm "${licences[@]}" -o "$page"
 bytes=$(stat -c %s "$page")
 ((bytes <= 8000000)) || tofsmith_die "$page has $bytes bytes; expected at most 8000000"

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The codes side by side: which they are, and their waveforms, correlation functions and curves.
 
-import {seriesColour, seriesDash} from './colours.js';
-import {CurveSpace} from './curve_space.js';
-import {announce, byId, element, saveText, showProblem} from './dom.js';
+import {cssColour, sequentialColour, seriesColour, seriesDash} from '../../../viewer/colours.js';
+import {announce, byId, element, saveText, showProblem} from '../../../viewer/dom.js';
+import {rangeOf, shortText, thinned} from '../../../viewer/numbers.js';
+import {LinePlot, paddedRange} from '../../../viewer/plot.js';
+import {Space, SpaceView} from '../../../viewer/space.js';
 import {askedCode, codeWord} from './lab.js';
-import {rangeOf, shortText, thinned} from './numbers.js';
-import {LinePlot, paddedRange} from './plot.js';
 import {maxCodes} from './store.js';
 import {WaveformPlot} from './waveform_plot.js';
 
@@ -87,14 +87,25 @@ function radiusOf(points) {
   return radius;
 }
 
+const axesOf = (length) => [0, 1, 2].map((axis) => {
+  const end = [0, 0, 0];
+  end[axis] = length;
+  return {title: `axis ${axis + 1}`, from: end.map((value) => -value), to: end};
+});
+
 /** Everything of the page that shows codes themselves. */
 export class CodesView {
   constructor(lab, about, files) {
     Object.assign(this, {lab, about, files, shape: ''});
     this.waveforms = new Columns('waveforms', () => new WaveformPlot());
     this.correlation = new Columns('correlation', () => new LinePlot());
-    this.curves = new Columns('curve', () => new CurveSpace());
+    this.view = new SpaceView();  // all curves turn together
+    this.curves = new Columns('curve', () => new Space());
     this.cards = [];
+    byId('find-code').addEventListener('click', () => {
+      byId('design-effort').value = '0';
+      byId('design-start').click();
+    });
     lab.listen((what, i) => {
       if (what === 'state') this.#arrange();
       if (what === 'code') this.#draw(i);
@@ -104,8 +115,15 @@ export class CodesView {
     });
   }
 
+  // Cameras of three taps, for example, support no built-in code.
+  #offerDesign() {
+    const slots = this.lab.slots.slice(0, this.lab.state.codes.length);
+    byId('no-code').hidden = !slots.every((slot) => slot.problem);
+  }
+
   // What was computed before something went wrong stays, but pale.
   #mark(i) {
+    this.#offerDesign();
     for (const columns of [this.waveforms, this.correlation, this.curves])
       columns.pale(i, this.lab.slots[i].problem);
   }
@@ -289,8 +307,12 @@ export class CodesView {
     const radius = Math.max(1e-12, ...points.filter(Boolean).map(radiusOf));
     codes.forEach((code, i) => code && this.curves.plots[i].show({
       label: `Coding curve of ${code.name} in three directions`,
+      view: this.view,
       points: points[i],
-      radius
+      colour: (n) => cssColour(sequentialColour(3 * n / points[i].length)),
+      isCurve: true,
+      radius,
+      axes: axesOf(0.75 * radius)
     }));
   }
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands that give what the page shows, each below what it gives.
 
-import {announce, copyText, element} from './dom.js';
+import {announce, copyText, element} from '../../../viewer/dom.js';
 import {Outdated} from './engine.js';
 import {codeWord} from './lab.js';
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A search for a code that suits the camera, in a worker of its own.
 
-import {announce, byId, element, showProblem} from './dom.js';
+import {announce, byId, element, showProblem} from '../../../viewer/dom.js';
 import {Engine, Outdated} from './engine.js';
-import {lengthText} from './numbers.js';
+import {lengthText} from '../../../viewer/numbers.js';
 
-const efforts = [['0.1', 'a first look'], ['0.3', 'short'], ['1', 'usual']];
+const efforts = [['0', 'a known code'], ['0.1', 'a first look'], ['0.3', 'short'], ['1', 'usual']];
 
 /** The section of designs. */
 export class DesignView {
@@ -15,6 +15,7 @@ export class DesignView {
     this.effort = element(
         'select', {id: 'design-effort'},
         ...efforts.map(([value, text]) => element('option', {value}, `${value}: ${text}`)));
+    this.effort.value = '0.1';
     this.start = element(
         'button', {type: 'button', id: 'design-start', class: 'main', onclick: () => this.#run()},
         'Design');

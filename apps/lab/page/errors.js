@@ -3,11 +3,12 @@
 // Depth error over light: a table as the command prints it, a map of each code, curves with bounds.
 
 import {Columns} from './codes.js';
-import {seriesColour} from './colours.js';
-import {byId, drawSoon, element, showProblem} from './dom.js';
-import {HeatMap} from './heat_map.js';
-import {fixedText, rangeOf, rateText, shortText} from './numbers.js';
-import {LinePlot, paddedRange} from './plot.js';
+import {scaleOf} from '../../../viewer/colour_bar.js';
+import {seriesColour} from '../../../viewer/colours.js';
+import {byId, drawSoon, element, showProblem} from '../../../viewer/dom.js';
+import {HeatMap} from '../../../viewer/heat_map.js';
+import {fixedText, rangeOf, rateText, shortText} from '../../../viewer/numbers.js';
+import {LinePlot, paddedRange} from '../../../viewer/plot.js';
 
 const trialChoices = [1000, 5000, 20000, 100000];
 const bounds = [
@@ -90,7 +91,7 @@ export class ErrorsView {
     byId('error-progress').textContent = `${done < trials ? `${done} of ` : ''}${trials} trials`;
     this.#drawTable(known, kind, trials);
     this.#drawMaps(known, kind);
-    this.#drawCurves(known, kind);
+    this.#drawCurves(known);
   }
 
   #drawTable(known, kind, trials) {
@@ -130,22 +131,24 @@ export class ErrorsView {
   }
 
   #drawMaps(known, kind) {
-    const range =
-        rangeOf(known.map(({one}) => one.points.map((point) => point[`${kind}_mde_m`])), true);
+    const errors_mm = known.map(({one}) => one.points.map((p) => 1e3 * p[`${kind}_mde_m`]));
+    const scale = scaleOf(
+        {label: `${kind} depth error`, unit: 'mm', map: 'viridis', log: true, clip: 0}, errors_mm);
     const {scene} = this.lab.state;
     for (const {i, one} of known) {
       const signal = distinct(one.points.map((p) => p.signal_e_per_s)), ambient = ambientOf(one);
       const at = (c, r) => one.points[c * ambient.length + r];
-      const values = ambient.flatMap((_, r) => signal.map((_, c) => at(c, r)?.[`${kind}_mde_m`]));
-      this.maps.title(i, one.name, `${kind} depth error (mm)`);
+      const values = ambient.flatMap((_, r) => signal.map((_, c) => 1e3 * at(c, r)?.[`${kind}_mde_m`]));
+      this.maps.title(i, one.name);
       const c = signal.indexOf(scene.signal), r = ambient.indexOf(scene.ambient);
       this.maps.plots[i].show({
         label: `Map of the depth error of ${one.name}`,
-        columns: signal,
-        rows: ambient,
+        columns: signal.map(rateText),
+        rows: ambient.map(rateText),
         values,
-        range,
-        text: (value) => `${shortText(1e3 * value, 3)} mm`,
+        colour: scale.colour,
+        scale: scale.bar,
+        cellText: (value) => shortText(value, 3),
         titles: {x: 'signal (e/s)', y: 'ambient (e/s)'},
         current: c >= 0 && r >= 0 ? [c, r] : null,
         details: (column, row) => {
@@ -166,7 +169,8 @@ export class ErrorsView {
     }
   }
 
-  #drawCurves(known, kind) {
+  // Bounds hold for the circular error, whichever error the camera is judged by.
+  #drawCurves(known) {
     const ambient = ambientOf(known[0].one);
     const wanted = this.lab.state.curve_ambient ?? Math.floor(ambient.length / 2),
           level = Math.min(wanted, ambient.length - 1);
@@ -177,8 +181,8 @@ export class ErrorsView {
     const series = [];
     for (const {i, one} of known) {
       const points = pointsAt(one, level), x = points.map((p) => p.signal_e_per_s);
-      const mean = points.map((p) => 1e3 * p[`${kind}_mde_m`]),
-            deviation = points.map((p) => 2e3 * p[`${kind}_se_m`]);
+      const mean = points.map((p) => 1e3 * p.circular_mde_m),
+            deviation = points.map((p) => 2e3 * p.circular_se_m);
       series.push({
         name: one.name,
         x,
@@ -201,7 +205,7 @@ export class ErrorsView {
         });
     }
     this.curves.show({
-      label: `Depth error over signal at ambient light of ${texts[level]}, with bounds`,
+      label: `Circular depth error over signal at ambient light of ${texts[level]}, with bounds`,
       height: 320,
       x: {
         title: 'signal (e/s)',
@@ -210,7 +214,7 @@ export class ErrorsView {
         text: (v) => `signal ${shortText(v, 4)} e/s`
       },
       y: {
-        title: `${kind} depth error (mm)`,
+        title: 'circular depth error (mm)',
         log: true,
         range: paddedRange(rangeOf(series.map((one) => one.y), true), true),
         unit: 'mm'

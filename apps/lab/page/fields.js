@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera as fields: a control for every key, made from what the engine says of it.
 
-import {element, showProblem} from './dom.js';
-import {fieldText} from './numbers.js';
+import {element, showProblem} from '../../../viewer/dom.js';
+import {fieldText} from '../../../viewer/numbers.js';
 
 const sectionTitles = {
   '': 'Camera',

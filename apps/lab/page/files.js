@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that are dropped in or chosen: cameras as TOML, codes as JSON.
 
-import {announce, byId, notice} from './dom.js';
+import {announce, byId, notice} from '../../../viewer/dom.js';
 import {askedCode} from './lab.js';
 
 /** Larger files are refused without a look into them. */

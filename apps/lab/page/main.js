@@ -5,17 +5,17 @@
 import {CodesView} from './codes.js';
 import {Commands} from './commands.js';
 import {DesignView} from './design.js';
-import {announce, byId, copyText, element, notice, saveText, showProblem} from './dom.js';
+import {announce, byId, copyText, element, notice, saveText, showProblem} from '../../../viewer/dom.js';
 import {Engine, missingFeature, packedEngine} from './engine.js';
 import {ErrorsView} from './errors.js';
 import {FieldPanel} from './fields.js';
 import {Files} from './files.js';
 import {fileName, Lab} from './lab.js';
 import {linkOf, stateOf} from './link.js';
-import {shortText} from './numbers.js';
+import {shortText} from '../../../viewer/numbers.js';
 import {SceneView} from './scene.js';
 import {firstState, Store} from './store.js';
-import {startTheme} from './theme.js';
+import {startTheme} from '../../../viewer/theme.js';
 
 const patienceSeconds = 60;
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One scene, captured and decoded pixel by pixel: true depth, depth and error, alone and filtered.
 
-import {divergingColour, sequentialColour} from './colours.js';
-import {byId, element, showProblem} from './dom.js';
+import {divergingColour, sequentialColour} from '../../../viewer/colours.js';
+import {byId, element, showProblem} from '../../../viewer/dom.js';
 import {askedCode} from './lab.js';
-import {lengthText, rangeOf, shortText} from './numbers.js';
+import {lengthText, rangeOf, shortText} from '../../../viewer/numbers.js';
 import {Sharpener} from './pace.js';
-import {Picture} from './picture.js';
+import {Picture} from '../../../viewer/picture.js';
 
 const widths = [80, 160, 240, 320], quickWidth = 80;
 
@@ -16,6 +16,9 @@ function spread(errors) {
   const sizes = Array.from(errors, Math.abs).filter(Number.isFinite).sort((a, b) => a - b);
   return sizes.length ? Math.max(1e-6, sizes[Math.floor(0.9 * (sizes.length - 1))]) : 1;
 }
+
+const barOf = (title, [low, high], colour) =>
+    ({title, low: lengthText(low, 3), high: lengthText(high, 3), colour});
 
 /** The section of the scene. */
 export class SceneView {
@@ -131,9 +134,8 @@ export class SceneView {
       title,
       note,
       label,
-      gradient: sequentialColour,
       colour: (v) => sequentialColour((v - depths[0]) / (depths[1] - depths[0] || 1)),
-      ends: depths.map((v) => lengthText(v, 3)),
+      scale: barOf('depth', depths, sequentialColour),
       text: (v) => `${title} ${lengthText(v)}`
     });
     const errorSpec = (values, title, note, label) => ({
@@ -142,9 +144,8 @@ export class SceneView {
       title,
       note,
       label,
-      gradient: divergingColour,
       colour: (v) => divergingColour(0.5 + v / most / 2),
-      ends: [lengthText(-most, 3), lengthText(most, 3)],
+      scale: barOf('decoded minus true', [-most, most], divergingColour),
       text: (v) => `${title} ${lengthText(v)}`
     });
     const mean = (answer) =>
@@ -164,9 +165,8 @@ export class SceneView {
       title: 'Predicted deviation',
       note: 'each pixel alone',
       label: 'Deviation of depth that the decoder predicts',
-      gradient: sequentialColour,
       colour: (v) => sequentialColour((v - scale[0]) / (scale[1] - scale[0] || 1)),
-      ends: scale.map((v) => lengthText(v, 3)),
+      scale: barOf('deviation', scale, sequentialColour),
       text: (v) => `deviation ${lengthText(v)}`
     });
     pictures.filtered.show(depthSpec(

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light and gate of every measurement over one period; edges of two-level ones can be moved.
 
-import {announce, drawn, drawSoon, element, onWidth, widthOf} from './dom.js';
-import {rangeOf, thinned} from './numbers.js';
+import {announce, drawn, drawSoon, element, onWidth, widthOf} from '../../../viewer/dom.js';
+import {rangeOf, thinned} from '../../../viewer/numbers.js';
 
 const left = 30, right = 10, axis = 22;
 const reach = matchMedia('(pointer: coarse)').matches ? 15 : 9;  // pixels to either side of an edge

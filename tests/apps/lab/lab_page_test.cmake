@@ -6,7 +6,7 @@
 set(lab_tests "${CMAKE_CURRENT_SOURCE_DIR}/apps/lab")
 set(built_page "${PROJECT_SOURCE_DIR}/build-lab/lab.html")
 add_test(NAME Lab.PacksItsPage
-  COMMAND /usr/bin/python3 "${lab_tests}/pack_test.py" "${PROJECT_SOURCE_DIR}/apps/lab/page/pack.py")
+  COMMAND /usr/bin/python3 "${lab_tests}/pack_test.py" "${PROJECT_SOURCE_DIR}/viewer/pack.py")
 set_tests_properties(Lab.PacksItsPage PROPERTIES LABELS apps)
 add_test(NAME Lab.BuiltPageWorksInABrowser
   COMMAND /usr/bin/python3 -B "${lab_tests}/lab_page_test.py" "${built_page}")

@@ -11,7 +11,8 @@ import threading
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-PACK = HERE.parents[2] / "apps" / "lab" / "page" / "pack.py"
+PACK = HERE.parents[2] / "viewer" / "pack.py"
+LAB = HERE.parents[2] / "apps" / "lab" / "page" / "index.html"
 
 
 def handler_of(program):
@@ -46,7 +47,7 @@ def page_with_engine(program):
         worker, page = Path(folder, "worker.js"), Path(folder, "lab.html")
         address = f"http://127.0.0.1:{server.server_port}/"
         worker.write_text((HERE / "native_worker.js").read_text().replace("ENGINE_ADDRESS", f"'{address}'"))
-        subprocess.run([sys.executable, PACK, "--worker", worker, "-o", page], check=True)
+        subprocess.run([sys.executable, PACK, "--page", LAB, "--worker", worker, "-o", page], check=True)
         text = page.read_text()
         for before, after in (("default-src 'none';", f"default-src 'none'; connect-src {address};"),
                               ("trials: 20000,", "trials: 500,")):  # less to compute in each test

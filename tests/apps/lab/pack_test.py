@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What pack.py packs stands in the page, and what it cannot pack is told.
+"""pack.py packs every part into the page and rejects unsupported imports.
 
     pack_test.py PACK
 """
@@ -30,7 +30,7 @@ class Pack(unittest.TestCase):
             (folder / "library").mkdir()
             (folder / "library" / "copyright").write_text("Free to all.")
             done = subprocess.run(
-                [sys.executable, PACK, "--page", folder, "--worker", folder / "worker.js", "--wasm",
+                [sys.executable, PACK, "--page", folder / "index.html", "--worker", folder / "worker.js", "--wasm",
                  folder / "engine.wasm", "--licence",
                  folder / "library" / "copyright", "-o", folder / "lab.html"], capture_output=True,
                 text=True)
@@ -51,12 +51,24 @@ class Pack(unittest.TestCase):
         wasm = re.search(r'id="lab-wasm">([^<]*)<', page)[1]
         self.assertEqual(gzip.decompress(base64.b64decode(wasm)), b"wasm")
 
+    def test_a_page_as_cpp_returns_its_text(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for file, text in {"index.html": INDEX, "a.css": "p {}", "main.js": "begin();\n"}.items():
+                (folder / file).write_text(text)
+            subprocess.run([sys.executable, PACK, "--page", folder / "index.html", "--cpp", "-o",
+                            folder / "page.cpp"], check=True)
+            source = (folder / "page.cpp").read_text()
+        pieces = re.findall(r'R"__page__\((.*?)\)__page__"', source, re.S)
+        self.assertIn("begin();", "".join(pieces))
+        self.assertNotIn("lab-worker", source)
+
     def test_the_same_input_gives_the_same_bytes(self):
         self.assertEqual(self.packed(main_js="begin();\n"), self.packed(main_js="begin();\n"))
 
-    def test_circles_and_other_forms_are_told(self):
+    def test_cycles_and_other_forms_are_rejected(self):
         for main, other, word in (
-            ("import {a} from './x.js';\n", "import {m} from './main.js';\nexport const a = 1;\n", "circle"),
+            ("import {a} from './x.js';\n", "import {m} from './main.js';\nexport const a = 1;\n", "cycle"),
             ("import * as x from './x.js';\n", "export const a = 1;\n", "cannot pack"),
             ("import {a} from './x.js';\n", "export default 1;\n", "cannot pack"),
         ):

@@ -12,6 +12,10 @@ const viridis = [
   [68, 1, 84], [72, 36, 117], [65, 68, 135], [53, 95, 141], [42, 120, 142], [33, 145, 140],
   [34, 168, 132], [68, 191, 112], [122, 209, 81], [189, 223, 38], [253, 231, 37]
 ];
+const cividis = [
+  [0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120],
+  [165, 156, 116], [195, 179, 105], [225, 204, 85], [254, 232, 56]
+];
 const diverging = [
   [8, 48, 107], [31, 110, 179], [107, 174, 214], [198, 220, 238], [247, 247, 245], [246, 208, 184],
   [236, 143, 96], [200, 67, 31], [122, 15, 10]
@@ -29,14 +33,15 @@ export const sequentialColour = (place) => between(viridis, place);
 /** The same from blue over white to red. */
 export const divergingColour = (place) => between(diverging, place);
 
+/** Functions from a place in [0, 1] to a colour, by the names in documents. */
+export const colourMaps = {
+  viridis: sequentialColour,
+  cividis: (place) => between(cividis, place),
+  diverging: divergingColour
+};
+
 /** Three numbers as CSS writes a colour. */
 export const cssColour = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
 /** Whether text on this colour must be light. */
 export const isDark = ([r, g, b]) => 0.299 * r + 0.587 * g + 0.114 * b < 130;
-
-/** The scale itself, as a background. */
-export function scaleGradient(colour) {
-  const stops = Array.from({length: 13}, (_, i) => cssColour(colour(i / 12)));
-  return `linear-gradient(to right, ${stops.join(', ')})`;
-}

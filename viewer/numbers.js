@@ -81,6 +81,7 @@ export function linearTicks(low, high, count) {
 
 /** Powers of ten within [low, high]; with 2 and 5 times them where there are few. */
 export function logarithmicTicks(low, high) {
+  if (high / low < 4) return linearTicks(low, high, 4);  // less than one 1-2-5 step would be left
   const ticks = [];
   const isPlain = low >= 1e-3 && high <= 1e5;
   const few = Math.log10(high / low) < 2.2;

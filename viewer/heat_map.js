@@ -1,26 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A map of values over two lists of levels: one rectangle a pair, its value in it.
+// Values by row and column as coloured cells, with the value of each cell as text.
 
-import {cssColour, isDark, scaleGradient, sequentialColour} from './colours.js';
+import {colourBar} from './colour_bar.js';
+import {cssColour, isDark} from './colours.js';
 import {announce, drawn, drawSoon, element, onWidth, widthOf} from './dom.js';
-import {rateText} from './numbers.js';
 import {axisOf, frameOf, innerOf, ValueBox} from './plot.js';
 
-const place = (value, [low, high]) =>
-    (high > low ? Math.log(value / low) / Math.log(high / low) : 0.5);
-
-/** The strip of colours under a picture, with its ends. */
-export function colourBar(low, high, colour, title) {
-  return element(
-      'div', {class: 'scale', title}, element('span', {}, low),
-      element('i', {style: `background:${scaleGradient(colour)}`}), element('span', {}, high));
-}
-
 /**
- * A heat map on two logarithmic axes that follows its width. What it shows: {label, columns, rows:
- * levels, values: rows after rows, range: [low, high] of the colours, text(value), details(column,
- * row): lines, titles: {x, y}, current: [column, row] or null, choose(column, row)}.
+ * A heat map that follows its width. What it shows: {label, columns, rows: texts of the ticks,
+ * values: rows after rows, colour(value): [r, g, b] or null, cellText(value), details(column, row):
+ * lines, titles: {x, y}, height, scale: colour bar or null, current: [column, row] or null,
+ * choose(column, row) or null}.
  */
 export class HeatMap {
   #spec = null;
@@ -44,50 +35,53 @@ export class HeatMap {
     this.#spec = spec;
     this.node.setAttribute(
         'aria-label',
-        `${spec.label}. Arrow keys read cells, Enter takes a cell's light for the scene.`);
-    const ends = spec.range.map(spec.text);
-    this.scale.replaceChildren(colourBar(ends[0], ends[1], sequentialColour, 'depth error'));
+        `${spec.label}. Arrow keys read cells${spec.choose ? ', Enter chooses one' : ''}.`);
+    this.scale.replaceChildren(...(spec.scale ? [colourBar(spec.scale)] : []));
     drawSoon(this, () => this.#draw());
   }
 
   #draw() {
     const spec = this.#spec, width = widthOf(this.node);
     if (!spec || width < 20) return;
-    const {columns, rows} = spec, height = Math.max(180, Math.min(300, 56 + 40 * rows.length)),
-                    inner = innerOf(width, height);
-    const levels = (list) => ({range: [-0.5, list.length - 0.5], ticks: levelTicks(list)});
-    const x = axisOf(levels(columns), inner.x, 0), y = axisOf(levels(rows), inner.y, 0);
+    const {columns, rows} = spec;
+    const height = spec.height ?? Math.max(180, Math.min(420, 56 + 40 * rows.length));
+    const left = Math.max(52, 34 + 6.6 * Math.max(...rows.map((text) => text.length)));
+    const inner = innerOf(width, height, {left});
+    const cellWidth = (inner.x[1] - inner.x[0]) / columns.length;
+    const x = axisOf(levels(columns, cellWidth), inner.x, 0);
+    const y = axisOf(levels(rows, Infinity), inner.y, 0);
     const cells = drawn('g', {});
     const [w, h] = [x.at(1) - x.at(0), y.at(0) - y.at(1)];
     rows.forEach((_, r) => columns.forEach((_, c) => {
-      const value = spec.values[r * columns.length + c], known = value > 0;
-      const colour = sequentialColour(known ? place(value, spec.range) : 0);
+      const value = spec.values[r * columns.length + c], colour = spec.colour(value);
       cells.append(drawn('rect', {
-        class: `cell${spec.current?.[0] === c && spec.current[1] === r ? ' current' : ''}`,
+        class: `cell${spec.current?.[0] === c && spec.current[1] === r ? ' current' : ''}${
+            spec.choose ? ' chosen' : ''}`,
         x: x.at(c) - w / 2,
         y: y.at(r) - h / 2,
         width: w,
         height: h,
-        style: `fill:${known ? cssColour(colour) : 'var(--faint)'}`,
-        onclick: () => spec.choose(c, r),
+        style: `fill:${colour ? cssColour(colour) : 'var(--faint)'}`,
+        onclick: () => spec.choose?.(c, r),
         onpointermove: () => this.#read(c, r)
       }));
-      if (w > 34 && h > 13)
+      const text = colour ? spec.cellText(value) : '';
+      if (w > 6 + 6.5 * text.length && h > 13)
         cells.append(drawn(
             'text', {
               class: 'cell-text',
               x: x.at(c),
               y: y.at(r) + 4,
               'text-anchor': 'middle',
-              style: `fill:${isDark(colour) ? '#fff' : '#111'}`
+              style: `fill:${isDark(colour ?? [255, 255, 255]) ? '#fff' : '#111'}`
             },
-            spec.text(value).replace(/ m?m$/, '')));
+            text));
     }));
     this.at = (c, r) => [x.at(c), y.at(r)];
     this.svg?.remove();
     this.svg = drawn(
         'svg', {viewBox: `0 0 ${width} ${height}`, height, 'aria-hidden': 'true'},
-        frameOf(x, y, spec.titles, width, height), cells);
+        frameOf(x, y, spec.titles, width, height, {left}), cells);
     this.node.prepend(this.svg);
   }
 
@@ -101,7 +95,7 @@ export class HeatMap {
   #key(event) {
     const spec = this.#spec;
     if (!spec) return;
-    if (event.key === 'Enter' || event.key === ' ') {
+    if (spec.choose && (event.key === 'Enter' || event.key === ' ')) {
       event.preventDefault();
       spec.choose(...this.#cell);
       return;
@@ -119,7 +113,12 @@ export class HeatMap {
   }
 }
 
-function levelTicks(levels) {
-  const step = Math.ceil(levels.length / 8);
-  return levels.map((level, value) => ({value, text: value % step === 0 ? rateText(level) : ''}));
+/** An axis of named places; every n-th name where there is no room for more. */
+function levels(texts, room) {
+  const wide = 10 + 6.2 * Math.max(...texts.map((text) => text.length));
+  const step = Math.max(1, Math.ceil(Number.isFinite(room) ? wide / room : texts.length / 12));
+  return {
+    range: [-0.5, texts.length - 0.5],
+    ticks: texts.map((text, value) => ({value, text: value % step === 0 ? text : ''}))
+  };
 }

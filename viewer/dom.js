@@ -63,7 +63,7 @@ export function onWidth(node, redraw) {
     const width = Math.floor(entry.contentRect.width);
     if (width === widthOf(node)) return;
     widths.set(node, width);
-    if (width > 0) redraw();
+    if (width > 0) drawSoon(node, redraw);  // later: it changes heights, which are observed, too
   }).observe(node);
 }
 
@@ -99,8 +99,11 @@ export function colourOf(name) {
 export const forgetColours = () => colours.clear();
 
 /** Lets a person save a text as a file. */
-export function saveText(text, name, type) {
-  const address = URL.createObjectURL(new Blob([text], {type}));
+export const saveText = (text, name, type) => saveBlob(new Blob([text], {type}), name);
+
+/** The same of bytes. */
+export function saveBlob(blob, name) {
+  const address = URL.createObjectURL(blob);
   element('a', {href: address, download: name}).click();
   setTimeout(() => URL.revokeObjectURL(address), 10000);
 }

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The parts of a page that are no figures: text, settings, tables, commands, links.
+
+import {copyText, element, saveText} from './dom.js';
+import {csvOf} from './export.js';
+
+/** Text with `code` between backticks as elements. */
+export const inline = (text) => text.split(/`([^`]+)`/).map(
+    (part, i) => (i % 2 ? element('code', {}, part) : part));
+
+const pairs = (name) => ({entries}) => element(
+    'dl', {class: name},
+    ...entries.map(
+        ([key, value]) => element(
+            'div', {}, element('dt', {}, key), element('dd', {}, value))));
+
+const unbrokenLetters = 40;  // of a cell; longer ones are sentences, which break
+
+function tableOf({id, title, caption, columns, rows, highlighted}) {
+  const cell = (tag, c, ...content) => element(tag, {
+    class: columns[c].numeric ? 'number' : rows.some((row) => row[c].length > unbrokenLetters) ? 'long' : null,
+    scope: tag === 'th' ? 'row' : null
+  }, ...content);
+  const save = element('button', {
+    type: 'button',
+    onclick: () => saveText(
+        csvOf([columns.map((column) => column.header), ...rows]), `${id || 'table'}.csv`, 'text/csv')
+  }, 'CSV');
+  const text = element('p', {class: 'caption'}, ...inline(caption));
+  return element(
+      'div', {class: 'table-block', id: id || null},
+      element(
+          'div', {class: 'block-head'}, title ? element('h3', {}, title) : text,
+          element('div', {class: 'save'}, save)),
+      element(
+          'div', {class: 'table', tabindex: 0, role: 'region', 'aria-label': 'Table'},
+          element(
+              'table', {},
+              element(
+                  'thead', {},
+                  element(
+                      'tr', {},
+                      ...columns.map(({header, numeric}) => element('th', {
+                                       scope: 'col',
+                                       class: numeric ? 'number' : null
+                                     }, ...inline(header))))),
+              element(
+                  'tbody', {},
+                  ...rows.map((row, r) => element(
+                                  'tr', {class: r === highlighted ? 'highlighted' : null},
+                                  ...row.map((one, c) => cell(c ? 'td' : 'th', c, one))))))),
+      title ? text : null);
+}
+
+function codeOf({text}) {
+  const copy = element('button', {
+    type: 'button',
+    onclick: async () => {
+      copy.textContent = await copyText(text) ? 'Copied' : 'Select and copy';
+    }
+  }, 'Copy');
+  return element(
+      'div', {class: 'code'}, element('pre', {}, element('code', {}, text)), copy);
+}
+
+const verdictClasses = {
+  holds: 'holds',
+  'holds in part': 'in-part',
+  'does not hold': 'fails'
+};
+
+const statementsOf = ({entries}) => element(
+    'ul', {class: 'statements'},
+    ...entries.map(
+        ({verdict, statement, measured, why}) => element(
+            'li', {class: verdictClasses[verdict]}, element('p', {class: 'verdict'}, verdict),
+            element(
+                'div', {}, element('p', {class: 'statement'}, ...inline(statement)),
+                element('p', {}, ...inline(measured)),
+                why ? element('p', {class: 'why'}, ...inline(why)) : null))));
+
+// A path as a URL: characters that end a path or begin a scheme are escaped.
+const urlOf = (path) => path.split('/').map(encodeURIComponent).join('/');
+
+const linksOf = ({entries}) => element(
+    'ul', {class: 'links'},
+    ...entries.map(
+        ({text, path, note}) =>
+            element('li', {}, element('a', {href: urlOf(path)}, text), ' ', ...inline(note))));
+
+const makers = {
+  text: ({text}) => element('p', {}, ...inline(text)),
+  settings: pairs('settings'),
+  numbers: pairs('numbers'),
+  table: tableOf,
+  code: codeOf,
+  statements: statementsOf,
+  links: linksOf
+};
+
+/** The element of a block that is no figure. */
+export function blockOf(block) {
+  if (!(block.kind in makers)) throw new Error(`unknown kind of block: ${block.kind}`);
+  const node = makers[block.kind](block);
+  node.classList.add('block', `block-${block.kind}`);
+  return node;
+}

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Figures as SVG and PNG files, data as CSV.
+
+import {drawn, element} from './dom.js';
+
+const quoted = (value) => {
+  const text = value === null || value === undefined || Number.isNaN(value) ? '' : String(value);
+  return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+};
+
+/** Rows as comma-separated values. */
+export const csvOf = (rows) => rows.map((row) => row.map(quoted).join(',') + '\n').join('');
+
+const styles = [
+  'fill', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linejoin', 'opacity', 'font-size',
+  'font-family', 'font-weight', 'visibility'
+];
+
+/** A copy of an SVG element that needs no style sheet. */
+function inked(svg) {
+  const copy = svg.cloneNode(true);
+  const from = [svg, ...svg.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
+  from.forEach((node, i) => {
+    const style = getComputedStyle(node);
+    to[i].removeAttribute('class');
+    to[i].setAttribute(
+        'style', styles.map((name) => `${name}:${style.getPropertyValue(name)}`).join(';'));
+  });
+  return copy;
+}
+
+/** Text nodes below an element with the box of each line. */
+function textsOf(root) {
+  const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT), texts = [];
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const owner = node.parentElement;
+    if (!node.textContent.trim() || owner.closest('svg, .save, .value, .choice, [hidden]')) continue;
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    const lines = range.getClientRects().length;
+    texts.push({text: node.textContent, box: range.getBoundingClientRect(), owner, lines});
+  }
+  return texts;
+}
+
+/** A figure as the text of an SVG file, as it is on the page at present. */
+export function svgOf(root) {
+  const frame = root.getBoundingClientRect();
+  const placed = (box) => ({x: box.left - frame.left, y: box.top - frame.top});
+  const page = drawn('svg', {
+    xmlns: 'http://www.w3.org/2000/svg',
+    viewBox: `0 0 ${frame.width} ${frame.height}`,
+    width: frame.width,
+    height: frame.height
+  });
+  page.append(drawn('rect', {
+    width: frame.width,
+    height: frame.height,
+    fill: getComputedStyle(document.body).backgroundColor
+  }));
+  for (const canvas of root.querySelectorAll('canvas')) {
+    const box = canvas.getBoundingClientRect();
+    page.append(drawn('image', {
+      ...placed(box),
+      width: box.width,
+      height: box.height,
+      preserveAspectRatio: 'none',
+      style: 'image-rendering:pixelated',
+      href: canvas.toDataURL()
+    }));
+  }
+  for (const svg of root.querySelectorAll('svg')) {
+    const box = svg.getBoundingClientRect(), copy = inked(svg);
+    const {x, y} = placed(box);
+    for (const [name, value] of Object.entries({x, y, width: box.width, height: box.height}))
+      copy.setAttribute(name, value);
+    page.append(copy);
+  }
+  for (const {text, box, owner} of textsOf(root)) {
+    const style = getComputedStyle(owner);
+    const size = parseFloat(style.fontSize), {x, y} = placed(box);
+    page.append(drawn('text', {
+      x,
+      y: y + 0.5 * Math.min(box.height, 1.5 * size) + 0.35 * size,
+      fill: style.color,
+      'font-size': size,
+      'font-family': style.fontFamily,
+      'font-weight': style.fontWeight
+    }, text));
+  }
+  return new XMLSerializer().serializeToString(page);
+}
+
+/** The same as a PNG image, two pixels for each pixel of the page. */
+export async function pngOf(root) {
+  const {width, height} = root.getBoundingClientRect(), picture = new Image();
+  picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svgOf(root))}`;
+  await picture.decode();
+  const canvas = element('canvas', {width: 2 * Math.round(width), height: 2 * Math.round(height)});
+  canvas.getContext('2d').drawImage(picture, 0, 0, canvas.width, canvas.height);
+  return new Promise((resolve) => { canvas.toBlob(resolve, 'image/png'); });
+}
