@@ -258,7 +258,7 @@ Page sweep_page(const WorkList& list, std::span<const SweepResult> results,
   if (!figures.blocks.empty()) page.sections.push_back(std::move(figures));
   if (std::vector<Block> maps = map_figures(spec, results); !maps.empty())
     page.sections.push_back({"Depth error over two axes", std::move(maps)});
-  page.sections.push_back({"All items", {results_table(list, results)}});
+  page.sections.push_back({"All items", {results_table(list, results)}, SectionLayout::folded});
   return page;
 }
 

@@ -41,9 +41,8 @@ packages_demo=(
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
   libyaml-cpp-dev     # calibrations of lenses
   libembree-dev       # ray casting
-  python3-plotly      # its plotly.js goes into the reports
-  esbuild             # minifies it
-  zlib1g-dev          # packs it and the pictures
+  python3             # packs the viewer of reports
+  zlib1g-dev          # packs the pictures of reports
 )
 # All components and the command line.
 packages_build=(

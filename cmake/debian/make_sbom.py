@@ -160,10 +160,6 @@ def packages_compiled_in(build, component):
     licence of every package that the copyright file names."""
     licences = known_licences(pathlib.Path(__file__).with_name("copyright"))
     compiled_in = owners(headers_of(build, component))
-    if component == "report":
-        version = run("dpkg-query", "-W", "-f=${Version}", "python3-plotly")
-        compiled_in["python3-plotly"] = [version, "python-plotly"]
-        licences["python3-plotly"] = licences["plotly.js"]
     unknown = [name for name in compiled_in
                if not licence_of(name, licences) and not DECLARATIONS.fullmatch(native(name))]
     if unknown:

@@ -6,10 +6,16 @@
 #include "bindings.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/page.hpp"
 
 namespace tofsmith::python {
 
 namespace {
+
+/// A page that shows one figure and no more.
+std::string page_of(Figure figure) {
+  return render({.sections = {{"", {std::move(figure)}, SectionLayout::front}}});
+}
 
 FigureText text_of(const std::string& title) { return {.id = "figure", .title = title}; }
 
@@ -30,10 +36,9 @@ std::string curves(const std::string& title, const std::vector<std::string>& nam
     one.style = one.y_error.empty() ? reference_style() : colours.style(names[i]);
     series.push_back(std::move(one));
   }
-  return line_figure(text_of(title), series,
-                     {.label = x_label, .unit = x_unit, .logarithmic = true},
-                     {.label = "mean depth error", .unit = "m", .logarithmic = true})
-      .plain_plotly_json();
+  return page_of(line_figure(text_of(title), series,
+                             {.label = x_label, .unit = x_unit, .logarithmic = true},
+                             {.label = "mean depth error", .unit = "m", .logarithmic = true}));
 }
 
 std::string heat_maps(const std::string& title, const std::vector<std::string>& names,
@@ -43,17 +48,20 @@ std::string heat_maps(const std::string& title, const std::vector<std::string>& 
   std::vector<HeatMap> maps;
   for (std::size_t i = 0; i < names.size(); ++i)
     maps.push_back({names[i], to_matrix(values.at(i), "values")});
-  return heat_map_figure(text_of(title), maps, {x_label, unit, x_ticks}, {y_label, unit, y_ticks},
-                         depth_colours("mean depth error", true))
-      .plain_plotly_json();
+  return page_of(heat_map_figure(text_of(title), maps, {x_label, unit, x_ticks},
+                                 {y_label, unit, y_ticks},
+                                 depth_colours("mean depth error", true)));
 }
 
 std::string images(const std::string& title, const std::vector<std::string>& names,
-                   const py::list& depths_m) {
+                   const py::list& depths_m, bool is_signed) {
   std::vector<ValueImage> pictures;
   for (std::size_t i = 0; i < names.size(); ++i)
     pictures.push_back({names[i], to_image(depths_m[i], "depth_m")});
-  return image_figure(text_of(title), pictures, depth_colours("depth", false)).plain_plotly_json();
+  ColourScale colours = depth_colours(is_signed ? "depth difference" : "depth", false);
+  if (is_signed) colours.map = ColourMap::diverging;
+  colours.clip_fraction = 0.005;
+  return page_of(image_figure(text_of(title), pictures, colours));
 }
 
 std::string points(const std::string& title, const Floats& points_m, const Floats& values,
@@ -61,8 +69,8 @@ std::string points(const std::string& title, const Floats& points_m, const Float
   using Points = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
   const Eigen::MatrixX3f places = Eigen::Map<const Points>(points_m.data(), points_m.shape(0), 3);
   const Eigen::VectorXf colours = Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
-  return point_cloud_figure(text_of(title), places, colours, {.label = label, .unit = unit})
-      .plain_plotly_json();
+  return page_of(
+      point_cloud_figure(text_of(title), places, colours, {.label = label, .unit = unit}));
 }
 
 }  // namespace
@@ -70,11 +78,11 @@ std::string points(const std::string& title, const Floats& points_m, const Float
 void bind_figures(py::module_& module) {
   module.def("waveform_figure",
              [](const std::string& title, const CodeSet& code, const Camera& camera) {
-               return waveform_figure(text_of(title), code, camera).plain_plotly_json();
+               return page_of(waveform_figure(text_of(title), code, camera));
              });
   module.def("coding_curve_figure",
              [](const std::string& title, const std::vector<CodeSet>& codes, const Camera& camera) {
-               return coding_curve_figure(text_of(title), codes, camera).plain_plotly_json();
+               return page_of(coding_curve_figure(text_of(title), codes, camera));
              });
   module.def("curve_figure", &curves);
   module.def("heat_map_figure", &heat_maps);

@@ -5,9 +5,9 @@
 The same words as the C++ library, the command line and the files: `Camera`, `CodeSet`, `evaluate`,
 `design`, `capture`, `Decoder`. SI units inside: names end in _m, _s, _hz, _e (photo-electrons),
 _e_per_s, _bin. Errors of arguments are ValueError or TypeError, of files OSError; long work takes
-`progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (Plotly).
-Gradients for learning: `tofsmith.torch` (PyTorch). Waveform generators: `tofsmith.instruments`
-(PyVISA). The paper's figures: `tofsmith.paper`.
+`progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (HTML, for
+notebooks). Gradients for learning: `tofsmith.torch` (PyTorch). Waveform generators:
+`tofsmith.instruments` (PyVISA). The paper's figures: `tofsmith.paper`.
 
 Examples
 --------

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the figures of plot (matplotlib) and figures (Plotly) share: their arguments."""
+"""Arguments that the figures of plot (matplotlib) and figures (HTML) share."""
 
 from __future__ import annotations
 
@@ -130,3 +130,8 @@ def named_depths(depths: Any) -> dict[str, npt.NDArray[np.float32]]:
     if len(shapes) > 1:
         raise ValueError(f"depths: got shapes {sorted(shapes)}; needs one shape")
     return named
+
+
+def is_signed(named: dict[str, npt.NDArray[np.float32]]) -> bool:
+    """Whether the planes are differences of depths: some values are negative."""
+    return any(bool(np.any(plane < 0)) for plane in named.values())

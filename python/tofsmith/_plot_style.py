@@ -110,12 +110,17 @@ def draw_depth_maps(
     figure: Optional[Figure] = None,
     range_m: Optional[tuple[float, float]] = None,
     columns: Optional[int] = None,
-    label: str = "depth (m)",
+    label: Optional[str] = None,
 ) -> Figure:
     """Depth planes (H, W) side by side under their names, with one colour scale; see
-    plot.depth_maps(). Pixels without depth are grey."""
+    plot.depth_maps(). Pixels without depth are grey. Differences of depths,
+    some of which are negative, have a diverging scale."""
     shown = np.concatenate([d[np.isfinite(d)] for d in depths_m.values()])
     low, high = np.percentile(shown, (0.5, 99.5)) if shown.size else (0.0, 1.0)
+    signed = bool(np.any(shown < 0))
+    if signed:
+        high = max(-low, high)
+        low = -high
     low, high = (low, high) if range_m is None else range_m
     count = len(depths_m)
     rows, columns = grid(count) if columns is None else (-(-count // columns), columns)
@@ -126,10 +131,13 @@ def draw_depth_maps(
     picture = None
     for axis, (name, depth_m) in zip(axes.flat, depths_m.items()):
         axis.set_facecolor("0.8")
-        picture = axis.imshow(depth_m, vmin=low, vmax=high, interpolation="nearest")
+        picture = axis.imshow(depth_m, vmin=low, vmax=high, interpolation="nearest",
+                              cmap="RdBu_r" if signed else None)
         axis.set(title=name, xticks=[], yticks=[])
         axis.spines[:].set_visible(False)
     for axis in axes.flat[count:]:
         axis.axis("off")
+    if label is None:
+        label = "depth difference (m)" if signed else "depth (m)"
     figure.colorbar(picture, ax=axes, label=label, extend="neither" if range_m is None else "both")
     return figure

@@ -1,19 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Figures as Plotly JSON: dicts {"data": [..], "layout": {..}} that plotly.graph_objects.Figure
-takes, and that any Plotly shows. The same figures as in the HTML reports.
+"""The figures of the HTML reports, for notebooks and files.
 
 Examples
 --------
 >>> figure = waveforms("hamiltonian-k4", "paper-10f0")
->>> sorted(figure)
-['data', 'layout']
+>>> figure.document["kind"]
+'lines'
 """
 
 from __future__ import annotations
 
+import html
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -30,6 +32,7 @@ from ._figure_data import (
     depth_of,
     error_curve,
     error_grid,
+    is_signed,
     kind_of,
     named_depths,
     reports_of,
@@ -38,18 +41,32 @@ from ._figure_data import (
 from ._scene import points_m
 from ._sweep import SweepResults
 
-Figure = dict[str, Any]
+@dataclass(frozen=True)
+class Figure:
+    """A figure as an HTML page that needs no other file. Notebooks show it."""
 
+    page: str
 
-def _figure(plotly_json: str) -> Figure:
-    figure: Figure = json.loads(plotly_json)
-    return figure
+    @property
+    def document(self) -> dict[str, Any]:
+        """The data of the figure: values, axes and units."""
+        text = self.page.partition('id="document">')[2].partition("</script>")[0]
+        block: dict[str, Any] = json.loads(text)["sections"][0]["blocks"][0]
+        return block
+
+    def save(self, path: Union[str, Path]) -> None:
+        """Writes the page to a file."""
+        Path(path).write_text(self.page, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        return (f'<iframe srcdoc="{html.escape(self.page)}" '
+                'style="border:0;width:100%;height:32rem"></iframe>')
 
 
 def waveforms(code: CodeLike, camera: CameraLike) -> Figure:
     """Modulation, demodulation and correlation function of every measurement."""
     fitted, camera = code_and_camera(code, camera)
-    return _figure(_tofsmith.waveform_figure(fitted.name, fitted._handle, camera._handle))
+    return Figure(_tofsmith.waveform_figure(fitted.name, fitted._handle, camera._handle))
 
 
 def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike) -> Figure:
@@ -59,7 +76,7 @@ def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike)
     if not listed:
         raise ValueError("codes: got none; needs at least one code")
     handles = [code_of(code, camera)._handle for code in listed]
-    return _figure(_tofsmith.coding_curve_figure("Coding curve", handles, camera._handle))
+    return Figure(_tofsmith.coding_curve_figure("Coding curve", handles, camera._handle))
 
 
 def depth_error_map(reports: Reports, *, kind: Optional[str] = None) -> Figure:
@@ -71,7 +88,7 @@ def depth_error_map(reports: Reports, *, kind: Optional[str] = None) -> Figure:
     maps = [error_grid(report, kind)[2] for report in listed]
     names = [report.code for report in listed]
     x_ticks, y_ticks = [f"{a:.3g}" for a in ambient], [f"{s:.3g}" for s in signal]
-    return _figure(_tofsmith.heat_map_figure("Depth error", names, maps, x_ticks, y_ticks, "ambient",
+    return Figure(_tofsmith.heat_map_figure("Depth error", names, maps, x_ticks, y_ticks, "ambient",
                                              "signal", "e/s"))
 
 
@@ -87,7 +104,7 @@ def depth_error_curves(
     listed = reports_of(reports)
     kind = kind_of(listed, kind)
     curves = [(r.code, *error_curve(r, kind, along, at)) for r in listed]
-    return _figure(
+    return Figure(
         _tofsmith.curve_figure(
             "Depth error",
             [c[0] for c in curves],
@@ -106,14 +123,16 @@ def sweep_map(results: SweepResults, x: str, y: str, *, kind: str = "linear") ->
     across, up, maps = sweep_maps(results, x, y, kind)
     x_ticks, y_ticks = [f"{v:.4g}" for v in across], [f"{v:.4g}" for v in up]
     errors_m = [np.asarray(values_mm / 1e3, np.float64) for values_mm in maps.values()]
-    return _figure(_tofsmith.heat_map_figure("Depth error", list(maps), errors_m, x_ticks, y_ticks,
+    return Figure(_tofsmith.heat_map_figure("Depth error", list(maps), errors_m, x_ticks, y_ticks,
                                              x, y, ""))
 
 
 def depth_maps(depths: Union[Depth, dict[str, Depth]]) -> Figure:
-    """Depth maps side by side: one, or several of one shape by name."""
+    """Depth maps side by side: one, or several of one shape by name. Differences of depths, some of
+    which are negative, have a diverging scale with zero in the middle."""
     named = named_depths(depths)
-    return _figure(_tofsmith.image_figure("Depth", list(named), list(named.values())))
+    title = "Depth difference" if is_signed(named) else "Depth"
+    return Figure(_tofsmith.image_figure(title, list(named), list(named.values()), is_signed(named)))
 
 
 def point_cloud(
@@ -127,4 +146,4 @@ def point_cloud(
         raise ValueError(f"values: got shape {plane.shape}; needs {radial_m.shape} as of depth")
     colours = np.asarray(plane, np.float32).reshape(-1)
     unit = "m" if values is None else ""
-    return _figure(_tofsmith.point_cloud_figure("Point cloud", points, colours, label, unit))
+    return Figure(_tofsmith.point_cloud_figure("Point cloud", points, colours, label, unit))

@@ -322,11 +322,12 @@ def depth_maps(
     *,
     range_m: Optional[tuple[float, float]] = None,
     columns: Optional[int] = None,
-    label: str = "depth (m)",
+    label: Optional[str] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Depth maps side by side with one colour scale: one, or several of one shape by name. Pixels
-    without depth are grey. `range_m`: ends of the colour scale; None: all but 1 % of the depths.
+    without depth are grey. Differences of depths, some of which are negative, have a diverging scale
+    with zero in the middle. `range_m`: ends of the colour scale; None: all but 1 % of the depths.
     `columns`: maps per row."""
     named = named_depths(depths)
     shown = named if isinstance(depths, dict) else {"": named["depth"]}

@@ -89,11 +89,12 @@ Page correlation_report(const CalibratedCorrelation& found, const std::vector<Id
   page.sections.push_back(std::move(table));
   if (!found.maps.empty()) {
     Section maps{.title = "Pixels"};
-    maps.blocks.push_back(image_figure({.id = "offset-map",
-                                        .title = "Offset",
-                                        .caption = "By how much each pixel decodes too far."},
-                                       {{"offset", found.maps.delay_offset_m}},
-                                       {.label = "offset", .unit = "m", .clip_fraction = 0.01}));
+    maps.blocks.push_back(image_figure(
+        {.id = "offset-map",
+         .title = "Offset",
+         .caption = "By how much each pixel decodes too far."},
+        {{"offset", found.maps.delay_offset_m}},
+        {.label = "offset", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.01}));
     maps.blocks.push_back(image_figure(
         {.id = "gain-map", .title = "Gain", .caption = "Response over that of the mean pixel."},
         {{"gain", found.maps.gain}}, {.label = "gain", .clip_fraction = 0.01}));

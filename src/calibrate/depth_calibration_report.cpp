@@ -116,7 +116,7 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
     return image_figure(
         {.id = id, .title = title, .caption = caption},
         {{"before", found.picture.before_image_m}, {"corrected", found.picture.after_image_m}},
-        {.label = "depth error", .unit = "m", .clip_fraction = 0.02});
+        {.label = "depth error", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.02});
   };
   page.sections.push_back({"Over depth", {error_figure(found), std::move(terms)}});
   page.sections.push_back(

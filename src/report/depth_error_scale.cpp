@@ -30,7 +30,7 @@ Image<float> scaled(Image<float> image, double factor) {
 }
 
 ColourScale depth_error_scale(double limit_mm) {
-  return {.label = "error",
+  return {.label = "decoded minus true",
           .unit = "mm",
           .map = ColourMap::diverging,
           .range = ValueRange{-limit_mm, limit_mm}};

@@ -7,9 +7,10 @@
 #include <array>
 #include <limits>
 
-#include "report/bar_figure.hpp"
+#include "report/design_front.hpp"
 #include "report/error_sections.hpp"
 #include "report/scene_section.hpp"
+#include "report/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/report/code_figures.hpp"
@@ -72,40 +73,13 @@ Table operating_multipath_table(const OperatingMultipath& returns, const std::ve
   return table;
 }
 
-Figure operating_multipath_bars(const std::vector<Judged>& codes) {
-  ColourAssignment colours;
-  BarSeries single{.name = "one return"}, behind{.name = "second return, single-path"},
-      two{.name = "second return, as two"};
-  std::vector<std::string> names;
-  const auto add = [](BarSeries& series, const Estimate& e) {
-    series.values.push_back(1e3 * e.value);
-    series.errors.push_back(1e3 * e.standard_error);
-  };
-  const Estimate none{std::numeric_limits<double>::quiet_NaN(), 0.0};
-  for (const Judged& j : codes) {
-    names.push_back(j.candidate->code.name());
-    add(single, j.single_m);
-    add(behind, j.behind_m);
-    add(two, j.two_return_m.value_or(none));
-  }
-  std::vector<BarSeries> series{std::move(single), std::move(behind), std::move(two)};
-  for (BarSeries& bars : series) bars.style = colours.style(bars.name);
-  return bar_figure({.id = "operating-multipath-errors",
-                     .title = "Depth error without and with multipath",
-                     .caption = "What a second return adds to the error of each code, and what "
-                                "two-return decoding takes away again; no bar where a code cannot "
-                                "be decoded so."},
-                    names, series, {.label = "depth error", .unit = "mm", .from_zero = true});
-}
-
 /// The candidates' errors without and with multipath, decoded as single-path and as two
 /// returns, in the order of what they were chosen by.
 Section operating_multipath_section(const OperatingMultipath& returns, const DesignResult& result,
                                     DepthErrorKind kind) {
   const std::vector<Judged> codes = by_weighed_error(returns, result, kind);
   return {"Second returns",
-          {operating_multipath_table(returns, codes, result.winner(), name_of(kind)),
-           operating_multipath_bars(codes)}};
+          {operating_multipath_table(returns, codes, result.winner(), name_of(kind))}};
 }
 
 /// Residuals against iterations of every measurement that was designed.
@@ -134,6 +108,8 @@ void add_convergence(const DesignResult& result, Section& section) {
   }
 }
 
+constexpr std::size_t fewest_steps = 4;
+
 /// The smallest error so far of every search, and what it counted.
 void add_search_progress(const DesignResult& result, Section& section) {
   ColourAssignment colours;
@@ -148,31 +124,13 @@ void add_search_progress(const DesignResult& result, Section& section) {
       steps.x.push_back(step.work);
       steps.y.push_back(1e3 * step.error_m);
     }
-    if (steps.x.empty()) continue;
+    if (steps.x.size() < fewest_steps) continue;  // the text above has the numbers
     section.blocks.push_back(line_figure(
         {.id = figure_id("search", c.code.name()),
          .title = fmt::format("Search for {}", c.code.name()),
          .caption = fmt::format("The {}, against work.", c.search->error_name)},
         {steps}, {.label = c.search->work_unit}, {.label = "depth error", .unit = "mm"}));
   }
-}
-
-/// How many times as large as the winner's the error of every other candidate is.
-Section gain_section(const Camera& camera, const DesignResult& result) {
-  const DepthErrorKind kind = camera.operating.error;
-  Table table{.id = "gains",
-              .caption = fmt::format(
-                  "How many times as large as that of the best the {} depth error of every other "
-                  "candidate is; ± is one standard error, the two taken for independent.",
-                  name_of(kind)),
-              .columns = {{"code"}, {"made by"}, {"exposures", true}, {"times the best", true}}};
-  for (const Candidate* c : by_geometric_mean_error(result, kind)) {
-    if (c == &result.winner()) continue;
-    const Estimate gain = gain_over(result, *c, kind);
-    table.rows.push_back({c->code.name(), c->method, fmt::format("{}", c->error.exposures),
-                          fmt::format("{:.3f} ± {:.3f}", gain.value, gain.standard_error)});
-  }
-  return {"Gain", {std::move(table)}};
 }
 
 /// How the designed codes were found: errors against work, residuals against iterations, and what
@@ -182,30 +140,6 @@ Section search_section(const DesignResult& result) {
   add_search_progress(result, section);
   add_convergence(result, section);
   return section;
-}
-
-/// How many times larger another candidate's chosen error is than the winner's.
-std::string gain_text(const DesignResult& result, std::string_view name, DepthErrorKind kind) {
-  const Candidate* other = result.find(name);
-  if (!other || other == &result.winner()) return "";
-  return fmt::format("{:.2f}x", gain_over(result, *other, kind).value);
-}
-
-KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
-  const Candidate& winner = result.winner();
-  KeyNumbers numbers;
-  numbers.entries.push_back({"best code", winner.code.name()});
-  numbers.entries.push_back(
-      {kind == DepthErrorKind::linear ? "linear depth error" : "circular depth error",
-       fmt::format("{:.1f} mm", 1e3 * geometric_mean_error_m(winner.error, kind))});
-  if (winner.multipath)
-    numbers.entries.push_back(
-        {"with multipath",
-         fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(kind).value)});
-  for (const char* baseline : {"sinusoid-k4", "square-k4"})
-    if (const std::string gain = gain_text(result, baseline, kind); !gain.empty())
-      numbers.entries.push_back({fmt::format("better than {}", baseline), gain});
-  return numbers;
 }
 
 /// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
@@ -225,6 +159,20 @@ Table explanation(const DesignResult& result, DepthErrorKind kind) {
   return table;
 }
 
+/// All candidates with their depth errors.
+Section candidates_section(const Camera& camera, const DesignResult& result) {
+  const DepthErrorKind kind = camera.operating.error;
+  std::vector<DepthErrorRow> rows;
+  for (const Candidate& c : result.candidates) {
+    rows.push_back({&c.error, c.method});
+    if (&c == &result.winner())
+      rows.back().ratio = Estimate{1.0, 0.0};
+    else
+      rows.back().ratio = gain_over(result, c, kind);
+  }
+  return depth_error_section(camera, rows, result.best);
+}
+
 /// What the correlation functions of a candidate should be, moved with its origin.
 Eigen::MatrixXd rotated_target(const Candidate& c) {
   Eigen::MatrixXd target(c.target.rows(), c.target.cols());
@@ -234,7 +182,7 @@ Eigen::MatrixXd rotated_target(const Candidate& c) {
 }
 
 Section waveform_section(const Camera& camera, const DesignResult& result) {
-  Section section{.title = "Waveforms"};
+  Section section{.title = "Waveforms of the designed codes"};
   const auto add = [&](const Candidate& c) {
     std::string id = figure_id("waveforms", c.code.name());
     section.blocks.push_back(waveform_figure(
@@ -242,14 +190,13 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
          .title = fmt::format("Waveforms of {}", c.code.name()),
          .caption =
              c.target.size() > 0
-                 ? "One row per measurement: the actual waveforms, what the camera's impulse "
-                   "responses leave of it, and the correlation function with its target."
+                 ? "One row per measurement, over one period; the correlation function with its "
+                   "target."
                  : "One row per measurement, over one period."},
         c.code, camera, rotated_target(c)));
   };
-  add(result.winner());
   for (const Candidate& c : result.candidates)
-    if (&c != &result.winner() && c.is_designed()) add(c);
+    if (c.is_designed()) add(c);
   return section;
 }
 
@@ -332,54 +279,50 @@ std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const Evalu
 }
 
 Section zncc_comparison(std::span<const EvaluatedCode> codes) {
-  std::vector<std::vector<std::string>> rows = zncc_comparison_rows(codes, true);
-  Table table{.id = "zncc",
-              .caption =
-                  "Depth error of the same trials decoded by zero-mean normalized "
-                  "cross-correlation, and how many times as large that by maximum "
-                  "likelihood is."};
-  for (const std::string& heading : rows.front())
-    table.columns.push_back({heading, heading != rows.front().front()});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  return {"Maximum likelihood against correlation", {std::move(table)}};
+  return {"Maximum likelihood compared with correlation",
+          {table_of_rows("zncc",
+                         "Depth error of the same trials decoded by zero-mean normalized "
+                         "cross-correlation, and the ratio of the maximum-likelihood error to it.",
+                         zncc_comparison_rows(codes, true), {0})}};
 }
 
 Page design_report(const Camera& camera, const DesignResult& result,
-                   const std::optional<SceneResult>& scene, const std::string& command_line) {
+                   const std::optional<SceneResult>& scene, const std::string& command_line,
+                   const std::vector<std::string>& files) {
   const Candidate& winner = result.winner();
   Page page{.title = fmt::format("Codes for {}", camera.name),
-            .subtitle = fmt::format("{} candidates, judged by {} depth error",
+            .subtitle = fmt::format("{} candidates, ranked by {} depth error",
                                     result.candidates.size(), name_of(camera.operating.error)),
             .footer = fmt::format("tofsmith {}, seed {}", TOFSMITH_VERSION, winner.error.seed)};
-  Section first{"Result", {headline(result, camera.operating.error)}};
-  first.blocks.push_back(explanation(result, camera.operating.error));
-  page.sections.push_back(std::move(first));
+  page.sections.push_back(design_front(camera, result, scene, files));
+  page.sections.push_back({"Why this code", {explanation(result, camera.operating.error)}});
   page.sections.push_back(camera_section(camera));
-
-  std::vector<DepthErrorRow> compared;
-  for (const Candidate& c : result.candidates) compared.push_back({&c.error, c.method});
-  page.sections.push_back(depth_error_section(camera, compared, result.best));
+  page.sections.push_back(candidates_section(camera, result));
   if (camera.operating.multipath)
     page.sections.push_back(
         operating_multipath_section(*camera.operating.multipath, result, camera.operating.error));
-  page.sections.push_back(gain_section(camera, result));
   std::vector<JudgedCode> perturbed;
   for (const Candidate& c : result.candidates)
     if (c.robustness) perturbed.push_back({c.code.name(), *c.robustness});
   if (!perturbed.empty()) page.sections.push_back(robustness_section(perturbed));
   page.sections.push_back(waveform_section(camera, result));
   page.sections.push_back(coding_curve_section(camera, result));
-  if (scene) page.sections.push_back(scene_section(*scene, camera, winner.code.name()));
+  if (scene)
+    page.sections.push_back(
+        scene_section(*scene, camera, winner.code.name(), winner.error.outlier_threshold_m));
   if (Section s = residual_section(result); !std::get<Table>(s.blocks[0]).rows.empty()) {
     page.sections.push_back(std::move(s));
     page.sections.push_back(search_section(result));
   }
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
+  for (Section& section : page.sections)
+    if (section.layout == SectionLayout::open) section.layout = SectionLayout::folded;
   return page;
 }
 
 Page design_report(const DesignedDirectory& found, const std::string& command_line) {
-  return design_report(found.design.camera, found.design.result, found.scene, command_line);
+  return design_report(found.design.camera, found.design.result, found.scene, command_line,
+                       found.files);
 }
 
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
 
-#include "report/bar_figure.hpp"
 #include "report/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
@@ -85,8 +86,9 @@ std::vector<Block> bound_blocks(const Camera& camera, std::span<const DepthError
   const Bound bound =
       is_limited ? &PointDepthError::receiver_bound_mae_m : &PointDepthError::cramer_rao_mae_m;
   std::vector<HeatMap> maps;
-  for (const std::size_t i : order) {
-    HeatMap map = operating_map(camera.operating, *codes[i].error,
+  constexpr std::size_t most_maps = 3;
+  for (const DepthErrorRow& code : shown_codes(codes, order, most_maps)) {
+    HeatMap map = operating_map(camera.operating, *code.error,
                                 [&](const PointDepthError& p) { return times_bound(p, bound); });
     if (map.values.array().isFinite().any()) maps.push_back(std::move(map));
   }
@@ -127,6 +129,10 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                           {"linear rms (mm)", true},
                           {"circular rms (mm)", true},
                           {"outliers (%)", true}}};
+  if (codes[best].ratio) {
+    table.columns.push_back({"ratio", true});
+    table.caption += " Ratio: error by which codes are ranked, over that of the best.";
+  }
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;
     double outliers = 0.0;
@@ -138,111 +144,106 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
          estimate_mm_text(e.circular.mean_m), estimate_mm_text(e.linear_rmse.geometric_mean_m),
          estimate_mm_text(e.circular_rmse.geometric_mean_m),
          fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
+    if (codes[best].ratio)
+      table.rows.back().push_back(codes[i].ratio
+                                      ? fmt::format("{:.3f} ± {:.3f}", codes[i].ratio->value,
+                                                    codes[i].ratio->standard_error)
+                                      : "1");
   }
   return table;
 }
 
-Figure bars(std::span<const DepthErrorRow> codes, const std::vector<std::size_t>& order,
-            ColourAssignment& colours) {
-  BarSeries linear{.name = "linear"}, circular{.name = "circular"};
-  linear.style = colours.style("linear");
-  circular.style = colours.style("circular");
-  std::vector<std::string> names;
-  for (const std::size_t i : order) {
-    const DepthErrorReport& e = *codes[i].error;
-    names.push_back(e.code);
-    linear.values.push_back(1e3 * e.linear.geometric_mean_m.value);
-    linear.errors.push_back(1e3 * e.linear.geometric_mean_m.standard_error);
-    circular.values.push_back(1e3 * e.circular.geometric_mean_m.value);
-    circular.errors.push_back(1e3 * e.circular.geometric_mean_m.standard_error);
-  }
-  return bar_figure({.id = "depth-error",
-                     .title = "Depth error of all candidates",
-                     .caption = "Geometric mean over the operating points. The linear error counts "
-                                "a wrap at the end of the range in full, the circular one takes "
-                                "the shorter way round."},
-                    names, {linear, circular},
-                    {.label = "depth error", .unit = "mm", .from_zero = true});
-}
-
-/// Error along signal at the middle ambient level, with the bounds.
-Figure curves(const Camera& camera, std::span<const DepthErrorRow> codes,
-              const std::vector<std::size_t>& order, std::size_t best, ColourAssignment& colours) {
-  const double ambient = camera.operating.middle().ambient_e_per_s;
-  constexpr std::size_t max_curves = 6;  // more lines hide each other
-  std::vector<Series> series;
-  for (std::size_t rank = 0; rank < std::min(max_curves, order.size()); ++rank) {
-    const DepthErrorReport& e = *codes[order[rank]].error;
-    Series line{.name = e.code, .mark = Mark::line_and_markers, .style = colours.style(e.code)};
-    for (const PointDepthError& p : e.points) {
-      if (p.point.ambient_e_per_s != ambient) continue;
-      line.x.push_back(p.point.signal_e_per_s);
-      line.y.push_back(1e3 * p.circular_mde_m.value);
-      line.y_error.push_back(1e3 * p.circular_mde_m.standard_error);
-    }
-    series.push_back(std::move(line));
-  }
-  const DepthErrorReport& winner = *codes[best].error;
-  Series cramer_rao{.name = "Cramér-Rao bound of " + winner.code, .style = reference_style()};
-  Series receiver{.name = "receiver bound of the camera", .style = reference_style()};
-  receiver.style.dash = Dash::dash_dot;
-  Series direct{.name = "direct time-of-flight bound of the light", .style = reference_style()};
-  direct.style.dash = Dash::dash;
-  for (const PointDepthError& p : winner.points) {
-    if (p.point.ambient_e_per_s != ambient) continue;
-    cramer_rao.x.push_back(p.point.signal_e_per_s);
-    cramer_rao.y.push_back(1e3 * p.cramer_rao_mae_m);
-    receiver.x.push_back(p.point.signal_e_per_s);
-    receiver.y.push_back(1e3 * p.receiver_bound_mae_m);
-    direct.x.push_back(p.point.signal_e_per_s);
-    direct.y.push_back(1e3 * p.direct_tof_bound_mae_m);
-  }
-  series.push_back(std::move(cramer_rao));
-  if (receiver.y.front() > 0.0) series.push_back(std::move(receiver));
-  if (direct.y.front() > 0.0) series.push_back(std::move(direct));
-  return line_figure(
-      {.id = "error-by-signal",
-       .title = "Circular depth error by signal",
-       .caption = fmt::format(
-           "At ambient light of {} e/s{}. The bounds hold "
-           "for estimators without bias and know no wrap, so a code may come "
-           "below them where it is little better than guessing.",
-           level_text(ambient),
-           order.size() > max_curves ? fmt::format("; the {} best codes", max_curves) : "")},
-      series, {.label = "signal", .unit = "e/s", .logarithmic = true},
-      {.label = "mean circular depth error", .unit = "mm", .logarithmic = true});
-}
-
-Figure heat_maps(const Camera& camera, std::span<const DepthErrorRow> codes,
-                 const std::vector<std::size_t>& order, DepthErrorKind kind) {
+Figure heat_maps(const Camera& camera, const std::vector<DepthErrorRow>& codes,
+                 DepthErrorKind kind) {
   const bool is_linear = kind == DepthErrorKind::linear;
   std::vector<HeatMap> maps;
-  for (const std::size_t i : order)
-    maps.push_back(operating_map(camera.operating, *codes[i].error, [&](const PointDepthError& p) {
+  for (const DepthErrorRow& code : codes)
+    maps.push_back(operating_map(camera.operating, *code.error, [&](const PointDepthError& p) {
       return 1e3 * (is_linear ? p.linear_mde_m.value : p.circular_mde_m.value);
     }));
   return operating_maps(
       {.id = "error-maps",
-       .title = fmt::format("Mean {} depth error by operating point", name_of(kind)),
-       .caption = "In mm, all codes on one logarithmic colour scale, best first."},
+       .title = fmt::format("Mean {} depth error by light level", name_of(kind)),
+       .caption = "One logarithmic colour scale, best code first; of many codes the best of every "
+                  "family."},
       camera.operating, maps, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
 }  // namespace
 
+Figure error_by_signal(const std::string& id, const Camera& camera,
+                       std::span<const DepthErrorRow> codes, std::size_t best) {
+  const double ambient = camera.operating.middle().ambient_e_per_s;
+  const auto series_of = [&](const DepthErrorReport& error, std::string name,
+                             const LineStyle& style, const auto& value_m) {
+    Series line{.name = std::move(name), .style = style};
+    for (const PointDepthError& p : error.points) {
+      if (p.point.ambient_e_per_s != ambient) continue;
+      line.x.push_back(p.point.signal_e_per_s);
+      line.y.push_back(1e3 * value_m(p));
+    }
+    return line;
+  };
+  ColourAssignment colours;
+  std::vector<Series> series;
+  for (const DepthErrorRow& code : codes) {
+    const DepthErrorReport& e = *code.error;
+    series.push_back(series_of(e, e.code, colours.style(e.code),
+                               [](const PointDepthError& p) { return p.circular_mde_m.value; }));
+    series.back().mark = Mark::line_and_markers;
+    for (const PointDepthError& p : e.points)
+      if (p.point.ambient_e_per_s == ambient)
+        series.back().y_error.push_back(1e3 * p.circular_mde_m.standard_error);
+  }
+  const DepthErrorReport& winner = *codes[best].error;
+  const auto add_bound = [&](std::string name, Dash dash, double PointDepthError::*bound) {
+    LineStyle style = reference_style();
+    style.dash = dash;
+    Series line = series_of(winner, std::move(name), style,
+                            [&](const PointDepthError& p) { return p.*bound; });
+    if (line.y.front() > 0.0) series.push_back(std::move(line));
+  };
+  add_bound("Cramér-Rao bound of " + winner.code, Dash::dot, &PointDepthError::cramer_rao_mae_m);
+  add_bound("receiver bound of the camera", Dash::dash_dot, &PointDepthError::receiver_bound_mae_m);
+  add_bound("direct time-of-flight bound of the light", Dash::dash,
+            &PointDepthError::direct_tof_bound_mae_m);
+  return line_figure(
+      {.id = id,
+       .title = "Circular depth error over light",
+       .caption = fmt::format("At ambient light of {} e/s. Bounds hold for unbiased estimators "
+                              "without wraps: where a code is little better than guessing, its "
+                              "error can be below them.",
+                              level_text(ambient))},
+      series, {.label = "signal", .unit = "e/s", .logarithmic = true},
+      {.label = "circular depth error", .unit = "mm", .logarithmic = true});
+}
+
+std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
+                                       const std::vector<std::size_t>& order, std::size_t most) {
+  std::vector<DepthErrorRow> shown;
+  std::set<std::string> families;
+  for (const std::size_t i : order) {
+    const std::string& name = codes[i].error->code;
+    const std::string family = codes[i].method + " " + name.substr(0, name.find('-'));
+    if (shown.size() < most && (codes.size() <= most || families.insert(family).second))
+      shown.push_back(codes[i]);
+  }
+  return shown;
+}
+
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best) {
+  constexpr std::size_t most_curves = 7, most_maps = 6;  // more hide each other
   const DepthErrorKind kind = camera.operating.error;
   const std::vector<std::size_t> order = by_error(codes, kind);
-  ColourAssignment colours;
   Section section{.title = "Depth error"};
   section.blocks.push_back(comparison_table(camera, codes, order, best));
-  section.blocks.push_back(bars(codes, order, colours));
-  section.blocks.push_back(heat_maps(camera, codes, order, kind));
-  if (camera.operating.signal_e_per_s.size() > 1)
-    section.blocks.push_back(curves(camera, codes, order, best, colours));
+  section.blocks.push_back(heat_maps(camera, shown_codes(codes, order, most_maps), kind));
   for (Block& block : bound_blocks(camera, codes, order))
     section.blocks.push_back(std::move(block));
+  if (camera.operating.signal_e_per_s.size() > 1)
+    section.blocks.push_back(
+        error_by_signal("error-by-signal", camera, shown_codes(codes, order, most_curves), 0));
   return section;
 }
 

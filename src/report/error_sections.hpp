@@ -2,22 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "tofsmith/report/page.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 
-/// A row of the comparison.
+/// A code with its errors.
 struct DepthErrorRow {
   const DepthErrorReport* error = nullptr;
   std::string method;
+  std::optional<Estimate> ratio = {};  ///< of its error to that of the best code
 };
 
-/// Figures and table that compare codes by depth error, best first.
-/// @param best  index of the code to stress
+/// Tables and maps of the depth errors of some codes, and the error over light with its bounds.
+/// @param best  index of the best code
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best);
+
+/// The circular error of codes over signal at the middle ambient level, with the bounds of the
+/// best.
+Figure error_by_signal(const std::string& id, const Camera& camera,
+                       std::span<const DepthErrorRow> codes, std::size_t best);
+
+/// At most `most` codes in this order; of more codes the best of every family and method.
+std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
+                                       const std::vector<std::size_t>& order, std::size_t most);
 
 }  // namespace tofsmith

@@ -9,6 +9,7 @@
 
 #include "report/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
+#include "report/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -43,30 +44,24 @@ ValueRange range_of(const Image<float>& image) {
   return range.low < range.high ? range : ValueRange{0.0, 1.0};
 }
 
-Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m) {
+Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m, double range_m) {
   std::vector<ValueImage> images{{.title = "true depth", .pixels = truth_m}};
-  for (const MultipathSceneDecoding& d : scene.decodings)
-    images.push_back({.title = d.method, .pixels = d.depth_m});
-  return image_figure({.id = "multipath-scene-depth",
-                       .title = "Depth",
-                       .caption = "All on the scene's own scale.",
-                       .alt_text = "Maps of true and decoded depth"},
-                      images, {.label = "depth", .unit = "m", .range = range_of(truth_m)});
-}
-
-Figure error_figure(const MultipathScene& scene) {
-  std::vector<ValueImage> images;
   for (std::size_t i = 0; i < scene.decodings.size(); ++i)
     images.push_back({.title = fmt::format("{}: mean {} mm", scene.decodings[i].method,
                                            mm_text(scene.all.bias_m[i])),
-                      .pixels = scaled(scene.decodings[i].error_m, 1e3)});
-  const double limit_mm = std::max(1.0, 2e3 * scene.all.error_m[0]);
-  return image_figure({.id = "multipath-scene-error",
-                       .title = "Depth error",
-                       .caption = "Decoded minus true depth; its mean where multipath light falls "
-                                  "beside each name.",
-                       .alt_text = "Maps of depth error"},
-                      images, depth_error_scale(limit_mm));
+                      .pixels = scene.decodings[i].depth_m});
+  return image_figure(
+      {.id = "multipath-scene-depth",
+       .title = "Depth",
+       .caption = "The mean error where multipath light arrives follows the name of each method.",
+       .alt_text = "Maps of decoded depth and its error"},
+      images, {.label = "depth", .unit = "m", .range = range_of(truth_m)},
+      {.reference = ImageReference{
+           .name = "error",
+           .values = truth_m,
+           .period = range_m,
+           .factor = 1e3,
+           .colours = depth_error_scale(std::max(1.0, 2e3 * scene.all.error_m[0]))}});
 }
 
 Figure later_light_figure(const MultipathScene& scene) {
@@ -158,22 +153,17 @@ Section multipath_scene_section(const MultipathScene& scene, const Camera& camer
       "S = {} e/s for albedo 1 at {:.2f} m, A = {} e/s.",
       scene.code, level_text(scene.light.signal_e_per_s), scene.light.reference_distance_m,
       level_text(scene.light.ambient_e_per_s))});
-  section.blocks.push_back(depth_figure(scene, truth_m));
-  section.blocks.push_back(error_figure(scene));
+  section.blocks.push_back(depth_figure(scene, truth_m, camera.range_m()));
   section.blocks.push_back(plan_figure(scene, truth_m));
   section.blocks.push_back(later_light_figure(scene));
   section.blocks.push_back(returns_figure(scene));
   for (const MultipathSceneDecoding& d : scene.decodings)
     section.blocks.push_back(cloud_figure(scene, d, range_of(truth_m)));
-  std::vector<Row> rows = multipath_scene_rows(scene);
-  Table table{.id = "multipath-scene",
-              .caption =
-                  "Errors by the mean delay of multipath light; 1: single-path decoding, 2: of "
-                  "two returns; gain: bias 1 over bias 2."};
-  for (std::size_t i = 0; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], i != 0});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  section.blocks.push_back(std::move(table));
+  section.blocks.push_back(table_of_rows(
+      "multipath-scene",
+      "Errors by the mean delay of multipath light; 1: single-path decoding, 2: of two returns; "
+      "gain: bias 1 over bias 2.",
+      multipath_scene_rows(scene), {0}));
   return section;
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "report/shared/level_text.hpp"
+#include "report/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
@@ -126,15 +127,10 @@ Section multipath_section(const std::vector<MultipathErrorReport>& codes) {
           Paragraph{code.code + " is decoded as single-path only: " + code.why_no_two_returns});
   add_all_maps(codes, &MultipathMaps::points, "point", "a second return", section);
   add_all_maps(codes, &MultipathMaps::tails, "tail", "an exponential tail", section);
-  Table table{.id = "multipath",
-              .caption =
-                  "1: single-path decoding, 2: of two returns (or a tail); gain: error 1 "
-                  "over error 2."};
-  std::vector<Row> rows = multipath_rows(codes);
-  for (std::size_t i = 0; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], i != 0 && i != 2});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  section.blocks.emplace_back(std::move(table));
+  section.blocks.emplace_back(table_of_rows("multipath",
+                                            "1: single-path decoding, 2: of two returns (or a "
+                                            "tail); gain: error 1 over error 2.",
+                                            multipath_rows(codes), {0, 2}));
   return section;
 }
 

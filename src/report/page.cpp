@@ -5,81 +5,102 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdint>
-#include <span>
+#include <set>
+#include <string_view>
+#include <utility>
 
-#include "report/html.hpp"
-#include "report/packed_arrays.hpp"
-#include "report/page_blocks.hpp"
-#include "report/resources.hpp"
+#include "report/figure_json.hpp"
+#include "report/viewer.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {
 
-using html::escape;
+using figure_json::Json;
 
-/// What a browser may do with the page: run what is in it and load nothing. plotly.js compiles
-/// its 3D drawing code with `new Function`, hence unsafe-eval.
-constexpr std::string_view content_policy =
-    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
-    "img-src data: blob:; base-uri 'none'; form-action 'none'";
-
-std::string head(const Page& page) {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n"
-      "<meta name=\"generator\" content=\"tofsmith\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n",
-      content_policy, escape(page.title), resources::page_css());
+Json entries_json(const std::vector<KeyValue>& entries) {
+  Json list = Json::array();
+  for (const KeyValue& entry : entries) list.push_back({entry.key, entry.value});
+  return list;
 }
 
-std::string section_id(std::size_t index) { return fmt::format("section-{}", index + 1); }
+Json block_json(const Paragraph& paragraph) { return {{"kind", "text"}, {"text", paragraph.text}}; }
 
-std::string contents(const Page& page) {
-  std::string list;
-  for (std::size_t i = 0; i < page.sections.size(); ++i)
-    list += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section_id(i),
-                        escape(page.sections[i].title));
-  return fmt::format(
-      "<nav class=\"contents\" aria-label=\"Contents\">\n<details open>\n"
-      "<summary>Contents</summary>\n<ol>\n{}</ol>\n</details>\n</nav>\n",
-      list);
+Json block_json(const KeyValueList& list) {
+  return {{"kind", "settings"}, {"entries", entries_json(list.entries)}};
 }
 
-std::string masthead(const Page& page) {
-  std::string subtitle;
-  if (!page.subtitle.empty())
-    subtitle = fmt::format("<p class=\"subtitle\">{}</p>\n", escape(page.subtitle));
-  return fmt::format("<header>\n<h1>{}</h1>\n{}</header>\n", escape(page.title), subtitle);
+Json block_json(const KeyNumbers& numbers) {
+  return {{"kind", "numbers"}, {"entries", entries_json(numbers.entries)}};
 }
 
-std::string data_element(std::string_view id, std::string_view json) {
-  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
-                     html::escape_json_for_script(json));
+Json block_json(const Table& table) {
+  Json columns = Json::array();
+  for (const TableColumn& column : table.columns)
+    columns.push_back({{"header", column.header}, {"numeric", column.numeric}});
+  for (std::size_t r = 0; r < table.rows.size(); ++r)
+    require(table.rows[r].size() == table.columns.size(), fmt::format("Table::rows[{}].size", r),
+            table.rows[r].size(),
+            fmt::format("must equal columns.size = {}", table.columns.size()));
+  Json json = {{"kind", "table"},
+               {"id", table.id},
+               {"title", table.title},
+               {"caption", table.caption},
+               {"columns", std::move(columns)},
+               {"rows", table.rows}};
+  if (table.highlighted_row) json["highlighted"] = *table.highlighted_row;
+  return json;
 }
 
-/// The figures' JSON and the scripts, last: text can be read while they load. A page without
-/// figures needs none.
-std::string scripts(const Page& page) {
-  std::string elements;
-  plotly::PackedArrays arrays;
-  for (const Section& section : page.sections)
-    for (const Block& block : section.blocks)
-      if (const auto* figure = std::get_if<Figure>(&block)) {
-        auto json = plotly::Json::parse(figure->plotly_json());
-        arrays.take_from(json);
-        elements += data_element("data-" + figure->text().id, json.dump());
-      }
-  if (elements.empty()) return "";
-  const std::string_view plotly_js = resources::plotly_js();
-  const std::span packed(reinterpret_cast<const std::uint8_t*>(plotly_js.data()), plotly_js.size());
-  return fmt::format(
-      "{}{}<script type=\"application/gzip\" id=\"plotly-js\">{}</script>\n"
-      "<script>\n{}{}</script>\n",
-      elements, data_element("packed-arrays", arrays.json().dump()), plotly::encode_base64(packed),
-      resources::plotly_licences(), resources::page_js());
+Json block_json(const CodeBlock& code) { return {{"kind", "code"}, {"text", code.text}}; }
+
+Json block_json(const CheckedStatementList& list) {
+  Json entries = Json::array();
+  for (const CheckedStatement& entry : list.entries)
+    entries.push_back({{"verdict", name_of(entry.verdict)},
+                       {"statement", entry.statement},
+                       {"measured", entry.measured},
+                       {"why", entry.why}});
+  return {{"kind", "statements"}, {"entries", std::move(entries)}};
+}
+
+Json block_json(const LinkList& list) {
+  Json entries = Json::array();
+  for (const Link& link : list.entries)
+    entries.push_back({{"text", link.text}, {"path", link.path}, {"note", link.note}});
+  return {{"kind", "links"}, {"entries", std::move(entries)}};
+}
+
+Json block_json(const Figure& figure) {
+  const FigureText& text = figure.text();
+  Json json = {{"kind", figure.kind()},
+               {"id", text.id},
+               {"title", text.title},
+               {"caption", text.caption},
+               {"alt", text.alt_text.empty() ? text.title : text.alt_text}};
+  json.update(Json::parse(figure.json()));
+  return json;
+}
+
+/// The id of a figure or table; empty for other blocks.
+std::string id_of(const Block& block) {
+  if (const auto* figure = std::get_if<Figure>(&block)) return figure->text().id;
+  if (const auto* table = std::get_if<Table>(&block)) return table->id;
+  return "";
+}
+
+/// JSON that may be part of a script element, and text that may be part of an HTML element.
+std::string escaped(std::string_view text, std::string_view less_than) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '<')
+      result += less_than;
+    else if (c == '&' && less_than == "&lt;")
+      result += "&amp;";
+    else
+      result += c;
+  }
+  return result;
 }
 
 }  // namespace
@@ -90,23 +111,43 @@ std::string_view name_of(Verdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-std::string render(const Page& page) {
-  const page_blocks::Numbering numbering(page);
-  std::string body;
-  for (std::size_t i = 0; i < page.sections.size(); ++i) {
-    body += fmt::format(
-        "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
-        "<h2 id=\"{0}-title\">{1}</h2>\n",
-        section_id(i), escape(page.sections[i].title));
-    for (const Block& block : page.sections[i].blocks) body += page_blocks::html(block, numbering);
-    body += "</section>\n";
+std::string page_document(const Page& page) {
+  static constexpr std::array layouts = {"open", "folded", "front"};
+  std::set<std::string> ids;
+  Json sections = Json::array();
+  for (const Section& section : page.sections) {
+    Json blocks = Json::array();
+    for (const Block& block : section.blocks) {
+      const std::string id = id_of(block);
+      require(id.empty() || ids.insert(id).second, "id", id, "must be used once on a page");
+      blocks.push_back(std::visit([](const auto& one) { return block_json(one); }, block));
+    }
+    sections.push_back({{"title", section.title},
+                        {"layout", layouts[static_cast<std::size_t>(section.layout)]},
+                        {"blocks", std::move(blocks)}});
   }
-  std::string footer;
-  if (!page.footer.empty()) footer = fmt::format("<footer>{}</footer>\n", escape(page.footer));
-  return fmt::format(
-      "{}<body>\n<div class=\"page\">\n{}<main>\n{}{}{}</main>\n</div>\n{}</body>\n"
-      "</html>\n",
-      head(page), contents(page), masthead(page), body, footer, scripts(page));
+  return Json{{"title", page.title},
+              {"subtitle", page.subtitle},
+              {"footer", page.footer},
+              {"sections", std::move(sections)}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string render(const Page& page) {
+  const std::string_view viewer = viewer_page();
+  const auto place = [&](std::string_view mark) {
+    const std::size_t at = viewer.find(mark);
+    require(at != std::string_view::npos, "viewer page", mark, "must be part of the viewer page");
+    return at;
+  };
+  constexpr std::string_view title_mark = "@TITLE@", document_mark = "@DOCUMENT@";
+  const std::size_t title = place(title_mark), document = place(document_mark);
+  std::string html(viewer.substr(0, title));
+  html += escaped(page.title, "&lt;");
+  html += viewer.substr(title + title_mark.size(), document - title - title_mark.size());
+  html += escaped(page_document(page), "\\u003c");
+  html += viewer.substr(document + document_mark.size());
+  return html;
 }
 
 }  // namespace tofsmith

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "report/shared/level_text.hpp"
+#include "report/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
@@ -111,21 +113,72 @@ std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
   return rows;
 }
 
+namespace {
+
+/// "from 1 to 3 m", or "anywhere in the range of 10 m".
+std::string distance_text(const Camera& camera) {
+  const std::string depths = true_depths_in_words(camera);
+  return camera.operating.working_distance_m
+             ? depths
+             : fmt::format("{} of {} m", depths, plain_number(camera.range_m(), 4));
+}
+
+std::string levels_text(const std::vector<double>& levels) {
+  const auto [low, high] = std::ranges::minmax(levels);
+  if (levels.size() == 1) return level_text(low) + " e/s";
+  return fmt::format("{} to {} e/s ({} levels)", level_text(low), level_text(high), levels.size());
+}
+
+/// Distances at which a white surface returns the signals of the camera.
+std::string white_distance_text(const Camera& camera) {
+  const auto [low, high] = std::ranges::minmax(camera.operating.signal_e_per_s);
+  const auto metres = [&](double signal) {
+    return plain_number(camera.optics->distance_m(signal), 3) + " m";
+  };
+  return low == high ? metres(low) : metres(high) + " to " + metres(low);
+}
+
+std::string sunlight_text(const Optics& optics) {
+  if (optics.sunlight_klux) return plain_number(*optics.sunlight_klux, 4) + " klx";
+  if (optics.sunlight_w_per_m2_nm)
+    return plain_number(*optics.sunlight_w_per_m2_nm, 4) + " W/(m2 nm)";
+  return "none";
+}
+
+/// The conditions under which the error must be reached.
+KeyValueList conditions(const Camera& camera, const Requirements& found,
+                        const RequirementOptions& options) {
+  KeyValueList list{{{"depth error to reach", length_text(options.error_m)},
+                     {"depth error of the present camera",
+                      fmt::format("{} with {}", length_text(found.error_m), found.code.name())},
+                     {"true depths", distance_text(camera)},
+                     {"signal", levels_text(camera.operating.signal_e_per_s)},
+                     {"ambient light", levels_text(camera.operating.ambient_e_per_s)}}};
+  if (camera.optics) {
+    list.entries.push_back({"distance of a white surface", white_distance_text(camera)});
+    list.entries.push_back({"sunlight", sunlight_text(*camera.optics)});
+  }
+  return list;
+}
+
+}  // namespace
+
 Page requirements_report(const Camera& camera, const Requirements& found,
                          const RequirementOptions& options, const std::string& command_line) {
   Page page{
       .title = fmt::format("What it takes for {} on {}", length_text(options.error_m), camera.name),
-      .subtitle = fmt::format("as it is: {} by {}", length_text(found.error_m), found.code.name()),
+      .subtitle = fmt::format(
+          "The camera now reaches {} with {}{}", length_text(found.error_m), found.code.name(),
+          camera.optics ? fmt::format("; white surface at {}, sunlight {}",
+                                      white_distance_text(camera), sunlight_text(*camera.optics))
+                        : ""),
       .footer = "tofsmith " TOFSMITH_VERSION};
-  const auto rows = requirement_rows(camera, found, options);
-  Table table{.id = "requirements",
-              .caption =
-                  "The least of each quantity that suffices, everything else as the camera "
-                  "has it, and below what no code can, by the receiver bound."};
-  for (const std::string& header : rows.front())
-    table.columns.push_back({header, header == "error (mm)"});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  page.sections.push_back({"What suffices", {std::move(table)}});
+  Table table = table_of_rows("requirements",
+                              "The least of each quantity that suffices, everything else as the "
+                              "camera has it, and below what no code can, by the receiver bound.",
+                              requirement_rows(camera, found, options), {0, 1, 2, 4, 5});
+  page.sections.push_back(
+      {"What suffices", {conditions(camera, found, options), std::move(table)}});
   if (found.map)
     page.sections.push_back({"Bandwidth against power",
                              {error_map(*found.map, options.error_m),

@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "report/bar_figure.hpp"
-#include "report/shared/level_text.hpp"
+#include "report/table_of_rows.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
@@ -77,18 +78,15 @@ std::vector<Row> robustness_rows(const std::vector<JudgedCode>& codes) {
 }
 
 Section robustness_section(const std::vector<JudgedCode>& codes) {
-  Table table{.id = "robustness"};
-  std::vector<Row> rows = robustness_rows(codes);
-  for (std::size_t i = 0; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], i >= 2});
-  table.rows.assign(rows.begin() + 1, rows.end());
   const bool is_linear = codes.empty() || codes.front().robustness.kind == DepthErrorKind::linear;
-  table.caption = fmt::format(
-      "{} depth error (geometric mean over the operating points) when the camera is not quite what "
-      "it was said to be: by a decoder that knows the camera as it is (calibrated), and by one "
-      "that believes what was said (uncalibrated). All see the same depths and the same noise.",
+  std::string caption = fmt::format(
+      "{} depth error (geometric mean over the operating points) on cameras that differ from their "
+      "description: with a decoder that knows the difference (calibrated) and with one that does "
+      "not (uncalibrated). All decode the same depths and the same noise.",
       is_linear ? "Linear" : "Circular");
-  Section section{"Robustness", {std::move(table)}};
+  Section section{
+      "Robustness",
+      {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};
   if (!codes.empty() && !codes.front().robustness.perturbed.empty())
     section.blocks.push_back(ratio_figure(codes));
   return section;

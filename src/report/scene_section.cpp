@@ -57,63 +57,39 @@ Figure albedo_figure(const SceneResult& scene) {
                       {{.title = "albedo", .pixels = scene.truth.albedo}}, colours);
 }
 
-/// What is drawn of a capture: the best code, the same filtered, then the others.
-struct ShownDepth {
-  std::string title;
-  const Image<float>& depth_m;
-  const SceneError& error;
-};
-
-std::vector<ShownDepth> shown_depths(const SceneCapture& capture, const std::string& best_code) {
-  std::vector<ShownDepth> shown;
-  const auto show = [&](const SceneDecoding& d) {
-    shown.push_back({d.code, d.depth_m, d.error});
-    if (d.filtered && d.code == best_code)
-      shown.push_back({d.code + ", filtered", d.filtered->depth_m, d.filtered->error});
-  };
-  for (const SceneDecoding& d : capture.decodings)
-    if (d.code == best_code) show(d);
-  for (const SceneDecoding& d : capture.decodings)
-    if (d.code != best_code) show(d);
-  return shown;
+/// "hamiltonian-k4: 12.1 mm", or with the filter "hamiltonian-k4: 12.1, filtered 4.0 mm".
+std::string title_of(const SceneDecoding& decoding) {
+  std::string title = fmt::format("{}: {:.1f}", decoding.code, 1e3 * decoding.error.mean_m);
+  if (decoding.filtered)
+    title += fmt::format(", filtered {:.1f}", 1e3 * decoding.filtered->error.mean_m);
+  return title + " mm";
 }
 
-/// Four pictures stand two by two.
-ImageFigureOptions side_by_side(std::size_t pictures) { return {.columns = pictures == 4 ? 2 : 3}; }
-
-Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera,
-                      const std::string& best_code) {
-  std::vector<ValueImage> images;
-  for (const ShownDepth& shown : shown_depths(capture, best_code))
-    images.push_back({.title = shown.title, .pixels = shown.depth_m});
-  return image_figure({.id = figure_id("decoded", capture.light),
-                       .title = fmt::format("Decoded depth, {}", light_text(capture)),
-                       .caption = "All codes on one colour scale, the scene's; errors beyond it "
-                                  "take the colours of its ends.",
-                       .alt_text = "Maps of decoded depth"},
-                      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
-                      side_by_side(images.size()));
-}
-
-Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera,
-                    const std::string& best_code) {
+/// Depth with every code at one light level, filtered to the right of a slider, each pixel alone
+/// to its left; and its error.
+Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
   std::vector<ValueImage> images;
   double scale_m = 0.0;
-  for (const ShownDepth& shown : shown_depths(capture, best_code)) {
-    images.push_back({.title = fmt::format("{}: {:.1f} mm", shown.title, 1e3 * shown.error.mean_m),
-                      .pixels = scaled(depth_difference_m(shown.depth_m, scene.truth, camera,
-                                                          DepthErrorKind::circular),
-                                       1e3)});
-    scale_m = std::max(scale_m, shown.error.median_m);
+  for (const SceneDecoding& d : capture.decodings) {
+    scale_m = std::max(scale_m, d.error.median_m);
+    images.push_back(
+        {.title = title_of(d), .pixels = d.filtered ? d.filtered->depth_m : d.depth_m});
+    if (d.filtered) images.back().before = d.depth_m;
   }
-  const double limit_mm = std::max(1.0, 4e3 * scale_m);
   return image_figure(
-      {.id = figure_id("error", capture.light),
-       .title = fmt::format("Depth error, {}", light_text(capture)),
-       .caption = "Decoded minus true depth, the shorter way round the range; its mean size beside "
-                  "each code's name.",
-       .alt_text = "Maps of depth error"},
-      images, depth_error_scale(limit_mm), side_by_side(images.size()));
+      {.id = figure_id("decoded", capture.light),
+       .title = fmt::format("Decoded depth, {}", light_text(capture)),
+       .caption = "Mean errors above; errors go the shorter way around the range.",
+       .alt_text = "Maps of decoded depth and its error"},
+      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      {.max_side = 160,
+       .before_name = "each pixel alone",
+       .after_name = "filtered",
+       .reference = ImageReference{.name = "error",
+                                   .values = wrapped_depth_m(scene.truth, camera),
+                                   .period = camera.range_m(),
+                                   .factor = 1e3,
+                                   .colours = depth_error_scale(std::max(1.0, 4e3 * scale_m))}});
 }
 
 const SceneDecoding* decoding_of(const SceneCapture& capture, const std::string& code) {
@@ -149,49 +125,30 @@ std::vector<std::string> error_row(const std::string& light, const std::string& 
           fmt::format("{:.2f}", 100 * error.decoded_share)};
 }
 
-Table error_table(const SceneResult& scene) {
-  double threshold_m = 0.0;  // the same for all
-  for (const SceneCapture& capture : scene.captures)
-    for (const SceneDecoding& d : capture.decodings) threshold_m = d.error.outlier_threshold_m;
+Table error_table(const SceneResult& scene, const Camera& camera, double outlier_threshold_m) {
   Table table{.id = "scene-errors",
               .caption = fmt::format("Depth errors on the scene; outliers are off by more than "
                                      "{:.3g} m or have no depth.",
-                                     threshold_m),
+                                     outlier_threshold_m),
               .columns = {{"light"},
                           {"code"},
                           {"mean (mm)", true},
                           {"median (mm)", true},
                           {"outliers (%)", true},
                           {"pixels with depth (%)", true}}};
+  const auto add = [&](const std::string& light, const std::string& code, const auto& decoding) {
+    SceneError error = decoding.error;
+    error.outlier_rate = scene_error(decoding.depth_m, scene.truth, camera,
+                                     DepthErrorKind::circular, outlier_threshold_m)
+                             .outlier_rate;
+    table.rows.push_back(error_row(light, code, error));
+  };
   for (const SceneCapture& capture : scene.captures)
     for (const SceneDecoding& d : capture.decodings) {
-      table.rows.push_back(error_row(capture.light, d.code, d.error));
-      if (d.filtered)
-        table.rows.push_back(error_row(capture.light, d.code + ", filtered", d.filtered->error));
+      add(capture.light, d.code, d);
+      if (d.filtered) add(capture.light, d.code + ", filtered", *d.filtered);
     }
   return table;
-}
-
-/// Depth of each pixel alone and filtered, at every light; none where nothing was filtered.
-std::optional<Figure> compared_figure(const SceneResult& scene, const Camera& camera,
-                                      const std::string& best_code) {
-  std::vector<ValueImage> images;
-  for (const SceneCapture& capture : scene.captures)
-    if (const SceneDecoding* const d = decoding_of(capture, best_code); d && d->filtered)
-      images.push_back(
-          {.title = fmt::format("{} light: {:.1f} | {:.1f} mm", capture.light,
-                                1e3 * d->error.mean_m, 1e3 * d->filtered->error.mean_m),
-           .pixels = d->filtered->depth_m,
-           .before = d->depth_m});
-  if (images.empty()) return std::nullopt;
-  return image_figure(
-      {.id = "filtered",
-       .title = fmt::format("Depth of {}, each pixel alone and filtered", best_code),
-       .caption = "Left of the slider each pixel alone, right of it the same raw numbers filtered; "
-                  "mean errors of both above.",
-       .alt_text = "Maps of depth, each pixel alone on the left and filtered on the right"},
-      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
-      {.before_name = "each pixel alone", .after_name = "filtered"});
 }
 
 ColouredPoints cloud_of(const SceneResult& scene, std::string title, const Image<float>& depth_m) {
@@ -221,13 +178,42 @@ Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
        .alt_text = decoding.filtered
                        ? "Point clouds of the decoded scene, each pixel alone and filtered"
                        : "Point cloud of the decoded scene"},
-      clouds, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});
+      clouds, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      {.max_points = 20000});
 }
 
 }  // namespace
 
-Section scene_section(const SceneResult& scene, const Camera& camera,
-                      const std::string& best_code) {
+namespace {
+
+std::string name_with_error(const SceneDecoding& decoding) {
+  return fmt::format("{}: {:.1f} mm", decoding.code, 1e3 * decoding.error.mean_m);
+}
+
+}  // namespace
+
+std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera& camera,
+                                          const std::string& best_code) {
+  if (scene.captures.empty()) return std::nullopt;
+  const SceneCapture& capture = scene.captures[scene.captures.size() / 2];
+  const SceneDecoding* const best = decoding_of(capture, best_code);
+  const auto standard = std::ranges::find_if(
+      capture.decodings, [&](const SceneDecoding& d) { return d.code != best_code; });
+  if (best == nullptr || standard == capture.decodings.end()) return std::nullopt;
+  return image_figure(
+      {.id = "before-after",
+       .title = fmt::format("Depth of the scene {}", scene.name),
+       .caption = fmt::format("{}; mean errors of pixels decoded one by one. Drag the border.",
+                              light_text(capture)),
+       .alt_text = fmt::format("Depth decoded with {} on the left and {} on the right",
+                               standard->code, best_code)},
+      {{.title = "", .pixels = best->depth_m, .before = standard->depth_m}},
+      {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      {.before_name = name_with_error(*standard), .after_name = name_with_error(*best)});
+}
+
+Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code,
+                      double outlier_threshold_m) {
   Section section{.title = "A scene: " + scene.name};
   section.blocks.push_back(Paragraph{
       fmt::format("The scene is captured in simulation at each light level and decoded with every "
@@ -246,15 +232,12 @@ Section scene_section(const SceneResult& scene, const Camera& camera,
   section.blocks.push_back(albedo_figure(scene));
   for (const SceneCapture& capture : scene.captures) {
     if (capture.decodings.empty()) continue;
-    section.blocks.push_back(decoded_figure(scene, capture, camera, best_code));
-    section.blocks.push_back(error_figure(scene, capture, camera, best_code));
+    section.blocks.push_back(decoded_figure(scene, capture, camera));
   }
-  if (auto compared = compared_figure(scene, camera, best_code))
-    section.blocks.push_back(std::move(*compared));
   if (auto averaged = averaged_figure(scene, best_code))
     section.blocks.push_back(std::move(*averaged));
   if (scene.captures.empty()) return section;
-  section.blocks.push_back(error_table(scene));
+  section.blocks.push_back(error_table(scene, camera, outlier_threshold_m));
   const SceneCapture& brightest = scene.captures.back();
   if (const SceneDecoding* const d = decoding_of(brightest, best_code))
     section.blocks.push_back(cloud_figure(scene, brightest, *d, camera));

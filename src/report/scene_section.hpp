@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "tofsmith/camera/camera.hpp"
@@ -10,8 +11,15 @@
 
 namespace tofsmith {
 
-/// Depth maps, error maps, their figures and a point cloud.
+/// Depth maps, error maps, a table of errors and a point cloud.
 /// @param best_code  the code whose point cloud is drawn
-Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code);
+/// @param outlier_threshold_m  larger errors count as outliers
+Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code,
+                      double outlier_threshold_m);
+
+/// The scene at the middle light level, decoded with a standard code and with the best; none
+/// without captures of both.
+std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera& camera,
+                                          const std::string& best_code);
 
 }  // namespace tofsmith

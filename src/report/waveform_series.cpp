@@ -36,12 +36,12 @@ std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
   faint.width_px = 1.0;
   std::vector<Series> series;
   if (!(nominal == actual))
-    series.push_back(stepped("nominal", nominal, period_ns, reference_style()));
+    series.push_back(stepped("as designed", nominal, period_ns, reference_style()));
   if (response.kind == ImpulseResponse::Kind::none) {
-    series.push_back(stepped("actual", actual, period_ns, style));
+    series.push_back(stepped("waveform", actual, period_ns, style));
     return series;
   }
-  series.push_back(stepped("actual", actual, period_ns, faint));
+  series.push_back(stepped("waveform", actual, period_ns, faint));
   series.push_back(
       {.name = "after the impulse response",
        .x = axis_values(curve_points, period_ns),
@@ -66,7 +66,7 @@ std::vector<PanelColumn> waveform_columns(bool is_signed) {
            .y = {.label = is_signed ? "weight" : "gain", .from_zero = true}},
           {.title = "Correlation",
            .x = {.label = "depth", .unit = "m"},
-           .y = {.label = "chi", .from_zero = true}}};
+           .y = {.label = "value", .from_zero = true}}};
 }
 
 }  // namespace tofsmith

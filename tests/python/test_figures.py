@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every figure draws, in matplotlib and as Plotly JSON."""
+"""Every figure draws, in matplotlib and as an HTML page."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -35,9 +35,13 @@ drawings = {
 
 
 @pytest.mark.parametrize("name", drawings)
-def test_figures_are_plotly_documents(name, things):
+def test_figures_are_pages_with_documents(name, things, tmp_path):
     figure = drawings[name](figures, things)
-    assert set(figure) >= {"data", "layout"} and figure["data"]
+    assert figure.document["kind"] in ("lines", "curves", "map", "image", "cloud")
+    assert figure.document.get("panels") or figure.document["rows"][0]["panels"]
+    figure.save(tmp_path / "figure.html")
+    assert (tmp_path / "figure.html").read_text().endswith("</html>\n")
+    assert figure._repr_html_().startswith("<iframe srcdoc=")
 
 
 @pytest.mark.parametrize("name", drawings)
@@ -118,3 +122,17 @@ def test_binary_waveforms_are_drawn_by_their_switching_times(things):
     sampled = plot.waveforms("sinusoid-k3", things["camera"]).axes[0].patches[0].get_data()
     assert len(sampled.values) == len(sampled.edges) - 1 > 100
     plt.close("all")
+
+
+def test_differences_of_depths_have_a_diverging_scale(things):
+    depth_m = things["scene"].depth_m
+    difference_m = depth_m - np.nanmean(depth_m)
+    for shown, label, map_name in ((depth_m, "depth", "viridis"),
+                                   (difference_m, "depth difference", "diverging")):
+        colours = figures.depth_maps(shown).document["colours"]
+        assert (colours["label"], colours["map"]) == (label, map_name)
+        figure = plot.depth_maps(shown)
+        assert figure.axes[-1].get_ylabel() == f"{label} (m)"
+        low, high = figure.axes[0].images[0].get_clim()
+        assert (low == -high) == (map_name == "diverging")
+        plt.close("all")

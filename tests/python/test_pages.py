@@ -49,9 +49,9 @@ def test_a_design_is_written_as_the_command_writes_it(small, cli, tmp_path):
     run(cli, tmp_path, "report", "mine", "-o", "c.html")
     assert page_without_command(tmp_path / "c.html") == made
     ts.write_report(tmp_path / "mine", tmp_path / "p.html")
-    assert (tmp_path / "p.html").read_text() == made
+    assert page_without_command(tmp_path / "p.html") == made
     result.write_report(tmp_path / "alone.html")
-    assert "<h1" in (tmp_path / "alone.html").read_text()
+    assert page_without_command(tmp_path / "alone.html")[1]["sections"]
     for write in (lambda: result.write(tmp_path / "mine"), lambda: ts.write_report(tmp_path / "mine")):
         with pytest.raises(OSError, match="exists"):
             write()

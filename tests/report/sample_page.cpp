@@ -225,15 +225,22 @@ std::vector<Block> depth_blocks() {
               {.columns = 2}),
           image_figure({"compared", "Before and after", "Move the slider.", ""},
                        {{"medium light", good, poor}, {"high light", depth, good}},
-                       {.label = "Depth", .unit = "m"}, {.before_name = "poor"}),
+                       {.label = "Depth", .unit = "m"},
+                       {.before_name = "poor",
+                        .reference = ImageReference{.name = "error",
+                                                    .values = depth,
+                                                    .factor = 1e3,
+                                                    .colours = {.label = "decoded minus true",
+                                                                .unit = "mm",
+                                                                .map = ColourMap::diverging}}}),
           point_cloud_figure({"point-cloud", "Point cloud", "Drag to turn.", ""}, points, values,
                              {.label = "Depth", .unit = "m"})};
 }
 
 Table candidates() {
   Table table{"candidates",
-              "Depth error of all candidates, geometric mean over the operating points; the best "
-              "is [[operating-points]]'s last panel.",
+              "Candidates",
+              "Depth error of all candidates, geometric mean over the operating points.",
               {{"Code"},
                {"K", true},
                {"Mean error (mm)", true},
@@ -263,9 +270,9 @@ Page sample_page() {
           "sensor are band-limited to 150 MHz",
       .sections =
           {{"Result",
-            {Paragraph{"The code `optimize-k4` measures depth best on this camera: [[candidates]] "
-                       "lists all candidates, [[operating-points]] shows where they fail. Text "
-                       "stays text: <b>, </script>, a & b, [brackets], `a < b`."},
+            {Paragraph{
+                 "The code `optimize-k4` measures depth best on this camera. Text stays text: "
+                 "<b>, </script>, a & b, [brackets], `a < b`."},
              KeyNumbers{{{"best code", "optimize-k4"},
                          {"mean depth error", "60 ± 0.4 mm"},
                          {"of sinusoid-k4's", "46 %"},
@@ -297,7 +304,13 @@ Page sample_page() {
                  "tofsmith design paper-10f0 --method best --exposures 4 --seed 1 -o out/</pre>"}}},
            {"Codes", {waves, coding_curves(), convergence(colours)}},
            {"Depth error", {error_by_signal(colours), operating_points()}},
-           {"Scene", depth_blocks()}},
+           {"Scene", depth_blocks()},
+           {"Files",
+            {LinkList{{{"a & b", "javascript:alert(1)/\"x\".html", "note"}}},
+             CheckedStatementList{{{Verdict::holds, "a < b", "1 `x`", ""},
+                                   {Verdict::in_part, "second", "2", "because"},
+                                   {Verdict::fails, "third", "3", ""}}}},
+            SectionLayout::folded}},
       .footer = "tofsmith 0.1.0, seed 1"};
 }
 

@@ -108,6 +108,7 @@ SceneResult read_scene_result(const std::filesystem::path& directory);
 struct DesignedDirectory {
   DesignRecord design;
   std::optional<SceneResult> scene;
+  std::vector<std::string> files = {};  ///< names in the directory, sorted
 };
 
 /// Reads what `tofsmith design -o` or `tofsmith demo -o` left in a directory.

@@ -16,9 +16,9 @@ namespace tofsmith {
 /// become their hexadecimal code, so that "a/b" and "a b" differ.
 std::string figure_id(const std::string& prefix, const std::string& name);
 
-/// Modulation, demodulation and correlation function of every measurement, one row each: as the
-/// code says (nominal: dotted, where a generator changes them), as the generators make them
-/// (actual), and as the camera's impulse responses leave them.
+/// Modulation, demodulation and correlation function of every measurement, one row each: as
+/// designed (dotted, where a generator changes them), as generated, and after the camera's impulse
+/// responses.
 /// @param target  what the correlation functions were designed for (N, K), drawn dotted; may be
 ///                empty
 Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,

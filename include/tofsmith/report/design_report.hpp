@@ -17,11 +17,14 @@
 
 namespace tofsmith {
 
-/// The report of a design: camera, candidates by depth error, error maps over the operating range,
-/// waveforms, coding curves, convergence and, if there is one, the scene.
+/// The report of a design. Its first screen shows the best code and the standard codes, error over
+/// light, waveforms, a scene before and after, files and commands; sections with all candidates,
+/// maps, waveforms, coding curves, convergence and the scene are folded.
 /// @param command_line  as typed, to be shown on the page; may be empty
+/// @param files  names in the directory of the report to link to; may be empty
 Page design_report(const Camera& camera, const DesignResult& result,
-                   const std::optional<SceneResult>& scene, const std::string& command_line);
+                   const std::optional<SceneResult>& scene, const std::string& command_line,
+                   const std::vector<std::string>& files = {});
 
 /// The same of a directory that holds a design.
 Page design_report(const DesignedDirectory& found, const std::string& command_line);

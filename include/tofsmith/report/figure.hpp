@@ -39,34 +39,23 @@ struct Axis {
 /// "label (unit)", or "label" when there is no unit.
 std::string axis_title(const std::string& label, const std::string& unit);
 
-/// Room a figure takes on a page of any width: height = fixed_px + per_width * width.
-struct FigureSize {
-  double fixed_px = 380;
-  double per_width = 0;
-  double min_width_px = 0;  ///< a narrower page scrolls the figure sideways
-};
-
-/// A figure as Plotly JSON, without colours of page and text: those come from where it is shown.
+/// A figure as data: values, axes and units. The viewer of the page draws it.
 class Figure {
  public:
-  /// @param plotly_json  {"data": [..], "layout": {..}}; the builders beside this header make it
+  /// @param kind  "lines", "bars", "map", "image", "curves" or "cloud"
+  /// @param json  members of the figure in the page's document; the functions below write it
   /// @throws std::invalid_argument if the id is not made of letters, digits and dashes, or the
   ///         title is empty
-  Figure(FigureText text, std::string plotly_json, FigureSize size = {});
+  Figure(FigureText text, std::string kind, std::string json);
 
   const FigureText& text() const { return text_; }
-  const FigureSize& size() const { return size_; }
-
-  /// {"data": [..], "layout": {..}}; large arrays as Plotly's typed arrays
-  /// {"dtype": "f4", "bdata": base64, "shape": "H, W"}, which Plotly reads since 2.35.
-  const std::string& plotly_json() const { return plotly_json_; }
-  /// The same with every array written out as numbers, for any Plotly.
-  std::string plain_plotly_json() const;
+  const std::string& kind() const { return kind_; }
+  const std::string& json() const { return json_; }
 
  private:
   FigureText text_;
-  std::string plotly_json_;
-  FigureSize size_;
+  std::string kind_;
+  std::string json_;
 };
 
 /// The values of a vector expression, in the type the builders take.
@@ -74,7 +63,7 @@ std::vector<double> to_values(const Eigen::Ref<const Eigen::VectorXd>& vector);
 
 enum class Dash { solid, dash, dot, dash_dot };
 
-/// How a line is drawn. Colours are "#rrggbb"; black turns to the page's ink on a dark page.
+/// How a line is drawn. Colours are "#rrggbb"; the palette becomes lighter on a dark page.
 struct LineStyle {
   std::string colour = "#0072b2";
   Dash dash = Dash::solid;
@@ -166,11 +155,21 @@ struct ValueImage {
   Image<float> before = {};  ///< of the same size: a slider shows it to its left; empty: none
 };
 
+/// Values to compare pictures with: the figure can also show their differences to these.
+struct ImageReference {
+  std::string name = {};     ///< of the differences, e.g. "error"
+  Image<float> values = {};  ///< of the size of the pictures
+  double period = 0;         ///< differences go the shorter way around; 0: no period
+  double factor = 1;         ///< from differences to the unit of `colours`
+  ColourScale colours = {};  ///< of the differences
+};
+
 struct ImageFigureOptions {
   int columns = 3;     ///< pictures side by side
   int max_side = 320;  ///< longer pictures are shown at every n-th pixel; the caption says so
   std::string before_name = "before";  ///< what the slider's ends are called
   std::string after_name = "after";
+  std::optional<ImageReference> reference = {};
 };
 
 /// Pictures (H x W) side by side with one colour scale: depth maps, error maps.

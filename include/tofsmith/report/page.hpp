@@ -12,9 +12,8 @@
 
 namespace tofsmith {
 
-/// Text. `words` between backticks are set as code, [[id]] becomes a link that reads "Figure 3" or
-/// "Table 1". Captions and headers of tables are read in the same way; cells, titles and settings,
-/// which hold names that users give, stay as they are.
+/// Text. `words` between backticks are set as code, also in captions and headers of tables; not in
+/// cells, titles and settings, which contain names that users choose.
 struct Paragraph {
   std::string text = {};
 };
@@ -41,8 +40,9 @@ struct TableColumn {
 };
 
 struct Table {
-  std::string id = {};       ///< unique on a page, for [[id]]; may be empty
-  std::string caption = {};  ///< stands above, after "Table 1."
+  std::string id = {};       ///< unique on a page; may be empty
+  std::string title = {};    ///< above the table; may be empty
+  std::string caption = {};  ///< below a table with a title, above one without
   std::vector<TableColumn> columns = {};
   std::vector<std::vector<std::string>> rows = {};
   std::optional<int> highlighted_row = {};  ///< index of the row to stress, e.g. the best code
@@ -85,9 +85,14 @@ struct LinkList {
 using Block = std::variant<Paragraph, KeyValueList, KeyNumbers, Table, CodeBlock, Figure,
                            CheckedStatementList, LinkList>;
 
+/// Layout of a section: one block below the other, the same behind a closed title, or the first
+/// screen of a page, which arranges its blocks side by side.
+enum class SectionLayout { open, folded, front };
+
 struct Section {
   std::string title = {};
   std::vector<Block> blocks = {};
+  SectionLayout layout = SectionLayout::open;
 };
 
 struct Page {
@@ -97,12 +102,17 @@ struct Page {
   std::string footer = {};  ///< one line at the end, e.g. version and seed
 };
 
-/// The page as one HTML document that needs no other file and no network; figures are drawn by the
-/// embedded plotly.js as they scroll into view. The same page gives the same bytes. Scripts find
+/// The page as a JSON document: {title, subtitle, footer, sections: [{title, layout, blocks}]}.
+/// Blocks have a `kind`; docs/report.md lists the kinds. The same page has the same bytes.
+/// @throws std::invalid_argument if two figures or tables share an id, or a table row does not fit
+///         its columns
+std::string page_document(const Page& page);
+
+/// The page as one HTML file that needs no other file and no network: the viewer, which draws the
+/// figures as they scroll into view, and page_document(). Scripts find
 /// `window.tofsmithFigures` = {total, rendered, errors} and `window.tofsmithRenderAll()`, a promise
 /// that every figure is drawn.
-/// @throws std::invalid_argument if two figures or tables share an id, a table row does not fit its
-///         columns, or [[id]] names nothing on the page
+/// @throws std::invalid_argument as page_document()
 std::string render(const Page& page);
 
 }  // namespace tofsmith

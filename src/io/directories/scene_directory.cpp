@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -175,6 +176,9 @@ DesignedDirectory read_designed_directory(const fs::path& directory) {
                   "`tofsmith demo -o`");
   DesignedDirectory found{DesignDirectory(directory).read(), {}};
   if (holds_scene_result(directory / "scene")) found.scene = read_scene_result(directory / "scene");
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+    found.files.push_back(entry.path().filename().string());
+  std::ranges::sort(found.files);
   return found;
 }
 

@@ -10,14 +10,14 @@
 
 namespace tofsmith {
 
-inline constexpr int curve_points = 480;  ///< of a drawn period
+inline constexpr int curve_points = 240;  ///< of a drawn period
 
 /// `points` equal steps over [0, end), end point left out: the x of a drawn period.
 std::vector<double> axis_values(int points, double end);
 
-/// A waveform over one period [ns], by its switching times and not on a grid: "nominal" (dotted,
-/// only where a generator changes it), "actual", and, thick over a thin "actual", what an impulse
-/// response leaves of it ("after the impulse response").
+/// A waveform over one period [ns], by its switching times and not on a grid: "as designed"
+/// (dotted, only where a generator changes it), "waveform" as generated (thin if there is an
+/// impulse response), and the same "after the impulse response".
 std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style);

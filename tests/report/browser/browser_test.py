@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens a report in headless Chromium and checks that it shows what it holds.
 
-Every figure has drawn something of non-zero size, the console has no error, and nothing came over
+Every figure has drawn something of non-zero size and no label is cut off; it can be saved as SVG, PNG
+and CSV; sliders move pictures; folded sections open; the console has no error, and nothing came over
 the network. Exit status 0 passed, 1 failed, 2 wrong usage, 77 no browser here.
 """
 
@@ -26,7 +27,6 @@ CHROMEDRIVER = "/usr/bin/chromedriver"
 FLAGS = [
     "--headless=new",
     "--no-sandbox",
-    "--enable-unsafe-swiftshader",  # WebGL without a GPU
     "--disable-dev-shm-usage",
     "--disable-quic",
     "--disable-background-networking",
@@ -36,33 +36,74 @@ FLAGS = [
     "--hide-scrollbars",
 ]
 
-# What a figure has drawn: the area of its largest picture, and the number of pictures.
+# The area of the largest picture of each figure, and labels that its edges cut off.
 DRAWN = """
-return Array.from(document.querySelectorAll('.plot'), plot => {
-  const shapes = Array.from(plot.querySelectorAll(
-      '.main-svg .trace, .main-svg .hm, .main-svg .bars, .gl-container canvas'));
-  const areas = shapes.map(s => { const b = s.getBoundingClientRect(); return b.width * b.height; });
-  return {id: plot.dataset.figure, drawings: areas.length, area: Math.max(0, ...areas),
-          message: (plot.querySelector('.no-webgl') || {textContent: ''}).textContent};
+return Array.from(document.querySelectorAll('[data-figure]'), figure => {
+  const box = node => node.getBoundingClientRect();
+  const area = node => box(node).width * box(node).height;
+  const shapes = [...figure.querySelectorAll('.plot > svg, .plot > canvas')];
+  const cut = [...figure.querySelectorAll('.plot > svg text')].filter(text => {
+    const inner = box(text), outer = box(text.closest('svg'));
+    return inner.left < outer.left - 1 || inner.right > outer.right + 1 || inner.top < outer.top - 1
+      || inner.bottom > outer.bottom + 1;
+  });
+  const marks = figure.querySelectorAll('.curve, circle, .cell, rect, canvas').length;
+  return {id: figure.dataset.figure, area: marks && Math.max(0, ...shapes.map(area)),
+          cut: cut.map(text => text.textContent)};
 });
 """
 
-
-# Moves every slider and gives the figures whose picture does not follow.
+# Moves every slider and returns the figures whose pictures do not follow.
 SLIDE = """
-const done = arguments[0], stuck = [];
+const stuck = [];
+for (const input of document.querySelectorAll('.slider input')) {
+  const figure = input.closest('figure.figure');
+  const picture = () => [...figure.querySelectorAll('.picture canvas')].map(c => c.toDataURL()).join();
+  const before = picture();
+  input.value = Number(input.min) + 1;
+  input.dispatchEvent(new Event('input'));
+  if (picture() === before) stuck.push(figure.dataset.figure);
+}
+return stuck;
+"""
+
+# Presses every choice of a figure and returns the figures that do not change.
+CHOOSE = """
+const stuck = [];
+for (const button of document.querySelectorAll('.choice [aria-pressed=false]')) {
+  const figure = button.closest('figure.figure');
+  const picture = () => [...figure.querySelectorAll('.picture canvas')].map(c => c.toDataURL()).join();
+  const before = picture();
+  button.click();
+  if (picture() === before || button.getAttribute('aria-pressed') !== 'true') stuck.push(figure.dataset.figure);
+}
+return stuck;
+"""
+
+# Saves every figure in every format and returns the problems of the files.
+SAVE = """
+const done = arguments[0], wrong = [], blobs = [];
+URL.createObjectURL = (blob) => { blobs.push(blob); return 'data:,'; };
+HTMLAnchorElement.prototype.click = () => {};
+const decoded = async (blob) => { try { await createImageBitmap(blob); return true; } catch { return false; } };
 (async () => {
-  for (const input of document.querySelectorAll('.slider input')) {
-    const plot = input.closest('figure').querySelector('.plot');
-    const lines = () => plot.layout.shapes.map(shape => shape.x0).join();
-    const pictures = () => plot.querySelectorAll('.hm image').length;
-    const before = lines(), count = pictures();
-    input.value = Number(input.min) + 1;
-    input.dispatchEvent(new Event('input'));
-    await new Promise(resolve => setTimeout(resolve, 1000));
-    if (lines() === before || pictures() !== count || count < 2) stuck.push(plot.dataset.figure);
+  for (const figure of document.querySelectorAll('[data-figure]')) {
+    for (const button of figure.querySelectorAll('.save button')) {
+      blobs.length = 0;
+      button.click();
+      for (let i = 0; i < 100 && !blobs.length; ++i) await new Promise(r => setTimeout(r, 20));
+      const [blob] = blobs, name = `${figure.dataset.figure}.${button.textContent}`;
+      if (!blob || blob.size < 40) { wrong.push(`${name} is empty`); continue; }
+      if (button.textContent === 'PNG' && !await decoded(blob)) wrong.push(`${name} is no picture`);
+      const text = button.textContent === 'PNG' ? '' : await blob.text();
+      if (button.textContent === 'SVG' &&
+          new DOMParser().parseFromString(text, 'image/svg+xml').querySelector('parsererror'))
+        wrong.push(`${name} is no XML`);
+      if (button.textContent === 'CSV' && text.split('\\n').length < 3) wrong.push(`${name} has no rows`);
+    }
+    if (figure.querySelectorAll('.save button').length !== 3) wrong.push(`${figure.dataset.figure} lacks buttons`);
   }
-})().then(() => done(stuck), error => done([String(error)]));
+})().then(() => done(wrong), error => done([String(error)]));
 """
 
 
@@ -96,18 +137,24 @@ def problems_of(driver, page):
     driver.execute_async_script(
         "const done = arguments[0]; window.tofsmithRenderAll().then(() => done(), () => done());"
     )
-    stuck = driver.execute_async_script(SLIDE)
-    time.sleep(1)  # late drawing (3D, automatic margins) and its complaints
+    time.sleep(1)  # figures draw in the next frame
+    stuck = driver.execute_script(SLIDE)
+    chosen = driver.execute_script(CHOOSE)
+    wrong = driver.execute_async_script(SAVE)
     status = driver.execute_script("return window.tofsmithFigures")
     problems = [f"script error: {error}" for error in status["errors"]]
     problems += [f"the slider of figure {figure} moves nothing" for figure in stuck]
+    problems += [f"a choice of figure {figure} changes nothing" for figure in chosen]
+    problems += wrong
+    if driver.execute_script("return document.querySelectorAll('details.section:not([open])').length"):
+        problems.append("a section is still folded")
     if status["rendered"] != status["total"]:
         problems.append(f"{status['rendered']} of {status['total']} figures were rendered")
     for figure in driver.execute_script(DRAWN):
-        if figure["message"]:
-            problems.append(f"figure {figure['id']}: {figure['message'].strip()}")
-        elif figure["area"] < 100:
+        if figure["area"] < 100:
             problems.append(f"figure {figure['id']} has drawn nothing")
+        for label in figure["cut"]:
+            problems.append(f"figure {figure['id']}: the label '{label}' is cut off")
     width = driver.execute_script(
         "return [document.documentElement.scrollWidth, document.documentElement.clientWidth]"
     )

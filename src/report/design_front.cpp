@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "report/design_front.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "report/error_sections.hpp"
+#include "report/scene_section.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/report/code_figures.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr double max_outlier_rate = 0.1;
+
+/// Places of the light levels at which the code has few outliers; all if it has none such.
+std::vector<std::size_t> usable_levels(const DepthErrorReport& error) {
+  std::vector<std::size_t> usable, all;
+  for (std::size_t i = 0; i < error.points.size(); ++i) {
+    all.push_back(i);
+    if (error.points[i].outlier_rate.value <= max_outlier_rate) usable.push_back(i);
+  }
+  return usable.empty() ? all : usable;
+}
+
+/// Geometric mean of the depth error over some light levels [mm].
+double error_mm(const DepthErrorReport& error, const std::vector<std::size_t>& levels,
+                DepthErrorKind kind) {
+  double sum = 0.0;
+  for (const std::size_t i : levels) {
+    const PointDepthError& p = error.points[i];
+    sum += std::log(kind == DepthErrorKind::linear ? p.linear_mde_m.value : p.circular_mde_m.value);
+  }
+  return 1e3 * std::exp(sum / static_cast<double>(levels.size()));
+}
+
+/// The best code, the best standard code of every family, and sinusoid-k4; best first.
+std::vector<const Candidate*> compared(const DesignResult& result, DepthErrorKind kind) {
+  std::vector<const Candidate*> codes{&result.winner()};
+  std::set<std::string> families;
+  for (const Candidate* c : by_geometric_mean_error(result, kind)) {
+    if (c == &result.winner() || c->is_designed() || c->method == "atlas") continue;
+    const std::string name = c->code.name();
+    const bool is_first = families.insert(name.substr(0, name.find('-'))).second;
+    if (is_first || name == "sinusoid-k4") codes.push_back(c);
+  }
+  return codes;
+}
+
+Table comparison(const Camera& camera, const DesignResult& result) {
+  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorReport& best = result.winner().error;
+  const std::vector<std::size_t> levels = usable_levels(best);
+  Table table{.id = "best",
+              .title = "The best code and the standard codes",
+              .caption = fmt::format(
+                  "Error: geometric mean of the {} depth "
+                  "error over the {} of {} light levels at which the best code has at most {:.0f} "
+                  "% outliers (off by more than {:.2g} m). Ratio: over all levels, by which codes "
+                  "are ranked.",
+                  name_of(kind), levels.size(), best.points.size(), 100 * max_outlier_rate,
+                  best.outlier_threshold_m),
+              .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
+              .highlighted_row = 0};
+  for (const Candidate* c : compared(result, kind))
+    table.rows.push_back({c->code.name(), fmt::format("{}", c->error.exposures),
+                          fmt::format("{:.1f}", error_mm(c->error, levels, kind)),
+                          fmt::format("{:.2f}", gain_over(result, *c, kind).value)});
+  return table;
+}
+
+KeyNumbers headline(const Camera& camera, const DesignResult& result,
+                    const std::optional<SceneResult>& scene) {
+  const DepthErrorKind kind = camera.operating.error;
+  const Candidate& winner = result.winner();
+  const std::vector<std::size_t> levels = usable_levels(winner.error);
+  KeyNumbers numbers{
+      {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
+       {fmt::format("{} depth error at {} of {} light levels", name_of(kind), levels.size(),
+                    winner.error.points.size()),
+        fmt::format("{:.1f} mm", error_mm(winner.error, levels, kind))}}};
+  if (winner.multipath)
+    numbers.entries.push_back(
+        {"depth error with multipath, all light levels",
+         fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(kind).value)});
+  for (const char* name : {"sinusoid-k4", "square-k4"})
+    if (const Candidate* other = result.find(name); other && other != &winner)
+      numbers.entries.push_back(
+          {fmt::format("smaller error than {}", name),
+           fmt::format("{:.2f} times", gain_over(result, *other, kind).value)});
+  if (scene && !scene->captures.empty() && !scene->captures.back().decodings.empty()) {
+    const SceneCapture& capture = scene->captures.back();
+    numbers.entries.push_back(
+        {fmt::format("mean error on the scene, {} light", capture.light),
+         fmt::format("{:.1f} mm", 1e3 * capture.decodings.front().error.mean_m)});
+  }
+  return numbers;
+}
+
+std::vector<DepthErrorRow> rows_of(const std::vector<const Candidate*>& codes) {
+  std::vector<DepthErrorRow> rows;
+  for (const Candidate* c : codes) rows.push_back({&c->error, c->method});
+  return rows;
+}
+
+/// A file of a design directory and its content, in the order of use.
+struct KnownFile {
+  const char* name;
+  const char* note;
+};
+constexpr KnownFile known_files[] = {
+    {"camera.toml", "the camera"},
+    {"design.json", "all numbers of this report"},
+    {"codes", "every code"},
+    {"waveforms", "waveforms of every code as CSV"},
+    {"raw.npy", "raw frames of the scene with the best code"},
+    {"depth.npy", "depth decoded from them (also .npz .exr .pfm .png)"},
+    {"points.ply", "the same as a point cloud"},
+};
+
+bool has(const std::vector<std::string>& files, const char* name) {
+  return std::ranges::find(files, name) != files.end();
+}
+
+std::string commands(const std::string& code_file, const std::vector<std::string>& files) {
+  std::string text = fmt::format(
+      "# in the directory of the design\n"
+      "tofsmith evaluate --camera camera.toml {0} sinusoid-k4\n"
+      "tofsmith export --camera camera.toml --format csv {0} -o generator\n",
+      code_file);
+  text += has(files, "raw.npy")
+              ? fmt::format("tofsmith decode --camera camera.toml --code {} raw.npy -o depth2.npy",
+                            code_file)
+              : fmt::format("tofsmith simulate --camera camera.toml --code {} table-top -o raw.npy",
+                            code_file);
+  return text;
+}
+
+}  // namespace
+
+Section design_front(const Camera& camera, const DesignResult& result,
+                     const std::optional<SceneResult>& scene,
+                     const std::vector<std::string>& files) {
+  const Candidate& winner = result.winner();
+  const std::vector<const Candidate*> codes = compared(result, camera.operating.error);
+  Section front{.title = "Result", .layout = SectionLayout::front};
+  front.blocks.push_back(headline(camera, result, scene));
+  front.blocks.push_back(comparison(camera, result));
+  if (camera.operating.signal_e_per_s.size() > 1)
+    front.blocks.push_back(error_by_signal("best-error", camera, rows_of(codes), 0));
+  if (scene)
+    if (auto picture = before_after_figure(*scene, camera, winner.code.name()))
+      front.blocks.push_back(std::move(*picture));
+  front.blocks.push_back(
+      waveform_figure({.id = "best-waveforms",
+                       .title = fmt::format("Waveforms of {}", winner.code.name()),
+                       .caption = "One row per measurement, over one period."},
+                      winner.code, camera));
+  if (files.empty()) return front;
+  KeyValueList written;
+  const std::string code_file = fmt::format("codes/{}.code.json", file_name_of(winner.code.name()));
+  written.entries.push_back({code_file, "the best code"});
+  for (const KnownFile& file : known_files)
+    if (has(files, file.name)) written.entries.push_back({file.name, file.note});
+  front.blocks.push_back(std::move(written));
+  front.blocks.push_back(CodeBlock{commands(code_file, files)});
+  return front;
+}
+
+}  // namespace tofsmith
