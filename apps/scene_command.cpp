@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -16,52 +16,39 @@
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/page.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith::apps {
 namespace {
 
-/// The depths between which all but a few pixels lie: strays of a decoded image are among the few.
-/// {0, 0} if nothing returns.
-std::pair<double, double> shown_span_m(const SceneImage& scene) {
-  constexpr double left_out = 0.005;  // at either end
-  std::vector<double> depth_m;
-  for (const double z_m : scene.depth_m.pixels)
-    if (std::isfinite(z_m)) depth_m.push_back(z_m);
-  if (depth_m.empty()) return {0.0, 0.0};
-  const auto quantile = [&](double share) {
-    const auto at = depth_m.begin() + std::lround(share * static_cast<double>(depth_m.size() - 1));
-    std::nth_element(depth_m.begin(), at, depth_m.end());
-    return *at;
-  };
-  return {quantile(left_out), quantile(1.0 - left_out)};
-}
-
-/// A picture to look at: left the depth, near bright and far dark; right what the camera's own
-/// light shows, albedo x cosine. Black where nothing returns.
-PngImage scene_preview(const SceneImage& scene) {
-  constexpr double darkest = 0.2;  // of what returns: black means no return
-  const auto [nearest_m, farthest_m] = shown_span_m(scene);
-  const double span_m = std::max(farthest_m - nearest_m, 1e-9);
-
-  PngImage png{.height = scene.height(), .width = 2 * scene.width()};
-  const auto grey = [&](double value) {
-    png.values.push_back(static_cast<std::uint16_t>(std::lround(255.0 * value)));
-  };
-  for (int row = 0; row < scene.height(); ++row) {
-    for (int column = 0; column < scene.width(); ++column) {
-      const double depth_m = scene.depth_m(row, column);
-      const double share = std::clamp((depth_m - nearest_m) / span_m, 0.0, 1.0);
-      grey(std::isfinite(depth_m) ? 1.0 - (1.0 - darkest) * share : 0.0);
-    }
-    for (int column = 0; column < scene.width(); ++column) {
-      const double light = static_cast<double>(scene.albedo(row, column)) *
-                           static_cast<double>(scene.cosine(row, column));
-      grey(std::isfinite(scene.depth_m(row, column)) ? srgb_from_linear(light) : 0.0);
-    }
-  }
-  return png;
+/// The scene as a page: radial distance and returned light.
+Page preview_page(const SceneImage& scene, const std::string& name) {
+  Image<float> light(scene.height(), scene.width());
+  for (std::size_t i = 0; i < light.size(); ++i)
+    light.pixels[i] = std::isfinite(scene.depth_m.pixels[i])
+                          ? scene.albedo.pixels[i] * scene.cosine.pixels[i]
+                          : std::numeric_limits<float>::quiet_NaN();
+  return {.title = name,
+          .subtitle = fmt::format("{} x {} pixels", scene.width(), scene.height()),
+          .sections = {{"Scene",
+                        {image_figure({.id = "depth",
+                                       .title = "Radial distance",
+                                       .caption = "Pixels without return are empty."},
+                                      {{.title = "", .pixels = scene.depth_m}},
+                                      {.label = "distance", .unit = "m", .clip_fraction = 0.005}),
+                         image_figure({.id = "light",
+                                       .title = "Returned light",
+                                       .caption = "Albedo times cosine of the angle of incidence."},
+                                      {{.title = "", .pixels = std::move(light)}},
+                                      {.label = "albedo x cosine",
+                                       .map = ColourMap::cividis,
+                                       .range = ValueRange{0.0, 1.0}})},
+                        SectionLayout::front}},
+          .footer = "tofsmith " TOFSMITH_VERSION};
 }
 
 namespace fs = std::filesystem;
@@ -84,7 +71,7 @@ void write_directory(const fs::path& directory, const LoadedScene& scene, const 
   make_output_directory(directory);
   std::vector<fs::path> outputs;
   for (const char* name :
-       {"depth.npy", "z.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.png"})
+       {"depth.npy", "z.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.html"})
     outputs.push_back(directory / name);
   const OutputPolicy policy = session.check_outputs(outputs);
   const SceneImage& image = scene.image;
@@ -96,7 +83,8 @@ void write_directory(const fs::path& directory, const LoadedScene& scene, const 
                        static_cast<std::size_t>(image.width())};
   write_npy(directory / "beyond_range.npy",
             NpyArray::of<std::uint8_t>(shape, beyond_range(image, camera).pixels), policy);
-  write_png(directory / "preview.png", scene_preview(image), policy);
+  write_file_atomically(directory / "preview.html", render(preview_page(image, scene.name)),
+                        policy);
 }
 
 void print(const LoadedScene& scene, const Camera& camera, const std::string& output,

@@ -154,7 +154,7 @@ class Commands(CommandLineTest):
         self.assertEqual(np.load(self.path("out/albedo.npy"))[15, 20], 0.25)
         self.assertTrue((np.nan_to_num(np.load(self.path("out/z.npy"))) <=
                          np.nan_to_num(depth)).all())
-        self.assertTrue(self.bytes_of("out/preview.png").startswith(b"\x89PNG"))
+        self.assertIn(b"Radial distance", self.bytes_of("out/preview.html"))
         self.assertIn("wraps", self.do("scene", "s.toml"))
         self.do("scene", "s.toml", "-o", "depth.npy")
         np.testing.assert_array_equal(np.load(self.path("depth.npy")), depth)
