@@ -94,12 +94,12 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
       numbers.entries.push_back(
           {fmt::format("smaller error than {}", name),
            fmt::format("{:.2f} times", gain_over(result, *other, kind).value)});
-  if (scene && !scene->captures.empty() && !scene->captures.back().decodings.empty()) {
-    const SceneCapture& capture = scene->captures.back();
-    numbers.entries.push_back(
-        {fmt::format("mean error on the scene, {} light", capture.light),
-         fmt::format("{:.1f} mm", 1e3 * capture.decodings.front().error.mean_m)});
-  }
+  if (!scene || scene->captures.empty()) return numbers;
+  const SceneCapture& brightest = scene->captures.back();
+  for (const SceneDecoding& decoding : brightest.decodings)
+    if (decoding.code == winner.code.name())
+      numbers.entries.push_back({fmt::format("mean error on the scene, {} light", brightest.light),
+                                 fmt::format("{:.1f} mm", 1e3 * decoding.error.mean_m)});
   return numbers;
 }
 
