@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/shared/text_numbers.hpp"
 #include "report/figure_json.hpp"
 
 #include <fmt/format.h>
@@ -70,7 +71,7 @@ Json range_json(const std::optional<ValueRange>& range) {
 
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", value));
+  return number_in(fmt::format("{:.6g}", value)).value();
 }
 
 Json numbers(std::span<const double> values) {
