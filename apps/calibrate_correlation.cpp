@@ -51,7 +51,7 @@ DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camer
   options.table.keep_end_point = arguments.keep_end_point;
   if (!arguments.axes.empty()) options.table.axes = parse_table_axes(arguments.axes);
   if (const auto order = arguments.taps.tap_order())
-    options.table.layout = {.taps = camera.sensor.taps, .order = *order};
+    options.table.layout = {.taps = camera.sensor.taps, .order = order};
   return read_delay_sweep(arguments.file(), options);
 }
 

@@ -216,9 +216,9 @@ int run(int argc, char** argv) {
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
     ::_exit(exit_failed);
   } catch (...) {
-    // An error of ours.
+    std::abort();  // a fault of the program
   }
-  std::abort();
+  std::abort();  // no exception is handled
 }
 
 int run_and_tell(int argc, char** argv) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -155,22 +156,22 @@ void write_truth(const SimulateArguments& arguments, const CapturedScene& captur
   const auto write = [&](const std::string& path, const auto& frames, const auto& depth_of) {
     if (path.empty()) return;
     if (frames.size() == 1 && captured.is_still)
-      return write_depth(path, depth_of(frames.front()), policy);
-    const Image<float>& first = depth_of(frames.front());
+      return write_depth(path, std::invoke(depth_of, frames.front()), policy);
+    const Image<float>& first = std::invoke(depth_of, frames.front());
     std::vector<float> all;
-    for (const auto& frame : frames)
-      all.insert(all.end(), depth_of(frame).pixels.begin(), depth_of(frame).pixels.end());
+    for (const auto& frame : frames) {
+      const Image<float>& depth_m = std::invoke(depth_of, frame);
+      all.insert(all.end(), depth_m.pixels.begin(), depth_m.pixels.end());
+    }
     write_npy(path,
               NpyArray::of<float>({frames.size(), static_cast<std::size_t>(first.height),
                                    static_cast<std::size_t>(first.width)},
                                   all),
               policy);
   };
-  const auto own = [](const Image<float>& depth_m) -> const Image<float>& { return depth_m; };
-  write(arguments.truth, made.truth,
-        [](const SceneImage& seen) -> const Image<float>& { return seen.depth_m; });
-  write(arguments.truth_near, made.near_m, own);
-  write(arguments.truth_far, made.far_m, own);
+  write(arguments.truth, made.truth, &SceneImage::depth_m);
+  write(arguments.truth_near, made.near_m, std::identity());
+  write(arguments.truth_far, made.far_m, std::identity());
   if (!arguments.returns.truth().empty())
     write_multipath_truth(arguments.returns.truth(),
                           multipath_truth(made.truth.front(), captured.light, arguments.options),

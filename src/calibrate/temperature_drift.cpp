@@ -53,8 +53,10 @@ double weighted_median(std::vector<Weighted> items) {
   double all = 0.0;
   for (const Weighted& item : items) all += item.weight;
   double sum = 0.0;
-  for (const Weighted& item : items)
-    if ((sum += item.weight) >= 0.5 * all) return item.value;
+  for (const Weighted& item : items) {
+    sum += item.weight;
+    if (sum >= 0.5 * all) return item.value;
+  }
   return items.back().value;
 }
 

@@ -17,7 +17,7 @@ ThinSvd thin_svd(const Eigen::MatrixXd& matrix) {
     svd->compute(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
   } catch (const std::bad_alloc&) {
     // It builds a part of itself anew in place, and would free it twice: better lost than that.
-    (void)svd.release();
+    static_cast<void>(svd.release());
     throw;
   }
   return {svd->matrixU(), svd->singularValues(), svd->matrixV()};

@@ -142,8 +142,9 @@ Followed follow(const Formula& formula, const Vector2d& image, double first_step
     if (const auto place = next_place(formula, way.place, next * image)) {
       way = {*place, next};
       step = std::min(2.0 * step, first_step);
-    } else if ((step *= 0.5) < shortest_step) {
-      break;
+    } else {
+      step *= 0.5;
+      if (step < shortest_step) break;
     }
   }
   return way;

@@ -141,7 +141,8 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   parallel_for_blocks(std::ssize(names), 1, [&](IndexRange block) {
     for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
          ++i) {
-      if ((reasons[i] = why_no_family(names[i], camera))) continue;
+      reasons[i] = why_no_family(names[i], camera);
+      if (reasons[i]) continue;
       codes[i] = build_family(names[i], camera);
       reasons[i] = why_not_comparable(*codes[i], camera);
     }

@@ -75,9 +75,10 @@ std::optional<Device> Device::first_gpu() {
   try {
     for (const Device& device : all())
       if (device.info().kind == DeviceKind::gpu) return device;
-  } catch (const IoError&) {  // no OpenCL, or drivers that fail: as good as none
+    return std::nullopt;
+  } catch (const IoError&) {
+    return std::nullopt;  // no OpenCL, or drivers that fail
   }
-  return std::nullopt;
 }
 
 }  // namespace tofsmith

@@ -242,7 +242,7 @@ DeviceKernel DeviceQueue::kernel(std::string_view source, const std::string& opt
 
 void DeviceQueue::set(const DeviceKernel& kernel, unsigned at, const DeviceMemory* memory) const {
   const cl_mem object = memory ? memory_of(*memory) : nullptr;
-  set_bytes(kernel, at, &object, sizeof(cl_mem));
+  set_bytes(kernel, at, static_cast<const void*>(&object), sizeof(cl_mem));
 }
 
 void DeviceQueue::set_bytes(const DeviceKernel& kernel, unsigned at, const void* value,

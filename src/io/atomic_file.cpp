@@ -61,7 +61,7 @@ std::optional<ProcessIdentity> owner_of(std::string_view name, const std::string
   name.remove_prefix(prefix.size());
   ProcessIdentity owner{.machine = machine};
   const char* const end = name.data() + name.size();
-  const auto [after, error] = std::from_chars(name.data(), end, owner.number);
+  const auto [after, error] = std::from_chars(name.data(), name.data() + name.size(), owner.number);
   if (error != std::errc() || owner.number <= 0 || after == end || *after != '-')
     return std::nullopt;
   name.remove_prefix(static_cast<std::size_t>(after + 1 - name.data()));

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-const Sensor& validated(const Sensor& sensor) {
+Sensor validated(const Sensor& sensor) {
   // The camera's checks are the sensor's; every other setting of a default camera is valid.
   Camera camera;
   camera.sensor = sensor;

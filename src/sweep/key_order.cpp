@@ -10,7 +10,8 @@ namespace tofsmith {
 
 std::uint64_t key_number(std::string_view key) {
   std::uint64_t number = 0;
-  std::from_chars(key.data(), key.data() + std::min<std::size_t>(key.size(), 16), number, 16);
+  const std::string_view digits = key.substr(0, 16);
+  std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
   return number;
 }
 

@@ -48,7 +48,8 @@ class Reader {
     text = trimmed(text);
     std::uint64_t value = 0;
     const char* const end = text.data() + text.size();
-    const auto [stopped, error] = std::from_chars(text.data(), end, value, radix);
+    const auto [stopped, error] =
+        std::from_chars(text.data(), text.data() + text.size(), value, radix);
     if (error != std::errc() || stopped != end)
       fail(fmt::format("found '{}'; expected a number of base {} and at most 64 bits",
                        text.substr(0, 60), radix));
