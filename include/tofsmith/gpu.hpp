@@ -79,13 +79,13 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
   return std::tuple(Field("memory_mb", o.memory_mb, above(0)), Field("use_doubles", o.use_doubles));
 }
 
-/// Smallest frames [pixels] that the device `auto` processes, decoded only and with a spatial
-/// filter: guesses on the high side, not measured on any GPU.
-inline constexpr std::int64_t auto_min_pixels_to_decode = 300'000,
-                              auto_min_pixels_to_filter = 75'000;
+/// Smallest frames with a spatial filter [pixels] that `auto` leaves to a GPU. Frames without one
+/// are decoded faster by the CPU than they are copied.
+inline constexpr std::int64_t auto_min_pixels_to_filter = 75'000;
 
-/// Returns the backend for a device that a user names: "cpu"; "auto", the first GPU, but the CPU
-/// for small frames, for methods other than zncc, and where there is no GPU; else Device::named().
+/// Returns the backend for a device that a user names: "cpu"; "auto", the first GPU for frames with
+/// a spatial filter, but the CPU for small frames, for methods other than zncc, and where there is
+/// no GPU; else Device::named().
 /// Averaged, filtered and decoded numbers are those of the CPU: the same bits where the device
 /// rounds quotients and roots correctly and has doubles.
 ///

@@ -62,7 +62,7 @@ class Decoder:
         Of unwrap.
     device : str, optional
         OpenCL device that averages, filters and decodes: "cpu" (none); "gpu", the first one;
-        "auto", the first GPU, but the CPU for small frames and other methods; or a number or part
+        "auto", the first GPU for frames with a spatial filter, else the CPU; or a number or part
         of a name. Only zncc runs on devices. See docs/gpu.md.
     multipath : dict, optional
         Of two-return and tail: threshold, shortest_delay_m, longest_delay_m, tail_m, and prior, a

@@ -108,19 +108,19 @@ class DevicePipeline final : public FramePipeline {
 class DeviceBackend final : public FrameBackend {
  public:
   DeviceBackend(const Device& device, std::unique_ptr<const DepthDecoder> decoder,
-                const DeviceOptions& options, bool leaves_small_frames)
+                const DeviceOptions& options, bool is_automatic)
       : cpu_(cpu_backend(std::move(decoder))),
         options_(options),
-        leaves_small_frames_(leaves_small_frames),
+        is_automatic_(is_automatic),
         on_device_(device, *cpu_->decoder().correlation_decoder(), options) {}
 
   const DepthDecoder& decoder() const override { return cpu_->decoder(); }
   std::string device() const override { return on_device_.device().info().name; }
   std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
                                          int width) const override {
-    const std::int64_t least = steps.filter ? auto_min_pixels_to_filter : auto_min_pixels_to_decode;
-    if (leaves_small_frames_ && std::int64_t{height} * width < least)
-      return cpu_->prepare(steps, height, width);
+    const bool is_slow_to_process =
+        steps.filter && std::int64_t{height} * width >= auto_min_pixels_to_filter;
+    if (is_automatic_ && !is_slow_to_process) return cpu_->prepare(steps, height, width);
     return std::make_unique<DevicePipeline>(on_device_, options_, decoder().table(), steps, height,
                                             width);
   }
@@ -128,7 +128,7 @@ class DeviceBackend final : public FrameBackend {
  private:
   std::unique_ptr<FrameBackend> cpu_;
   DeviceOptions options_;
-  bool leaves_small_frames_;
+  bool is_automatic_;
   DeviceDecoder on_device_;
 };
 
@@ -136,9 +136,8 @@ class DeviceBackend final : public FrameBackend {
 
 std::unique_ptr<FrameBackend> device_backend(const Device& device,
                                              std::unique_ptr<const DepthDecoder> decoder,
-                                             const DeviceOptions& options,
-                                             bool leaves_small_frames) {
-  return std::make_unique<DeviceBackend>(device, std::move(decoder), options, leaves_small_frames);
+                                             const DeviceOptions& options, bool is_automatic) {
+  return std::make_unique<DeviceBackend>(device, std::move(decoder), options, is_automatic);
 }
 
 std::unique_ptr<FrameBackend> frame_backend(std::string_view device,

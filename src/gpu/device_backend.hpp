@@ -9,11 +9,10 @@
 namespace tofsmith {
 
 /// Returns the backend of a device. @param decoder  of DecodeMethod::zncc
-/// @param leaves_small_frames  frames below auto_min_pixels_to_decode, or auto_min_pixels_to_filter
-///                             with a spatial filter, are processed by the CPU
+/// @param is_automatic  frames without a spatial filter, or below auto_min_pixels_to_filter, are
+///                      processed by the CPU
 std::unique_ptr<FrameBackend> device_backend(const Device& device,
                                              std::unique_ptr<const DepthDecoder> decoder,
-                                             const DeviceOptions& options,
-                                             bool leaves_small_frames);
+                                             const DeviceOptions& options, bool is_automatic);
 
 }  // namespace tofsmith

@@ -299,7 +299,8 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     is_inconsistent =
         find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient,
                       residual_share, residuals ? &residual : 0);
-    if (residuals) residuals[pixel] = has_depth ? residual : NO_VALUE;
+    // Devices have other bits of NaN than processors, where no freedom is left.
+    if (residuals) residuals[pixel] = has_depth && !isnan(residual) ? residual : NO_VALUE;
   }
   if (status) {
     const float noise = variance_of(signal, noisy_ambient, record + RECORD_SIGNAL_NOISE) * share;
