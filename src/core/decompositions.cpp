@@ -16,8 +16,8 @@ ThinSvd thin_svd(const Eigen::MatrixXd& matrix) {
   try {
     svd->compute(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
   } catch (const std::bad_alloc&) {
-    // It builds a part of itself anew in place, and would free it twice: better lost than that.
-    static_cast<void>(svd.release());
+    // It rebuilds a part of itself in place and would free it twice, so its memory is given up.
+    [[maybe_unused]] const auto* const leaked = svd.release();
     throw;
   }
   return {svd->matrixU(), svd->singularValues(), svd->matrixV()};

@@ -25,7 +25,7 @@ def raw_frames():
     return np.random.default_rng(1).poisson(3000, (2, 30, 40, 4)).astype(np.uint16)
 
 
-def test_a_device_gives_the_planes_of_the_processor(decoders, tmp_path):
+def test_a_device_gives_the_planes_of_the_processor(decoders):
     here, there = decoders
     assert here.device == "cpu" and there.device != "cpu"
     raw = raw_frames()
@@ -34,62 +34,27 @@ def test_a_device_gives_the_planes_of_the_processor(decoders, tmp_path):
     np.testing.assert_allclose(found.depth_m, expected.depth_m, rtol=2e-6)
     np.testing.assert_array_equal(there.decode(raw, planes=["bin"]).bin,
                                   here.decode(raw, planes=["bin"]).bin)
+
+
+def test_steps_of_recordings_and_streams_reach_a_device(decoders, tmp_path):
+    """Other combinations: tests/gpu/device_pipeline_test.cpp."""
+    raw = np.concatenate([raw_frames(), raw_frames()]).astype("<u2")
     np.save(tmp_path / "raw.npy", raw)
-    for name, decoder in ("here", here), ("there", there):
-        decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}.npy", stack=True)
-    np.testing.assert_allclose(np.load(tmp_path / "there.npy"), np.load(tmp_path / "here.npy"),
-                               rtol=2e-6)
-
-
-def assert_same_planes(found, expected):
-    np.testing.assert_array_equal(found.status, expected.status)
-    for name in ("depth_m", "signal_e_per_s", "confidence", "predicted_standard_deviation_m"):
-        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-5)
-
-
-def test_a_device_filters_as_the_processor(decoders, tmp_path):
-    here, there = decoders
-    raw = raw_frames()
-    for filter in ("light", "strong", ts.Filter("hamiltonian-k4", "paper-10f0")):
-        for mixed in (None, "label"):
-            assert_same_planes(there.decode(raw, filter=filter, mixed=mixed),
-                               here.decode(raw, filter=filter, mixed=mixed))
-    np.save(tmp_path / "raw.npy", raw)
-    for name, decoder in ("here", here), ("there", there):
+    (tmp_path / "s.raw.toml").write_text("width = 40\nheight = 30\nmeasurements = 4\nbits = 16\n"
+                                         'layout = "interleaved"\n')
+    steps = {"average": 2, "time_filter": {"max_frames": 8}, "filter": "light", "mixed": "label"}
+    streamed = [[], []]
+    for name, decoder, frames in zip(("here", "there"), decoders, streamed):
         decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}.npy", stack=True,
-                                 filter="normal", mixed="snap", outputs=["depth", "averaged"])
+                                 outputs=["depth", "averaged"], **steps)
+        decoder.decode_stream(io.BytesIO(raw.tobytes()), frames.append, outputs=["depth"],
+                              raw_format=tmp_path / "s.raw.toml", **steps)
     for plane in ("", "-averaged"):
         np.testing.assert_allclose(np.load(tmp_path / f"there{plane}.npy"),
                                    np.load(tmp_path / f"here{plane}.npy"), rtol=1e-5)
-
-
-def test_a_device_adds_frames_up_as_the_processor(decoders, tmp_path):
-    np.save(tmp_path / "raw.npy", np.concatenate([raw_frames(), raw_frames()]))
-    cases = [{"time_filter": 8}, {"time_filter": 8, "filter": "light"}, {"average": 2},
-             {"average": 2, "time_filter": 8, "mixed": "label"},
-             {"time_filter": {"max_frames": 8, "look_ahead": 2}, "filter": "light"}]
-    for number, case in enumerate(cases):
-        for name, decoder in zip(("here", "there"), decoders):
-            decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}{number}.npy",
-                                     stack=True, outputs=["depth", "averaged"], **case)
-        for plane in ("", "-averaged"):
-            np.testing.assert_allclose(np.load(tmp_path / f"there{number}{plane}.npy"),
-                                       np.load(tmp_path / f"here{number}{plane}.npy"), rtol=1e-5)
-
-
-def test_a_device_adds_frames_of_streams_up(decoders, tmp_path):
-    raw = np.concatenate([raw_frames(), raw_frames()]).astype("<u2")
-    (tmp_path / "s.raw.toml").write_text("width = 40\nheight = 30\nmeasurements = 4\nbits = 16\n"
-                                         'layout = "interleaved"\n')
-    for case in {"average": 1}, {"average": 2}, {"filter": "light"}:
-        taken = [[], []]
-        for decoder, frames in zip(decoders, taken):
-            decoder.decode_stream(io.BytesIO(raw.tobytes()), frames.append, outputs=["depth"],
-                                  raw_format=tmp_path / "s.raw.toml",
-                                  time_filter={"max_frames": 8}, **case)
-        assert len(taken[0]) == len(taken[1]) == 4 // case.get("average", 1)
-        for expected, found in zip(*taken):
-            np.testing.assert_allclose(found["depth"], expected["depth"], rtol=1e-5)
+    assert len(streamed[0]) == len(streamed[1]) == 2
+    for expected, found in zip(*streamed):
+        np.testing.assert_allclose(found["depth"], expected["depth"], rtol=1e-5)
 
 
 def test_a_filter_has_a_device_of_its_own(decoders):
@@ -100,7 +65,8 @@ def test_a_filter_has_a_device_of_its_own(decoders):
     for found, expected in zip(there.apply(raw, averaged=2.0), here.apply(raw, averaged=2.0)):
         np.testing.assert_allclose(found, expected, rtol=1e-5)
     for decoder in decoders:
-        assert_same_planes(decoder.decode(raw, filter=there), decoders[0].decode(raw, filter=here))
+        np.testing.assert_allclose(decoder.decode(raw, filter=there).depth_m,
+                                   decoders[0].decode(raw, filter=here).depth_m, rtol=1e-5)
     with pytest.raises(OSError, match="expected one of 0 "):
         ts.Filter("hamiltonian-k4", "paper-10f0", device="7000")
 
