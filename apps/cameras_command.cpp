@@ -130,7 +130,7 @@ void add_cameras_command(CLI::App& app, Session& session) {
   command->add_flag("--raw-format", *raw_format,
                     "print how its raw frames run instead, as `decode --raw-format` takes it");
   command->add_flag("--keys", *keys, "list all keys of a camera file with unit, range and default")
-      ->excludes(command->get_option("NAME"));
+      ->excludes("NAME", "--set", "--raw-format");
   command->callback([name, settings, raw_format, keys, &session] {
     if (*keys) return list_keys(session);
     if (!settings->empty() && (*raw_format || name->empty()))
