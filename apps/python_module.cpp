@@ -62,9 +62,9 @@ void add_package_to_path() {
 void use_as_standard_input(const std::string& input) {
   std::FILE* const file = std::tmpfile();
   if (file == nullptr) fail("temporary file", "cannot be created");
-  if (std::fwrite(input.data(), 1, input.size(), file) != input.size() || std::fflush(file) != 0)
+  if (std::fwrite(input.data(), 1, input.size(), file) != input.size() ||
+      std::fseek(file, 0, SEEK_SET) != 0)
     fail("temporary file", "cannot be written");
-  std::rewind(file);
   if (::dup2(::fileno(file), STDIN_FILENO) < 0) fail("standard input", "cannot be replaced");
 }
 
