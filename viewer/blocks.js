@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a page that are no figures: text, settings, tables, commands, links.
+// The parts of a page that are no figures: text, settings, tables, commands.
 
 import {copyText, element, saveText} from './dom.js';
 import {csvOf} from './export.js';
@@ -64,39 +64,12 @@ function codeOf({text}) {
       'div', {class: 'code'}, element('pre', {}, element('code', {}, text)), copy);
 }
 
-const verdictClasses = {
-  holds: 'holds',
-  'holds in part': 'in-part',
-  'does not hold': 'fails'
-};
-
-const statementsOf = ({entries}) => element(
-    'ul', {class: 'statements'},
-    ...entries.map(
-        ({verdict, statement, measured, why}) => element(
-            'li', {class: verdictClasses[verdict]}, element('p', {class: 'verdict'}, verdict),
-            element(
-                'div', {}, element('p', {class: 'statement'}, ...inline(statement)),
-                element('p', {}, ...inline(measured)),
-                why ? element('p', {class: 'why'}, ...inline(why)) : null))));
-
-// A path as a URL: characters that end a path or begin a scheme are escaped.
-const urlOf = (path) => path.split('/').map(encodeURIComponent).join('/');
-
-const linksOf = ({entries}) => element(
-    'ul', {class: 'links'},
-    ...entries.map(
-        ({text, path, note}) =>
-            element('li', {}, element('a', {href: urlOf(path)}, text), ' ', ...inline(note))));
-
 const makers = {
   text: ({text}) => element('p', {}, ...inline(text)),
   settings: pairs('settings'),
   numbers: pairs('numbers'),
   table: tableOf,
-  code: codeOf,
-  statements: statementsOf,
-  links: linksOf
+  code: codeOf
 };
 
 /** The element of a block that is no figure. */

@@ -41,7 +41,13 @@ function axisSpec(axis, values) {
     range = paddedRange(axis.from_zero ? [Math.min(0, low), Math.max(0, high)] : [low, high], axis.log);
     if (axis.from_zero && low >= 0) range[0] = 0;
   }
-  return {title: titleOf(axis), range, log: axis.log, unit: axis.unit};
+  return {
+    title: titleOf(axis),
+    range,
+    log: axis.log,
+    unit: axis.unit,
+    isWhole: values.every((list) => list.every(Number.isInteger))
+  };
 }
 
 /** Places of a series: a list, or {count, from, to} at equal distances. */
@@ -145,7 +151,8 @@ function drawBars({alt, categories, series, axis, colours}, body) {
 const cellText = (value) => (Math.abs(value) >= 1e4 ? value.toExponential(1) : shortText(value, 3));
 
 function panelGrid(columns, count) {
-  return element('div', {class: 'panels titled', style: `--columns:${Math.min(columns, count)}`});
+  const most = count === 4 && columns === 3 ? 2 : Math.min(columns, count);  // no row of one panel
+  return element('div', {class: 'panels titled', style: `--columns:${most}`});
 }
 
 function drawMap({alt, columns, show_values, x, y, colours, panels}, body) {
@@ -274,7 +281,7 @@ function sliderOf({before_name: left, after_name: right}, pictures) {
 
 const middle = ([low, high]) => (low + high) / 2;
 
-/** Points of all panels around one centre: {points: arrays of (N, 3), ranges, radius}. */
+/** Points of all panels around one centre: {points: arrays of (N, 3), ranges}. */
 function centred(places) {
   const ranges = [0, 1, 2].map((axis) => rangeOf(places.map((one) => one[axis])));
   const centre = ranges.map(middle);
@@ -283,8 +290,7 @@ function centred(places) {
     x.forEach((_, i) => all.set([x[i] - centre[0], y[i] - centre[1], z[i] - centre[2]], 3 * i));
     return all;
   });
-  const radius = 0.5 * Math.hypot(...ranges.map(([low, high]) => high - low)) || 1;
-  return {points, ranges: ranges.map(([low, high], i) => [low - centre[i], high - centre[i]]), radius};
+  return {points, ranges: ranges.map(([low, high], i) => [low - centre[i], high - centre[i]])};
 }
 
 const placesOf = (panels) => Promise.all(
@@ -311,11 +317,11 @@ const rowsOf = (panels, places, values, header) => () => [
 async function drawCurves(block, body) {
   const {panels, axes} = block, places = await placesOf(panels);
   const values = await Promise.all(panels.map((panel) => unpacked(panel.values)));
-  const {points, ranges, radius} = centred(places);
+  const {points, ranges} = centred(places);
   drawSpaces(block, body, values, {
     view: new SpaceView(),
     points,
-    radius,
+    radius: Math.hypot(...ranges.map(([, high]) => high)) || 1,
     isCurve: true,
     axes: axes.map((axis, i) => ({
                      title: titleOf(axis),
@@ -331,13 +337,13 @@ async function drawClouds(block, body) {
   const {panels} = block, places = await placesOf(panels);
   const values = await Promise.all(panels.map((panel) => unpacked(panel.values)));
   const turned = places.map(([x, y, z]) => [x, z, y.map((value) => -value)]);
-  const {points, ranges, radius} = centred(turned);
+  const {points, ranges} = centred(turned);
   const lengths = ranges.map(([low, high]) => shortText(high - low, 3));
   const corner = [ranges[0][0], ranges[1][0], ranges[2][0]];
   drawSpaces(block, body, values, {
-    view: new SpaceView({yaw: 0.35, pitch: 0.35, zoom: 1.25}),
+    view: new SpaceView({yaw: 0.35, pitch: 0.35}),
     points,
-    radius,
+    box: ranges.map(([, high]) => Math.max(high, 1e-6)),
     isCurve: false,
     height: 380,
     pointSize: block.point_size_px,

@@ -8,7 +8,9 @@ import {linearTicks, logarithmicTicks, shortText} from './numbers.js';
 let clips = 0;  // number of clip paths: part of their ids
 
 /** One axis: from values to pixels, and its ticks. */
-export function axisOf({range: [low, high], log = false, ticks = null}, [from, to], count) {
+export function axisOf(
+    {range: [low, high], log = false, ticks = null, isWhole = false}, [from, to], count) {
+  const most = isWhole ? Math.min(count, high - low) : count;
   const place =
       log ? (v) => Math.log10(v / low) / Math.log10(high / low) : (v) => (v - low) / (high - low);
   const back = log ? (p) => low * (high / low) ** p : (p) => low + p * (high - low);
@@ -18,7 +20,7 @@ export function axisOf({range: [low, high], log = false, ticks = null}, [from, t
     log,
     at: (value) => from + place(value) * (to - from),
     value: (pixel) => back((pixel - from) / (to - from)),
-    ticks: ticks ?? (log ? logarithmicTicks(low, high) : linearTicks(low, high, count)),
+    ticks: ticks ?? (log ? logarithmicTicks(low, high) : linearTicks(low, high, most)),
   };
 }
 
@@ -154,13 +156,13 @@ function bandOf({x: places, band: [low, high]}, x, y) {
   return `M${there.concat(back).join('L')}Z`;
 }
 
-function sampleOf({colour, dash, mark}) {
+function sampleOf({colour, dash, mark, width = 1.8}) {
   const line = drawn('line', {
     x1: 0,
     x2: 24,
     y1: 5,
     y2: 5,
-    'stroke-width': 2.5,
+    'stroke-width': 1.4 * width,
     'stroke-dasharray': dash || null,
     style: `stroke:${colour}`
   });

@@ -36,11 +36,15 @@ export class SpaceView {
     for (const space of this.spaces) drawSoon(space, () => space.draw());
   }
 
-  /** A function from a point to its place in a picture and its distance. */
-  projection(width, height, radius) {
+  /**
+   * A function from a point to its place in a picture and its distance. Points are in a sphere of
+   * this radius or, if given, in a box of these half lengths, which fits in its first direction.
+   */
+  projection(width, height, {radius, box}) {
     const [sy, cy, sp, cp] =
         [Math.sin(this.yaw), Math.cos(this.yaw), Math.sin(this.pitch), Math.cos(this.pitch)];
-    const scale = 0.46 * Math.min(width, 1.3 * height) / radius * this.zoom;
+    const [wide, high] = box ? shadowOf(box, this.start) : [radius, radius / 1.3];
+    const scale = 0.46 * Math.min(width / wide, height / high) * this.zoom;
     return (x, y, z) => {
       const across = cy * x - sy * y, away = sy * x + cy * y;
       return [
@@ -48,6 +52,13 @@ export class SpaceView {
       ];
     };
   }
+}
+
+/** Half width and half height of a box seen in a direction. */
+function shadowOf([x, y, z], {yaw, pitch}) {
+  const sy = Math.abs(Math.sin(yaw)), cy = Math.abs(Math.cos(yaw));
+  const away = sy * x + cy * y;
+  return [cy * x + sy * y, Math.cos(pitch) * z + Math.abs(Math.sin(pitch)) * away];
 }
 
 function redrawAll() {
@@ -59,7 +70,7 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll)
 
 /**
  * One drawing. What it shows: {label, view, points: (N, 3) as one array around the origin, colour(i):
- * CSS colour of a point, isCurve: closed curve or points, pointSize, radius of all, axes: [{title,
+ * CSS colour of a point, isCurve: closed curve or points, pointSize, radius or box of all (see projection), axes: [{title,
  * from, to}], height}.
  */
 export class Space {
@@ -136,7 +147,7 @@ export class Space {
     const context = this.canvas.getContext('2d');
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
-    const project = spec.view.projection(width, height, spec.radius);
+    const project = spec.view.projection(width, height, spec);
     drawAxes(context, project, spec.axes, width);
     (spec.isCurve ? drawCurve : drawPoints)(context, project, spec);
   }

@@ -35,13 +35,12 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
     text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
                         baseline->code.name());
   }
-  if (winner.is_designed())
-    return text + (baseline ? ", the best of the codes here that nobody designed." : ".");
+  if (winner.is_designed()) return text + (baseline ? ", the best standard code." : ".");
   const bool any_designed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                         [](const Candidate& c) { return c.is_designed(); });
   return text + fmt::format(": a {}, {}.",
                             winner.method == "atlas" ? "code of the atlas" : "standard code",
-                            any_designed ? "which nothing that was designed here improves on"
+                            any_designed ? "which no designed code improves on"
                                          : "and nothing was designed");
 }
 
@@ -106,9 +105,8 @@ std::string what_limits_it(const DesignResult& result) {
   };
   if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*min));
   return fmt::format(
-      "Where it errs least (S = {:.3g}, A = {:.3g} e/s) its circular error is {}; where it errs "
-      "most "
-      "(S = {:.3g}, A = {:.3g} e/s) and {:.0f} % of depths are outliers, {}.",
+      "Its circular error is smallest at S = {:.3g}, A = {:.3g} e/s: {}. It is largest at "
+      "S = {:.3g}, A = {:.3g} e/s, where {:.0f} % of the depths are outliers: {}.",
       min->point.signal_e_per_s, min->point.ambient_e_per_s, describe(*min),
       max->point.signal_e_per_s, max->point.ambient_e_per_s, 100 * max->outlier_rate.value,
       describe(*max));

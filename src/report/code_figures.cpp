@@ -168,14 +168,14 @@ Section camera_section(const Camera& camera) {
     density.x.push_back(camera.range_m() * i / parts);
     density.y.push_back(parts * masses[i]);
   }
-  section.blocks.push_back(line_figure(
-      {.id = "true-depths",
-       .title = "How often depths occur",
-       .caption =
-           "1 is as often as if all depths were alike. Errors and Cramer-Rao bounds are means over "
-           "these; the decoder looks for all depths alike."},
-      {std::move(density)}, {.label = "depth", .unit = "m"},
-      {.label = "density of true depths", .from_zero = true}));
+  section.blocks.push_back(
+      line_figure({.id = "true-depths",
+                   .title = "How often depths occur",
+                   .caption = "1: as frequent as in a uniform distribution. Errors and Cramer-Rao "
+                              "bounds are means over "
+                              "this distribution; the decoder searches all depths alike."},
+                  {std::move(density)}, {.label = "depth", .unit = "m"},
+                  {.label = "density of true depths", .from_zero = true}));
   return section;
 }
 
@@ -193,7 +193,6 @@ Page code_page(const CodeSet& code, const Camera& camera, const std::string& com
   Page page{.title = code.name(),
             .subtitle = fmt::format("{} measurements on {}", code.measurements(), camera.name),
             .footer = "tofsmith " TOFSMITH_VERSION};
-  page.sections.push_back(camera_section(camera));
   page.sections.push_back(
       {"Waveforms",
        {waveform_figure({.id = "waveforms",
@@ -205,6 +204,7 @@ Page code_page(const CodeSet& code, const Camera& camera, const std::string& com
                              .caption = "The path that the correlation values draw as depth runs "
                                         "through the range."},
                             {code}, camera)}});
+  page.sections.push_back(camera_section(camera));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }

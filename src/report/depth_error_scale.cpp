@@ -24,11 +24,6 @@ Figure operating_maps(FigureText text, const OperatingRange& range,
   return heat_map_figure(std::move(text), maps, x, y, colours);
 }
 
-Image<float> scaled(Image<float> image, double factor) {
-  for (float& value : image.pixels) value = static_cast<float>(value * factor);
-  return image;
-}
-
 ColourScale depth_error_scale(double limit_mm) {
   return {.label = "decoded minus true",
           .unit = "mm",

@@ -4,7 +4,6 @@
 
 #include <functional>
 
-#include "tofsmith/core/image.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
@@ -17,9 +16,6 @@ HeatMap operating_map(const OperatingRange& range, const DepthErrorReport& error
 /// Maps of several codes over the operating points.
 Figure operating_maps(FigureText text, const OperatingRange& range,
                       const std::vector<HeatMap>& maps, const ColourScale& colours);
-
-/// Every value times `factor`, e.g. metres to millimetres.
-Image<float> scaled(Image<float> image, double factor);
 
 /// Colours of decoded minus true depth: white is right, both ends are off by the limit.
 ColourScale depth_error_scale(double limit_mm);

@@ -82,12 +82,12 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
   const std::vector<std::size_t> levels = usable_levels(winner.error);
   KeyNumbers numbers{
       {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
-       {fmt::format("{} depth error at {} of {} light levels", name_of(kind), levels.size(),
+       {fmt::format("{} depth error, {} of {} levels", name_of(kind), levels.size(),
                     winner.error.points.size()),
         fmt::format("{:.1f} mm", error_mm(winner.error, levels, kind))}}};
   if (winner.multipath)
     numbers.entries.push_back(
-        {"depth error with multipath, all light levels",
+        {"depth error with multipath, all levels",
          fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(kind).value)});
   for (const char* name : {"sinusoid-k4", "square-k4"})
     if (const Candidate* other = result.find(name); other && other != &winner)
@@ -98,7 +98,7 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
   const SceneCapture& brightest = scene->captures.back();
   for (const SceneDecoding& decoding : brightest.decodings)
     if (decoding.code == winner.code.name())
-      numbers.entries.push_back({fmt::format("mean error on the scene, {} light", brightest.light),
+      numbers.entries.push_back({fmt::format("mean scene error, {} light", brightest.light),
                                  fmt::format("{:.1f} mm", 1e3 * decoding.error.mean_m)});
   return numbers;
 }
@@ -144,6 +144,14 @@ std::string commands(const std::string& code_file, const std::vector<std::string
 
 }  // namespace
 
+Eigen::MatrixXd rotated_target(const Candidate& candidate) {
+  const Eigen::MatrixXd& target = candidate.target;
+  Eigen::MatrixXd rotated(target.rows(), target.cols());
+  for (Eigen::Index n = 0; n < target.rows(); ++n)
+    rotated.row(n) = target.row((n + candidate.rotation_bin) % target.rows());
+  return rotated;
+}
+
 Section design_front(const Camera& camera, const DesignResult& result,
                      const std::optional<SceneResult>& scene,
                      const std::vector<std::string>& files) {
@@ -153,7 +161,7 @@ Section design_front(const Camera& camera, const DesignResult& result,
   front.blocks.push_back(headline(camera, result, scene));
   front.blocks.push_back(comparison(camera, result));
   if (camera.operating.signal_e_per_s.size() > 1)
-    front.blocks.push_back(error_by_signal("best-error", camera, rows_of(codes), 0));
+    front.blocks.push_back(error_by_signal("best-error", camera, rows_of(codes)));
   if (scene)
     if (auto picture = before_after_figure(*scene, camera, winner.code.name()))
       front.blocks.push_back(std::move(*picture));
@@ -161,7 +169,7 @@ Section design_front(const Camera& camera, const DesignResult& result,
       waveform_figure({.id = "best-waveforms",
                        .title = fmt::format("Waveforms of {}", winner.code.name()),
                        .caption = "One row per measurement, over one period."},
-                      winner.code, camera));
+                      winner.code, camera, rotated_target(winner)));
   if (files.empty()) return front;
   KeyValueList written;
   const std::string code_file = fmt::format("codes/{}.code.json", file_name_of(winner.code.name()));

@@ -19,4 +19,8 @@ Section design_front(const Camera& camera, const DesignResult& result,
                      const std::optional<SceneResult>& scene,
                      const std::vector<std::string>& files);
 
+/// The correlation functions (N, K) for which a candidate was designed, rotated to its origin of
+/// depth; empty if it has no target.
+Eigen::MatrixXd rotated_target(const Candidate& candidate);
+
 }  // namespace tofsmith

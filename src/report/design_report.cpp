@@ -55,8 +55,8 @@ Table operating_multipath_table(const OperatingMultipath& returns, const std::ve
       .caption = fmt::format(
           "Geometric means over the operating points of the {} error of single returns (E1) and "
           "behind a second return of ratio {} to {}, {} to {} m late, decoded as single-path (E2); "
-          "the same decoded as two returns (circular). Codes are chosen by E1^{:.3g} E2^{:.3g}; "
-          "where decoding as two returns errs much more than of standard codes, that counts too.",
+          "the same decoded as two returns (circular). Codes are chosen by E1^{:.3g} E2^{:.3g}, "
+          "and by the error as two returns where it is much larger than that of standard codes.",
           kind, returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},
@@ -82,149 +82,12 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
           {operating_multipath_table(returns, codes, result.winner(), name_of(kind))}};
 }
 
-/// Residuals against iterations of every measurement that was designed.
-void add_convergence(const DesignResult& result, Section& section) {
-  for (const Candidate& c : result.candidates) {
-    ColourAssignment colours;
-    std::vector<Series> series;
-    for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
-      Series relaxed{.name = fmt::format("measurement {}", k + 1),
-                     .mark = Mark::line_and_markers,
-                     .style = colours.style(fmt::format("{}", k))};
-      for (std::size_t i = 0; i < c.per_measurement[k].history.size(); ++i) {
-        relaxed.x.push_back(static_cast<double>(i + 1));
-        relaxed.y.push_back(std::max(1e-6, c.per_measurement[k].history[i].playable_residual_rms));
-      }
-      if (!relaxed.x.empty()) series.push_back(std::move(relaxed));
-    }
-    if (series.empty()) continue;
-    section.blocks.push_back(line_figure(
-        {.id = figure_id("convergence", c.code.name()),
-         .title = fmt::format("Convergence of {}", c.code.name()),
-         .caption = "Residual of the binary projection after each pair of convex steps, for the "
-                    "random start that came closest; values below 1e-6 are drawn "
-                    "at 1e-6."},
-        series, {.label = "iteration"}, {.label = "residual, rms", .logarithmic = true}));
-  }
-}
-
-constexpr std::size_t fewest_steps = 4;
-
-/// The smallest error so far of every search, and what it counted.
-void add_search_progress(const DesignResult& result, Section& section) {
-  ColourAssignment colours;
-  for (const Candidate& c : result.candidates) {
-    if (!c.search) continue;
-    section.blocks.push_back(
-        KeyValueList{{{c.code.name(), fmt::format("{}. {}", c.message, c.search->account)}}});
-    Series steps{.name = c.code.name(),
-                 .mark = Mark::line_and_markers,
-                 .style = colours.style(c.code.name())};
-    for (const SearchStep& step : c.search->steps) {
-      steps.x.push_back(step.work);
-      steps.y.push_back(1e3 * step.error_m);
-    }
-    if (steps.x.size() < fewest_steps) continue;  // the text above has the numbers
-    section.blocks.push_back(line_figure(
-        {.id = figure_id("search", c.code.name()),
-         .title = fmt::format("Search for {}", c.code.name()),
-         .caption = fmt::format("The {}, against work.", c.search->error_name)},
-        {steps}, {.label = c.search->work_unit}, {.label = "depth error", .unit = "mm"}));
-  }
-}
-
-/// How the designed codes were found: errors against work, residuals against iterations, and what
-/// exhaustive searches counted.
-Section search_section(const DesignResult& result) {
-  Section section{.title = "Search"};
-  add_search_progress(result, section);
-  add_convergence(result, section);
-  return section;
-}
-
-/// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
-Table explanation(const DesignResult& result, DepthErrorKind kind) {
-  std::vector<const char*> questions{"What does it beat?"};
-  if (!result.winner().code.is_rows()) questions.push_back("Why so many exposures?");
-  questions.push_back("What limits it?");
-  if (result.winner().multipath) questions.push_back("And with multipath?");
-  if (result.winner().code.is_rows()) questions.push_back("And in dimmer light?");
-  Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
-  if (kind == DepthErrorKind::linear)
-    table.caption +=
-        " Every code is judged at its best origin of depth; evaluate takes it as it is, "
-        "or moves it with --best-rotation.";
-  for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
-    table.rows.push_back({questions[i], result.explanation[i]});
-  return table;
-}
-
-/// All candidates with their depth errors.
-Section candidates_section(const Camera& camera, const DesignResult& result) {
-  const DepthErrorKind kind = camera.operating.error;
-  std::vector<DepthErrorRow> rows;
-  for (const Candidate& c : result.candidates) {
-    rows.push_back({&c.error, c.method});
-    if (&c == &result.winner())
-      rows.back().ratio = Estimate{1.0, 0.0};
-    else
-      rows.back().ratio = gain_over(result, c, kind);
-  }
-  return depth_error_section(camera, rows, result.best);
-}
-
-/// What the correlation functions of a candidate should be, moved with its origin.
-Eigen::MatrixXd rotated_target(const Candidate& c) {
-  Eigen::MatrixXd target(c.target.rows(), c.target.cols());
-  for (Eigen::Index n = 0; n < target.rows(); ++n)
-    target.row(n) = c.target.row((n + c.rotation_bin) % target.rows());
-  return target;
-}
-
-Section waveform_section(const Camera& camera, const DesignResult& result) {
-  Section section{.title = "Waveforms of the designed codes"};
-  const auto add = [&](const Candidate& c) {
-    std::string id = figure_id("waveforms", c.code.name());
-    section.blocks.push_back(waveform_figure(
-        {.id = id,
-         .title = fmt::format("Waveforms of {}", c.code.name()),
-         .caption =
-             c.target.size() > 0
-                 ? "One row per measurement, over one period; the correlation function with its "
-                   "target."
-                 : "One row per measurement, over one period."},
-        c.code, camera, rotated_target(c)));
-  };
-  for (const Candidate& c : result.candidates)
-    if (c.is_designed()) add(c);
-  return section;
-}
-
-Section coding_curve_section(const Camera& camera, const DesignResult& result) {
-  std::vector<CodeSet> shown{result.winner().code};
-  for (const char* name : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"})
-    if (const Candidate* c = result.find(name); c && c != &result.winner() && shown.size() < 3)
-      shown.push_back(c->code);
-  Section section{.title = "Coding curves"};
-  section.blocks.push_back(Paragraph{
-      "As depth runs through the range, the vector of correlation values draws a closed curve. A "
-      "long curve that keeps away from itself separates depths; noise moves a measurement off "
-      "it."});
-  section.blocks.push_back(coding_curve_figure(
-      {.id = "coding-curves",
-       .title = "Coding curves",
-       .caption = "In the three directions of largest extent, coloured by depth. Drag to turn."},
-      shown, camera));
-  return section;
-}
-
-Section residual_section(const DesignResult& result) {
-  Section section{.title = "Designed codes"};
+Table residual_table(const DesignResult& result) {
   Table table{.id = "residuals",
               .caption =
                   "Every measurement of every designed code. Factorized pairs are chosen by depth "
-                  "error: the residual is the chosen pair's distance from the target, beside the "
-                  "smallest distance of any pair found.",
+                  "error: the residual is the distance of the chosen pair from the target, next to "
+                  "the smallest distance of any pair found.",
               .columns = {{"code"},
                           {"measurement", true},
                           {"residual", true},
@@ -245,7 +108,134 @@ Section residual_section(const DesignResult& result) {
                             fmt::format("{:.4f}", m.demodulation_duty), fmt::format("{}", m.edges),
                             m.start});
     }
-  section.blocks.push_back(std::move(table));
+  return table;
+}
+
+constexpr std::size_t fewest_steps = 4;  // a curve through fewer shows nothing
+
+/// Residuals against iterations of every measurement that was designed.
+void add_convergence(const DesignResult& result, Section& section) {
+  for (const Candidate& c : result.candidates) {
+    ColourAssignment colours;
+    std::vector<Series> series;
+    std::size_t longest = 0;
+    for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
+      Series relaxed{.name = fmt::format("measurement {}", k + 1),
+                     .mark = Mark::line_and_markers,
+                     .style = colours.style(fmt::format("{}", k))};
+      for (std::size_t i = 0; i < c.per_measurement[k].history.size(); ++i) {
+        relaxed.x.push_back(static_cast<double>(i + 1));
+        relaxed.y.push_back(std::max(1e-6, c.per_measurement[k].history[i].playable_residual_rms));
+      }
+      longest = std::max(longest, relaxed.x.size());
+      if (!relaxed.x.empty()) series.push_back(std::move(relaxed));
+    }
+    if (longest < fewest_steps) continue;
+    section.blocks.push_back(line_figure(
+        {.id = figure_id("convergence", c.code.name()),
+         .title = fmt::format("Convergence of {}", c.code.name()),
+         .caption = "Residual of the binary projection after each pair of convex steps, for the "
+                    "random start with the smallest residual; values below 1e-6 are drawn at "
+                    "1e-6."},
+        series, {.label = "iteration"}, {.label = "residual, rms", .logarithmic = true}));
+  }
+}
+
+/// The smallest error so far of every search.
+void add_search_progress(const DesignResult& result, Section& section) {
+  ColourAssignment colours;
+  for (const Candidate& c : result.candidates) {
+    if (!c.search || c.search->steps.size() < fewest_steps) continue;
+    Series steps{.name = c.code.name(),
+                 .mark = Mark::line_and_markers,
+                 .style = colours.style(c.code.name())};
+    for (const SearchStep& step : c.search->steps) {
+      steps.x.push_back(step.work);
+      steps.y.push_back(1e3 * step.error_m);
+    }
+    section.blocks.push_back(line_figure(
+        {.id = figure_id("search", c.code.name()),
+         .title = fmt::format("Search for {}", c.code.name()),
+         .caption = fmt::format("The {}, over the work of the search.", c.search->error_name)},
+        {steps}, {.label = c.search->work_unit}, {.label = "depth error", .unit = "mm"}));
+  }
+}
+
+/// How the codes were found: every measurement, the searches, and curves of both.
+Section search_section(const DesignResult& result) {
+  Section section{.title = "Designed codes"};
+  Table found = residual_table(result);
+  if (!found.rows.empty()) section.blocks.push_back(std::move(found));
+  Table searches{.caption = "Searches.", .columns = {{"code"}, {"found by"}}};
+  for (const Candidate& c : result.candidates)
+    if (c.search)
+      searches.rows.push_back({c.code.name(), fmt::format("{}. {}", c.message, c.search->account)});
+  if (!searches.rows.empty()) section.blocks.push_back(std::move(searches));
+  add_search_progress(result, section);
+  add_convergence(result, section);
+  return section;
+}
+
+/// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
+Table explanation(const DesignResult& result, DepthErrorKind kind) {
+  std::vector<const char*> questions{"What does it beat?"};
+  if (!result.winner().code.is_rows()) questions.push_back("Why so many exposures?");
+  questions.push_back("What limits it?");
+  if (result.winner().multipath) questions.push_back("And with multipath?");
+  if (result.winner().code.is_rows()) questions.push_back("And in dimmer light?");
+  Table table{.columns = {{"question"}, {"answer"}}};
+  if (kind == DepthErrorKind::linear)
+    table.caption =
+        "Every code is judged at its best origin of depth; evaluate keeps its origin unless "
+        "--best-rotation is given.";
+  for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
+    table.rows.push_back({questions[i], result.explanation[i]});
+  return table;
+}
+
+/// All candidates with their depth errors.
+Section candidates_section(const Camera& camera, const DesignResult& result) {
+  const DepthErrorKind kind = camera.operating.error;
+  std::vector<DepthErrorRow> rows;
+  for (const Candidate& c : result.candidates) {
+    rows.push_back({&c.error, c.method});
+    if (&c == &result.winner())
+      rows.back().ratio = Estimate{1.0, 0.0};
+    else
+      rows.back().ratio = gain_over(result, c, kind);
+  }
+  return depth_error_section(camera, rows, result.best, false);
+}
+
+/// Waveforms of the designed codes except the best, which the first screen shows.
+Section waveform_section(const Camera& camera, const DesignResult& result) {
+  Section section{.title = "Waveforms of the other designed codes"};
+  for (const Candidate& c : result.candidates) {
+    if (!c.is_designed() || &c == &result.winner()) continue;
+    section.blocks.push_back(
+        waveform_figure({.id = figure_id("waveforms", c.code.name()),
+                         .title = fmt::format("Waveforms of {}", c.code.name()),
+                         .caption = "One row per measurement, over one period."},
+                        c.code, camera, rotated_target(c)));
+  }
+  return section;
+}
+
+Section coding_curve_section(const Camera& camera, const DesignResult& result) {
+  std::vector<CodeSet> shown{result.winner().code};
+  for (const char* name : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"})
+    if (const Candidate* c = result.find(name); c && c != &result.winner() && shown.size() < 3)
+      shown.push_back(c->code);
+  Section section{.title = "Coding curves"};
+  section.blocks.push_back(Paragraph{
+      "As depth runs through the range, the vector of correlation values draws a closed curve. A "
+      "long curve that keeps away from itself separates depths; noise moves a measurement off "
+      "it."});
+  section.blocks.push_back(coding_curve_figure(
+      {.id = "coding-curves",
+       .title = "Coding curves",
+       .caption = "In the three directions of largest extent, coloured by depth. Drag to turn."},
+      shown, camera));
   return section;
 }
 
@@ -305,15 +295,14 @@ Page design_report(const Camera& camera, const DesignResult& result,
   for (const Candidate& c : result.candidates)
     if (c.robustness) perturbed.push_back({c.code.name(), *c.robustness});
   if (!perturbed.empty()) page.sections.push_back(robustness_section(perturbed));
-  page.sections.push_back(waveform_section(camera, result));
+  if (Section others = waveform_section(camera, result); !others.blocks.empty())
+    page.sections.push_back(std::move(others));
   page.sections.push_back(coding_curve_section(camera, result));
   if (scene)
     page.sections.push_back(
         scene_section(*scene, camera, winner.code.name(), winner.error.outlier_threshold_m));
-  if (Section s = residual_section(result); !std::get<Table>(s.blocks[0]).rows.empty()) {
-    page.sections.push_back(std::move(s));
-    page.sections.push_back(search_section(result));
-  }
+  if (Section found = search_section(result); !found.blocks.empty())
+    page.sections.push_back(std::move(found));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   for (Section& section : page.sections)
     if (section.layout == SectionLayout::open) section.layout = SectionLayout::folded;
@@ -331,7 +320,6 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   Page page{.title = fmt::format("Depth error on {}", camera.name),
             .subtitle = fmt::format("{} code{}", codes.size(), codes.size() == 1 ? "" : "s"),
             .footer = "tofsmith " TOFSMITH_VERSION};
-  page.sections.push_back(camera_section(camera));
   std::vector<DepthErrorRow> compared;
   std::size_t best = 0;
   const DepthErrorKind kind = camera.operating.error;
@@ -340,7 +328,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
     if (geometric_mean_error_m(errors[i], kind) < geometric_mean_error_m(errors[best], kind))
       best = i;
   }
-  page.sections.push_back(depth_error_section(camera, compared, best));
+  page.sections.push_back(depth_error_section(camera, compared, best, true));
   Section waveforms{.title = "Waveforms"};
   for (const CodeSet& code : codes)  // of any names, even the same
     waveforms.blocks.push_back(
@@ -349,6 +337,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                          .caption = "One row per measurement, over one period."},
                         code, camera));
   page.sections.push_back(std::move(waveforms));
+  page.sections.push_back(camera_section(camera));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }

@@ -20,15 +20,14 @@ namespace {
 
 using Bound = double PointDepthError::*;
 
-/// How many times as large as a bound the circular error is; not a number where the bound says
-/// nothing.
+/// Ratio of the circular error to a bound; NaN where the bound is not finite and positive.
 double times_bound(const PointDepthError& point, Bound bound) {
   const double bound_m = point.*bound, error_m = point.circular_mde_m.value;
-  const bool says_something = bound_m > 0.0 && std::isfinite(bound_m) && error_m > 0.0;
-  return says_something ? error_m / bound_m : std::numeric_limits<double>::quiet_NaN();
+  const bool is_defined = bound_m > 0.0 && std::isfinite(bound_m) && error_m > 0.0;
+  return is_defined ? error_m / bound_m : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Geometric mean over the points where the bound says something.
+/// Geometric mean over the points where the ratio is defined.
 std::string mean_times_bound(const DepthErrorReport& error, Bound bound) {
   double log_sum = 0.0;
   int count = 0;
@@ -41,14 +40,28 @@ std::string mean_times_bound(const DepthErrorReport& error, Bound bound) {
   return count > 0 ? fmt::format("{:.2f}", std::exp(log_sum / count)) : "no bound";
 }
 
+/// At most `most` codes in this order; of more codes the best of every family and method.
+std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
+                                       const std::vector<std::size_t>& order, std::size_t most) {
+  std::vector<DepthErrorRow> shown;
+  std::set<std::string> families;
+  for (const std::size_t i : order) {
+    const std::string& name = codes[i].error->code;
+    const std::string family = codes[i].method + " " + name.substr(0, name.find('-'));
+    if (shown.size() < most && (codes.size() <= most || families.insert(family).second))
+      shown.push_back(codes[i]);
+  }
+  return shown;
+}
+
 Table distance_table(std::span<const DepthErrorRow> codes, const std::vector<std::size_t>& order) {
   Table table{.id = "distance-to-bounds",
               .caption =
-                  "How many times as large as a bound the circular error is (geometric mean over "
-                  "the operating points). No estimator without bias comes below the Cramér-Rao "
-                  "bound of its code, no code below the receiver bound of its camera, no receiver "
-                  "below the direct time-of-flight bound of its light. They know no wrap and no "
-                  "wrong lobe: where a code is little better than guessing, it may come below.",
+                  "Ratio of the circular error to each bound (geometric mean over the operating "
+                  "points). The Cramér-Rao bound limits unbiased estimators of one code, the "
+                  "receiver bound all codes of the camera, the direct time-of-flight bound all "
+                  "receivers with this light. The bounds ignore wraps and wrong lobes: an error "
+                  "close to that of guessing can be below them.",
               .columns = {{"code"},
                           {"error / Cramér-Rao", true},
                           {"error / receiver bound", true},
@@ -67,17 +80,17 @@ FigureText map_text(bool is_limited) {
     return {.id = "bound-maps",
             .title = "Circular error over the receiver bound",
             .caption =
-                "How many times as large as what no code on this camera can beat, in as many "
+                "Ratio of the error to the bound for all codes of this camera with as many "
                 "exposures."};
   return {.id = "bound-maps",
           .title = "Circular error over the Cramér-Rao bound",
           .caption =
-              "How many times as large as the code itself allows: without impulse responses "
-              "no bound holds for all codes."};
+              "Ratio of the error to the bound of the code: without impulse responses no bound "
+              "holds for all codes."};
 }
 
-/// How far the codes are from the bounds: a table of all three, and maps of how many times as large
-/// as the receiver bound (without impulse responses, the Cramer-Rao bound) the circular error is.
+/// Ratios of the circular error to the bounds: a table of all three, and maps of the ratio to the
+/// receiver bound (without impulse responses: to the Cramer-Rao bound).
 /// @param order  of the codes, best first
 std::vector<Block> bound_blocks(const Camera& camera, std::span<const DepthErrorRow> codes,
                                 const std::vector<std::size_t>& order) {
@@ -116,8 +129,8 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                   "Depth error over {} operating points (geometric means; \"arithmetic\" is "
                   "the arithmetic mean of the circular error), {} trials each, N = {}, "
                   "true depths {}; ± is one standard error. Errors are mean absolute "
-                  "ones, those in columns called rms root mean square ones, which count rare large "
-                  "errors most. Outliers are circular errors beyond {:.2g} m.",
+                  "errors; rms columns contain root mean square errors, in which rare large errors "
+                  "dominate. Outliers are circular errors above {:.2g} m.",
                   first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
                   first.outlier_threshold_m),
               .columns = {{"code"},
@@ -172,7 +185,7 @@ Figure heat_maps(const Camera& camera, const std::vector<DepthErrorRow>& codes,
 }  // namespace
 
 Figure error_by_signal(const std::string& id, const Camera& camera,
-                       std::span<const DepthErrorRow> codes, std::size_t best) {
+                       std::span<const DepthErrorRow> codes) {
   const double ambient = camera.operating.middle().ambient_e_per_s;
   const auto series_of = [&](const DepthErrorReport& error, std::string name,
                              const LineStyle& style, const auto& value_m) {
@@ -195,55 +208,40 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
       if (p.point.ambient_e_per_s == ambient)
         series.back().y_error.push_back(1e3 * p.circular_mde_m.standard_error);
   }
-  const DepthErrorReport& winner = *codes[best].error;
+  const DepthErrorReport& first = *codes.front().error;
   const auto add_bound = [&](std::string name, Dash dash, double PointDepthError::*bound) {
     LineStyle style = reference_style();
     style.dash = dash;
-    Series line = series_of(winner, std::move(name), style,
+    Series line = series_of(first, std::move(name), style,
                             [&](const PointDepthError& p) { return p.*bound; });
     if (line.y.front() > 0.0) series.push_back(std::move(line));
   };
-  add_bound("Cramér-Rao bound of " + winner.code, Dash::dot, &PointDepthError::cramer_rao_mae_m);
-  add_bound("receiver bound of the camera", Dash::dash_dot, &PointDepthError::receiver_bound_mae_m);
-  add_bound("direct time-of-flight bound of the light", Dash::dash,
-            &PointDepthError::direct_tof_bound_mae_m);
-  return line_figure(
-      {.id = id,
-       .title = "Circular depth error over light",
-       .caption = fmt::format("At ambient light of {} e/s. Bounds hold for unbiased estimators "
-                              "without wraps: where a code is little better than guessing, its "
-                              "error can be below them.",
-                              level_text(ambient))},
-      series, {.label = "signal", .unit = "e/s", .logarithmic = true},
-      {.label = "circular depth error", .unit = "mm", .logarithmic = true});
-}
-
-std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
-                                       const std::vector<std::size_t>& order, std::size_t most) {
-  std::vector<DepthErrorRow> shown;
-  std::set<std::string> families;
-  for (const std::size_t i : order) {
-    const std::string& name = codes[i].error->code;
-    const std::string family = codes[i].method + " " + name.substr(0, name.find('-'));
-    if (shown.size() < most && (codes.size() <= most || families.insert(family).second))
-      shown.push_back(codes[i]);
-  }
-  return shown;
+  add_bound("Cramér-Rao bound", Dash::dot, &PointDepthError::cramer_rao_mae_m);
+  add_bound("receiver bound", Dash::dash_dot, &PointDepthError::receiver_bound_mae_m);
+  add_bound("direct ToF bound", Dash::dash, &PointDepthError::direct_tof_bound_mae_m);
+  return line_figure({.id = id,
+                      .title = "Circular depth error over light",
+                      .caption = fmt::format(
+                          "At ambient light of {} e/s. Cramér-Rao bound of {}; receiver bound of "
+                          "the camera; direct time-of-flight bound of the light.",
+                          level_text(ambient), first.code)},
+                     series, {.label = "signal", .unit = "e/s", .logarithmic = true},
+                     {.label = "circular depth error", .unit = "mm", .logarithmic = true});
 }
 
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
-                            std::size_t best) {
-  constexpr std::size_t most_curves = 7, most_maps = 6;  // more hide each other
+                            std::size_t best, bool with_curves) {
+  constexpr std::size_t most_maps = 6, most_curves = 7;  // more hide each other
   const DepthErrorKind kind = camera.operating.error;
   const std::vector<std::size_t> order = by_error(codes, kind);
   Section section{.title = "Depth error"};
   section.blocks.push_back(comparison_table(camera, codes, order, best));
+  if (with_curves && camera.operating.signal_e_per_s.size() > 1)
+    section.blocks.push_back(
+        error_by_signal("error-by-signal", camera, shown_codes(codes, order, most_curves)));
   section.blocks.push_back(heat_maps(camera, shown_codes(codes, order, most_maps), kind));
   for (Block& block : bound_blocks(camera, codes, order))
     section.blocks.push_back(std::move(block));
-  if (camera.operating.signal_e_per_s.size() > 1)
-    section.blocks.push_back(
-        error_by_signal("error-by-signal", camera, shown_codes(codes, order, most_curves), 0));
   return section;
 }
 

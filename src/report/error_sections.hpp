@@ -19,18 +19,15 @@ struct DepthErrorRow {
   std::optional<Estimate> ratio = {};  ///< of its error to that of the best code
 };
 
-/// Tables and maps of the depth errors of some codes, and the error over light with its bounds.
+/// Tables and maps of the depth errors of some codes with their bounds.
 /// @param best  index of the best code
+/// @param with_curves  also draws error_by_signal()
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
-                            std::size_t best);
+                            std::size_t best, bool with_curves);
 
 /// The circular error of codes over signal at the middle ambient level, with the bounds of the
-/// best.
+/// first code.
 Figure error_by_signal(const std::string& id, const Camera& camera,
-                       std::span<const DepthErrorRow> codes, std::size_t best);
-
-/// At most `most` codes in this order; of more codes the best of every family and method.
-std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
-                                       const std::vector<std::size_t>& order, std::size_t most);
+                       std::span<const DepthErrorRow> codes);
 
 }  // namespace tofsmith

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "report/figure_json.hpp"
 #include "report/bar_figure.hpp"
+#include "report/figure_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/shared/text_numbers.hpp"
 #include "report/figure_json.hpp"
+#include "core/shared/text_numbers.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

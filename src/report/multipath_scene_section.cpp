@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "report/depth_error_scale.hpp"
+#include "report/scene_section.hpp"
 #include "report/shared/level_text.hpp"
 #include "report/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
@@ -66,10 +67,10 @@ Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m, do
 
 Figure later_light_figure(const MultipathScene& scene) {
   return image_figure({.id = "multipath-scene-ratio",
-                       .title = "Light that bounced",
-                       .caption = "Multipath light of a pixel over its direct light.",
+                       .title = "Multipath light",
+                       .caption = "Ratio of the multipath light of a pixel to its direct light.",
                        .alt_text = "Map of the share of multipath light"},
-                      {{.title = "multipath light", .pixels = scene.multipath_ratio}},
+                      {{.pixels = scene.multipath_ratio}},
                       {.label = "ratio", .map = ColourMap::cividis});
 }
 
@@ -78,11 +79,11 @@ Figure returns_figure(const MultipathScene& scene) {
   for (std::size_t i = 0; i < codes.size(); ++i)
     codes.pixels[i] = static_cast<float>(scene.returns.pixels[i]);
   return image_figure({.id = "multipath-scene-returns",
-                       .title = "What two-return decoding found",
-                       .caption = "0 none, 1 single, 2 two returns, 3 unresolved: one return "
-                                  "leaves too much unexplained, a second does not help enough.",
+                       .title = "Returns found by two-return decoding",
+                       .caption = "0 none, 1 single, 2 two returns, 3 unresolved: neither one nor "
+                                  "two returns explain the measurements.",
                        .alt_text = "Map of the number of returns"},
-                      {{.title = "returns", .pixels = std::move(codes)}},
+                      {{.pixels = std::move(codes)}},
                       {.label = "returns", .range = ValueRange{0.0, 3.0}});
 }
 
@@ -112,23 +113,16 @@ Figure plan_figure(const MultipathScene& scene, const Image<float>& truth_m) {
                      lines, {.label = "x", .unit = "m"}, {.label = "z", .unit = "m"});
 }
 
-Figure cloud_figure(const MultipathScene& scene, const MultipathSceneDecoding& decoding,
-                    const ValueRange& range) {
-  const auto count = static_cast<Eigen::Index>(decoding.depth_m.size());
-  Eigen::MatrixX3f points(count, 3);
-  Eigen::VectorXf values(count);
-  Eigen::Index i = 0;
-  for (int row = 0; row < decoding.depth_m.height; ++row)
-    for (int column = 0; column < decoding.depth_m.width; ++column, ++i) {
-      values[i] = decoding.depth_m(row, column);
-      points.row(i) =
-          (scene.view.ray(row, column) * static_cast<double>(values[i])).cast<float>().transpose();
-    }
-  return point_cloud_figure({.id = "multipath-scene-cloud-" + decoding.method,
-                             .title = "Point cloud, " + decoding.method,
-                             .caption = "Drag to turn; seen from above, walls should be straight.",
-                             .alt_text = "Point cloud of the decoded scene"},
-                            points, values, {.label = "depth", .unit = "m", .range = range});
+Figure cloud_figure(const MultipathScene& scene, const ValueRange& range) {
+  std::vector<ColouredPoints> clouds;
+  for (const MultipathSceneDecoding& d : scene.decodings)
+    clouds.push_back(cloud_of(scene.view, d.method, d.depth_m));
+  return point_cloud_figure({.id = "multipath-scene-clouds",
+                             .title = "Point clouds",
+                             .caption = "Drag to turn; walls should look straight from above.",
+                             .alt_text = "Point clouds of the decoded scene"},
+                            clouds, {.label = "depth", .unit = "m", .range = range},
+                            {.max_points = 20000});
 }
 
 }  // namespace
@@ -157,8 +151,7 @@ Section multipath_scene_section(const MultipathScene& scene, const Camera& camer
   section.blocks.push_back(plan_figure(scene, truth_m));
   section.blocks.push_back(later_light_figure(scene));
   section.blocks.push_back(returns_figure(scene));
-  for (const MultipathSceneDecoding& d : scene.decodings)
-    section.blocks.push_back(cloud_figure(scene, d, range_of(truth_m)));
+  section.blocks.push_back(cloud_figure(scene, range_of(truth_m)));
   section.blocks.push_back(table_of_rows(
       "multipath-scene",
       "Errors by the mean delay of multipath light; 1: single-path decoding, 2: of two returns; "

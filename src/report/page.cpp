@@ -54,23 +54,6 @@ Json block_json(const Table& table) {
 
 Json block_json(const CodeBlock& code) { return {{"kind", "code"}, {"text", code.text}}; }
 
-Json block_json(const CheckedStatementList& list) {
-  Json entries = Json::array();
-  for (const CheckedStatement& entry : list.entries)
-    entries.push_back({{"verdict", name_of(entry.verdict)},
-                       {"statement", entry.statement},
-                       {"measured", entry.measured},
-                       {"why", entry.why}});
-  return {{"kind", "statements"}, {"entries", std::move(entries)}};
-}
-
-Json block_json(const LinkList& list) {
-  Json entries = Json::array();
-  for (const Link& link : list.entries)
-    entries.push_back({{"text", link.text}, {"path", link.path}, {"note", link.note}});
-  return {{"kind", "links"}, {"entries", std::move(entries)}};
-}
-
 Json block_json(const Figure& figure) {
   const FigureText& text = figure.text();
   Json json = {{"kind", figure.kind()},
@@ -104,12 +87,6 @@ std::string escaped(std::string_view text, std::string_view less_than) {
 }
 
 }  // namespace
-
-std::string_view name_of(Verdict verdict) {
-  static constexpr std::array<std::string_view, 3> names = {"holds", "holds in part",
-                                                            "does not hold"};
-  return names[static_cast<std::size_t>(verdict)];
-}
 
 std::string page_document(const Page& page) {
   static constexpr std::array layouts = {"open", "folded", "front"};

@@ -174,8 +174,9 @@ Page requirements_report(const Camera& camera, const Requirements& found,
                         : ""),
       .footer = "tofsmith " TOFSMITH_VERSION};
   Table table = table_of_rows("requirements",
-                              "The least of each quantity that suffices, everything else as the "
-                              "camera has it, and below what no code can, by the receiver bound.",
+                              "Smallest amount of each quantity that suffices while the others "
+                              "stay as they are. Below the amount in the last column, no code "
+                              "reaches the error (receiver bound).",
                               requirement_rows(camera, found, options), {0, 1, 2, 4, 5});
   page.sections.push_back(
       {"What suffices", {conditions(camera, found, options), std::move(table)}});

@@ -44,8 +44,7 @@ Figure true_scene_figure(const SceneResult& scene, const Camera& camera) {
                        .caption = "True distance along each ray; pixels without return are left "
                                   "empty.",
                        .alt_text = "Map of true depth"},
-                      {{.title = "true depth", .pixels = wrapped_depth_m(scene.truth, camera)}},
-                      colours);
+                      {{.pixels = wrapped_depth_m(scene.truth, camera)}}, colours);
 }
 
 Figure albedo_figure(const SceneResult& scene) {
@@ -54,7 +53,7 @@ Figure albedo_figure(const SceneResult& scene) {
                        .title = "Albedo",
                        .caption = "Share of light that each surface returns.",
                        .alt_text = "Map of albedo"},
-                      {{.title = "albedo", .pixels = scene.truth.albedo}}, colours);
+                      {{.pixels = scene.truth.albedo}}, colours);
 }
 
 /// "hamiltonian-k4: 12.1 mm", or with the filter "hamiltonian-k4: 12.1, filtered 4.0 mm".
@@ -97,7 +96,7 @@ const SceneDecoding* decoding_of(const SceneCapture& capture, const std::string&
   return found == capture.decodings.end() ? nullptr : &*found;
 }
 
-/// How many measurements were added, at every light; none where nothing was filtered.
+/// Number of averaged measurements at every light; none without filtering.
 std::optional<Figure> averaged_figure(const SceneResult& scene, const std::string& best_code) {
   std::vector<ValueImage> images;
   for (const SceneCapture& capture : scene.captures)
@@ -105,10 +104,10 @@ std::optional<Figure> averaged_figure(const SceneResult& scene, const std::strin
       images.push_back({.title = capture.light + " light", .pixels = d->filtered->averaged});
   if (images.empty()) return std::nullopt;
   return image_figure({.id = "averaged",
-                       .title = "Measurements added",
-                       .caption = "Of how many measurements the filter made each pixel's own, in "
-                                  "variance: fewest at edges and where nothing returns.",
-                       .alt_text = "Maps of how many measurements were added"},
+                       .title = "Averaged measurements",
+                       .caption = "Number of measurements that the filter averaged in each pixel, "
+                                  "by variance: smallest at edges and where no light returns.",
+                       .alt_text = "Maps of the number of averaged measurements"},
                       images,
                       {.label = "measurements", .map = ColourMap::cividis, .logarithmic = true},
                       {.max_side = 160});  // they change slowly
@@ -151,26 +150,13 @@ Table error_table(const SceneResult& scene, const Camera& camera, double outlier
   return table;
 }
 
-ColouredPoints cloud_of(const SceneResult& scene, std::string title, const Image<float>& depth_m) {
-  const auto count = static_cast<Eigen::Index>(depth_m.size());
-  ColouredPoints cloud{.title = std::move(title),
-                       .points = Eigen::MatrixX3f(count, 3),
-                       .values = Eigen::VectorXf(count)};
-  Eigen::Index i = 0;
-  for (int row = 0; row < depth_m.height; ++row)
-    for (int column = 0; column < depth_m.width; ++column, ++i) {
-      const auto depth = static_cast<double>(depth_m(row, column));
-      cloud.points.row(i) = (scene.view.ray(row, column) * depth).cast<float>().transpose();
-      cloud.values[i] = depth_m(row, column);
-    }
-  return cloud;
-}
-
 Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
                     const SceneDecoding& decoding, const Camera& camera) {
   std::vector<ColouredPoints> clouds;
-  clouds.push_back(cloud_of(scene, decoding.filtered ? "each pixel alone" : "", decoding.depth_m));
-  if (decoding.filtered) clouds.push_back(cloud_of(scene, "filtered", decoding.filtered->depth_m));
+  clouds.push_back(
+      cloud_of(scene.view, decoding.filtered ? "each pixel alone" : "", decoding.depth_m));
+  if (decoding.filtered)
+    clouds.push_back(cloud_of(scene.view, "filtered", decoding.filtered->depth_m));
   return point_cloud_figure(
       {.id = "point-cloud",
        .title = fmt::format("Point cloud, {}, {} light", decoding.code, capture.light),
@@ -182,15 +168,26 @@ Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
       {.max_points = 20000});
 }
 
-}  // namespace
-
-namespace {
-
 std::string name_with_error(const SceneDecoding& decoding) {
-  return fmt::format("{}: {:.1f} mm", decoding.code, 1e3 * decoding.error.mean_m);
+  return fmt::format("{}: {:.0f} mm", decoding.code, 1e3 * decoding.error.mean_m);
 }
 
 }  // namespace
+
+ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m) {
+  const auto count = static_cast<Eigen::Index>(depth_m.size());
+  ColouredPoints cloud{.title = std::move(title),
+                       .points = Eigen::MatrixX3f(count, 3),
+                       .values = Eigen::VectorXf(count)};
+  Eigen::Index i = 0;
+  for (int row = 0; row < depth_m.height; ++row)
+    for (int column = 0; column < depth_m.width; ++column, ++i) {
+      const auto depth = static_cast<double>(depth_m(row, column));
+      cloud.points.row(i) = (view.ray(row, column) * depth).cast<float>().transpose();
+      cloud.values[i] = depth_m(row, column);
+    }
+  return cloud;
+}
 
 std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera& camera,
                                           const std::string& best_code) {
@@ -226,8 +223,8 @@ Section scene_section(const SceneResult& scene, const Camera& camera, const std:
   };
   if (std::ranges::any_of(scene.captures, is_filtered))
     section.blocks.push_back(Paragraph{
-        "Filtered: before the same raw numbers are decoded, measurements of neighbours that see "
-        "the same depth are added, as far as their noise can tell."});
+        "Filtered: measurements of neighbouring pixels at the same depth, within their noise, are "
+        "averaged before decoding."});
   section.blocks.push_back(true_scene_figure(scene, camera));
   section.blocks.push_back(albedo_figure(scene));
   for (const SceneCapture& capture : scene.captures) {

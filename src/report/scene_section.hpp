@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/report/page.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -21,5 +22,8 @@ Section scene_section(const SceneResult& scene, const Camera& camera, const std:
 /// without captures of both.
 std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera& camera,
                                           const std::string& best_code);
+
+/// Every pixel at its place in front of the camera, coloured by depth.
+ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m);
 
 }  // namespace tofsmith

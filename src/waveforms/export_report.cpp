@@ -26,7 +26,7 @@ Table table_of(std::string id, std::string caption, std::vector<Row> rows) {
   return table;
 }
 
-/// Nominal correlation functions, dotted, and actual ones.
+/// Correlation functions as designed, dotted, and as generated.
 Figure correlation_figure(const CodeSet& code, const Camera& actual) {
   Camera ideal = actual;
   ideal.light.generator.reset();
@@ -41,12 +41,12 @@ Figure correlation_figure(const CodeSet& code, const Camera& actual) {
     const auto values = [](const auto& column) {
       return std::vector<double>(column.begin(), column.end());
     };
-    series.push_back({.name = fmt::format("{} nominal", k + 1),
+    series.push_back({.name = "as designed",
                       .x = depth_m,
                       .y = values(nominal.col(k)),
                       .period = range_m,
                       .style = reference_style()});
-    const std::string name = fmt::format("{} actual", k + 1);
+    const std::string name = fmt::format("measurement {}", k + 1);
     series.push_back({.name = name,
                       .x = depth_m,
                       .y = values(now.col(k)),
@@ -55,8 +55,8 @@ Figure correlation_figure(const CodeSet& code, const Camera& actual) {
   }
   return line_figure({.id = "correlation",
                       .title = "Correlation functions",
-                      .caption = "Dotted: nominal waveforms. Lines: actual ones."},
-                     series, {.label = "depth", .unit = "m"}, {.label = "chi"});
+                      .caption = "Lines: as the generator plays the waveforms."},
+                     series, {.label = "depth", .unit = "m"}, {.label = "correlation"});
 }
 
 KeyValueList description(const WaveformExport& exported) {
@@ -136,13 +136,16 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
   page.sections.push_back({"Export", {description(exported.waveforms)}});
   page.sections.push_back(
       {"Waveforms",
-       {table_of("generators", "Each nominal and actual waveform, ahead of the arms' responses.",
+       {table_of("generators",
+                 "Each waveform as designed (nominal) and as the generator plays it "
+                 "(actual), before the impulse responses.",
                  generator_report_rows(exported.generators)),
-        waveform_figure({.id = "waveforms",
-                         .title = "Waveforms and correlation functions",
-                         .caption = "One row per measurement, over one period. Dotted: nominal, "
-                                    "where the hardware changes it."},
-                        code, actual),
+        waveform_figure(
+            {.id = "waveforms",
+             .title = "Waveforms and correlation functions",
+             .caption = "One row per measurement, over one period. Dotted: as designed, "
+                        "where the generator changes it."},
+            code, actual),
         correlation_figure(code, actual)}});
   if (loss)
     page.sections.push_back(

@@ -73,7 +73,7 @@ TEST(DesignReport, ShowsADesignWithItsSceneWhateverTheNames) {
   EXPECT_THAT(text, HasSubstr("tofsmith <design>"));
   EXPECT_THAT(text, HasSubstr("A scene: a/b"));
   EXPECT_THAT(text, HasSubstr(", filtered"));
-  EXPECT_THAT(text, HasSubstr("Measurements added"));
+  EXPECT_THAT(text, HasSubstr("Averaged measurements"));
 }
 
 TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsTheRest) {

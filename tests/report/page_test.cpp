@@ -90,17 +90,14 @@ TEST(Page, HasBlocksOfEveryKind) {
                        .columns = {{"h", true}},
                        .rows = {{"1"}},
                        .highlighted_row = 0},
-                 CodeBlock{"run"}, LinkList{{{"x", "a/b", "note"}}}, some_figure("first"),
-                 CheckedStatementList{{{Verdict::in_part, "second", "2", "because"}}}});
+                 CodeBlock{"run"}, some_figure("first")});
   std::vector<std::string> kinds;
   for (const json& block : blocks) kinds.push_back(block["kind"]);
-  EXPECT_THAT(kinds, testing::ElementsAre("text", "settings", "numbers", "table", "code", "links",
-                                          "lines", "statements"));
+  EXPECT_THAT(kinds, testing::ElementsAre("text", "settings", "numbers", "table", "code", "lines"));
   EXPECT_EQ(blocks[1]["entries"], json::parse(R"([["a", "b"]])"));
   EXPECT_EQ(blocks[3]["highlighted"], 0);
   EXPECT_EQ(blocks[3]["columns"], json::parse(R"([{"header": "h", "numeric": true}])"));
-  EXPECT_EQ(blocks[6]["title"], "Title of first");
-  EXPECT_EQ(blocks[7]["entries"][0]["verdict"], "holds in part");
+  EXPECT_EQ(blocks[5]["title"], "Title of first");
 }
 
 TEST(Page, HasSectionsThatAreOpenFoldedOrFirst) {

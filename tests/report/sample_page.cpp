@@ -306,10 +306,7 @@ Page sample_page() {
            {"Depth error", {error_by_signal(colours), operating_points()}},
            {"Scene", depth_blocks()},
            {"Files",
-            {LinkList{{{"a & b", "javascript:alert(1)/\"x\".html", "note"}}},
-             CheckedStatementList{{{Verdict::holds, "a < b", "1 `x`", ""},
-                                   {Verdict::in_part, "second", "2", "because"},
-                                   {Verdict::fails, "third", "3", ""}}}},
+            {KeyValueList{{{"a & b", "javascript:alert(1)/\"x\".html"}}}},
             SectionLayout::folded}},
       .footer = "tofsmith 0.1.0, seed 1"};
 }

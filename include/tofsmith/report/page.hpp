@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -53,37 +52,7 @@ struct CodeBlock {
   std::string text = {};
 };
 
-/// How a statement fared against our numbers; shown as a word and a colour.
-enum class Verdict { holds, in_part, fails };
-
-/// "holds", "holds in part", "does not hold".
-std::string_view name_of(Verdict verdict);
-
-/// What somebody stated, and what we found.
-struct CheckedStatement {
-  Verdict verdict = Verdict::fails;
-  std::string statement = {};
-  std::string measured = {};  ///< our number beside it
-  std::string why = {};       ///< what explains a difference; may be empty
-};
-
-struct CheckedStatementList {
-  std::vector<CheckedStatement> entries = {};
-};
-
-/// A way to another file, by a path relative to the page.
-struct Link {
-  std::string text = {};
-  std::string path = {};
-  std::string note = {};  ///< after the link; may be empty
-};
-
-struct LinkList {
-  std::vector<Link> entries = {};
-};
-
-using Block = std::variant<Paragraph, KeyValueList, KeyNumbers, Table, CodeBlock, Figure,
-                           CheckedStatementList, LinkList>;
+using Block = std::variant<Paragraph, KeyValueList, KeyNumbers, Table, CodeBlock, Figure>;
 
 /// Layout of a section: one block below the other, the same behind a closed title, or the first
 /// screen of a page, which arranges its blocks side by side.
@@ -103,7 +72,7 @@ struct Page {
 };
 
 /// The page as a JSON document: {title, subtitle, footer, sections: [{title, layout, blocks}]}.
-/// Blocks have a `kind`; docs/report.md lists the kinds. The same page has the same bytes.
+/// Blocks have a `kind`; docs/report_pages.md lists the kinds. The same page has the same bytes.
 /// @throws std::invalid_argument if two figures or tables share an id, or a table row does not fit
 ///         its columns
 std::string page_document(const Page& page);
