@@ -68,8 +68,7 @@ class Field {
           onclick: () => panel.reset(this.key)
         },
         '\u21ba');
-    const doc = (field.doc ?? '').split(' @see')[0];
-    this.doc = element('p', {class: 'doc', id: `${id}-doc`, title: doc}, doc);
+    this.doc = element('p', {class: 'doc', id: `${id}-doc`, title: field.doc}, field.doc);
     const described = `${id}-doc ${id}-problem`;
     this.inputs = this.#inputs(field, id, described);
     const label = field.type === 'boolean' ? element('span', {style: 'flex:1'}) :

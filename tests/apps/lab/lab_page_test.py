@@ -303,6 +303,29 @@ class UndoAndDesign(LabTest):
 
 
 class Readers(LabTest):
+    def test_a_camera_of_three_taps_gets_a_known_code(self):
+        offered, fitting = self.run_script("""
+            const isOffered = () => byId('find-code').getClientRects().length > 0;
+            const before = isOffered();
+            enter(byId('field-sensor-taps'), '3');
+            await waitFor(isOffered);
+            byId('find-code').click();
+            await waitFor(() => tofsmithLab.store.state.codes.length === 3);
+            await settled();
+            return [[before, isOffered()], tofsmithLab.lab.slots.slice(0, 3).map((slot) => !slot.problem)];""")
+        self.assertEqual(offered, [False, False])
+        self.assertEqual(fitting, [False, False, True])
+
+    def test_most_pixels_of_the_first_scene_are_ok(self):
+        self.assertRegex(self.text("#scene-figures"), r"pixels that are ok 9\d[.\d]* % alone, 9")
+
+    def test_every_field_is_explained_in_words(self):
+        texts = self.run_script("return [...document.querySelectorAll('.field .doc')].map((doc) => doc.textContent);")
+        self.assertGreater(len(texts), 20)
+        for text in texts:
+            self.assertGreater(len(text), 10)
+            self.assertNotRegex(text, r"@|//|\bits\b|^its? ")
+
     def test_every_control_and_plot_has_a_name(self):
         nameless = self.run_script("""
             return [...document.querySelectorAll('button, input, select, [tabindex="0"], canvas')].filter((node) => !node.closest('[hidden]') &&
@@ -328,6 +351,23 @@ class Readers(LabTest):
         self.wait("document.querySelector('.stop[role=alert]')")
         self.assertIn("SIMD", self.text(".stop[role=alert]"))
         self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+
+
+class Wide(LabTest):
+    width = 1210  # three narrow columns: captions and legends differ in height
+
+    def test_plots_of_one_row_begin_at_one_height(self):
+        tops = self.run_script("""
+            tofsmithLab.store.change((state) => {
+              state.trials = 100;
+              state.codes = ['hamiltonian-k8', 'pulsed-multifrequency-k5', 'square-k4'].map((name) => ({name}));
+            });
+            await settled();
+            return Object.fromEntries([...document.querySelectorAll('.columns')].map((row) => [row.dataset.part,
+              [...row.querySelectorAll('.plot')].map((plot) => Math.round(plot.getBoundingClientRect().top))]));""")
+        for part, heights in tops.items():
+            self.assertEqual(len(heights), 3, part)
+            self.assertEqual(len(set(heights)), 1, part)
 
 
 class DarkPhone(LabTest):
