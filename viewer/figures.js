@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// From the figures of a document to plots: lines, bars, maps, images, curves and clouds.
+// From the figures of a document to plots: lines, maps, images, curves and clouds.
 
 import {unpacked} from './arrays.js';
-import {BarPlot} from './bars.js';
 import {inline} from './blocks.js';
 import {colourBar, scaleOf} from './colour_bar.js';
 import {cssColour} from './colours.js';
@@ -118,32 +117,6 @@ function drawLines(block, body) {
     ...rows.flatMap((row, r) => columns.flatMap(
         (column, c) => all[r][c].flatMap((one) => Array.from(
             one.x, (x, i) => [row.title, column.title, one.name, x, one.y[i], one.error?.[i]]))))
-  ];
-}
-
-function drawBars({alt, categories, series, axis, colours}, body) {
-  const shown = series.map((one) => ({
-    ...one,
-    values: one.values.map((value) => value ?? NaN),
-    colours: categories.map((_, c) => cssOf(colours[c] ?? one.colour))
-  }));
-  if (series.length > 1)
-    body.append(legendOf(shown.map(({name, colours: [colour]}) => ({name, colour}))));
-  const plot = new BarPlot();
-  body.append(plot.root);
-  const ends = shown.flatMap(
-      ({values, errors}) => [values, values.map((value, i) => value + (errors[i] ?? 0))]);
-  plot.show({
-    label: alt,
-    categories,
-    series: shown,
-    axis: axisSpec(axis.log ? axis : {...axis, from_zero: true}, ends)
-  });
-  return () => [
-    ['category', 'series', titleOf(axis), 'error'],
-    ...categories.flatMap(
-        (category, c) => shown.map(
-            ({name, values, errors}) => [category, name, values[c], errors[c]]))
   ];
 }
 
@@ -359,7 +332,6 @@ async function drawClouds(block, body) {
 /** Functions that draw the data of a figure into an element and return its rows as a function. */
 export const kinds = {
   lines: drawLines,
-  bars: drawBars,
   map: drawMap,
   image: drawImages,
   curves: drawCurves,

@@ -25,16 +25,16 @@ void write_directory_report(const std::string& directory, const std::string& pat
 
 void write_evaluation_report(const std::string& path, const std::vector<CodeSet>& codes,
                              const Camera& camera, const py::list& reports, bool overwrite) {
-  std::vector<DepthErrorReport> errors;
+  std::vector<EvaluatedCode> evaluated;
   for (const py::handle values : reports) {
     DepthErrorReport report = report_of(py::reinterpret_borrow<py::dict>(values));
     if (report.points.size() != camera.operating.points().size())
       refuse("reports", std::to_string(report.points.size()) + " operating points",
              "the camera's " + std::to_string(camera.operating.points().size()));
-    errors.push_back(std::move(report));
+    evaluated.push_back({std::move(report), 0, {}, {}});
   }
   const py::gil_scoped_release release;
-  write_page(path, evaluation_report(camera, codes, errors, ""), overwrite);
+  write_page(path, evaluation_report(camera, codes, evaluated, ""), overwrite);
 }
 
 }  // namespace

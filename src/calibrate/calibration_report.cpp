@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "calibrate/calibration_page.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
@@ -14,14 +15,6 @@
 namespace tofsmith {
 
 namespace {
-
-/// Notes as a section of a page.
-Section notes_section(const std::vector<std::string>& notes) {
-  Table table{.caption = "What to know of this calibration.", .columns = {{"note"}}};
-  for (const std::string& note : notes) table.rows.push_back({note});
-  if (notes.empty()) table.rows.push_back({"none"});
-  return {"Notes", {std::move(table)}};
-}
 
 std::vector<double> times_ns(Eigen::Index count, double start_s, double step_s) {
   std::vector<double> times;
@@ -35,7 +28,11 @@ std::vector<double> times_ns(Eigen::Index count, double start_s, double step_s) 
 Page finished_calibration_page(Page page, const std::vector<std::string>& notes,
                                const std::string& command_line) {
   page.footer = "tofsmith " TOFSMITH_VERSION;
-  page.sections.push_back(notes_section(notes));
+  if (!notes.empty()) {
+    Table table{.columns = {{"note"}}};
+    for (const std::string& note : notes) table.rows.push_back({note});
+    page.sections.push_back({"Notes", {std::move(table)}});
+  }
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }
@@ -92,12 +89,8 @@ Page response_report(const CalibratedResponse& found, const std::string& source,
       series->y.push_back(std::abs(h->transfer(f_hz)));
     }
   }
-  Table table{.id = "fits", .caption = "Fits to the record itself.", .columns = {{"kind"}}};
-  const auto rows = response_rows(found);
-  for (std::size_t i = 1; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], true});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  Section section{"Impulse response", {std::move(table)}};
+  Section section{"Impulse response",
+                  {table_of_rows("fits", "Fits to the record itself.", response_rows(found), {0})}};
   section.blocks.push_back(line_figure({.id = "record",
                                         .title = "Record and fit",
                                         .caption = "As measured, with the kind that fits best."},
@@ -139,10 +132,8 @@ Page noise_report(const PhotonTransfer& found, const std::string& command_line) 
   }
   std::vector<Series> series{used, line};
   if (!left.x.empty()) series.push_back(left);
-  Table table{.caption = "Found, with standard errors.", .columns = {{"key"}, {"value", true}}};
-  const auto rows = noise_rows(found);
-  table.rows.assign(rows.begin() + 1, rows.end());
-  Section section{"Noise", {std::move(table)}};
+  Section section{"Noise",
+                  {table_of_rows("noise", "Found, with standard errors.", noise_rows(found), {0})}};
   section.blocks.push_back(line_figure(
       {.id = "photon-transfer",
        .title = "Photon transfer",

@@ -52,7 +52,8 @@ Figure harmonics_figure(const IdealCodeFit& fit) {
   return line_figure(
       {.id = "harmonics",
        .title = "Harmonics",
-       .caption = fmt::format("What the arms pass of each harmonic of {}.", fit.code)},
+       .caption = fmt::format("Share of each harmonic of {} that the impulse responses transmit.",
+                              fit.code)},
       {measured}, {.label = "harmonic", .from_zero = true}, {.label = "ratio", .from_zero = true});
 }
 
@@ -92,12 +93,14 @@ Page correlation_report(const CalibratedCorrelation& found, const std::vector<Id
     maps.blocks.push_back(image_figure(
         {.id = "offset-map",
          .title = "Offset",
-         .caption = "By how much each pixel decodes too far."},
-        {{"offset", found.maps.delay_offset_m}},
+         .caption = "Difference of each decoded depth to the true depth."},
+        {{.pixels = found.maps.delay_offset_m}},
         {.label = "offset", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.01}));
-    maps.blocks.push_back(image_figure(
-        {.id = "gain-map", .title = "Gain", .caption = "Response over that of the mean pixel."},
-        {{"gain", found.maps.gain}}, {.label = "gain", .clip_fraction = 0.01}));
+    maps.blocks.push_back(
+        image_figure({.id = "gain-map",
+                      .title = "Gain",
+                      .caption = "Response of each pixel over the mean response."},
+                     {{.pixels = found.maps.gain}}, {.label = "gain", .clip_fraction = 0.01}));
     page.sections.push_back(std::move(maps));
   }
   return finished_calibration_page(std::move(page), found.notes, command_line);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibrate/calibration_page.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
@@ -106,11 +107,6 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
             .subtitle = fmt::format(
                 "{:+.4g} m off in the mean, {} rms around it; {} on blocks held out once corrected",
                 found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m))};
-  Table terms{.id = "terms",
-              .caption = "Terms of the error in the known part of the range, with 95 % intervals.",
-              .columns = {{"term"}, {"value (mm)", true}, {"95 % (mm)", true}}};
-  const auto rows = depth_term_rows(found);
-  terms.rows.assign(rows.begin() + 1, rows.end());
   const auto image = [&](const std::string& id, const std::string& title,
                          const std::string& caption) {
     return image_figure(
@@ -118,7 +114,12 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
         {{"before", found.picture.before_image_m}, {"corrected", found.picture.after_image_m}},
         {.label = "depth error", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.02});
   };
-  page.sections.push_back({"Over depth", {error_figure(found), std::move(terms)}});
+  page.sections.push_back(
+      {"Over depth",
+       {error_figure(found), table_of_rows("terms",
+                                           "Terms of the error in the known part of the range, "
+                                           "with 95 % intervals.",
+                                           depth_term_rows(found), {0})}});
   page.sections.push_back(
       {"Over the image",
        {image("error-image", "Depth error",

@@ -10,7 +10,7 @@
 #include "report/design_front.hpp"
 #include "report/error_sections.hpp"
 #include "report/scene_section.hpp"
-#include "report/table_of_rows.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/report/code_figures.hpp"
@@ -315,17 +315,17 @@ Page design_report(const DesignedDirectory& found, const std::string& command_li
 }
 
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
-                       const std::vector<DepthErrorReport>& errors,
-                       const std::string& command_line) {
+                       std::span<const EvaluatedCode> evaluated, const std::string& command_line) {
   Page page{.title = fmt::format("Depth error on {}", camera.name),
             .subtitle = fmt::format("{} code{}", codes.size(), codes.size() == 1 ? "" : "s"),
             .footer = "tofsmith " TOFSMITH_VERSION};
   std::vector<DepthErrorRow> compared;
   std::size_t best = 0;
   const DepthErrorKind kind = camera.operating.error;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    compared.push_back({&errors[i], codes[i].provenance.method});
-    if (geometric_mean_error_m(errors[i], kind) < geometric_mean_error_m(errors[best], kind))
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
+    const DepthErrorReport& error = evaluated[i].error;
+    compared.push_back({&error, codes[i].provenance.method});
+    if (geometric_mean_error_m(error, kind) < geometric_mean_error_m(*compared[best].error, kind))
       best = i;
   }
   page.sections.push_back(depth_error_section(camera, compared, best, true));
@@ -337,19 +337,11 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                          .caption = "One row per measurement, over one period."},
                         code, camera));
   page.sections.push_back(std::move(waveforms));
-  page.sections.push_back(camera_section(camera));
-  if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
-  return page;
-}
-
-Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
-                       std::span<const EvaluatedCode> evaluated, const std::string& command_line) {
-  std::vector<DepthErrorReport> errors;
-  for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
-  Page page = evaluation_report(camera, codes, errors, command_line);
   if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
   if (const auto judged = judged_codes(evaluated); !judged.empty())
     page.sections.push_back(robustness_section(judged));
+  page.sections.push_back(camera_section(camera));
+  if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }
 

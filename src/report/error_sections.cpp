@@ -75,42 +75,6 @@ Table distance_table(std::span<const DepthErrorRow> codes, const std::vector<std
   return table;
 }
 
-FigureText map_text(bool is_limited) {
-  if (is_limited)
-    return {.id = "bound-maps",
-            .title = "Circular error over the receiver bound",
-            .caption =
-                "Ratio of the error to the bound for all codes of this camera with as many "
-                "exposures."};
-  return {.id = "bound-maps",
-          .title = "Circular error over the Cramér-Rao bound",
-          .caption =
-              "Ratio of the error to the bound of the code: without impulse responses no bound "
-              "holds for all codes."};
-}
-
-/// Ratios of the circular error to the bounds: a table of all three, and maps of the ratio to the
-/// receiver bound (without impulse responses: to the Cramer-Rao bound).
-/// @param order  of the codes, best first
-std::vector<Block> bound_blocks(const Camera& camera, std::span<const DepthErrorRow> codes,
-                                const std::vector<std::size_t>& order) {
-  std::vector<Block> blocks{distance_table(codes, order)};
-  const bool is_limited = camera.band_limited();
-  const Bound bound =
-      is_limited ? &PointDepthError::receiver_bound_mae_m : &PointDepthError::cramer_rao_mae_m;
-  std::vector<HeatMap> maps;
-  constexpr std::size_t most_maps = 3;
-  for (const DepthErrorRow& code : shown_codes(codes, order, most_maps)) {
-    HeatMap map = operating_map(camera.operating, *code.error,
-                                [&](const PointDepthError& p) { return times_bound(p, bound); });
-    if (map.values.array().isFinite().any()) maps.push_back(std::move(map));
-  }
-  if (!maps.empty())
-    blocks.push_back(operating_maps(map_text(is_limited), camera.operating, maps,
-                                    {.label = "error / bound", .logarithmic = true}));
-  return blocks;
-}
-
 std::vector<std::size_t> by_error(std::span<const DepthErrorRow> codes, DepthErrorKind kind) {
   std::vector<std::size_t> order(codes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -240,8 +204,7 @@ Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow>
     section.blocks.push_back(
         error_by_signal("error-by-signal", camera, shown_codes(codes, order, most_curves)));
   section.blocks.push_back(heat_maps(camera, shown_codes(codes, order, most_maps), kind));
-  for (Block& block : bound_blocks(camera, codes, order))
-    section.blocks.push_back(std::move(block));
+  section.blocks.push_back(distance_table(codes, order));
   return section;
 }
 

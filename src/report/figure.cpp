@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "report/bar_figure.hpp"
 #include "report/figure_json.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -139,32 +138,6 @@ Figure small_multiples(FigureText text, const std::vector<PanelColumn>& columns,
     json["rows"].push_back({{"title", row.title}, {"panels", std::move(panels)}});
   }
   return {std::move(text), "lines", json.dump()};
-}
-
-Figure bar_figure(FigureText text, const std::vector<std::string>& categories,
-                  const std::vector<BarSeries>& series, const Axis& value_axis,
-                  const std::vector<LineStyle>& category_styles) {
-  require(!categories.empty(), "categories.size", categories.size(), "must be >= 1");
-  require(!series.empty(), "series.size", series.size(), "must be >= 1");
-  const std::string rule = fmt::format("must equal categories.size = {}", categories.size());
-  require(category_styles.empty() || category_styles.size() == categories.size(),
-          "category_styles.size", category_styles.size(), rule + " or be 0");
-  Json json = {{"categories", categories},
-               {"axis", figure_json::axis(value_axis)},
-               {"colours", Json::array()},
-               {"series", Json::array()}};
-  for (const LineStyle& style : category_styles) json["colours"].push_back(style.colour);
-  for (const BarSeries& one : series) {
-    require(one.values.size() == categories.size(), "BarSeries::values.size", one.values.size(),
-            rule);
-    require(one.errors.empty() || one.errors.size() == categories.size(), "BarSeries::errors.size",
-            one.errors.size(), rule + " or be 0");
-    json["series"].push_back({{"name", one.name},
-                              {"values", figure_json::numbers(one.values)},
-                              {"errors", figure_json::numbers(one.errors)},
-                              {"colour", one.style.colour}});
-  }
-  return {std::move(text), "bars", json.dump()};
 }
 
 Figure heat_map_figure(FigureText text, const std::vector<HeatMap>& maps, const CategoryAxis& x,

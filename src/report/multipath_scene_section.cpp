@@ -10,7 +10,7 @@
 #include "report/depth_error_scale.hpp"
 #include "report/scene_section.hpp"
 #include "report/shared/level_text.hpp"
-#include "report/table_of_rows.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -34,18 +34,8 @@ Row row_of(const DelayClass& its, const std::string& delay) {
           fmt::format("{:.1f}", 100 * its.unresolved_share)};
 }
 
-/// Smallest and largest finite value.
-ValueRange range_of(const Image<float>& image) {
-  ValueRange range{1e9, -1e9};
-  for (const double value : image.pixels)
-    if (std::isfinite(value)) {
-      range.low = std::min(range.low, value);
-      range.high = std::max(range.high, value);
-    }
-  return range.low < range.high ? range : ValueRange{0.0, 1.0};
-}
-
-Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m, double range_m) {
+Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m,
+                    const Camera& camera) {
   std::vector<ValueImage> images{{.title = "true depth", .pixels = truth_m}};
   for (std::size_t i = 0; i < scene.decodings.size(); ++i)
     images.push_back({.title = fmt::format("{}: mean {} mm", scene.decodings[i].method,
@@ -56,11 +46,11 @@ Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m, do
        .title = "Depth",
        .caption = "The mean error where multipath light arrives follows the name of each method.",
        .alt_text = "Maps of decoded depth and its error"},
-      images, {.label = "depth", .unit = "m", .range = range_of(truth_m)},
+      images, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
       {.reference = ImageReference{
            .name = "error",
            .values = truth_m,
-           .period = range_m,
+           .period = camera.range_m(),
            .factor = 1e3,
            .colours = depth_error_scale(std::max(1.0, 2e3 * scene.all.error_m[0]))}});
 }
@@ -147,11 +137,11 @@ Section multipath_scene_section(const MultipathScene& scene, const Camera& camer
       "S = {} e/s for albedo 1 at {:.2f} m, A = {} e/s.",
       scene.code, level_text(scene.light.signal_e_per_s), scene.light.reference_distance_m,
       level_text(scene.light.ambient_e_per_s))});
-  section.blocks.push_back(depth_figure(scene, truth_m, camera.range_m()));
+  section.blocks.push_back(depth_figure(scene, truth_m, camera));
   section.blocks.push_back(plan_figure(scene, truth_m));
   section.blocks.push_back(later_light_figure(scene));
   section.blocks.push_back(returns_figure(scene));
-  section.blocks.push_back(cloud_figure(scene, range_of(truth_m)));
+  section.blocks.push_back(cloud_figure(scene, depth_range(scene.truth, camera)));
   section.blocks.push_back(table_of_rows(
       "multipath-scene",
       "Errors by the mean delay of multipath light; 1: single-path decoding, 2: of two returns; "

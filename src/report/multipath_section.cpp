@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "report/shared/level_text.hpp"
-#include "report/table_of_rows.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "report/shared/level_text.hpp"
-#include "report/table_of_rows.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"

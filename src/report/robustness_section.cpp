@@ -4,10 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "report/bar_figure.hpp"
-#include "report/table_of_rows.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 
@@ -27,31 +25,6 @@ Row row(const std::string& code, const std::string& camera, const Estimate& nomi
           ratio(calibrated_m),
           estimate_mm_text(uncalibrated_m),
           ratio(uncalibrated_m)};
-}
-
-/// How much each camera costs each code whose decoder knows nothing of it.
-Figure ratio_figure(const std::vector<JudgedCode>& codes) {
-  std::vector<std::string> cameras;
-  for (const PerturbedError& p : codes.front().robustness.perturbed) cameras.push_back(p.name);
-  std::vector<BarSeries> series;
-  ColourAssignment colours;
-  const bool one = codes.size() == 1;
-  for (const JudgedCode& code : codes)
-    for (const bool calibrated : {true, false}) {
-      const std::string decoder = calibrated ? "calibrated" : "uncalibrated";
-      BarSeries bars{.name = one ? decoder : code.name + ", " + decoder};
-      for (const PerturbedError& p : code.robustness.perturbed) {
-        const Estimate& error_m = calibrated ? p.calibrated_m : p.uncalibrated_m;
-        bars.values.push_back(error_m.value / code.robustness.nominal_m.value);
-      }
-      bars.style = colours.style(bars.name);
-      series.push_back(std::move(bars));
-    }
-  return bar_figure({.id = "robustness-ratios",
-                     .title = "Cost of each perturbation",
-                     .caption = "Depth error on the perturbed camera over that on the nominal one; "
-                                "1 is no change."},
-                    cameras, series, {.label = "error ratio", .from_zero = true});
 }
 
 }  // namespace
@@ -84,12 +57,8 @@ Section robustness_section(const std::vector<JudgedCode>& codes) {
       "description: with a decoder that knows the difference (calibrated) and with one that does "
       "not (uncalibrated). All decode the same depths and the same noise.",
       is_linear ? "Linear" : "Circular");
-  Section section{
-      "Robustness",
-      {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};
-  if (!codes.empty() && !codes.front().robustness.perturbed.empty())
-    section.blocks.push_back(ratio_figure(codes));
-  return section;
+  return {"Robustness",
+          {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};
 }
 
 }  // namespace tofsmith

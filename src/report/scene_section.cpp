@@ -24,21 +24,8 @@ std::string light_text(const SceneCapture& capture) {
                      level_text(capture.point.ambient_e_per_s));
 }
 
-/// Smallest and largest true depth, with a little room.
-ValueRange depth_range(const SceneResult& scene, const Camera& camera) {
-  ValueRange range{1e9, -1e9};
-  for (const float depth : wrapped_depth_m(scene.truth, camera).pixels) {
-    if (!std::isfinite(depth)) continue;
-    range.low = std::min<double>(range.low, depth);
-    range.high = std::max<double>(range.high, depth);
-  }
-  if (range.low > range.high) return {0.0, camera.range_m()};
-  const double room = 0.02 * (range.high - range.low) + 0.01;
-  return {std::max(0.0, range.low - room), std::min(camera.range_m(), range.high + room)};
-}
-
 Figure true_scene_figure(const SceneResult& scene, const Camera& camera) {
-  ColourScale colours{.label = "depth", .unit = "m", .range = depth_range(scene, camera)};
+  ColourScale colours{.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)};
   return image_figure({.id = "true-depth",
                        .title = "The scene",
                        .caption = "True distance along each ray; pixels without return are left "
@@ -80,7 +67,7 @@ Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, con
        .title = fmt::format("Decoded depth, {}", light_text(capture)),
        .caption = "Mean errors above; errors go the shorter way around the range.",
        .alt_text = "Maps of decoded depth and its error"},
-      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      images, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
       {.max_side = 160,
        .before_name = "each pixel alone",
        .after_name = "filtered",
@@ -164,7 +151,7 @@ Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
        .alt_text = decoding.filtered
                        ? "Point clouds of the decoded scene, each pixel alone and filtered"
                        : "Point cloud of the decoded scene"},
-      clouds, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      clouds, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
       {.max_points = 20000});
 }
 
@@ -173,6 +160,18 @@ std::string name_with_error(const SceneDecoding& decoding) {
 }
 
 }  // namespace
+
+ValueRange depth_range(const SceneImage& truth, const Camera& camera) {
+  ValueRange range{1e9, -1e9};
+  for (const float depth : wrapped_depth_m(truth, camera).pixels) {
+    if (!std::isfinite(depth)) continue;
+    range.low = std::min<double>(range.low, depth);
+    range.high = std::max<double>(range.high, depth);
+  }
+  if (range.low > range.high) return {0.0, camera.range_m()};
+  const double room = 0.02 * (range.high - range.low) + 0.01;
+  return {std::max(0.0, range.low - room), std::min(camera.range_m(), range.high + room)};
+}
 
 ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m) {
   const auto count = static_cast<Eigen::Index>(depth_m.size());
@@ -205,7 +204,7 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
        .alt_text = fmt::format("Depth decoded with {} on the left and {} on the right",
                                standard->code, best_code)},
       {{.title = "", .pixels = best->depth_m, .before = standard->depth_m}},
-      {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
       {.before_name = name_with_error(*standard), .after_name = name_with_error(*best)});
 }
 

@@ -23,6 +23,9 @@ Section scene_section(const SceneResult& scene, const Camera& camera, const std:
 std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera& camera,
                                           const std::string& best_code);
 
+/// Smallest and largest true depth, with a little room.
+ValueRange depth_range(const SceneImage& truth, const Camera& camera);
+
 /// Every pixel at its place in front of the camera, coloured by depth.
 ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m);
 

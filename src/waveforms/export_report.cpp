@@ -4,10 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "report/shared/level_text.hpp"
+#include "report/shared/table_of_rows.hpp"
 #include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
@@ -17,14 +18,6 @@ namespace tofsmith {
 namespace {
 
 using Row = std::vector<std::string>;
-
-Table table_of(std::string id, std::string caption, std::vector<Row> rows) {
-  Table table{.id = std::move(id), .caption = std::move(caption)};
-  for (std::size_t i = 0; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], i >= 1});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  return table;
-}
 
 /// Correlation functions as designed, dotted, and as generated.
 Figure correlation_figure(const CodeSet& code, const Camera& actual) {
@@ -136,10 +129,10 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
   page.sections.push_back({"Export", {description(exported.waveforms)}});
   page.sections.push_back(
       {"Waveforms",
-       {table_of("generators",
-                 "Each waveform as designed (nominal) and as the generator plays it "
-                 "(actual), before the impulse responses.",
-                 generator_report_rows(exported.generators)),
+       {table_of_rows("generators",
+                      "Each waveform as designed (nominal) and as the generator plays it "
+                      "(actual), before the impulse responses.",
+                      generator_report_rows(exported.generators), {0}),
         waveform_figure(
             {.id = "waveforms",
              .title = "Waveforms and correlation functions",
@@ -150,7 +143,7 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
   if (loss)
     page.sections.push_back(
         {"Depth error",
-         {table_of(
+         {table_of_rows(
              "loss",
              fmt::format(
                  "{} depth error of the nominal waveforms, of the actual ones with a decoder that "
@@ -158,7 +151,7 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
                  "see the same depths and the same noise, {} trials each, seed {}.",
                  kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->nominal.trials,
                  loss->nominal.seed),
-             generator_loss_rows(*loss, kind))}});
+             generator_loss_rows(*loss, kind), {0})}});
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }

@@ -137,7 +137,7 @@ class Calibrate(BenchRecordsTest):
         self.assertEqual(names, ["edge jitter 50 ps", "clock 5.13 ns", "droop 3 %",
                                  "all together"])
         self.do(*arguments, "--perturb", "droop=3%", "-o", "page.html")
-        self.assertIn("robustness-ratios", self.bytes_of("page.html").decode())
+        self.assertIn("\"id\":\"robustness\"", self.bytes_of("page.html").decode())
         self.refuse([*arguments, "--perturb", "jiter=50ps"], "jitter=VALUE", code=2)
         self.refuse([*arguments, "--perturb", "jitter=50"], "with its unit", code=2)
         self.refuse([*arguments, "--perturb", "droop=300%"], "share in (0, 1)", code=2)

@@ -159,15 +159,17 @@ TEST(EvaluationReport, ShowsCodesEvenOfTheSameName) {
   const Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera).renamed(odd_name);
   const DepthErrorReport error = evaluate(code, camera, {.trials = 1000});
-  expect_sound(evaluation_report(camera, {code, code}, {error, error}, "x"), 4);
+  const std::vector<EvaluatedCode> evaluated(2, {error, 0, {}, {}});
+  expect_sound(evaluation_report(camera, {code, code}, evaluated, "x"), 4);
 }
 
 TEST(EvaluationReport, DrawsHowOftenDepthsOccurWhereTheyAreNotAlike) {
   Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   const auto html_of = [&] {
-    const DepthErrorReport error = evaluate(code, camera, {.trials = 1000});
-    const Page page = evaluation_report(camera, {code}, {error}, "x");
+    const std::vector<EvaluatedCode> evaluated{
+        {evaluate(code, camera, {.trials = 1000}), 0, {}, {}}};
+    const Page page = evaluation_report(camera, {code}, evaluated, "x");
     expect_sound(page, 3);
     return page_document(page);
   };

@@ -8,7 +8,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "report/bar_figure.hpp"
 #include "tofsmith/core/units.hpp"
 #include "unpacked.hpp"
 
@@ -227,15 +226,6 @@ TEST(PointCloud, RejectsValuesThatDoNotFitThePoints) {
   ColouredPoints wrong = one;
   wrong.values.resize(9);
   EXPECT_THROW(point_cloud_figure(some_text, {one, wrong}, {}), std::invalid_argument);
-}
-
-TEST(BarFigure, HasOneValuePerCategory) {
-  const std::vector<BarSeries> series = {{.name = "a", .values = {1, nan}}};
-  const json figure = json_of(bar_figure(some_text, {"x", "y"}, series, some_axis));
-  EXPECT_EQ(figure["categories"], json::parse(R"(["x", "y"])"));
-  EXPECT_EQ(figure["series"][0]["values"], json::parse("[1.0, null]"));
-  EXPECT_THROW(bar_figure(some_text, {"x"}, series, {}), std::invalid_argument);
-  EXPECT_THROW(bar_figure(some_text, {"x", "y"}, series, {}, {LineStyle{}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "core/shared/random.hpp"
-#include "report/bar_figure.hpp"
 #include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
@@ -259,9 +258,6 @@ Table candidates() {
 
 Page sample_page() {
   ColourAssignment colours;
-  std::vector<std::string> names = {codes.begin(), codes.end()};
-  std::vector<LineStyle> styles;
-  for (const auto& name : names) styles.push_back(colours.style(name));
   const auto waves = waveforms(colours);
   return {
       .title = "Codes for paper-10f0",
@@ -277,20 +273,7 @@ Page sample_page() {
                          {"mean depth error", "60 ± 0.4 mm"},
                          {"of sinusoid-k4's", "46 %"},
                          {"of the Cramér-Rao bound", "1.31 ×"}}},
-             candidates(),
-             bar_figure(
-                 {"ranking", "Mean depth error by code",
-                  "Geometric mean over all operating points; bars are standard errors.", ""},
-                 names,
-                 {{"mean", {131, 117, 102, 88, 74, 60, 46, 32}, {4, 4, 3, 3, 2, 2, 1, 1}, {}}},
-                 {.label = "Mean depth error", .unit = "mm", .from_zero = true}, styles),
-             bar_figure({"ranking-log", "The same beside its bound", "", ""}, names,
-                        {{"code",
-                          {131, 117, 102, 88, 74, 60, 46, 32},
-                          {4, 4, 3, 3, 2, 2, 1, 1},
-                          colours.style("hamiltonian-k4")},
-                         {"bound", {60, 58, 50, 42, 30, 31, 28, 11}, {}, reference_style()}},
-                        {.label = "Mean depth error", .unit = "mm", .logarithmic = true})}},
+             candidates()}},
            {"Camera",
             {KeyValueList{{{"Fundamental frequency", "15 MHz"},
                            {"Unambiguous range", "9.99 m"},

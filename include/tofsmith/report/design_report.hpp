@@ -29,11 +29,8 @@ Page design_report(const Camera& camera, const DesignResult& result,
 /// The same of a directory that holds a design.
 Page design_report(const DesignedDirectory& found, const std::string& command_line);
 
-/// Codes evaluated on a camera, without any design.
-Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
-                       const std::vector<DepthErrorReport>& errors,
-                       const std::string& command_line);
-/// The same, with what zncc makes of the same trials and with perturbed cameras where they have it.
+/// Codes evaluated on a camera, with the errors by zncc in the same trials and those on perturbed
+/// cameras if they were computed.
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        std::span<const EvaluatedCode> evaluated, const std::string& command_line);
 

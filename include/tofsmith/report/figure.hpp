@@ -42,7 +42,7 @@ std::string axis_title(const std::string& label, const std::string& unit);
 /// A figure as data: values, axes and units. The viewer of the page draws it.
 class Figure {
  public:
-  /// @param kind  "lines", "bars", "map", "image", "curves" or "cloud"
+  /// @param kind  "lines", "map", "image", "curves" or "cloud"
   /// @param json  members of the figure in the page's document; the functions below write it
   /// @throws std::invalid_argument if the id is not made of letters, digits and dashes, or the
   ///         title is empty
