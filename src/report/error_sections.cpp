@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "report/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
@@ -130,20 +129,29 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
   return table;
 }
 
-Figure heat_maps(const Camera& camera, const std::vector<DepthErrorRow>& codes,
-                 DepthErrorKind kind) {
-  const bool is_linear = kind == DepthErrorKind::linear;
+/// Maps of the error of each code over signal and ambient light.
+Figure error_maps(const OperatingRange& range, const std::vector<DepthErrorRow>& codes) {
+  CategoryAxis x{.label = "ambient", .unit = "e/s"}, y{.label = "signal", .unit = "e/s"};
+  for (const double a : range.ambient_e_per_s) x.ticks.push_back(level_text(a));
+  for (const double s : range.signal_e_per_s) y.ticks.push_back(level_text(s));
   std::vector<HeatMap> maps;
-  for (const DepthErrorRow& code : codes)
-    maps.push_back(operating_map(camera.operating, *code.error, [&](const PointDepthError& p) {
-      return 1e3 * (is_linear ? p.linear_mde_m.value : p.circular_mde_m.value);
-    }));
-  return operating_maps(
+  for (const DepthErrorRow& code : codes) {
+    HeatMap map{.title = code.error->code, .values = {}};
+    map.values.resize(std::ssize(y.ticks), std::ssize(x.ticks));
+    auto point = code.error->points.begin();  // signal by signal
+    for (Eigen::Index s = 0; s < map.values.rows(); ++s)
+      for (Eigen::Index a = 0; a < map.values.cols(); ++a, ++point)
+        map.values(s, a) =
+            1e3 * (range.error == DepthErrorKind::linear ? point->linear_mde_m.value
+                                                         : point->circular_mde_m.value);
+    maps.push_back(std::move(map));
+  }
+  return heat_map_figure(
       {.id = "error-maps",
-       .title = fmt::format("Mean {} depth error by light level", name_of(kind)),
+       .title = fmt::format("Mean {} depth error by light level", name_of(range.error)),
        .caption = "One logarithmic colour scale, best code first; of many codes the best of every "
                   "family."},
-      camera.operating, maps, {.label = "depth error", .unit = "mm", .logarithmic = true});
+      maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
 }  // namespace
@@ -196,14 +204,13 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best, bool with_curves) {
   constexpr std::size_t most_maps = 6, most_curves = 7;  // more hide each other
-  const DepthErrorKind kind = camera.operating.error;
-  const std::vector<std::size_t> order = by_error(codes, kind);
+  const std::vector<std::size_t> order = by_error(codes, camera.operating.error);
   Section section{.title = "Depth error"};
   section.blocks.push_back(comparison_table(camera, codes, order, best));
   if (with_curves && camera.operating.signal_e_per_s.size() > 1)
     section.blocks.push_back(
         error_by_signal("error-by-signal", camera, shown_codes(codes, order, most_curves)));
-  section.blocks.push_back(heat_maps(camera, shown_codes(codes, order, most_maps), kind));
+  section.blocks.push_back(error_maps(camera.operating, shown_codes(codes, order, most_maps)));
   section.blocks.push_back(distance_table(codes, order));
   return section;
 }

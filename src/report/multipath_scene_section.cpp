@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/depth_error_scale.hpp"
 #include "report/scene_section.hpp"
 #include "report/shared/level_text.hpp"
 #include "report/shared/table_of_rows.hpp"
@@ -47,12 +46,7 @@ Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m,
        .caption = "The mean error where multipath light arrives follows the name of each method.",
        .alt_text = "Maps of decoded depth and its error"},
       images, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
-      {.reference = ImageReference{
-           .name = "error",
-           .values = truth_m,
-           .period = camera.range_m(),
-           .factor = 1e3,
-           .colours = depth_error_scale(std::max(1.0, 2e3 * scene.all.error_m[0]))}});
+      {.reference = error_reference(scene.truth, camera, 2e3 * scene.all.error_m[0])});
 }
 
 Figure later_light_figure(const MultipathScene& scene) {

@@ -53,30 +53,6 @@ std::string scaled_text(const Camera& camera, CameraQuantity quantity, double fa
   return amount.empty() ? times : fmt::format("{} = {}", times, amount);
 }
 
-Figure error_over_power(const Camera& camera, const RequirementMap& map, double error_m) {
-  std::vector<Series> series;
-  ColourAssignment colours;
-  for (std::size_t b = 0; b < map.bandwidth.size(); b += 2) {
-    const std::string name = scaled_text(camera, CameraQuantity::bandwidth, map.bandwidth[b]);
-    Series curve{.name = name, .x = map.power, .y = {}, .mark = Mark::line_and_markers};
-    for (std::size_t p = 0; p < map.power.size(); ++p)
-      curve.y.push_back(1e3 *
-                        map.error_m(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(p)));
-    curve.style = colours.style(name);
-    series.push_back(std::move(curve));
-  }
-  series.push_back({.name = "asked for",
-                    .x = {map.power.front(), map.power.back()},
-                    .y = {1e3 * error_m, 1e3 * error_m},
-                    .style = reference_style()});
-  return line_figure({.id = "error-over-power",
-                      .title = "Depth error over power, at several bandwidths",
-                      .caption = "Of the best code found for each bandwidth, designed at the power "
-                                 "that the camera has, baselines among them."},
-                     series, {.label = "power", .unit = "times the camera's", .logarithmic = true},
-                     {.label = "depth error", .unit = "mm", .logarithmic = true});
-}
-
 Figure error_map(const RequirementMap& map, double error_m) {
   HeatMap values{.title = "", .values = 1e3 * map.error_m};
   CategoryAxis x{.label = "power", .unit = "times the camera's"};
@@ -86,8 +62,8 @@ Figure error_map(const RequirementMap& map, double error_m) {
   return heat_map_figure(
       {.id = "error-map",
        .title = "Depth error over bandwidth and power",
-       .caption = fmt::format("In mm; {} is asked for: everything above and to the right of the "
-                              "cells with that number suffices.",
+       .caption = fmt::format("Best code found for each bandwidth, designed at the power of the "
+                              "camera. Cells of at most {} suffice.",
                               length_text(error_m))},
       {values}, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
@@ -181,9 +157,7 @@ Page requirements_report(const Camera& camera, const Requirements& found,
   page.sections.push_back(
       {"What suffices", {conditions(camera, found, options), std::move(table)}});
   if (found.map)
-    page.sections.push_back({"Bandwidth against power",
-                             {error_map(*found.map, options.error_m),
-                              error_over_power(camera, *found.map, options.error_m)}});
+    page.sections.push_back({"Bandwidth against power", {error_map(*found.map, options.error_m)}});
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }

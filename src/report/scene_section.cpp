@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "report/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
@@ -62,20 +61,16 @@ Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, con
         {.title = title_of(d), .pixels = d.filtered ? d.filtered->depth_m : d.depth_m});
     if (d.filtered) images.back().before = d.depth_m;
   }
-  return image_figure(
-      {.id = figure_id("decoded", capture.light),
-       .title = fmt::format("Decoded depth, {}", light_text(capture)),
-       .caption = "Mean errors above; errors go the shorter way around the range.",
-       .alt_text = "Maps of decoded depth and its error"},
-      images, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
-      {.max_side = 160,
-       .before_name = "each pixel alone",
-       .after_name = "filtered",
-       .reference = ImageReference{.name = "error",
-                                   .values = wrapped_depth_m(scene.truth, camera),
-                                   .period = camera.range_m(),
-                                   .factor = 1e3,
-                                   .colours = depth_error_scale(std::max(1.0, 4e3 * scale_m))}});
+  return image_figure({.id = figure_id("decoded", capture.light),
+                       .title = fmt::format("Decoded depth, {}", light_text(capture)),
+                       .caption = "Mean errors above; errors go the shorter way around the range.",
+                       .alt_text = "Maps of decoded depth and its error"},
+                      images,
+                      {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
+                      {.max_side = 160,
+                       .before_name = "each pixel alone",
+                       .after_name = "filtered",
+                       .reference = error_reference(scene.truth, camera, 4e3 * scale_m)});
 }
 
 const SceneDecoding* decoding_of(const SceneCapture& capture, const std::string& code) {
@@ -171,6 +166,18 @@ ValueRange depth_range(const SceneImage& truth, const Camera& camera) {
   if (range.low > range.high) return {0.0, camera.range_m()};
   const double room = 0.02 * (range.high - range.low) + 0.01;
   return {std::max(0.0, range.low - room), std::min(camera.range_m(), range.high + room)};
+}
+
+ImageReference error_reference(const SceneImage& truth, const Camera& camera, double limit_mm) {
+  const double end_mm = std::max(1.0, limit_mm);
+  return {.name = "error",
+          .values = wrapped_depth_m(truth, camera),
+          .period = camera.range_m(),
+          .factor = 1e3,
+          .colours = {.label = "decoded minus true",
+                      .unit = "mm",
+                      .map = ColourMap::diverging,
+                      .range = ValueRange{-end_mm, end_mm}}};
 }
 
 ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m) {

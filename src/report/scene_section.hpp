@@ -26,6 +26,9 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
 /// Smallest and largest true depth, with a little room.
 ValueRange depth_range(const SceneImage& truth, const Camera& camera);
 
+/// Decoded minus true depth; white is right, the colours end at the limit.
+ImageReference error_reference(const SceneImage& truth, const Camera& camera, double limit_mm);
+
 /// Every pixel at its place in front of the camera, coloured by depth.
 ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m);
 

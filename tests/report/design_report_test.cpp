@@ -103,7 +103,7 @@ TEST(DesignReport, ShowsCamerasOfManyKinds) {
   Camera analog = small_camera("paper-5f0");
   analog.light.binary = analog.sensor.binary = false;
   for (const Camera& camera : {two_bucket, one_point, analog})
-    expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 5);
+    expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 4);
 }
 
 TEST(DesignReport, ShowsErrorsOfOperatingMultipathEvenWhereNoCodeCanSeparateTwo) {

@@ -39,7 +39,7 @@ std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
                                                        const Requirements& found,
                                                        const RequirementOptions& options);
 
-/// The same as a page, with the error over bandwidth and power.
+/// The same as a page, with a map of the error over bandwidth and power.
 Page requirements_report(const Camera& camera, const Requirements& found,
                          const RequirementOptions& options, const std::string& command_line);
 
