@@ -25,7 +25,8 @@ if(TOFSMITH_BUILD_APPS)
     COMMAND tofsmith_demo demo -o "${demo_directory}" --trials 2000 --force)
   set_tests_properties(Report.DemoRuns PROPERTIES FIXTURES_SETUP demo_report TIMEOUT 300)
   add_test(NAME Report.DrawsEveryFigureOfTheDemoInABrowser
-    COMMAND ${browser_test} "${demo_directory}/report.html" --screenshot demo_report.png)
+    COMMAND ${browser_test} "${demo_directory}/report.html" --screenshot demo_report.png
+      --max-bytes 1500000)
   set_tests_properties(Report.DrawsEveryFigureOfTheDemoInABrowser
     PROPERTIES FIXTURES_REQUIRED demo_report SKIP_RETURN_CODE 77 TIMEOUT 300)
 endif()

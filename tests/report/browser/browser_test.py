@@ -191,6 +191,7 @@ def main():
     parser.add_argument("--width", type=int, default=1280, help="of the window, in pixels")
     parser.add_argument("--height", type=int, default=900)
     parser.add_argument("--dark", action="store_true", help="as a reader who prefers dark pages")
+    parser.add_argument("--max-bytes", type=int, help="largest size of the page")
     arguments = parser.parse_args()
     for program in (CHROMIUM, CHROMEDRIVER):
         if not pathlib.Path(program).exists():
@@ -202,6 +203,9 @@ def main():
         total, problems = problems_of(driver, arguments.page)
         if arguments.screenshot:
             save_screenshot(driver, arguments.screenshot)
+    size = arguments.page.stat().st_size
+    if arguments.max_bytes and size > arguments.max_bytes:
+        problems.append(f"{size} bytes; expected at most {arguments.max_bytes}")
     for problem in problems:
         print(f"{arguments.page}: {problem}")
     print(f"{arguments.page}: {total} figures, {len(problems)} problems")
