@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -93,6 +94,32 @@ TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsTheRest) {
   EXPECT_THAT(text, Not(HasSubstr("points.ply")));
   for (std::size_t i = 1; i < page.sections.size(); ++i)
     EXPECT_EQ(page.sections[i].layout, SectionLayout::folded) << page.sections[i].title;
+}
+
+TEST(DesignReport, ShowsEachCurveOnceAndNoneThroughFewSteps) {
+  const Camera camera = small_camera("paper-5f0");
+  DesignResult result = design(camera, small_options());
+  for (std::size_t i = 0; i < result.candidates.size(); ++i)
+    if (result.candidates[i].is_designed()) result.best = i;
+  ASSERT_TRUE(result.winner().is_designed());
+  const std::string best = figure_id("waveforms", result.winner().code.name());
+  const Page page = design_report(camera, result, std::nullopt, "");
+  int error_curves = 0;
+  for (const Figure* figure : figures_of(page)) {
+    const std::string& id = figure->text().id;
+    EXPECT_NE(id, best);
+    const auto json = nlohmann::json::parse(figure->json());
+    if (figure->kind() == "lines" &&
+        json["columns"][0]["y"]["label"].get<std::string>().ends_with("depth error") &&
+        json["columns"][0]["x"]["label"] == "signal")
+      ++error_curves;
+    if (!id.starts_with("convergence-")) continue;
+    std::size_t longest = 0;
+    for (const auto& series : json["rows"][0]["panels"][0])
+      longest = std::max(longest, series["y"].size());
+    EXPECT_GE(longest, 4u) << id;
+  }
+  EXPECT_EQ(error_curves, 1);
 }
 
 TEST(DesignReport, ShowsCamerasOfManyKinds) {
