@@ -30,16 +30,29 @@ function inked(svg) {
   return copy;
 }
 
-/** Text nodes below an element with the box of each line. */
+/** Lines of a text node with their boxes: [{text, box}]. Lines break after spaces and hyphens. */
+function linesOf(node) {
+  const content = node.textContent, range = document.createRange(), lines = [];
+  for (const {index, 0: part} of content.matchAll(/[^\s-]*-|[^\s-]+/g)) {
+    const end = index + part.length, last = lines.at(-1);
+    range.setStart(node, index);
+    range.setEnd(node, end);
+    const box = range.getBoundingClientRect();
+    if (last && Math.abs(last.box.top - box.top) < 2)
+      last.end = end;
+    else
+      lines.push({start: index, end, box});
+  }
+  return lines.map(({start, end, box}) => ({text: content.slice(start, end).replace(/\s+/g, ' '), box}));
+}
+
+/** Lines of text below an element: [{text, box, owner}]. */
 function textsOf(root) {
   const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT), texts = [];
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const owner = node.parentElement;
-    if (!node.textContent.trim() || owner.closest('svg, .save, .value, .choice, [hidden]')) continue;
-    const range = document.createRange();
-    range.selectNodeContents(node);
-    const lines = range.getClientRects().length;
-    texts.push({text: node.textContent, box: range.getBoundingClientRect(), owner, lines});
+    if (owner.closest('svg, .save, .value, .choice, [hidden]')) continue;
+    for (const line of linesOf(node)) texts.push({...line, owner});
   }
   return texts;
 }
@@ -82,7 +95,7 @@ export function svgOf(root) {
     const size = parseFloat(style.fontSize), {x, y} = placed(box);
     page.append(drawn('text', {
       x,
-      y: y + 0.5 * Math.min(box.height, 1.5 * size) + 0.35 * size,
+      y: y + 0.5 * box.height + 0.35 * size,
       fill: style.color,
       'font-size': size,
       'font-family': style.fontFamily,

@@ -86,6 +86,17 @@ const done = arguments[0], wrong = [], blobs = [];
 URL.createObjectURL = (blob) => { blobs.push(blob); return 'data:,'; };
 HTMLAnchorElement.prototype.click = () => {};
 const decoded = async (blob) => { try { await createImageBitmap(blob); return true; } catch { return false; } };
+const cutTexts = (text) => {
+  const place = document.createElement('div');
+  place.style.cssText = 'position:absolute;left:0;top:0';
+  place.innerHTML = text;
+  document.body.append(place);
+  const frame = place.firstElementChild.getBoundingClientRect();
+  const cut = [...place.querySelectorAll(':scope > svg > text')].filter(
+      node => node.getBoundingClientRect().right > frame.right + 4).map(node => node.textContent);
+  place.remove();
+  return cut;
+};
 (async () => {
   for (const figure of document.querySelectorAll('[data-figure]')) {
     for (const button of figure.querySelectorAll('.save button')) {
@@ -99,6 +110,7 @@ const decoded = async (blob) => { try { await createImageBitmap(blob); return tr
       if (button.textContent === 'SVG' &&
           new DOMParser().parseFromString(text, 'image/svg+xml').querySelector('parsererror'))
         wrong.push(`${name} is no XML`);
+      if (button.textContent === 'SVG') wrong.push(...cutTexts(text).map((cut) => `${name} cuts '${cut}'`));
       if (button.textContent === 'CSV' && text.split('\\n').length < 3) wrong.push(`${name} has no rows`);
     }
     if (figure.querySelectorAll('.save button').length !== 3) wrong.push(`${figure.dataset.figure} lacks buttons`);
