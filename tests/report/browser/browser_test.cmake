@@ -26,7 +26,7 @@ if(TOFSMITH_BUILD_APPS)
   set_tests_properties(Report.DemoRuns PROPERTIES FIXTURES_SETUP demo_report TIMEOUT 300)
   add_test(NAME Report.DrawsEveryFigureOfTheDemoInABrowser
     COMMAND ${browser_test} "${demo_directory}/report.html" --screenshot demo_report.png
-      --max-bytes 1500000)
+      --width 1400 --height 900 --one-screen --max-bytes 1500000)
   set_tests_properties(Report.DrawsEveryFigureOfTheDemoInABrowser
     PROPERTIES FIXTURES_REQUIRED demo_report SKIP_RETURN_CODE 77 TIMEOUT 300)
 endif()

@@ -143,6 +143,15 @@ def browser(width, height, dark):
             driver.quit()
 
 
+def first_screen_problems(driver, page, height):
+    """What of the first screen of a report a window does not show, as sentences."""
+    driver.get(page.resolve().as_uri())
+    time.sleep(1)
+    bottom = driver.execute_script(
+        "return document.querySelector('.front').getBoundingClientRect().bottom")
+    return [f"the first screen ends at {bottom} of {height} px"] if bottom > height else []
+
+
 def problems_of(driver, page):
     """What is wrong with the page, as sentences."""
     driver.get(page.resolve().as_uri())
@@ -203,6 +212,8 @@ def main():
     parser.add_argument("--width", type=int, default=1280, help="of the window, in pixels")
     parser.add_argument("--height", type=int, default=900)
     parser.add_argument("--dark", action="store_true", help="as a reader who prefers dark pages")
+    parser.add_argument("--one-screen", action="store_true",
+                        help="the first screen of the report fits in the window")
     parser.add_argument("--max-bytes", type=int, help="largest size of the page")
     arguments = parser.parse_args()
     for program in (CHROMIUM, CHROMEDRIVER):
@@ -212,7 +223,9 @@ def main():
     if not arguments.page.is_file():
         parser.error(f"{arguments.page} is not a file")
     with browser(arguments.width, arguments.height, arguments.dark) as driver:
+        hidden = first_screen_problems(driver, arguments.page, arguments.height) if arguments.one_screen else []
         total, problems = problems_of(driver, arguments.page)
+        problems += hidden
         if arguments.screenshot:
             save_screenshot(driver, arguments.screenshot)
     size = arguments.page.stat().st_size
