@@ -6,7 +6,6 @@
 
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/depth_prior.hpp"
-#include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/units.hpp"
@@ -16,6 +15,83 @@
 namespace tofsmith {
 
 namespace {
+
+constexpr int curve_points = 240;  // of a drawn period
+
+/// A waveform by its steps, not on a grid.
+Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
+               const LineStyle& style) {
+  const StepFunction steps = waveform.steps();
+  Series series{.name = name, .period = period_ns, .mark = Mark::steps, .style = style};
+  for (std::size_t i = 0; i < steps.values.size(); ++i) {
+    series.x.push_back(steps.breakpoints[i] * period_ns);
+    series.y.push_back(steps.values[i]);
+  }
+  return series;
+}
+
+/// `points` equal steps over [0, end), without the end point: the x of a drawn period.
+std::vector<double> axis_values(int points, double end) {
+  std::vector<double> values(static_cast<std::size_t>(points));
+  for (int j = 0; j < points; ++j) values[static_cast<std::size_t>(j)] = end * j / points;
+  return values;
+}
+
+/// A waveform over one period [ns], by its switching times and not on a grid: "as designed"
+/// (dotted, only where a generator changes it), "waveform" as generated (thin if there is an
+/// impulse response), and the same "after the impulse response".
+std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
+                               const ImpulseResponse& response, double fundamental_frequency_hz,
+                               const LineStyle& style) {
+  const double period_ns = 1e9 / fundamental_frequency_hz;
+  LineStyle faint = style;
+  faint.width_px = 1.0;
+  std::vector<Series> series;
+  if (!(nominal == actual))
+    series.push_back(stepped("as designed", nominal, period_ns, reference_style()));
+  if (response.kind == ImpulseResponse::Kind::none) {
+    series.push_back(stepped("waveform", actual, period_ns, style));
+    return series;
+  }
+  series.push_back(stepped("waveform", actual, period_ns, faint));
+  series.push_back(
+      {.name = "after the impulse response",
+       .x = axis_values(curve_points, period_ns),
+       .y = to_values(arm_output(actual, response, fundamental_frequency_hz, curve_points)),
+       .period = period_ns,
+       .style = style});
+  return series;
+}
+
+/// The same of a mixer by its drives x: the weights 2 x - 1.
+std::vector<Series> weight_series(std::vector<Series> drive) {
+  for (Series& series : drive)
+    for (auto& value : series.y) value = 2 * value - 1;
+  return drive;
+}
+
+/// A period of a correlation function over depth.
+Series correlation_series(std::string name, const Eigen::VectorXd& values, double range_m,
+                          const LineStyle& style) {
+  return {.name = std::move(name),
+          .x = axis_values(static_cast<int>(values.size()), range_m),
+          .y = to_values(values),
+          .period = range_m,
+          .style = style};
+}
+
+/// The columns of a grid of pairs: modulation, demodulation, correlation function.
+std::vector<PanelColumn> waveform_columns(bool is_signed) {
+  return {{.title = "Modulation",
+           .x = {.label = "time", .unit = "ns"},
+           .y = {.label = "power / average", .from_zero = true}},
+          {.title = "Demodulation",
+           .x = {.label = "time", .unit = "ns"},
+           .y = {.label = is_signed ? "weight" : "gain", .from_zero = true}},
+          {.title = "Correlation",
+           .x = {.label = "depth", .unit = "m"},
+           .y = {.label = "value", .from_zero = true}}};
+}
 
 std::string response_text(const ImpulseResponse& response) {
   switch (response.kind) {
@@ -74,18 +150,12 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
 
   std::vector<PanelRow> rows;
   for (int i = 0; i < code.measurements(); ++i) {
-    std::vector<Series> correlations{{.name = "correlation function",
-                                      .x = axis_values(curve_points, range_m),
-                                      .y = to_values(table.col(i)),
-                                      .period = range_m,
-                                      .style = correlation}};
+    std::vector<Series> correlations{
+        correlation_series("correlation function", table.col(i), range_m, correlation)};
     const int target_column = code.exposure_of(i);
     if (i % code.taps() == 0 && target_column < target.cols())
-      correlations.push_back({.name = "target",
-                              .x = axis_values(static_cast<int>(target.rows()), range_m),
-                              .y = to_values(target.col(target_column)),
-                              .period = range_m,
-                              .style = reference_style()});
+      correlations.push_back(
+          correlation_series("target", target.col(target_column), range_m, reference_style()));
     std::vector<Series> gates =
         arm_series(code.demodulation(i), actual.demodulation[static_cast<std::size_t>(i)],
                    camera.sensor.impulse_response, frequency_hz, sensor);
@@ -98,6 +168,25 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                     std::move(gates), std::move(correlations)}});
   }
   return small_multiples(std::move(text), waveform_columns(code.is_signed()), rows);
+}
+
+Figure correlation_figure(FigureText text, const CodeSet& code, const Camera& camera) {
+  Camera ideal = camera;
+  ideal.light.generator.reset();
+  ideal.sensor.generator.reset();
+  const Eigen::MatrixXd designed = ForwardModel(code, ideal).correlation_table(curve_points),
+                        generated = ForwardModel(code, camera).correlation_table(curve_points);
+  std::vector<Series> series;
+  ColourAssignment colours;
+  for (Eigen::Index k = 0; k < designed.cols(); ++k) {
+    const std::string name = fmt::format("measurement {}", k + 1);
+    series.push_back(
+        correlation_series("as designed", designed.col(k), camera.range_m(), reference_style()));
+    series.push_back(
+        correlation_series(name, generated.col(k), camera.range_m(), colours.style(name)));
+  }
+  return line_figure(std::move(text), series, {.label = "depth", .unit = "m"},
+                     {.label = "correlation"});
 }
 
 Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include "report/shared/table_of_rows.hpp"
-#include "report/shared/waveform_series.hpp"
-#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/code_figures.hpp"
@@ -18,39 +16,6 @@ namespace tofsmith {
 namespace {
 
 using Row = std::vector<std::string>;
-
-/// Correlation functions as designed, dotted, and as generated.
-Figure correlation_figure(const CodeSet& code, const Camera& actual) {
-  Camera ideal = actual;
-  ideal.light.generator.reset();
-  ideal.sensor.generator.reset();
-  const double range_m = actual.range_m();
-  const std::vector<double> depth_m = axis_values(curve_points, range_m);
-  const Eigen::MatrixXd nominal = ForwardModel(code, ideal).correlation_table(curve_points),
-                        now = ForwardModel(code, actual).correlation_table(curve_points);
-  std::vector<Series> series;
-  ColourAssignment colours;
-  for (Eigen::Index k = 0; k < nominal.cols(); ++k) {
-    const auto values = [](const auto& column) {
-      return std::vector<double>(column.begin(), column.end());
-    };
-    series.push_back({.name = "as designed",
-                      .x = depth_m,
-                      .y = values(nominal.col(k)),
-                      .period = range_m,
-                      .style = reference_style()});
-    const std::string name = fmt::format("measurement {}", k + 1);
-    series.push_back({.name = name,
-                      .x = depth_m,
-                      .y = values(now.col(k)),
-                      .period = range_m,
-                      .style = colours.style(name)});
-  }
-  return line_figure({.id = "correlation",
-                      .title = "Correlation functions",
-                      .caption = "Lines: as the generator plays the waveforms."},
-                     series, {.label = "depth", .unit = "m"}, {.label = "correlation"});
-}
 
 KeyValueList description(const WaveformExport& exported) {
   const double frequency_hz = exported.fundamental_frequency_hz;
@@ -139,7 +104,10 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
              .caption = "One row per measurement, over one period. Dotted: as designed, "
                         "where the generator changes it."},
             code, actual),
-        correlation_figure(code, actual)}});
+        correlation_figure({.id = "correlation",
+                            .title = "Correlation functions",
+                            .caption = "Lines: as the generator plays the waveforms."},
+                           code, actual)}});
   if (loss)
     page.sections.push_back(
         {"Depth error",

@@ -24,6 +24,9 @@ std::string figure_id(const std::string& prefix, const std::string& name);
 Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,
                        const Eigen::MatrixXd& target = {});
 
+/// The correlation functions of a code as the generators play it, and as designed (dotted).
+Figure correlation_figure(FigureText text, const CodeSet& code, const Camera& camera);
+
 /// The coding curves of some codes in their three directions of largest extent, coloured by depth.
 Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
                            const Camera& camera);
