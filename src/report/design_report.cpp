@@ -25,31 +25,17 @@ std::string ratio(const Estimate& error, const Estimate& other) {
   return fmt::format("{:.4f}", error.value / other.value);
 }
 
-/// A candidate with its errors.
-struct Judged {
-  const Candidate* candidate;
-  Estimate single_m, behind_m;
-  std::optional<Estimate> two_return_m;
-  double weighed_m;
-};
-
-std::vector<Judged> by_weighed_error(const OperatingMultipath& returns, const DesignResult& result,
-                                     DepthErrorKind kind) {
-  std::vector<Judged> all;
-  for (const Candidate& c : result.candidates) {
-    if (!c.multipath) continue;
-    Judged judged{&c, c.error.of(kind).geometric_mean_m, c.multipath->single_path.of(kind),
-                  std::nullopt, 0.0};
-    if (c.multipath->two_return) judged.two_return_m = c.multipath->two_return->circular_m;
-    judged.weighed_m = returns.weighed(judged.single_m.value, judged.behind_m.value);
-    all.push_back(judged);
-  }
-  std::ranges::stable_sort(all, {}, &Judged::weighed_m);
-  return all;
-}
-
-Table operating_multipath_table(const OperatingMultipath& returns, const std::vector<Judged>& codes,
-                                const Candidate& winner, std::string_view kind) {
+/// The errors of the candidates with single and with second returns, by their weighed error.
+Section operating_multipath_section(const OperatingMultipath& returns, const DesignResult& result,
+                                    DepthErrorKind kind) {
+  using Weighed = std::pair<double, const Candidate*>;
+  std::vector<Weighed> codes;
+  for (const Candidate& c : result.candidates)
+    if (c.multipath)
+      codes.emplace_back(returns.weighed(c.error.of(kind).geometric_mean_m.value,
+                                         c.multipath->single_path.of(kind).value),
+                         &c);
+  std::ranges::stable_sort(codes, {}, &Weighed::first);
   Table table{
       .id = "operating-multipath",
       .caption = fmt::format(
@@ -57,29 +43,22 @@ Table operating_multipath_table(const OperatingMultipath& returns, const std::ve
           "behind a second return of ratio {} to {}, {} to {} m late, decoded as single-path (E2); "
           "the same decoded as two returns (circular). Codes are chosen by E1^{:.3g} E2^{:.3g}, "
           "and by the error as two returns where it is much larger than that of standard codes.",
-          kind, returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
+          name_of(kind), returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},
                   {"E1 (mm)", true},
                   {"E2 (mm)", true},
                   {"chosen by (mm)", true},
                   {"as two returns (mm)", true}}};
-  for (const Judged& j : codes) {
-    if (j.candidate == &winner) table.highlighted_row = static_cast<int>(table.rows.size());
-    table.rows.push_back({j.candidate->code.name(), estimate_mm_text(j.single_m),
-                          estimate_mm_text(j.behind_m), fmt::format("{:.1f}", 1e3 * j.weighed_m),
-                          j.two_return_m ? estimate_mm_text(*j.two_return_m) : "cannot"});
+  for (const auto& [weighed_m, c] : codes) {
+    if (c == &result.winner()) table.highlighted_row = static_cast<int>(table.rows.size());
+    const auto& two_return = c->multipath->two_return;
+    table.rows.push_back({c->code.name(), estimate_mm_text(c->error.of(kind).geometric_mean_m),
+                          estimate_mm_text(c->multipath->single_path.of(kind)),
+                          fmt::format("{:.1f}", 1e3 * weighed_m),
+                          two_return ? estimate_mm_text(two_return->circular_m) : "cannot"});
   }
-  return table;
-}
-
-/// The candidates' errors without and with multipath, decoded as single-path and as two
-/// returns, in the order of what they were chosen by.
-Section operating_multipath_section(const OperatingMultipath& returns, const DesignResult& result,
-                                    DepthErrorKind kind) {
-  const std::vector<Judged> codes = by_weighed_error(returns, result, kind);
-  return {"Second returns",
-          {operating_multipath_table(returns, codes, result.winner(), name_of(kind))}};
+  return {"Second returns", {std::move(table)}};
 }
 
 Table residual_table(const DesignResult& result) {

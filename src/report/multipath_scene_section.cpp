@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/level_text.hpp"
 #include "report/scene_section.hpp"
-#include "report/shared/level_text.hpp"
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/scene_result.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "report/shared/level_text.hpp"
+#include "report/level_text.hpp"
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "report/shared/level_text.hpp"
+#include "report/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
 
