@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include "calibrate_output.hpp"
-#include "number_checks.hpp"
-#include "tap_arguments.hpp"
+#include "described_options.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/error.hpp"
@@ -18,8 +17,7 @@ namespace {
 struct NoiseArguments {
   std::vector<std::string> files;
   std::string dark, code;
-  double averaged = 1.0;
-  std::optional<double> black_level_dn;
+  PhotonTransferOptions given;
   CameraArguments camera;
   TapArguments taps;
   CalibrateOutput output;
@@ -57,8 +55,8 @@ void run(NoiseArguments& arguments, const Session& session) {
   if (!reads_differences && !arguments.code.empty())
     throw UsageError("--code: goes with cameras that read differences (sensor.readout)");
   PhotonTransferOptions options = noise_options(base, !arguments.dark.empty());
-  options.averaged = arguments.averaged;
-  if (arguments.black_level_dn) options.black_level_dn = arguments.black_level_dn;
+  options.averaged = arguments.given.averaged;
+  if (arguments.given.black_level_dn) options.black_level_dn = arguments.given.black_level_dn;
   std::vector<RawFrames> levels;
   for (const std::string& file : arguments.files) levels.push_back(read_raw_frames(file));
   RawFrames dark;
@@ -98,14 +96,11 @@ void add_calibrate_noise(CLI::App& calibrate, Session& session) {
                    "same light; several levels of light in one file or several")
       ->required();
   command->add_option("--dark", arguments->dark, "pairs of frames with the light off");
-  command->add_option("--black-level", arguments->black_level_dn, "black level [DN], if known")
-      ->check(number_from_0_on());
+  const FieldOptions options(*command, arguments->given);
+  options.add("black_level_dn", "--black-level");
   command->add_option("--code", arguments->code,
                       "of a camera that reads differences: the code that it played");
-  command
-      ->add_option("--averaged", arguments->averaged,
-                   "of how many equal frames each frame is the mean already (1)")
-      ->check(positive_number());
+  options.add("averaged", "--averaged");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   arguments->output.add_to(*command);

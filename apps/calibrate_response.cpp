@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "calibrate_output.hpp"
-#include "number_checks.hpp"
+#include "described_options.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/calibration_reports.hpp"
@@ -19,7 +19,7 @@ struct ResponseArguments {
   CameraArguments camera;
   CalibrateOutput output;
   ResponseRecordOptions record;
-  std::string excitation = "auto", decimal = "auto", time_unit, arm = "light", as = "file";
+  std::string excitation = "auto", time_unit, arm = "light", as = "file";
 };
 
 nlohmann::ordered_json document_of(const CalibratedResponse& result) {
@@ -57,7 +57,6 @@ void run(ResponseArguments& arguments, const Session& session) {
   arguments.output.check(
       session,
       {measured && writes_camera ? response_path(arguments.output.camera_path).string() : ""});
-  arguments.record.decimal = parse_decimal_mark(arguments.decimal);
   if (!arguments.time_unit.empty())
     arguments.record.time_unit_s = seconds_per_unit(arguments.time_unit);
   ResponseRecord record = read_response_record(arguments.file, arguments.record);
@@ -112,17 +111,12 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
   command->add_option("--excitation", arguments->excitation, "what the arm answered to")
       ->check(one_of({"auto", "pulse", "step"}))
       ->capture_default_str();
-  command->add_option("--column", arguments->record.column,
-                      "name or number (from 1) of the column that holds the response");
-  command
-      ->add_option("--time-step", arguments->record.time_step_s,
-                   "seconds between values, for files without times")
-      ->check(positive_number());
+  const FieldOptions fields(*command, arguments->record);
+  fields.add("column", "--column");
+  fields.add("time_step_s", "--time-step");
   command->add_option("--time-unit", arguments->time_unit, "unit of the time column")
       ->check(one_of({"s", "ms", "us", "ns", "ps"}));
-  command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
-      ->check(one_of({"auto", "point", "comma"}))
-      ->capture_default_str();
+  fields.add("decimal", "--decimal");
   command
       ->add_option("--arm", arguments->arm,
                    "whose response it is; system: that of both together, kept in the light's")

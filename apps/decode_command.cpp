@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "decode_pipe.hpp"
 #include "decode_report.hpp"
+#include "described_options.hpp"
 #include "device_arguments.hpp"
 #include "filter_arguments.hpp"
 #include "help_pages.hpp"
@@ -28,7 +29,7 @@ namespace {
 struct DecodeArguments {
   DecodeRequest request;
   std::vector<std::string> raw;
-  std::string raw_format, offset_map, gain_map, code, output;
+  std::string code, output;
   CameraArguments camera;
   TapArguments taps;
   TableArguments table;
@@ -36,31 +37,18 @@ struct DecodeArguments {
   MultipathArguments multipath;
   DeviceArguments device;
   FilterArguments filter;
-  std::string stray_light, rays;
-  std::vector<std::string> planes;
+  std::string rays;
   DecodeOptions options;
-  std::string kind = "radial";
-  std::string layout = "interleaved";
-  std::string mixed;
 };
 
 DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
                          const Session& session) {
   DecodeRequest request = arguments.request;
   request.raw.assign(arguments.raw.begin(), arguments.raw.end());
-  request.layout = parse_raw_layout(arguments.layout);
-  request.raw_format = arguments.raw_format;
   request.output = arguments.output;
-  for (const std::string& plane : arguments.planes)
-    request.outputs.push_back(parse_decoded_plane(plane));
-  request.kind = parse_depth_kind(arguments.kind);
   request.lens = camera.lens;
   request.time_filter = arguments.filter.time_options();
   request.filter = arguments.filter.options();
-  if (!arguments.mixed.empty()) request.mixed = parse_mixed_pixels(arguments.mixed);
-  request.offset_map = arguments.offset_map;
-  request.gain_map = arguments.gain_map;
-  request.stray_light = arguments.stray_light;
   if (!arguments.rays.empty()) request.lens = Lens{.rays = arguments.rays};
   request.policy = session.output_policy();
   request.other_inputs = {arguments.code, arguments.camera.name};
@@ -98,7 +86,7 @@ bool reads_pipe(const DecodeArguments& arguments) {
         fmt::format("{}: expected RAW - together with -o -: frames from standard input, planes to "
                     "standard output",
                     from_pipe ? "RAW -" : "-o -"));
-  if (from_pipe && arguments.raw_format.empty())
+  if (from_pipe && arguments.request.raw_format.empty())
     throw UsageError("RAW -: --raw-format is needed, a file that says how frames run");
   return from_pipe;
 }
@@ -156,18 +144,6 @@ void run(DecodeArguments& arguments, Session& session) {
   session.say(lines);
 }
 
-std::vector<std::string> mixed_words() {
-  std::vector<std::string> words;
-  for (const MixedPixels mixed : all_mixed_pixels) words.emplace_back(name_of(mixed));
-  return words;
-}
-
-std::vector<std::string> all_plane_names() {
-  std::vector<std::string> names;
-  for (const DecodedPlane plane : all_decoded_planes) names.emplace_back(name_of(plane));
-  return names;
-}
-
 /// Options of the recording and its code.
 void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
   command
@@ -177,25 +153,10 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
           "K files, one a measurement in their order, (H,W) or (F,H,W) each; or - for frames "
           "of --raw-format from standard input, with -o -")
       ->required();
-  CLI::Option* const layout =
-      command
-          .add_option(
-              "--layout", arguments.layout,
-              "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
-          ->check(one_of({"interleaved", "planar"}))
-          ->capture_default_str();
-  CLI::Option* const dataset =
-      command
-          .add_option("--dataset", arguments.request.dataset,
-                      "which array of an .npz, or data set of an .h5, RAW is (the one called "
-                      "raw, or the only one)")
-          ->group(for_experts);
-  command
-      .add_option("--raw-format", arguments.raw_format,
-                  "RAW is a sensor's dump without header, as this .raw.toml file describes it "
-                  "(docs/raw_formats.md)")
-      ->excludes(layout)
-      ->excludes(dataset);
+  const FieldOptions request(command, arguments.request);
+  CLI::Option* const layout = request.add("layout", "--layout");
+  CLI::Option* const dataset = request.add("dataset", "--dataset")->group(for_experts);
+  request.add("raw_format", "--raw-format")->excludes(layout)->excludes(dataset);
   command
       .add_option(
           "--code", arguments.code,
@@ -204,109 +165,28 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
 }
 
 /// Options of maps and stray light.
-void add_map_options(CLI::App& command, DecodeArguments& arguments) {
-  command.add_option("--offset-map", arguments.offset_map,
-                     "how much too far each pixel decodes in metres (.npy .npz .exr .pfm), taken "
-                     "off its depth; NaN marks a dead pixel");
-  command
-      .add_option("--offset-m", arguments.request.offset_m,
-                  "how much too far every pixel decodes in metres, taken off its depth")
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      .add_option("--gain-map", arguments.gain_map,
-                  "response of each pixel over that of a usual one, taken out of signal and "
-                  "ambient; NaN marks a dead pixel")
-      ->group(for_experts);
-  command
-      .add_option("--stray-light", arguments.stray_light,
-                  "light that the lens scatters, of calibrate stray-light (.npy .npz .exr "
-                  ".pfm), taken off the raw numbers before all else")
-      ->group(for_experts);
-}
-
-/// Options of the planes to write.
-void add_plane_options(CLI::App& command, DecodeArguments& arguments) {
-  command
-      .add_option(
-          "--outputs", arguments.planes,
-          "planes to write: depth,signal,ambient,confidence,deviation,status (by default as "
-          "many as OUTPUT holds), bin, averaged (measurements added), residual (chi-square per "
-          "degree of freedom); of two-return and tail also "
-          "delay, ratio and returns (0 "
-          "none, 1 single, 2 two, 3 unresolved); others are not computed")
-      ->delimiter(',')
-      ->check(one_of(all_plane_names()));
-  command
-      .add_option(
-          "--kind", arguments.kind,
-          "depth to write: radial distance, as the camera measures it, or z along the axis "
-          "(what simulate and demo take a depth image for); .ply and .pcd hold points either way")
-      ->check(one_of({"radial", "z"}))
-      ->capture_default_str();
+void add_map_options(const FieldOptions<DecodeRequest>& request) {
+  request.add("offset_map", "--offset-map");
+  request.add("offset_m", "--offset-m")->group(for_experts);
+  request.add("gain_map", "--gain-map")->group(for_experts);
+  request.add("stray_light", "--stray-light")->group(for_experts);
 }
 
 /// Options of the frames: which ones, and how they are combined.
-void add_frame_options(CLI::App& command, DecodeArguments& arguments) {
-  command
-      .add_option("--mixed", arguments.mixed,
-                  "find pixels at edges of depth that see two surfaces: label (status mixed, the "
-                  "depth stays), snap (to the depth of the one that gives more light) or drop (no "
-                  "depth) (off)")
-      ->check(one_of(mixed_words()));
-  command
-      .add_option("--average", arguments.request.average,
-                  "decode the means of so many consecutive frames; the last one is of those left")
-      ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
-      ->capture_default_str();
-  command
-      .add_option("--hdr", arguments.request.hdr,
-                  "RAW holds groups of frames at these exposures over the shortest, which is the "
-                  "camera's, such as 1,4,16: each group is decoded as one frame, of what is not "
-                  "saturated, by its noise")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->group(for_experts);
-  command
-      .add_option("--averaged", arguments.request.averaged,
-                  "RAW holds means of so many equal measurements already: their noise is so much "
-                  "smaller")
-      ->check(positive_number(1e9))
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      .add_option(
-          "--frame", arguments.request.frame,
-          "decode this frame only, counted from 0; with --average this mean; with --time-filter "
-          "frames before it count in")
-      ->check(number_from_0_on())
-      ->group(for_experts);
+void add_frame_options(const FieldOptions<DecodeRequest>& request) {
+  request.add("mixed", "--mixed");
+  request.add("average", "--average");
+  request.add("hdr", "--hdr")->group(for_experts);
+  request.add("averaged", "--averaged")->group(for_experts);
+  request.add("frame", "--frame")->group(for_experts);
 }
 
 /// Thresholds of the statuses.
-void add_status_options(CLI::App& command, DecodeArguments& arguments) {
-  command
-      .add_option("--low-signal-sigma", arguments.options.low_signal_sigma,
-                  "signals below this many standard deviations are marked low_signal")
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      .add_option("--min-confidence", arguments.options.min_confidence,
-                  "pixels below are marked ambiguous")
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      .add_option("--false-alarm-rate", arguments.options.false_alarm_rate,
-                  "share of consistent pixels that are marked inconsistent; 0: no pixel is")
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      .add_option("--model-error-percent", arguments.options.model_error_percent,
-                  "error of the camera model, such as wiggling, that is not marked inconsistent, "
-                  "in percent of the signal's part of the measurements; a larger one of the table "
-                  "replaces it")
-      ->capture_default_str()
-      ->group(for_experts);
+void add_status_options(const FieldOptions<DecodeOptions>& options) {
+  options.add("low_signal_sigma", "--low-signal-sigma")->group(for_experts);
+  options.add("min_confidence", "--min-confidence")->group(for_experts);
+  options.add("false_alarm_rate", "--false-alarm-rate")->group(for_experts);
+  options.add("model_error_percent", "--model-error-percent")->group(for_experts);
 }
 
 /// Options of the output.
@@ -323,25 +203,11 @@ void add_output_options(CLI::App& command, DecodeArguments& arguments) {
                   "rays of points and z as the maker gives them, in place of the camera's "
                   "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions")
       ->group(for_experts);
-  command
-      .add_flag("--all-points", arguments.request.all_points,
-                "in .ply and .pcd also points of pixels that are not ok")
-      ->group(for_experts);
-  command
-      .add_flag("--undistort", arguments.request.undistort,
-                "planes without the distortion of the camera's lens: each pixel takes the values "
-                "of the nearest one; those that the lens does not see are invalid")
-      ->group(for_experts);
-  command.add_flag("--stack", arguments.request.stack,
-                   "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
-                   "plane but depth in a file of its own, NAME-PLANE.npy");
-  command
-      .add_option("--memory-mb", arguments.request.memory_mb,
-                  "memory for frames under way [MB]; larger frames go in bands of rows. The "
-                  "program itself takes some 50 MB more")
-      ->check(positive_number(1e9))
-      ->capture_default_str()
-      ->group(for_experts);
+  const FieldOptions request(command, arguments.request);
+  request.add("all_points", "--all-points")->group(for_experts);
+  request.add("undistort", "--undistort")->group(for_experts);
+  request.add("stack", "--stack");
+  request.add("memory_mb", "--memory-mb")->group(for_experts);
 }
 
 }  // namespace
@@ -354,14 +220,16 @@ void add_decode_command(CLI::App& app, Session& session) {
   arguments->camera.add_temperature_to(*command);
   arguments->taps.add_to(*command);
   arguments->table.add_to(*command);
-  add_map_options(*command, *arguments);
+  const FieldOptions request(*command, arguments->request);
+  add_map_options(request);
   arguments->method.add_to(*command);
   arguments->multipath.add_to(*command);
   arguments->device.add_to(*command);
-  add_plane_options(*command, *arguments);
+  request.add("outputs", "--outputs")->allow_extra_args();
+  request.add("kind", "--kind");
   arguments->filter.add_to(*command);
-  add_frame_options(*command, *arguments);
-  add_status_options(*command, *arguments);
+  add_frame_options(request);
+  add_status_options(FieldOptions(*command, arguments->options));
   add_output_options(*command, *arguments);
   command->callback([arguments, &session] { run(*arguments, session); });
 }

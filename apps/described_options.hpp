@@ -2,49 +2,126 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "number_checks.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/core/fields.hpp"
 
 namespace tofsmith::apps {
 
 namespace detail {
+
+/// The type of a single value: of an optional value, or of an item of a list.
 template <typename Value>
-struct NumberOf {
+struct SingleOf {
   using Type = Value;
 };
 template <typename Item>
-struct NumberOf<std::vector<Item>> {
+struct SingleOf<std::vector<Item>> {
   using Type = Item;
 };
+template <typename Content>
+struct SingleOf<std::optional<Content>> {
+  using Type = Content;
+};
+
+/// Adds an option whose texts, words or paths become values.
+template <typename Value, typename Convert>
+CLI::Option* add_converted(CLI::App& command, const std::string& option, Value& value,
+                           const std::string& help, const Convert& convert) {
+  if constexpr (is_list<Value>)
+    return command.add_option_function<std::vector<std::string>>(
+        option,
+        [&value, convert](const std::vector<std::string>& texts) {
+          value.clear();
+          for (const std::string& text : texts) value.push_back(convert(text));
+        },
+        help);
+  else
+    return command.add_option_function<std::string>(
+        option, [&value, convert](const std::string& text) { value = convert(text); }, help);
+}
+
+template <typename Enum>
+std::vector<std::string> texts_of_words() {
+  const auto words = words_of(Enum{});
+  return {words.begin(), words.end()};
+}
+
 }  // namespace detail
 
-/// Adds the option of one field of a described struct, with its help text, range and default.
-/// @param field   its name
-/// @param option  such as "--trials"; of a flag that clears it, "!--no-map"
+/// Adds an option with the help text, range, words and default of a field.
+/// @param option  such as "--trials"; of a flag that clears the field, "!--no-map"
+template <typename Value>
+CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
+                           const std::string& option) {
+  using Single = typename detail::SingleOf<Value>::Type;
+  const std::string help = field.help_text();
+  CLI::Option* added = nullptr;
+  if constexpr (std::is_same_v<Value, bool>) {
+    added = command.add_flag(option, field.value, option[0] == '!' ? "do not " + help : help);
+  } else if constexpr (HasWords<Single>) {
+    added = detail::add_converted(command, option, field.value, help, [](const std::string& word) {
+      return static_cast<Single>(index_of_word("", words_of(Single{}), word));
+    });
+    added->check(one_of(detail::texts_of_words<Single>()));
+    if constexpr (std::is_enum_v<Value>)
+      added->default_str(detail::texts_of_words<Value>().at(static_cast<std::size_t>(field.value)));
+  } else if constexpr (std::is_same_v<Single, std::filesystem::path>) {
+    added = detail::add_converted(command, option, field.value, help,
+                                  [](const std::string& text) { return Single(text); });
+  } else {
+    added = command.add_option(option, field.value, help);
+    if constexpr (std::is_arithmetic_v<Single>) {
+      if constexpr (is_list<Value>) {
+        if (!field.value.empty()) added->capture_default_str();
+      } else if constexpr (!is_optional<Value>) {
+        added->capture_default_str();
+      }
+      if (field.range.is_restricted)
+        added->check(number_that(field.range.text(std::is_integral_v<Single>),
+                                 [range = field.range](double v) { return range.contains(v); }));
+    }
+  }
+  if constexpr (is_list<Value>) added->delimiter(',')->allow_extra_args(false);
+  return added;
+}
+
+/// Adds the option of one field of a described struct.
+/// @param field  its name
 template <typename Options>
 CLI::Option* add_field_option(CLI::App& command, Options& options, std::string_view field,
                               const std::string& option) {
   CLI::Option* added = nullptr;
   for_each_field(options, [&](const auto& each) {
     using Value = std::remove_cvref_t<decltype(each.value)>;
-    if (each.name != field) return;
-    const std::string help(each.help);
-    if constexpr (std::is_same_v<Value, bool>) {
-      added = command.add_flag(option, each.value, help);
-    } else if constexpr (std::is_arithmetic_v<typename detail::NumberOf<Value>::Type>) {
-      added = command.add_option(option, each.value, help)->capture_default_str();
-      if constexpr (is_list<Value>) added->delimiter(',')->allow_extra_args(false);
-      if (each.range.is_restricted)
-        added->check(number_that(each.range.text(std::is_integral_v<Value>),
-                                 [range = each.range](double v) { return range.contains(v); }));
+    using Single = typename detail::SingleOf<Value>::Type;
+    if constexpr (!HasFields<Single> && (!std::is_enum_v<Single> || HasWords<Single>)) {
+      if (each.name == field) added = add_option_of(command, each, option);
     }
   });
   TOFSMITH_ASSERT_EQ(added != nullptr, true);  // a field of a type that options support
   return added;
 }
+
+/// Adds options of fields of one struct to a command.
+template <typename Options>
+class FieldOptions {
+ public:
+  FieldOptions(CLI::App& command, Options& options) : command_(command), options_(options) {}
+
+  CLI::Option* add(std::string_view field, const std::string& option) const {
+    return add_field_option(command_, options_, field, option);
+  }
+
+ private:
+  CLI::App& command_;
+  Options& options_;
+};
 
 }  // namespace tofsmith::apps

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
@@ -29,16 +30,17 @@ namespace {
 /// `--two-return-weight`.
 class OperatingMultipathArguments {
  public:
-  void add_to(CLI::App& command);
+  /// @param options  whose weight of two returns is set
+  void add_to(CLI::App& command, OptimizeOptions& options);
   /// Puts what was asked for into operating.multipath, over what the camera says there.
-  /// @throws UsageError for what cannot be read or be
+  /// @throws UsageError for what cannot be read or be, and for a weight on a camera without
+  /// multipath
   void apply_to(Camera& camera) const;
-  /// @throws UsageError for a weight of two returns on a camera that meets none
-  void apply_to(OptimizeOptions& options, const Camera& camera) const;
 
  private:
   std::string returns_;
-  std::optional<double> weight_, two_return_weight_;
+  std::optional<double> weight_;
+  const CLI::Option* two_return_weight_ = nullptr;
 };
 
 /// One number, or two with a colon between: least and largest. Whether it is either.
@@ -68,7 +70,7 @@ void require_operating_multipath(const Camera& camera, const char* option) {
         option));
 }
 
-void OperatingMultipathArguments::add_to(CLI::App& command) {
+void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& options) {
   command.add_option("--multipath", returns_,
                      "count with multipath, pixels that have a second return: "
                      "ratio=.1:.5,delta=.5:3 (metres), each uniform between its limits; over "
@@ -77,12 +79,8 @@ void OperatingMultipathArguments::add_to(CLI::App& command) {
       .add_option("--multipath-weight", weight_,
                   "w of E1^(1-w) E2^w, the errors without and with multipath, in (0, 1)")
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
-  command
-      .add_option("--two-return-weight", two_return_weight_,
-                  fmt::format("weight of the error decoded as two returns in the search, so that "
-                              "codes can be decoded so; 0: none (default: {})",
-                              OptimizeOptions{}.two_return_weight))
-      ->check(number_from_0_on());
+  two_return_weight_ =
+      add_field_option(command, options, "two_return_weight", "--two-return-weight");
 }
 
 void OperatingMultipathArguments::apply_to(Camera& camera) const {
@@ -96,40 +94,27 @@ void OperatingMultipathArguments::apply_to(Camera& camera) const {
       throw UsageError(fmt::format("--multipath {}: {}", returns_, error.what()));
     }
   }
+  if (two_return_weight_->count() > 0) require_operating_multipath(camera, "--two-return-weight");
   if (!weight_) return;
   require_operating_multipath(camera, "--multipath-weight");
   multipath->weight = *weight_;
 }
 
-void OperatingMultipathArguments::apply_to(OptimizeOptions& options, const Camera& camera) const {
-  if (!two_return_weight_) return;
-  require_operating_multipath(camera, "--two-return-weight");
-  options.two_return_weight = *two_return_weight_;
-}
-
 struct DesignArguments {
   CameraArguments camera;
-  std::string method = "best";
   std::string target;
   bool normalize = false;
-  std::vector<int> exposures;  // none: those of DesignOptions
   double effort = 1.0;
-  int atlas_cameras = DesignOptions{}.atlas_cameras;
-  bool robust = false;
+  DesignOptions options;
   OperatingMultipathArguments multipath;
-  std::uint64_t seed = 1;
-  int trials = 20000;
-  double outlier_threshold_m = DesignOptions{}.outlier_threshold_m;
   std::string output;
 };
 
 DesignOptions options_for(const DesignArguments& arguments, const Camera& camera) {
-  DesignOptions options;
-  if (!arguments.target.empty() && !arguments.exposures.empty())
+  DesignOptions options = arguments.options;
+  if (!arguments.target.empty() && !options.exposures.empty())
     throw UsageError("--exposures goes with Hamiltonian targets; a --target says how many it has");
-  options.method = parse_design_method(arguments.method);
-  options.robust = arguments.robust;
-  if (arguments.robust && options.method != DesignMethod::optimize &&
+  if (options.robust && options.method != DesignMethod::optimize &&
       options.method != DesignMethod::best)
     throw UsageError("--robust goes with --method optimize or best");
   if (!arguments.target.empty() && options.method != DesignMethod::factorize &&
@@ -141,19 +126,13 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
     throw UsageError(
         "--robust: found beside multipath (--multipath or [operating.multipath]); "
         "expected one of them");
-  options.exposures = arguments.exposures;
   if (arguments.effort == 0.0 && !arguments.target.empty())
     throw UsageError("--effort 0 designs nothing: it goes without --target");
   if (arguments.effort == 0.0 && options.method != DesignMethod::best &&
       options.method != DesignMethod::atlas)
-    throw UsageError(
-        fmt::format("--effort 0 searches nothing: it goes without --method {}", arguments.method));
+    throw UsageError(fmt::format("--effort 0 searches nothing: it goes without --method {}",
+                                 name_of(options.method)));
   options = with_effort(std::move(options), arguments.effort);
-  arguments.multipath.apply_to(options.optimize, camera);
-  options.atlas_cameras = arguments.atlas_cameras;
-  options.seed = arguments.seed;
-  options.trials = arguments.trials;
-  options.outlier_threshold_m = arguments.outlier_threshold_m;
   if (!arguments.target.empty())
     options.target = load_target(arguments.target, camera, arguments.normalize);
   return options;
@@ -198,47 +177,21 @@ void add_design_command(CLI::App& app, Session& session) {
       "design", "find the modulation and demodulation functions that suit a camera");
   arguments->camera.add_positional(*command);
   arguments->camera.add_to(*command);
-  command
-      ->add_option("--method", arguments->method,
-                   "factorize: factorize correlation functions; optimize: minimize depth error "
-                   "itself; search: all codes on a chip clock, with proof; best: all that suit the "
-                   "camera, with every baseline as a competitor; atlas: nothing is searched, "
-                   "codes of the atlas and standard codes are judged")
-      ->check(one_of({"factorize", "optimize", "search", "best", "atlas"}))
-      ->capture_default_str();
+  const FieldOptions options(*command, arguments->options);
+  options.add("method", "--method");
   command->add_option("--target", arguments->target,
                       "correlation functions to factorize: a family, a code file, or a table "
                       "(.csv .npy .npz); default: Hamiltonian codes");
   command->add_flag("--normalize", arguments->normalize,
                     "rescale a table's columns to [0, 1] before use");
-  command
-      ->add_option(
-          "--exposures", arguments->exposures,
-          "numbers of exposures to try (3,4,5), or of rows; default: what suits the camera")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 16));
+  options.add("exposures", "--exposures")->allow_extra_args();
   add_effort(*command, arguments->effort);
-  command
-      ->add_option("--atlas-cameras", arguments->atlas_cameras,
-                   "how many of the nearest cameras of the atlas lend codes, which compete and are "
-                   "where searches start; 0: none")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  command->add_flag("--robust", arguments->robust,
-                    "optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter "
-                    "and 2 % tap mismatch");
-  arguments->multipath.add_to(*command);
-  command->add_option("--seed", arguments->seed, "seed of every random choice")
-      ->capture_default_str();
-  command->add_option("--trials", arguments->trials, "trials per operating point for final figures")
-      ->check(CLI::Range(1000, 100000000))
-      ->capture_default_str();
-  command
-      ->add_option("--outlier-threshold", arguments->outlier_threshold_m,
-                   "circular errors beyond this many metres are outliers in final figures")
-      ->check(number_from_0_on())
-      ->capture_default_str()
-      ->group(for_experts);
+  options.add("atlas_cameras", "--atlas-cameras");
+  options.add("robust", "--robust");
+  arguments->multipath.add_to(*command, arguments->options.optimize);
+  options.add("seed", "--seed");
+  options.add("trials", "--trials");
+  options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command->add_option("-o,--output", arguments->output,
                       "directory for codes, figures and the report; an interrupted run resumes");
   command->callback([arguments, &session] {

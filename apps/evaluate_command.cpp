@@ -288,23 +288,20 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                    "families, or code files (.code.json .npz .csv; a pair LIGHT.npy,GATES.npy)")
       ->required();
   arguments->camera.add_to(*command);
-  EvaluateOptions& options = arguments->options;
-  const auto add = [&](std::string_view field, const std::string& option) {
-    return add_field_option(*command, options, field, option);
-  };
-  add("trials", "--trials");
-  add("target_standard_error", "--target-standard-error")
+  const FieldOptions options(*command, arguments->options);
+  options.add("trials", "--trials");
+  options.add("target_standard_error", "--target-standard-error")
       ->transform(share_or_percentage(1e-5, 1.0));
-  add("max_trials", "--max-trials")->group(for_experts);
-  add("seed", "--seed");
+  options.add("max_trials", "--max-trials")->group(for_experts);
+  options.add("seed", "--seed");
   arguments->method.add_to(*command);
-  add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
+  options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command
       ->add_flag("--on-bins", arguments->on_bins,
                  "true depths on bins only (flatters codes; for comparison with others)")
       ->group(for_experts);
-  add("sub_bin", "!--no-sub-bin")->group(for_experts);
-  add("clip_to_open_sensor", "--clip-to-open-sensor")->group(for_experts);
+  options.add("sub_bin", "!--no-sub-bin")->group(for_experts);
+  options.add("clip_to_open_sensor", "--clip-to-open-sensor")->group(for_experts);
   command
       ->add_flag("--best-rotation", arguments->best_rotation,
                  "move each code's origin of depth to where its linear error is least")

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
-#include "number_checks.hpp"
+#include "described_options.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
@@ -107,33 +107,25 @@ void add_export_command(CLI::App& app, Session& session) {
   ExportOptions& options = arguments->request.options;
   command->add_option("CODE", arguments->code, "a family or a code file (.code.json .npz .csv)")
       ->required();
-  command->add_option("--format", options.format, "format of the files, see below")->required();
-  command->add_option("--variant", options.variant,
-                      "of the format, where sources disagree about it, see below");
+  const FieldOptions fields(*command, options);
+  fields.add("format", "--format")->required();
+  fields.add("variant", "--variant");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
-  command->add_option("--samples", options.samples, "points of the table that holds one period");
-  command->add_option("--bits", options.bits, "amplitude bits of the hardware (1 = on and off)");
-  command
-      ->add_option("--rate", options.sample_rate_hz, "most points per second of the hardware [1/s]")
-      ->check(positive_number());
-  command
-      ->add_option("--edge-grid", options.edge_grid_s,
-                   "on and off switch at multiples of this time only [s]")
-      ->check(positive_number());
-  command->add_option("--periods", options.periods,
-                      "periods in a table (as few as the format takes)");
+  fields.add("samples", "--samples");
+  fields.add("bits", "--bits");
+  fields.add("sample_rate_hz", "--rate");
+  fields.add("edge_grid_s", "--edge-grid");
+  fields.add("periods", "--periods");
   command
       ->add_option("--volts", arguments->volts,
                    "LOW,HIGH: output at no light and no gain, and at peak light and full gain [V] "
                    "(0,1)")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--trials", arguments->evaluate.trials, "trials per operating point")
-      ->check(CLI::Range(std::int64_t{2}, std::int64_t{4'000'000'000}))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->evaluate.seed, "seed of all trials")
-      ->capture_default_str();
+  const FieldOptions evaluate(*command, arguments->evaluate);
+  evaluate.add("trials", "--trials");
+  evaluate.add("seed", "--seed");
   command->add_flag("--no-loss", arguments->no_loss, "do not measure what it costs in depth error");
   command
       ->add_option("-o,--output", arguments->output,

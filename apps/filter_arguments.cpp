@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "described_options.hpp"
 #include "help_pages.hpp"
-#include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/core/error.hpp"
@@ -80,12 +80,7 @@ void FilterArguments::add_to(CLI::App& command) {
               "add to each pixel's measurements those of the frames before, as long as they "
               "stay the same: as many as this, about (off)")
           ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
-  command
-      .add_option("--look-ahead", look_ahead_,
-                  "with --time-filter, add so many frames after each, too, as long as they stay "
-                  "the same; each waits for them (0)")
-      ->check(
-          number_that("in [0, 1000]", [](double value) { return value >= 0.0 && value <= 1000.0; }))
+  add_field_option(command, time_options_, "look_ahead", "--look-ahead")
       ->needs(time_filter)
       ->group(for_experts);
   add_settings<TimeFilterOptions>(command, "--time-filter-set", "the filter in time", time_filter,
@@ -101,7 +96,8 @@ std::optional<FilterOptions> FilterArguments::options() const {
 
 std::optional<TimeFilterOptions> FilterArguments::time_options() const {
   if (max_frames_ == 0) return std::nullopt;
-  TimeFilterOptions options{.max_frames = max_frames_, .look_ahead = look_ahead_};
+  TimeFilterOptions options = time_options_;
+  options.max_frames = max_frames_;
   for (const std::string& setting : time_settings_)
     set_field("--time-filter-set", setting, options);
   return options;

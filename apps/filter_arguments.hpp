@@ -27,7 +27,8 @@ class FilterArguments {
  private:
   std::string strength_;
   std::vector<std::string> settings_;
-  int max_frames_ = 0, look_ahead_ = 0;
+  int max_frames_ = 0;
+  TimeFilterOptions time_options_;  ///< without max_frames
   std::vector<std::string> time_settings_;
 };
 

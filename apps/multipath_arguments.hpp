@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "described_options.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
@@ -15,52 +16,21 @@ namespace tofsmith::apps {
 class MultipathArguments {
  public:
   void add_to(CLI::App& command) {
-    command
-        .add_option("--threshold", options_.threshold,
-                    "two-return, tail: how much chi^2 must fall for a second return to count")
-        ->check(number_from_0_on())
-        ->capture_default_str()
-        ->group(for_experts);
-    command
-        .add_option("--shortest-delay", options_.shortest_delay_m,
-                    "two-return: shortest delay of a second return [m]")
-        ->check(positive_number())
-        ->capture_default_str()
-        ->group(for_experts);
-    command
-        .add_option("--longest-delay", options_.longest_delay_m,
-                    "two-return: longest delay of a second return [m] (a third of the range)")
-        ->check(positive_number())
-        ->group(for_experts);
-    command
-        .add_option("--tail-length", options_.tail_m,
-                    "tail: mean delay of the light that trails off [m]")
-        ->check(positive_number())
-        ->capture_default_str()
-        ->group(for_experts);
+    const FieldOptions fields(command, options_);
+    fields.add("threshold", "--threshold")->group(for_experts);
+    fields.add("shortest_delay_m", "--shortest-delay")->group(for_experts);
+    fields.add("longest_delay_m", "--longest-delay")->check(positive_number())->group(for_experts);
+    fields.add("tail_m", "--tail-length")->group(for_experts);
     CLI::Option* bayes = command
                              .add_flag("--bayes", bayes_,
                                        "two-return, tail: depth is the posterior median under a "
                                        "prior, where one return does not "
                                        "explain the pixel")
                              ->group(for_experts);
-    command
-        .add_option("--prior-single", prior_.single_probability,
-                    "prior probability that there is no second return")
-        ->capture_default_str()
-        ->needs(bayes)
-        ->group(for_experts);
-    command
-        .add_option("--prior-delay", prior_.mean_delay_m,
-                    "prior mean of delays, which are exponential [m]")
-        ->capture_default_str()
-        ->needs(bayes)
-        ->group(for_experts);
-    command
-        .add_option("--prior-ratio", prior_.max_ratio, "prior of ratios: uniform from 0 to this")
-        ->capture_default_str()
-        ->needs(bayes)
-        ->group(for_experts);
+    const FieldOptions prior(command, prior_);
+    prior.add("single_probability", "--prior-single")->needs(bayes)->group(for_experts);
+    prior.add("mean_delay_m", "--prior-delay")->needs(bayes)->group(for_experts);
+    prior.add("max_ratio", "--prior-ratio")->needs(bayes)->group(for_experts);
   }
   MultipathOptions options() const {
     MultipathOptions options = options_;

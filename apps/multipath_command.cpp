@@ -114,14 +114,8 @@ void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
                          "also a scene whose surfaces light each other, decoded by the first code "
                          "at the highest of --signals: built-in (see `tofsmith scene`), scene file "
                          "(.toml) or mesh");
-  command
-      .add_option("--width", arguments.scene.width, "columns of a built-in scene or a mesh (320)")
-      ->check(CLI::Range(1, 16384))
-      ->needs(scene);
-  command
-      .add_option("--height", arguments.scene.height, "rows of a built-in scene or a mesh (240)")
-      ->check(CLI::Range(1, 16384))
-      ->needs(scene);
+  add_field_option(command, arguments.scene, "width", "--width")->needs(scene);
+  add_field_option(command, arguments.scene, "height", "--height")->needs(scene);
   command
       .add_option("--bounce-rays", arguments.bounce.rays,
                   "rays by which each pixel gathers bounced light")
@@ -143,22 +137,15 @@ void add_multipath_command(CLI::App& app, Session& session) {
   command->add_option("CODE", arguments->codes, "families or code files (.code.json .npz .csv)")
       ->required();
   arguments->camera.add_to(*command);
-  const auto add = [&](std::string_view field, const std::string& option) {
-    return add_field_option(*command, options, field, option);
-  };
-  add("delay_m", "--delays");
-  add("ratio", "--ratios");
-  add("tail_m", "--tails");
-  add("signal_e_per_s", "--signals");
-  add("ambient_e_per_s", "--ambient");
-  command
-      ->add_option("--threshold", options.decoding.threshold,
-                   "how much chi^2 must fall for a second return to count")
-      ->check(number_from_0_on())
-      ->capture_default_str()
-      ->group(for_experts);
-  add("trials", "--trials");
-  add("seed", "--seed");
+  const FieldOptions fields(*command, options);
+  fields.add("delay_m", "--delays");
+  fields.add("ratio", "--ratios");
+  fields.add("tail_m", "--tails");
+  fields.add("signal_e_per_s", "--signals");
+  fields.add("ambient_e_per_s", "--ambient");
+  add_field_option(*command, options.decoding, "threshold", "--threshold")->group(for_experts);
+  fields.add("trials", "--trials");
+  fields.add("seed", "--seed");
   add_scene(*command, *arguments);
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,

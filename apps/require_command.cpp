@@ -151,14 +151,12 @@ void add_require_command(CLI::App& app, Session& session) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(one_of({"bandwidth", "power", "exposure"}));
-  const auto add = [&](std::string_view field, const std::string& option) {
-    add_field_option(*command, arguments->options, field, option);
-  };
-  add("max_factor", "--max-factor");
-  add("effort", "--effort");
-  add("trials", "--trials");
-  add("seed", "--seed");
-  add("map", "!--no-map");
+  const FieldOptions options(*command, arguments->options);
+  options.add("max_factor", "--max-factor");
+  options.add("effort", "--effort");
+  options.add("trials", "--trials");
+  options.add("seed", "--seed");
+  options.add("map", "!--no-map");
   command->add_option("-o,--output", arguments->output,
                       "write a page (.html), all numbers (.json), or a directory with both, the "
                       "codes found and the cameras that suffice");

@@ -7,35 +7,22 @@
 
 #include <algorithm>
 
+#include "described_options.hpp"
 #include "help_pages.hpp"
-#include "number_checks.hpp"
-#include "tap_arguments.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 
 namespace tofsmith::apps {
 
 void add_scene_options(CLI::App& command, SceneSource& source) {
-  command.add_option("--image", source.image, "albedo of a depth image (.png .npy .exr .pfm)");
-  command
-      .add_option("--ambient-image", source.ambient_image,
-                  "ambient light of each pixel, relative to --ambient (.png .npy .exr .pfm)")
-      ->group(for_experts);
-  command.add_flag("--linear-image", source.linear_image, "PNG images hold linear light, not sRGB")
-      ->group(for_experts);
-  command
-      .add_option_function<std::string>(
-          "--kind", [&source](const std::string& word) { source.kind = parse_depth_kind(word); },
-          "what a depth image holds: z along the axis, or radial distance")
-      ->check(one_of({"z", "radial"}))
-      ->default_str("z");
-  command.add_option("--width", source.width, "columns of a built-in scene or a mesh (320)")
-      ->check(CLI::Range(1, 16384));
-  command.add_option("--height", source.height, "rows of a built-in scene or a mesh (240)")
-      ->check(CLI::Range(1, 16384));
-  command.add_option("--scale-m", source.scale_m, "metres per unit of a mesh (1)")
-      ->check(positive_number())
-      ->group(for_experts);
+  const FieldOptions fields(command, source);
+  fields.add("image", "--image");
+  fields.add("ambient_image", "--ambient-image")->group(for_experts);
+  fields.add("linear_image", "--linear-image")->group(for_experts);
+  fields.add("kind", "--kind");
+  fields.add("width", "--width");
+  fields.add("height", "--height");
+  fields.add("scale_m", "--scale-m")->group(for_experts);
 }
 
 std::string lens_setting(const PinholeView& view) {

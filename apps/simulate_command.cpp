@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "fresh_directory.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
@@ -366,23 +367,11 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->add_option("--shard", arguments->shard,
                    "i/n, of many scenes: only the i-th of n parts, into the same directory")
       ->group(for_experts);
-  command
-      ->add_option("--reference-distance", arguments->options.reference_distance_m,
-                   "where the signal is as given [m]")
-      ->check(positive_number())
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      ->add_flag("!--no-falloff", arguments->options.falloff,
-                 "signal depends on albedo only, not on distance and angle")
-      ->group(for_experts);
-  command
-      ->add_option("--frames", arguments->options.frames,
-                   "frames one after another, each with noise of its own")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->options.seed, "seed of all noise")
-      ->capture_default_str();
+  const FieldOptions options(*command, arguments->options);
+  options.add("reference_distance_m", "--reference-distance")->group(for_experts);
+  options.add("falloff", "!--no-falloff")->group(for_experts);
+  options.add("frames", "--frames");
+  options.add("seed", "--seed");
   command
       ->add_option("-o,--output", arguments->output,
                    "raw frames (.npy .npz); of many scenes a directory")

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "python_module.hpp"
@@ -24,7 +25,7 @@ namespace tofsmith::apps {
 namespace {
 
 struct UploadArguments {
-  std::string code, address, model, load = "50", filter = "step", header = "length";
+  std::string code, address, model, load = "50", filter = "step";
   CameraArguments camera;
   TapArguments taps;
   ExportOptions options;
@@ -32,7 +33,7 @@ struct UploadArguments {
   UploadSelection selection;
   std::vector<double> volts;
   double timeout_s = 5.0;
-  bool dry_run = false, no_read_back = false, no_reset = false;
+  bool dry_run = false;
 };
 
 void check_usage(const UploadArguments& arguments) {
@@ -89,7 +90,6 @@ void show_dry_run(const UploadArguments& arguments, const CodeSet& code, const C
   UploadRequest request = arguments.request;
   request.load_ohm = load_in(arguments.load);
   request.filter = parse_output_filter(arguments.filter);
-  request.wave_header = parse_wave_header(arguments.header);
   const WaveformExport exported =
       export_for_model(code, camera, model, arguments.options, request.true_arb);
   request.channels = as_usage([&] { return selected_channels(exported, arguments.selection); });
@@ -144,7 +144,7 @@ nlohmann::ordered_json upload_request(const UploadArguments& arguments, const Co
             {"read_back", request.read_back},
             {"reset", request.reset},
             {"true_arb", request.true_arb},
-            {"wave_header", arguments.header},
+            {"wave_header", word_of(request.wave_header)},
             {"filter", arguments.filter},
             {"tables", std::move(tables)}}}};
 }
@@ -157,8 +157,6 @@ void run(UploadArguments& arguments, const Session& session) {
     arguments.options.low_v = arguments.volts[0];
     arguments.options.high_v = arguments.volts[1];
   }
-  arguments.request.read_back = !arguments.no_read_back;
-  arguments.request.reset = !arguments.no_reset;
   const Camera camera = arguments.camera.load();
   require_no_measured_table(arguments.code);
   const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
@@ -170,17 +168,11 @@ void run(UploadArguments& arguments, const Session& session) {
 
 void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
   ExportOptions& options = arguments.options;
-  command.add_option("--samples", options.samples, "points of the table that holds one period");
-  command
-      .add_option("--rate", options.sample_rate_hz, "most points per second [1/s] (the model's)")
-      ->check(positive_number());
-  command
-      .add_option("--edge-grid", options.edge_grid_s,
-                  "on and off switch at multiples of this time only [s]")
-      ->check(positive_number())
-      ->group(for_experts);
-  command.add_option("--periods", options.periods, "periods in a table (as few as fit)")
-      ->group(for_experts);
+  const FieldOptions fields(command, options);
+  fields.add("samples", "--samples");
+  fields.add("sample_rate_hz", "--rate");
+  fields.add("edge_grid_s", "--edge-grid")->group(for_experts);
+  fields.add("periods", "--periods")->group(for_experts);
   command
       .add_option("--volts", arguments.volts,
                   "LOW,HIGH: output at no light and no gain, and at peak light and full gain [V] "
@@ -189,29 +181,16 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
       ->expected(2);
   command.add_option("--load", arguments.load, "ohms that the volts are for, or inf")
       ->capture_default_str();
-  command
-      .add_option("--exposure", arguments.selection.exposure,
-                  "which of the K pairs is played, from 1")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command
-      .add_option("--tap", arguments.selection.tap, "tap that the sensor's channel plays, from 1")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_flag("--all", arguments.selection.all, "load all K pairs; --exposure is played");
+  const FieldOptions selection(command, arguments.selection);
+  selection.add("exposure", "--exposure");
+  selection.add("tap", "--tap");
+  selection.add("all", "--all");
 }
 
 void add_family_options(CLI::App& command, UploadArguments& arguments) {
-  command
-      .add_flag("--true-arb", arguments.request.true_arb,
-                "Siglent: play every point instead of skipping some")
-      ->group(for_experts);
-  command
-      .add_option("--wave-header", arguments.header,
-                  "Siglent: how a waveform is announced; sources disagree")
-      ->check(one_of({"length", "plain", "minimal"}))
-      ->capture_default_str()
-      ->group(for_experts);
+  const FieldOptions request(command, arguments.request);
+  request.add("true_arb", "--true-arb")->group(for_experts);
+  request.add("wave_header", "--wave-header")->group(for_experts);
   command.add_option("--filter", arguments.filter, "Keysight: of the output")
       ->check(one_of({"step", "normal", "off"}))
       ->capture_default_str()
@@ -230,16 +209,9 @@ void add_upload_command(CLI::App& app, Session& session) {
       "--instrument", arguments->address,
       "host or host:port (port 5025), vxi11://host, or a VISA resource name such as "
       "USB0::...::INSTR");
-  command
-      ->add_option("--channel-light", arguments->selection.light_channel,
-                   "channel that plays the light; 0: none")
-      ->check(CLI::Range(0, 8))
-      ->capture_default_str();
-  command
-      ->add_option("--channel-sensor", arguments->selection.sensor_channel,
-                   "channel that plays the sensor's gain; 0: none")
-      ->check(CLI::Range(0, 8))
-      ->capture_default_str();
+  const FieldOptions selection(*command, arguments->selection);
+  selection.add("light_channel", "--channel-light");
+  selection.add("sensor_channel", "--channel-sensor");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   add_waveform_options(*command, *arguments);
@@ -250,16 +222,10 @@ void add_upload_command(CLI::App& app, Session& session) {
       ->check(positive_number(3600.0))
       ->capture_default_str()
       ->group(for_experts);
-  command
-      ->add_flag("--no-read-back", arguments->no_read_back,
-                 "do not compare the points in the instrument: unverified")
-      ->group(for_experts);
-  command
-      ->add_flag("--no-reset", arguments->no_reset,
-                 "keep the instrument's other settings, which may change what is played")
-      ->group(for_experts);
-  command->add_flag("--output-on", arguments->request.output_on,
-                    "switch the outputs on when all is verified");
+  const FieldOptions request(*command, arguments->request);
+  request.add("read_back", "!--no-read-back")->group(for_experts);
+  request.add("reset", "!--no-reset")->group(for_experts);
+  request.add("output_on", "--output-on");
   command->add_flag("--dry-run", arguments->dry_run,
                     "print what would be sent to --model; connect to nothing");
   command->callback([arguments, &session] { run(*arguments, session); });

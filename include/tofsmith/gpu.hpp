@@ -74,9 +74,10 @@ struct DeviceOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
-  return std::tuple(Field("memory_mb", o.memory_mb, above(0)), Field("use_doubles", o.use_doubles));
+  return std::tuple(
+      Field("memory_mb", o.memory_mb, above(0), Help{"memory for frames in flight on the device"}),
+      Field("use_doubles", o.use_doubles, Help{"compute in double precision where possible"}));
 }
 
 /// Smallest frames with a spatial filter [pixels] that `auto` leaves to a GPU. Frames without one

@@ -219,7 +219,8 @@ void fit_kinds(CalibratedResponse& result, const Eigen::VectorXd& values,
   std::ranges::stable_sort(result.fits, {}, &ParametricResponse::residual_rms);
 }
 
-constexpr EnumWords<Excitation, 2> excitation_words("Excitation", "excitation", "pulse", "step");
+constexpr EnumWords<Excitation, 2> excitation_words("Excitation", "excitation",
+                                                    words_of(Excitation{}));
 
 }  // namespace
 

@@ -209,8 +209,8 @@ Reading chosen_reading(const std::vector<Line>& lines, std::string_view file, De
   return settle_commas(lines, *point, *comma, file);
 }
 
-constexpr EnumWords<DecimalMark, 3> mark_words("DecimalMark", "decimal mark", "auto", "point",
-                                               "comma");
+constexpr EnumWords<DecimalMark, 3> mark_words("DecimalMark", "decimal mark",
+                                               words_of(DecimalMark{}));
 
 }  // namespace
 

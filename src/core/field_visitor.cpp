@@ -9,32 +9,6 @@
 
 namespace tofsmith {
 
-std::string_view unit_of_key(std::string_view name) {
-  // Longer endings come first: "_e_per_s" also ends in "_s".
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 17> units = {{
-      {"_e_per_s", "e/s"},
-      {"_e_per_dn", "e/DN"},
-      {"_w_per_m2_nm", "W/m2/nm"},
-      {"_m_per_c", "m/degree C"},
-      {"_per_c", "1/degree C"},
-      {"_hz", "Hz"},
-      {"_px", "px"},
-      {"_deg", "degrees"},
-      {"_klux", "klx"},
-      {"_bits", "bits"},
-      {"_dn", "DN"},
-      {"_s", "s"},
-      {"_e", "e"},
-      {"_m", "m"},
-      {"_w", "W"},
-      {"_c", "degrees C"},
-      {"_points", "points"},
-  }};
-  for (const auto& [ending, unit] : units)
-    if (name.ends_with(ending)) return unit;
-  return "";
-}
-
 std::string_view name_of(ValueType type) {
   constexpr std::array<std::string_view, 13> names = {
       "boolean",     "integer",     "number", "text",           "numbers",

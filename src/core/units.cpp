@@ -4,9 +4,43 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace tofsmith {
+
+std::string_view unit_of_key(std::string_view name) {
+  // Longer endings come first: "_e_per_s" also ends in "_s".
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 23> units = {{
+      {"_e_per_s", "e/s"},
+      {"_e_per_dn", "e/DN"},
+      {"_w_per_m2_nm", "W/m2/nm"},
+      {"_m_per_c", "m/degree C"},
+      {"_per_c", "1/degree C"},
+      {"_hz", "Hz"},
+      {"_px", "px"},
+      {"_deg", "degrees"},
+      {"_klux", "klx"},
+      {"_bits", "bits"},
+      {"_dn", "DN"},
+      {"_mb", "MB"},
+      {"_ohm", "ohm"},
+      {"_percent", "%"},
+      {"_periods", "periods"},
+      {"_sigma", "standard deviations"},
+      {"_v", "V"},
+      {"_s", "s"},
+      {"_e", "e"},
+      {"_m", "m"},
+      {"_w", "W"},
+      {"_c", "degrees C"},
+      {"_points", "points"},
+  }};
+  for (const auto& [ending, unit] : units)
+    if (name.ends_with(ending)) return unit;
+  return "";
+}
 
 std::string plain_number(double value, int digits) {
   if (!std::isfinite(value)) return fmt::format("{}", value);

@@ -11,8 +11,8 @@
 namespace tofsmith {
 
 namespace {
-constexpr EnumWords<DecodeMethod, 5> method_words("DecodeMethod", "method", "zncc", "ml", "unwrap",
-                                                  "two-return", "tail");
+constexpr EnumWords<DecodeMethod, 5> method_words("DecodeMethod", "method",
+                                                  words_of(DecodeMethod{}));
 
 template <typename MethodDecoder>
 class DecoderOf final : public DepthDecoder {

@@ -20,8 +20,8 @@
 namespace tofsmith {
 namespace {
 
-constexpr EnumWords<DesignMethod, 5> method_words("DesignMethod", "method", "factorize", "optimize",
-                                                  "search", "best", "atlas");
+constexpr EnumWords<DesignMethod, 5> method_words("DesignMethod", "method",
+                                                  words_of(DesignMethod{}));
 constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
                                                       "converged", "stalled", "iteration_limit");
 

@@ -24,8 +24,8 @@ UploadChannel channel_of(const WaveformExport& exported, const UploadSelection& 
   return given;
 }
 
-constexpr EnumWords<WaveHeader, 3> header_words("WaveHeader", "wave_header", "length", "plain",
-                                                "minimal");
+constexpr EnumWords<WaveHeader, 3> header_words("WaveHeader", "wave_header",
+                                                words_of(WaveHeader{}));
 
 }  // namespace
 

@@ -213,7 +213,7 @@ class Streaming(CommandLineTest):
         self.assertNotIn(".npy is written", error)
         for value in ("-1", "0", "nan", "inf"):
             self.refuse(self.arguments("--memory-mb", value), "--memory-mb",
-                        f"found {value}; must be > 0", code=2)
+                        f"found {value}; must be in (0, 1000000000]", code=2)
 
     def test_the_small_bands_of_ml_make_whole_frames(self):
         raw = np.full((3, 300, 600, 3), 1000, "u2")

@@ -361,7 +361,7 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   refused(wrong, "a .pfm file holds depth only");
   wrong = request("d.npz");
   wrong.memory_mb = 0.0;
-  refused(wrong, "memory_mb = 0; must be > 0");
+  refused(wrong, "memory_mb = 0; must be in (0, 1000000000]");
   wrong = request("d.npz");
   wrong.average = 0;
   refused(wrong, "average = 0; must be >= 1");

@@ -9,7 +9,7 @@
 
 #include "damaged_files.hpp"
 #include "io/documents/shared/document_text.hpp"
-#include "io/text/field_key.hpp"
+#include "io/text/shared/field_key.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {

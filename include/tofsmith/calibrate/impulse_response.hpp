@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,18 +26,21 @@ struct ResponseRecord {
   std::vector<std::string> notes;
 };
 
-/// What the file of a record does not say.
+/// Properties of a record that its file does not contain.
 struct ResponseRecordOptions {
-  std::optional<double> time_step_s;  ///< [s], > 0; needed for values without times
-  std::optional<double>
-      time_unit_s;     ///< [s] of one unit of the time column; none: its name's, or 1
-  std::string column;  ///< name or number (from 1) of the values; "": the only one
+  std::optional<double> time_step_s;  ///< needed for values without times
+  std::optional<double> time_unit_s;
+  std::string column;
   DecimalMark decimal = DecimalMark::automatic;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ResponseRecordOptions> auto& o) {
-  return std::tuple(Field("time_step_s", o.time_step_s), Field("time_unit_s", o.time_unit_s),
-                    Field("column", o.column), Field("decimal", o.decimal));
+  return std::tuple(
+      Field("time_step_s", o.time_step_s, above(0),
+            Help{"time between two values of a record without times"}),
+      Field("time_unit_s", o.time_unit_s, above(0), Help{"unit of the time column"},
+            IfAbsent{"from its name, or 1"}),
+      Field("column", o.column, Help{"name or number (from 1) of the column of values"}),
+      Field("decimal", o.decimal, Help{"decimal mark of a text"}));
 }
 
 /// Reads text (see instrument_table.hpp) with times and values, or values alone, or a NumPy array
@@ -53,20 +57,29 @@ enum class Excitation {
   step,   ///< a switch on, or off; the response is its derivative
 };
 
+constexpr std::array<std::string_view, 2> words_of(Excitation /*any*/) { return {"pulse", "step"}; }
 /// "pulse", "step".
 std::string_view name_of(Excitation excitation);
 /// @throws std::invalid_argument for any other word
 Excitation parse_excitation(std::string_view name);
 
+/// Options of calibrate_impulse_response().
 struct ResponseCalibrationOptions {
-  std::optional<Excitation> excitation;    ///< none: found from the record
-  double fundamental_frequency_hz = 15e6;  ///< f0 of the camera, > 0
+  std::optional<Excitation> excitation;
+  double fundamental_frequency_hz = 15e6;  ///< f0 of the camera
   int samples = 240;                       ///< N of the camera; the response comes out in steps of
                                            ///< a period over a whole multiple of it
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+auto fields_of(ConstOrNot<ResponseCalibrationOptions> auto& o) {
+  return std::tuple(
+      Field("excitation", o.excitation, Help{"what the arm answered to"},
+            IfAbsent{"found from the record"}),
+      Field("fundamental_frequency_hz", o.fundamental_frequency_hz, FieldMark::from_above),
+      Field("samples", o.samples, FieldMark::from_above));
+}
 
 /// A parametric kind of response fitted to a record.
 struct ParametricResponse {

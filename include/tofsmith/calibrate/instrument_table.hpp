@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -14,6 +15,9 @@ namespace tofsmith {
 /// What separates whole from fraction in a text of numbers.
 enum class DecimalMark { automatic, point, comma };
 
+constexpr std::array<std::string_view, 3> words_of(DecimalMark /*any*/) {
+  return {"auto", "point", "comma"};
+}
 /// "auto", "point" or "comma". @throws std::invalid_argument for any other word
 DecimalMark parse_decimal_mark(std::string_view word);
 

@@ -14,19 +14,23 @@
 
 namespace tofsmith {
 
+/// Options of photon_transfer().
 struct PhotonTransferOptions {
-  std::optional<double> black_level_dn;  ///< [DN], known; none: from dark frames
-  std::optional<int> adc_bits;           ///< of the raw numbers; none: the fewest usual ones
-  double averaged = 1.0;                 ///< of how many equal frames each is the mean, > 0
+  std::optional<double> black_level_dn;
+  std::optional<int> adc_bits;
+  double averaged = 1.0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const { check_fields(*this); }
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
-  return std::tuple(Field("black_level_dn", o.black_level_dn, at_least(0)),
-                    Field("adc_bits", o.adc_bits, closed(1, 24)),
-                    Field("averaged", o.averaged, above(0)));
+  return std::tuple(
+      Field("black_level_dn", o.black_level_dn, at_least(0), Help{"black level, if known"},
+            IfAbsent{"from dark frames, or the camera's"}),
+      Field("adc_bits", o.adc_bits, closed(1, 24), Help{"resolution of the raw numbers"},
+            IfAbsent{"the camera's, or the smallest usual one"}),
+      Field("averaged", o.averaged, above(0),
+            Help{"number of equal frames that each frame is already the mean of"}));
 }
 
 /// Mean and variance of one pair of frames of one measurement; of differences, of those that

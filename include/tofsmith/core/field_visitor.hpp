@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tofsmith/core/range.hpp"
+#include "tofsmith/core/units.hpp"
 
 // The description of a struct that users set by keys, such as the tables of a camera file. Each
 // such struct has one function, next to its declaration, that passes its members to a visitor:
@@ -50,10 +51,6 @@ struct Key {
   Key& basic() { return is_basic = true, *this; }
   Key& usually(double low, double high) { return usual_low = low, usual_high = high, basic(); }
 };
-
-/// Unit in which users write the value of a key, by the end of its name: "Hz" of "f_max_hz"; "" of
-/// a plain number.
-std::string_view unit_of_key(std::string_view name);
 
 /// One word of several.
 struct WordChoice {

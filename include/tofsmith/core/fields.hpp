@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -13,6 +16,7 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/range.hpp"
+#include "tofsmith/core/units.hpp"
 
 // The fields of an options or result struct, listed once beside it, in the order of declaration:
 //
@@ -21,8 +25,9 @@
 //     o.polish));
 //   }
 //
-// Validation, keys of finished work, JSON, Python and effort go through for_each_field(), which
-// does not compile where a field is missing.
+// Validation, keys of finished work, JSON, options of the command line, keyword arguments of Python
+// with their documentation, and effort go through for_each_field(), which does not compile where a
+// field is missing.
 namespace tofsmith {
 
 /// What uses of a field must know besides its type.
@@ -42,15 +47,54 @@ struct ByEffort {
   int min = 0;
 };
 
-/// What a field is, as a noun phrase: the help text of its option.
+/// What a field is, as a noun phrase, or what a flag does, as an imperative. Without unit, range,
+/// words and default, which follow from the field.
 struct Help {
   std::string_view text;
+};
+
+/// The value in place of an optional field that is absent: "as many as fit".
+struct IfAbsent {
+  std::string_view text;
+};
+
+/// When a field applies: "method unwrap".
+struct OnlyWith {
+  std::string_view condition;
 };
 
 /// What JSON documents call a field, where that is not its name.
 struct InDocuments {
   std::string_view name;
 };
+
+/// An enumeration whose words users write: words_of() returns the word of every value, in the order
+/// of the values.
+template <typename Enum>
+concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {
+  words_of(any).size();
+};
+
+/// Returns the index of a word.
+/// @throws std::invalid_argument "field = word; must be a, b or c"
+std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
+                          std::string_view word);
+
+template <HasWords Enum>
+constexpr std::string_view word_of(Enum value) {
+  return words_of(value).at(static_cast<std::size_t>(value));
+}
+
+/// @throws std::invalid_argument for any other word
+template <HasWords Enum>
+Enum parse_word(std::string_view field, std::string_view word) {
+  static constexpr auto words = words_of(Enum{});
+  return static_cast<Enum>(index_of_word(field, words, word));
+}
+
+/// See Field::help_text().
+std::string full_help(std::string_view unit, std::string_view help, std::string_view only_with,
+                      std::string_view if_absent);
 
 /// A field of a struct: its name, a reference to its value, the range of numbers, and further
 /// marks.
@@ -61,6 +105,8 @@ struct Field {
   Range range = {};
   std::optional<ByEffort> by_effort = {};
   std::string_view help = {};
+  std::string_view if_absent = {};
+  std::string_view only_with = {};
   std::string_view document_name = name;
   unsigned marks = 0;
 
@@ -70,11 +116,18 @@ struct Field {
     (set(its_marks), ...);
   }
   bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
+  /// The help text with unit, condition and the value in place of an absent one:
+  /// "longest delay of a second return [m] (a third of the range)".
+  std::string help_text() const { return full_help(unit(), help, only_with, if_absent); }
+  /// The unit of numbers; "" of other values and of plain numbers.
+  std::string_view unit() const;
 
  private:
   void set(const Range& its_range) { range = its_range; }
   void set(ByEffort effort) { by_effort = effort; }
   void set(Help its) { help = its.text; }
+  void set(IfAbsent its) { if_absent = its.text; }
+  void set(OnlyWith its) { only_with = its.condition; }
   void set(InDocuments its) { document_name = its.name; }
   void set(FieldMark mark) { marks |= as_bits(mark); }
 };
@@ -139,6 +192,14 @@ inline constexpr bool is_optional<std::optional<Value>> = true;
 
 namespace detail {
 template <typename Value>
+constexpr bool is_number() {
+  if constexpr (is_optional<Value> || is_list<Value>)
+    return is_number<typename Value::value_type>();
+  else
+    return std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>;
+}
+
+template <typename Value>
 void check(const char* name, const Value& value, const Range& range, std::string_view owner,
            std::string_view which = "must be ") {
   if constexpr (std::is_arithmetic_v<Value>) {
@@ -152,6 +213,11 @@ void check(const char* name, const Value& value, const Range& range, std::string
   }
 }
 }  // namespace detail
+
+template <typename Value>
+std::string_view Field<Value>::unit() const {
+  return detail::is_number<std::remove_const_t<Value>>() ? unit_of_key(name) : std::string_view();
+}
 
 /// Checks the range of every field; members that are structs check their own.
 /// @param owner  before the names in errors: "OptimizeOptions::"

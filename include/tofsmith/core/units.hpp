@@ -4,12 +4,17 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Unit in which users write the value of a key, by the end of its name: "Hz" of "f_max_hz"; "" of
+/// a plain number.
+std::string_view unit_of_key(std::string_view name);
 
 /// Speed of light in vacuum [m/s].
 inline constexpr double speed_of_light_m_per_s = 299792458.0;

@@ -26,10 +26,23 @@ inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMeth
                                                   DecodeMethod::unwrap, DecodeMethod::two_return,
                                                   DecodeMethod::tail};
 
+constexpr std::array<std::string_view, 5> words_of(DecodeMethod /*any*/) {
+  return {"zncc", "ml", "unwrap", "two-return", "tail"};
+}
 /// "zncc", "ml", "unwrap", "two-return", "tail".
 std::string_view name_of(DecodeMethod method);
 /// @throws std::invalid_argument for any other word
 DecodeMethod parse_decode_method(std::string_view name);
+
+/// Help texts of options that choose a decoder.
+inline constexpr Help decode_method_help{
+    "decoder: zncc for any code, ml for any code by maximum likelihood (slower), unwrap for "
+    "sinusoids of one or more frequencies; two-return and tail where light comes back twice or "
+    "trails off, for codes of many independent means"};
+inline constexpr Help unwrap_weights_help{
+    "how unwrapping weighs frequencies: by the variance of their depth on this camera, or by f^2, "
+    "as is classical"};
+inline constexpr OnlyWith unwrap_weights_condition{"method unwrap"};
 
 /// A decoder of any method.
 class DepthDecoder {

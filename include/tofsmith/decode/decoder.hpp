@@ -17,26 +17,28 @@ struct DecoderParts;
 
 /// Thresholds of a pixel's status.
 struct DecodeOptions {
-  /// low_signal below this many standard deviations of the signal estimate; >= 0.
   double low_signal_sigma = 3.0;
-  /// ambiguous below this probability that the main lobe is the right one; in [0, 1].
+  /// Least probability that the main lobe is the right one.
   double min_confidence = 0.9;
-  /// Share of consistent pixels that are marked inconsistent; in [0, 1). 0 disables the status.
   double false_alarm_rate = 1e-3;
-  /// Model error to tolerate on top of the noise, such as the wiggling of an uncalibrated camera
-  /// [% of the signal's part of the measurements, root mean square]; in [0, 100]. A larger one of
-  /// the decoding table replaces it.
+  /// Root mean square, relative to the signal's part of the measurements.
   double model_error_percent = 0.0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
-  return std::tuple(Field("low_signal_sigma", o.low_signal_sigma, at_least(0)),
-                    Field("min_confidence", o.min_confidence, closed(0, 1)),
-                    Field("false_alarm_rate", o.false_alarm_rate, right_open(0, 1)),
-                    Field("model_error_percent", o.model_error_percent, closed(0, 100)));
+  return std::tuple(
+      Field("low_signal_sigma", o.low_signal_sigma, at_least(0),
+            Help{"signal below which a pixel is marked low_signal"}),
+      Field("min_confidence", o.min_confidence, closed(0, 1),
+            Help{"confidence below which a pixel is marked ambiguous"}),
+      Field("false_alarm_rate", o.false_alarm_rate, right_open(0, 1),
+            Help{"share of consistent pixels that are marked inconsistent; 0: no pixel is"}),
+      Field("model_error_percent", o.model_error_percent, closed(0, 100),
+            Help{"error of the camera model, such as wiggling, that is not marked inconsistent, "
+                 "relative to the signal's part of the measurements; a larger one of the table "
+                 "replaces it"}));
 }
 
 /// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out

@@ -136,6 +136,9 @@ enum class MixedPixels {
 inline constexpr std::array all_mixed_pixels = {MixedPixels::label, MixedPixels::snap,
                                                 MixedPixels::drop};
 
+constexpr std::array<std::string_view, 3> words_of(MixedPixels /*any*/) {
+  return {"label", "snap", "drop"};
+}
 /// "label", "snap", "drop".
 std::string_view name_of(MixedPixels mixed);
 /// @throws std::invalid_argument for any other word

@@ -24,41 +24,47 @@ enum class FilterStrength {
 };
 inline constexpr std::array all_filter_strengths = {FilterStrength::light, FilterStrength::normal,
                                                     FilterStrength::strong};
+constexpr std::array<std::string_view, 3> words_of(FilterStrength /*any*/) {
+  return {"light", "normal", "strong"};
+}
 /// "light", "normal", "strong".
 std::string_view name_of(FilterStrength strength);
 /// @throws std::invalid_argument for any other word
 FilterStrength parse_filter_strength(std::string_view name);
 
+/// Options of a Filter.
 struct FilterOptions {
-  /// Windows of 5 x 5, each over the results of the one before, so that no pixel is counted twice:
-  /// 5, 25 or 125 pixels wide in all.
   int windows = 2;
-  /// Times that all windows are gone through again, now along the slopes of the depth found before.
   int slope_rounds = 1;
-  /// Neighbours that differ by more standard deviations than this weigh nothing.
   double max_difference_sigma = 3.5;
-  /// Pixels added before, at most, that the next window counts on when it asks what differs: more
-  /// tell smaller steps from noise, fewer let slopes be averaged.
+  /// Larger values detect smaller depth steps, smaller values smooth slopes more.
   double trusted_pixels = 12.0;
-  /// Along slopes, depths within this many standard deviations are the same surface.
   double same_depth_sigma = 4.0;
-  /// A pixel is left as it was measured where neither it nor most of the 7 x 7 pixels around it
-  /// show any light, but what the filter would give it stands out by this many standard deviations
-  /// of their mean: beside an edge of light, dark pixels are given none of it.
+  /// Avoids that light leaks across edges.
   double own_light_sigma = 8.0;
 
   static FilterOptions of(FilterStrength strength);
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FilterOptions> auto& o) {
-  return std::tuple(Field("windows", o.windows, closed(1, 3)),
-                    Field("slope_rounds", o.slope_rounds, closed(0, 4)),
-                    Field("max_difference_sigma", o.max_difference_sigma, above(0)),
-                    Field("trusted_pixels", o.trusted_pixels, at_least(1)),
-                    Field("same_depth_sigma", o.same_depth_sigma, above(0)),
-                    Field("own_light_sigma", o.own_light_sigma, at_least(0)));
+  return std::tuple(
+      Field("windows", o.windows, closed(1, 3),
+            Help{"windows of 5 x 5 pixels, each over the results of the previous one: 5, 25 or 125 "
+                 "pixels wide in all"}),
+      Field("slope_rounds", o.slope_rounds, closed(0, 4),
+            Help{"additional passes over all windows, along the surface slopes estimated in the "
+                 "previous pass"}),
+      Field("max_difference_sigma", o.max_difference_sigma, above(0),
+            Help{"difference above which a neighbour has no weight"}),
+      Field("trusted_pixels", o.trusted_pixels, at_least(1),
+            Help{"upper limit on the number of already averaged pixels that the similarity test of "
+                 "the next window assumes"}),
+      Field("same_depth_sigma", o.same_depth_sigma, above(0),
+            Help{"along slopes, distance within which depths belong to the same surface"}),
+      Field("own_light_sigma", o.own_light_sigma, at_least(0),
+            Help{"a dark pixel in a dark neighbourhood of 7 x 7 pixels keeps its raw value if "
+                 "filtering would raise it by more than this"}));
 }
 
 struct FilterPlanes;

@@ -16,42 +16,47 @@ namespace tofsmith {
 /// What is assumed of multipath returns before a pixel is seen; depth itself may be anything. The
 /// answer leans on it where light is scarce.
 struct ReturnPrior {
-  double single_probability = 0.5;  ///< that there is no multipath return, in [0, 1)
-  double mean_delay_m = 0.5;        ///< delays are exponential with this mean [m], > 0
-  double max_ratio = 0.5;           ///< ratios are uniform from 0 to this, in (0, 1]
+  double single_probability = 0.5;
+  double mean_delay_m = 0.5;
+  double max_ratio = 0.5;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ReturnPrior> auto& p) {
-  return std::tuple(Field("single_probability", p.single_probability, right_open(0, 1)),
-                    Field("mean_delay_m", p.mean_delay_m, above(0)),
-                    Field("max_ratio", p.max_ratio, left_open(0, 1)));
+  return std::tuple(Field("single_probability", p.single_probability, right_open(0, 1),
+                          Help{"prior probability that there is no second return"}),
+                    Field("mean_delay_m", p.mean_delay_m, above(0),
+                          Help{"prior mean of delays, which are exponential"}),
+                    Field("max_ratio", p.max_ratio, left_open(0, 1),
+                          Help{"prior of ratios: uniform from 0 to this"}));
 }
 
 /// How multipath is looked for.
 struct MultipathOptions {
-  /// A second return is accepted if it lowers chi^2 by more than this, >= 0. Single returns exceed
-  /// 9 in about one pixel of a hundred.
+  /// Single returns exceed 9 in about one pixel of a hundred.
   double threshold = 9.0;
-  double shortest_delay_m = 0.1;  ///< of a second return behind the direct one [m], > 0
-  /// Of a second return [m], above the shortest and below the range; none: a third of the range.
-  std::optional<double> longest_delay_m;
-  /// Mean delay of the exponential tail that TailDecoder fits [m], > 0 and at most the range.
-  double tail_m = 0.5;
-  /// If set, depth is the posterior median under this prior where one return does not explain the
-  /// pixel, instead of the most likely one.
+  double shortest_delay_m = 0.1;
+  std::optional<double> longest_delay_m;  ///< above the shortest and below the range
+  double tail_m = 0.5;                    ///< at most the range
   std::optional<ReturnPrior> prior;
   DecodeOptions status_thresholds;  ///< of the single return
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
-  return std::tuple(Field("threshold", o.threshold, at_least(0)),
-                    Field("shortest_delay_m", o.shortest_delay_m, above(0)),
-                    Field("longest_delay_m", o.longest_delay_m),
-                    Field("tail_m", o.tail_m, above(0)), Field("prior", o.prior),
-                    Field("status_thresholds", o.status_thresholds));
+  return std::tuple(
+      Field("threshold", o.threshold, at_least(0),
+            Help{"how much chi^2 must fall for a second return to count"}),
+      Field("shortest_delay_m", o.shortest_delay_m, above(0),
+            Help{"shortest delay of a second return"}, OnlyWith{"method two-return"}),
+      Field("longest_delay_m", o.longest_delay_m, Help{"longest delay of a second return"},
+            OnlyWith{"method two-return"}, IfAbsent{"a third of the range"}),
+      Field("tail_m", o.tail_m, above(0), Help{"mean delay of the light that trails off"},
+            OnlyWith{"method tail"}),
+      Field("prior", o.prior,
+            Help{"prior under which depth is the posterior median, where one return does not "
+                 "explain the pixel"},
+            IfAbsent{"the most likely depth"}),
+      Field("status_thresholds", o.status_thresholds, Help{"thresholds of the single return"}));
 }
 
 /// What a decoder of several returns says about every pixel of a frame; all planes are (H, W).

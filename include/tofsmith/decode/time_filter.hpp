@@ -11,29 +11,30 @@
 
 namespace tofsmith {
 
+/// Options of a TimeFilter.
 struct TimeFilterOptions {
-  /// The newest frame weighs 1 / max_frames or more: what is older by much more is forgotten. 1: no
-  /// frame is added to another.
   int max_frames = 64;
-  /// Pixels that differ from what was added up by more standard deviations start anew; from half of
-  /// it on the past weighs less.
   double max_difference_sigma = 5.0;
-  /// Pixels are added in space afterwards, which leaves so little noise that smaller changes
-  /// matter: those that only 24 x 24 pixels together show are looked for, too.
+  /// The filter in space leaves so little noise that smaller changes matter.
   bool before_filter = false;
-  /// So many later frames are added, too, as long as they stay the same; each frame waits for
-  /// them. 0: none does.
   int look_ahead = 0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
-  return std::tuple(Field("max_frames", o.max_frames, at_least(1)),
-                    Field("max_difference_sigma", o.max_difference_sigma, above(0)),
-                    Field("before_filter", o.before_filter),
-                    Field("look_ahead", o.look_ahead, closed(0, 1000)));
+  return std::tuple(
+      Field("max_frames", o.max_frames, at_least(1),
+            Help{"number of frames to average: the newest frame has at least the weight "
+                 "1 / max_frames; 1: frames are not averaged"}),
+      Field("max_difference_sigma", o.max_difference_sigma, above(0),
+            Help{"difference from the mean above which a pixel starts anew; from half of it on the "
+                 "past has less weight"}),
+      Field("before_filter", o.before_filter,
+            Help{"also detect changes that only 24 x 24 pixels together show, because a spatial "
+                 "filter follows"}),
+      Field("look_ahead", o.look_ahead, closed(0, 1000),
+            Help{"number of later frames to average, too; each frame waits for them"}));
 }
 
 /// Averages the raw measurements of each pixel over frames, as long as the scene does not change,

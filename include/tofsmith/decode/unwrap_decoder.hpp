@@ -22,6 +22,9 @@ enum class UnwrapWeights {
   frequency,  ///< by f^2, as if all phases were equally noisy: the classical choice
 };
 
+constexpr std::array<std::string_view, 2> words_of(UnwrapWeights /*any*/) {
+  return {"variance", "frequency"};
+}
 /// "variance", "frequency".
 std::string_view name_of(UnwrapWeights weights);
 /// @throws std::invalid_argument for any other word

@@ -74,34 +74,37 @@ CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::strin
 
 /// How codes on a chip clock are searched.
 struct ChipSearchOptions {
-  int exposures = 1;  ///< E, 1 .. 4; with the camera's taps at least 3 measurements, at most 16
-  double margin_sigma = 8.0;  ///< least distance of depths apart, in noise [sigma], >= 0
-  /// How far apart depths are that must keep the margin [periods], in (0, 1/2): a quarter chip of
-  /// nine.
-  double separation_periods = 1.0 / 36.0;
-  bool equal_duty = true;  ///< the taps of an exposure are open equally long
-  /// Codes, after symmetry, up to which all are searched; beyond, codes are annealed without proof.
-  /// One of three taps of equal duty in one exposure counts 1, another 20, for the time it takes.
+  int exposures = 1;  ///< E; with the camera's taps at least 3 measurements, at most 16
+  double margin_sigma = 8.0;
+  double separation_periods = 1.0 / 36.0;  ///< a quarter chip of nine
+  bool equal_duty = true;
+  /// A code of three taps of equal duty in one exposure counts 1, another one 20, because it takes
+  /// that much longer.
   double max_exhaustive = 3e11;
-  int finalists = 4;                     ///< best codes by the metric to keep, 1 .. 100
-  int annealing_starts = 24;             ///< where not all codes are searched; 0 .. 10000
-  std::int64_t annealing_steps = 20000;  ///< per start, >= 1
-  std::uint64_t seed = 1;                ///< of annealing
+  int finalists = 4;
+  int annealing_starts = 24;
+  std::int64_t annealing_steps = 20000;
+  std::uint64_t seed = 1;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
-  return std::tuple(Field("exposures", o.exposures, closed(1, 4), FieldMark::from_above),
-                    Field("margin_sigma", o.margin_sigma, at_least(0)),
-                    Field("separation_periods", o.separation_periods, open(0, 0.5)),
-                    Field("equal_duty", o.equal_duty),
-                    Field("max_exhaustive", o.max_exhaustive, at_least(0).or_infinity()),
-                    Field("finalists", o.finalists, closed(1, 100)),
-                    Field("annealing_starts", o.annealing_starts, closed(0, 10000), ByEffort{2}),
-                    Field("annealing_steps", o.annealing_steps, at_least(1)),
-                    Field("seed", o.seed, FieldMark::from_above));
+  return std::tuple(
+      Field("exposures", o.exposures, closed(1, 4), FieldMark::from_above, Help{"exposures"}),
+      Field("margin_sigma", o.margin_sigma, at_least(0),
+            Help{"least distance between depths, in noise"}),
+      Field("separation_periods", o.separation_periods, open(0, 0.5),
+            Help{"distance from which on depths must keep the margin"}),
+      Field("equal_duty", o.equal_duty, Help{"open all taps of an exposure equally long"}),
+      Field("max_exhaustive", o.max_exhaustive, at_least(0).or_infinity(),
+            Help{"number of codes, after symmetry, up to which all are searched; otherwise codes "
+                 "are annealed without proof"}),
+      Field("finalists", o.finalists, closed(1, 100), Help{"best codes by the metric to keep"}),
+      Field("annealing_starts", o.annealing_starts, closed(0, 10000), ByEffort{2},
+            Help{"starts of annealing"}),
+      Field("annealing_steps", o.annealing_steps, at_least(1), Help{"steps per start"}),
+      Field("seed", o.seed, FieldMark::from_above, Help{"seed of annealing"}));
 }
 
 /// What became of all codes. Each was dropped by the first test named that it failed.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -34,6 +35,9 @@ enum class DesignMethod {
   best,       ///< all of these that suit the camera
   atlas,      ///< none: codes of the atlas and standard codes are judged, nothing is searched
 };
+constexpr std::array<std::string_view, 5> words_of(DesignMethod /*any*/) {
+  return {"factorize", "optimize", "search", "best", "atlas"};
+}
 /// The enumerator's name.
 std::string_view name_of(DesignMethod method);
 /// @throws std::invalid_argument for any other word
@@ -42,48 +46,64 @@ DesignMethod parse_design_method(std::string_view name);
 /// How the codes of a camera are designed and judged.
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
-  /// Numbers of exposures to design for, 1 .. 8, each once; none: what suits method and camera
-  /// (suggested_exposures). Factorization aims at Hamiltonian codes, which have 3 .. 6. On cameras
-  /// that read rows of one exposure: numbers of rows, 3 .. 16; none: 8.
+  /// Each once. Factorization aims at Hamiltonian codes, which have 3 .. 6 exposures. On cameras
+  /// that read rows of one exposure: numbers of rows.
   std::vector<int> exposures;
   /// A target of the user's, factorized instead of the Hamiltonian ones.
   std::optional<TargetSet> target;
   FactorizeOptions factorize;  ///< its seed comes from the one below
   OptimizeOptions optimize;    ///< so does this one's
   ChipSearchOptions search;    ///< and this one's; its exposures are those above
-  /// Optimize for, and pick by, the error on the worst of the camera's perturbations
-  /// (simulate/robustness.hpp) instead of the camera's own. The gradients see other bandwidths and
-  /// edge jitter; the choice among all candidates sees all perturbations.
+  /// The gradients see other bandwidths and edge jitter; the choice among all candidates sees all
+  /// perturbations (simulate/robustness.hpp).
   bool robust = false;
-  /// Families that compete, whether or not anything is designed; those the camera cannot play are
-  /// left out. None: suggested_baselines() and, unless only factorization is asked for, all other
+  /// If absent: suggested_baselines() and, unless only factorization is asked for, all other
   /// built-in codes that few trials find near the best (eight at most).
   std::optional<std::vector<std::string>> baselines;
-  /// How many of the nearest cameras of the atlas (code_atlas()) lend their codes, fitted to this
-  /// camera's peak: the best few compete, unless only factorization or search is asked for, and are
-  /// where the optimization starts; 0: none.
+  /// The best few codes of code_atlas(), fitted to this camera's peak, compete unless only
+  /// factorization or search is asked for.
   int atlas_cameras = 4;
-  bool best_rotation = true;         ///< for the linear error: give every candidate its best origin
-  int search_trials = 600;           ///< per operating point, while pairs are chosen; >= 100
-  int trials = 20000;                ///< per operating point, for the final figures; >= 1000
-  double outlier_threshold_m = 0.5;  ///< of the final figures, as of EvaluateOptions [m], >= 0
+  bool best_rotation = true;
+  int search_trials = 600;
+  int trials = 20000;
+  double outlier_threshold_m = default_outlier_threshold_m;
   std::uint64_t seed = 1;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
-  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, closed(1, 16)),
-                    Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
-                    Field("optimize", o.optimize), Field("search", o.search),
-                    Field("robust", o.robust), Field("baselines", o.baselines),
-                    Field("atlas_cameras", o.atlas_cameras, at_least(0)),
-                    Field("best_rotation", o.best_rotation),
-                    Field("search_trials", o.search_trials, at_least(100)),
-                    Field("trials", o.trials, at_least(1000)),
-                    Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity()),
-                    Field("seed", o.seed));
+  return std::tuple(
+      Field("method", o.method,
+            Help{"factorize: factorize correlation functions; optimize: minimize depth error "
+                 "itself; search: all codes on a chip clock, with proof; best: all that suit the "
+                 "camera, with every baseline as a competitor; atlas: nothing is searched, codes "
+                 "of the atlas and standard codes are judged"}),
+      Field("exposures", o.exposures, closed(1, 16),
+            Help{"numbers of exposures to try (3,4,5), or of rows"},
+            IfAbsent{"what suits the camera"}),
+      Field("target", o.target, FieldMark::apart),
+      Field("factorize", o.factorize, Help{"options of factorization"}),
+      Field("optimize", o.optimize, Help{"options of optimization"}),
+      Field("search", o.search, Help{"options of the search on a chip clock"}),
+      Field("robust", o.robust,
+            Help{"optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter and 2 % "
+                 "tap mismatch"}),
+      Field("baselines", o.baselines,
+            Help{"families that compete; those that the camera cannot play are left out"},
+            IfAbsent{"what suits the method"}),
+      Field("atlas_cameras", o.atlas_cameras, closed(0, 1000),
+            Help{"how many of the nearest cameras of the atlas lend codes, which compete and are "
+                 "where searches start; 0: none"}),
+      Field("best_rotation", o.best_rotation,
+            Help{"give every candidate its best origin of depth"}),
+      Field("search_trials", o.search_trials, at_least(100),
+            Help{"trials per operating point while pairs are chosen"}),
+      Field("trials", o.trials, closed(1000, 1e8),
+            Help{"trials per operating point for final figures"}),
+      Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
+            outlier_threshold_help),
+      Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 
 /// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
@@ -236,14 +256,14 @@ Camera with_scaled(Camera camera, CameraQuantity quantity, double factor);
 
 /// How a requirement is met.
 struct RequirementOptions {
-  double error_m = 0.005;  ///< circular; geometric mean over the operating points
+  double error_m = 0.005;
   bool vary_bandwidth = true;
   bool vary_power = true;
   bool vary_exposure = true;
-  double max_factor = 64.0;  ///< quantities are varied between 1 / max_factor and max_factor
-  double effort = 0.1;       ///< of every design: see with_effort()
+  double max_factor = 64.0;
+  double effort = 0.1;  ///< see with_effort()
   int trials = 50000;
-  bool map = true;  ///< also the error over bandwidth and power, if both are varied
+  bool map = true;
   std::uint64_t seed = 1;
 
   /// What is varied, in the order of the enumeration.
@@ -254,13 +274,17 @@ struct RequirementOptions {
 };
 auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
   return std::tuple(
-      Field("error_m", o.error_m, above(0)), Field("vary_bandwidth", o.vary_bandwidth),
-      Field("vary_power", o.vary_power), Field("vary_exposure", o.vary_exposure),
+      Field(
+          "error_m", o.error_m, above(0),
+          Help{"circular depth error that is asked for: geometric mean over the operating points"}),
+      Field("vary_bandwidth", o.vary_bandwidth, Help{"vary the bandwidth of both arms"}),
+      Field("vary_power", o.vary_power, Help{"vary the power of the modulated light"}),
+      Field("vary_exposure", o.vary_exposure, Help{"vary the integration time"}),
       Field("max_factor", o.max_factor, left_open(1, 1e6),
             Help{"largest factor by which a quantity is increased or decreased"}),
       Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
-      Field("map", o.map, Help{"no map of the error over bandwidth and power"}),
+      Field("map", o.map, Help{"compute the error over bandwidth and power, if both are varied"}),
       Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 

@@ -68,36 +68,45 @@ TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int
 
 /// Options of the factorization of one correlation function into a playable pair of waveforms.
 struct FactorizeOptions {
-  /// lambda of problem (6), each in [1e-7, 1e-2]; starts take them in turn. Large ones find few
-  /// edges and simple codes, small ones many edges; at 1e-2 the iteration collapses to constants.
+  /// lambda of problem (6). At 1e-2 the iteration collapses to constants.
   std::vector<double> total_variation_weights = {3e-4, 1e-5};
-  int max_iterations = 12;            ///< pairs of convex steps per start, >= 1
-  double objective_tolerance = 1e-4;  ///< stop when the objective changes less than this, relative
-  /// Go on from the binary projection, as the paper words it, instead of keeping the best
-  /// projection beside the relaxed iterates. Measured: finds zero error less often.
+  int max_iterations = 12;
+  double objective_tolerance = 1e-4;
+  /// As the paper words it. Measured: finds zero error less often.
   bool feed_back_projection = false;
-  int random_starts = 30;         ///< >= 0
-  bool structured_starts = true;  ///< thresholded target with pulses and pulse trains
-  bool keep_naive = true;         ///< the ideal demodulation with one pulse stays a candidate
-  bool refine_edges = true;       ///< move switching times continuously afterwards
-  int refined = 24;               ///< how many of the best projections are refined, >= 1
-  int kept = 16;                  ///< how many distinct pairs are returned, >= 1
+  int random_starts = 30;
+  bool structured_starts = true;
+  bool keep_naive = true;
+  bool refine_edges = true;
+  int refined = 24;
+  int kept = 16;
   std::uint64_t seed = 1;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
-  return std::tuple(Field("total_variation_weights", o.total_variation_weights, closed(1e-7, 1e-2)),
-                    Field("max_iterations", o.max_iterations, at_least(1)),
-                    Field("objective_tolerance", o.objective_tolerance, at_least(0)),
-                    Field("feed_back_projection", o.feed_back_projection),
-                    Field("random_starts", o.random_starts, at_least(0), ByEffort{2}),
-                    Field("structured_starts", o.structured_starts),
-                    Field("keep_naive", o.keep_naive), Field("refine_edges", o.refine_edges),
-                    Field("refined", o.refined, at_least(1)), Field("kept", o.kept, at_least(1)),
-                    Field("seed", o.seed, FieldMark::from_above));
+  return std::tuple(
+      Field("total_variation_weights", o.total_variation_weights, closed(1e-7, 1e-2),
+            Help{"weights of total variation, which starts take in turn: large ones find simple "
+                 "codes with few edges, small ones many edges"}),
+      Field("max_iterations", o.max_iterations, at_least(1),
+            Help{"pairs of convex steps per start"}),
+      Field("objective_tolerance", o.objective_tolerance, at_least(0),
+            Help{"relative change of the objective below which a start ends"}),
+      Field("feed_back_projection", o.feed_back_projection,
+            Help{"continue from the binary projection, instead of keeping the best projection next "
+                 "to the relaxed iterates"}),
+      Field("random_starts", o.random_starts, at_least(0), ByEffort{2}, Help{"random starts"}),
+      Field("structured_starts", o.structured_starts,
+            Help{"also start from the thresholded target with pulses and pulse trains"}),
+      Field("keep_naive", o.keep_naive,
+            Help{"keep the ideal demodulation with one pulse as a candidate"}),
+      Field("refine_edges", o.refine_edges, Help{"move switching times continuously afterwards"}),
+      Field("refined", o.refined, at_least(1),
+            Help{"how many of the best projections are refined"}),
+      Field("kept", o.kept, at_least(1), Help{"how many distinct pairs are returned"}),
+      Field("seed", o.seed, FieldMark::from_above, Help{"seed of the random starts"}));
 }
 
 /// One pair of convex steps.

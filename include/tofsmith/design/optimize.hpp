@@ -16,49 +16,60 @@ namespace tofsmith {
 
 /// Options of the direct optimization of codes for depth error.
 struct OptimizeOptions {
-  int samples = 120;            ///< cells per period while optimizing, 24 .. 960; fewer where the
-                                ///< camera's shortest pulse is longer than such a cell
-  int starts = 20;              ///< descents from different codes, >= 1
-  int steps_per_start = 300;    ///< >= 1
-  int hops = 40;                ///< descents from changed copies of the best, >= 0
-  int steps_per_hop = 300;      ///< >= 1
-  int patience = 30;            ///< end hopping after so many hops without a better code; 0: never
-  int refined = 1;              ///< how many of the best codes are refined, >= 1
-  int refinement_steps = 1000;  ///< per refined code, >= 0
-  int trials_per_step = 200;    ///< noisy measurements per gradient, over all light levels, >= 8
-  int pool_trials = 20000;      ///< over all light levels, to rank codes while searching, >= 1000
-  bool polish = true;           ///< move the switching times of the result continuously
-  int polish_steps = 250;       ///< >= 0
+  int samples = 120;
+  int starts = 20;
+  int steps_per_start = 300;
+  int hops = 40;
+  int steps_per_hop = 300;
+  int patience = 30;
+  int refined = 1;
+  int refinement_steps = 1000;
+  int trials_per_step = 200;
+  int pool_trials = 20000;
+  bool polish = true;
+  int polish_steps = 250;
   std::uint64_t seed = 1;
-  /// On cameras with operating.multipath and enough measurements: weight of log E3 in the loss,
-  /// beside log E1^(1 - w) E2^w of OperatingMultipath::weight, with E3 the error of the direct
-  /// depth where pairs of returns are looked for on the bins of a grid. It keeps pairs from looking
-  /// like others, so that two returns can be decoded; >= 0.
+  /// Weight of log E3 in the loss, next to log E1^(1 - w) E2^w of OperatingMultipath::weight, where
+  /// E3 is the error of the direct depth if pairs of returns are searched on the bins of a grid. It
+  /// keeps pairs from looking like others.
   double two_return_weight = 0.02;
-  /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
-  /// much as it does of the best baseline that can be decoded so, if there is one; what errs more
-  /// counts to the judge as so many times worse, up to 1.25 times; >= 1.
+  /// Larger errors count as so many times worse for the judge, up to 1.25 times.
   double max_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
-  return std::tuple(Field("samples", o.samples, closed(24, 960)),
-                    Field("starts", o.starts, at_least(1), ByEffort{2}),
-                    Field("steps_per_start", o.steps_per_start, at_least(1)),
-                    Field("hops", o.hops, at_least(0), ByEffort{0}),
-                    Field("steps_per_hop", o.steps_per_hop, at_least(1)),
-                    Field("patience", o.patience, at_least(0)),
-                    Field("refined", o.refined, at_least(1)),
-                    Field("refinement_steps", o.refinement_steps, at_least(0), ByEffort{50}),
-                    Field("trials_per_step", o.trials_per_step, at_least(8)),
-                    Field("pool_trials", o.pool_trials, at_least(1000)), Field("polish", o.polish),
-                    Field("polish_steps", o.polish_steps, at_least(0)),
-                    Field("seed", o.seed, FieldMark::from_above),
-                    Field("two_return_weight", o.two_return_weight, at_least(0)),
-                    Field("max_two_return_loss", o.max_two_return_loss, at_least(1).or_infinity()));
+  constexpr OnlyWith multipath{"multipath of the camera's operating points"};
+  return std::tuple(
+      Field("samples", o.samples, closed(24, 960),
+            Help{"cells per period while optimizing; fewer if the camera's shortest pulse is "
+                 "longer than such a cell"}),
+      Field("starts", o.starts, at_least(1), ByEffort{2}, Help{"descents from different codes"}),
+      Field("steps_per_start", o.steps_per_start, at_least(1), Help{"gradient steps per start"}),
+      Field("hops", o.hops, at_least(0), ByEffort{0},
+            Help{"descents from changed copies of the best codes"}),
+      Field("steps_per_hop", o.steps_per_hop, at_least(1), Help{"gradient steps per hop"}),
+      Field("patience", o.patience, at_least(0),
+            Help{"hops without a better code after which hopping ends; 0: never"}),
+      Field("refined", o.refined, at_least(1), Help{"how many of the best codes are refined"}),
+      Field("refinement_steps", o.refinement_steps, at_least(0), ByEffort{50},
+            Help{"gradient steps per refined code"}),
+      Field("trials_per_step", o.trials_per_step, at_least(8),
+            Help{"noisy measurements per gradient, over all light levels"}),
+      Field("pool_trials", o.pool_trials, at_least(1000),
+            Help{"trials that rank codes while searching, over all light levels"}),
+      Field("polish", o.polish, Help{"move the switching times of the result continuously"}),
+      Field("polish_steps", o.polish_steps, at_least(0), Help{"steps of that"}),
+      Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),
+      Field("two_return_weight", o.two_return_weight, at_least(0),
+            Help{"weight of the error decoded as two returns in the search, so that codes can be "
+                 "decoded so; 0: none"},
+            multipath),
+      Field("max_two_return_loss", o.max_two_return_loss, at_least(1).or_infinity(),
+            Help{"error of two-return decoding that a code may have, relative to the best "
+                 "baseline that can be decoded so"},
+            multipath));
 }
 
 /// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:

@@ -43,6 +43,10 @@ inline constexpr std::array all_decoded_planes = {
     DecodedPlane::deviation, DecodedPlane::status, DecodedPlane::delay,    DecodedPlane::ratio,
     DecodedPlane::returns,   DecodedPlane::bin,    DecodedPlane::averaged, DecodedPlane::residual};
 
+constexpr std::array<std::string_view, 12> words_of(DecodedPlane /*any*/) {
+  return {"depth", "signal", "ambient", "confidence", "deviation", "status",
+          "delay", "ratio",  "returns", "bin",        "averaged",  "residual"};
+}
 /// "depth", "signal", ..: the word of the enumerator, which arrays of .npz files have too.
 std::string_view name_of(DecodedPlane plane);
 /// @throws std::invalid_argument for any other word
@@ -57,6 +61,7 @@ enum class DepthKind {
   z,       ///< along the optical axis
 };
 
+constexpr std::array<std::string_view, 2> words_of(DepthKind /*any*/) { return {"radial", "z"}; }
 /// "radial", "z".
 std::string_view name_of(DepthKind kind);
 /// @throws std::invalid_argument for any other word
@@ -67,55 +72,115 @@ bool holds_points(const std::filesystem::path& path);
 
 /// A recording to be decoded into files.
 struct DecodeRequest {
-  /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in
+  /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one per measurement in
   /// their order, (H, W) or (F, H, W) each.
   std::vector<std::filesystem::path> raw;
-  RawLayout layout = RawLayout::interleaved;  ///< of one .npy, .npz or .h5; never guessed
-  std::string dataset;  ///< of .npz and .h5; empty: the one called raw, or the only one
-  std::filesystem::path raw_format;  ///< describes a sensor's dump (*.raw.toml); empty: no dump
+  RawLayout layout = RawLayout::interleaved;
+  std::string dataset;
+  std::filesystem::path raw_format;
 
   /// .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel of
   /// each; .ply, .pcd (organized): points with planes as scalars. Files of several frames get
   /// numbers: name-03.npz.
   std::filesystem::path output;
-  std::vector<DecodedPlane> outputs;   ///< others are not computed; empty: what `output` holds
-  DepthKind kind = DepthKind::radial;  ///< .ply and .pcd hold points either way
-  bool all_points = false;             ///< in .ply and .pcd; else those of pixels that are ok
+  std::vector<DecodedPlane> outputs;
+  DepthKind kind = DepthKind::radial;
+  bool all_points = false;
   /// Of points and z; none: a view 60 degrees wide. Pixels that see nothing, by a map of rays, are
   /// invalid.
   std::optional<Lens> lens;
-  /// Planes are those of the ideal pinhole, without the lens's distortion: each pixel takes the
-  /// values of the nearest one, and its depth along the axis. Pixels that the lens does not see are
-  /// invalid. Needs a lens; nothing changes without distortion.
-  bool undistort = false;
-  std::optional<int> frame;  ///< this one alone, counted from 0; none: all
-  bool stack = false;        ///< all frames in one .npy a plane, name-PLANE.npy
-  /// Means of so many consecutive frames are decoded, as frames of their own with a noise so much
-  /// smaller; the last one is of those that are left. What is invalid or saturated in one is so in
-  /// the mean. `frame` counts means. From 1 to the number of frames.
+  bool undistort = false;  ///< needs a lens; nothing changes without distortion
+  std::optional<int> frame;
+  bool stack = false;
+  /// A pixel that is invalid or saturated in one frame is so in the mean. Not above the number of
+  /// frames.
   int average = 1;
-  /// Exposures of so many consecutive frames, over the shortest, which is the camera's:
-  /// merge_exposures() makes one of them. Empty: none. The recording holds whole groups; `frame`
-  /// counts those. Goes without `average`.
+  /// The recording holds whole groups, of which merge_exposures() makes frames. Goes without
+  /// `average`.
   std::vector<double> hdr;
-  /// Image of shares that StrayLight takes off each frame before all else (.npy, ..); empty: none.
-  std::filesystem::path stray_light;
-  /// Of how many equal measurements each raw number is the mean already, > 0: their noise is so
-  /// much smaller. With `average` it multiplies.
-  double averaged = 1.0;
-  /// Of the frames, or means of frames, one after another: what stays the same is added up. `frame`
-  /// counts all frames before it in, and with `look_ahead` those after it. With `filter` it is
-  /// `before_filter`. None: each frame for itself.
+  std::filesystem::path stray_light;  ///< image of shares, as StrayLight takes it
+  double averaged = 1.0;              ///< multiplied by `average`
+  /// Of the frames, or means of frames, one after another. `frame` counts all frames before it in,
+  /// and with `look_ahead` those after it. With `filter` it is `before_filter`.
   std::optional<TimeFilterOptions> time_filter;
-  std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
-  std::optional<MixedPixels> mixed;     ///< mark_mixed_pixels() of each frame; none: not looked for
-  std::filesystem::path offset_map;     ///< [m], as PixelMaps::delay_offset_m; empty: none
-  double offset_m = 0.0;                ///< of every pixel, beside that of its map [m]
-  std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
-  double memory_mb = 256.0;             ///< for frames under way [MB], > 0
+  std::optional<FilterOptions> filter;  ///< after the temporal filter
+  std::optional<MixedPixels> mixed;     ///< see mark_mixed_pixels()
+  std::filesystem::path offset_map;     ///< as PixelMaps::delay_offset_m
+  double offset_m = 0.0;
+  std::filesystem::path gain_map;  ///< as PixelMaps::gain
+  double memory_mb = 256.0;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };
+auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
+  return std::tuple(
+      Field("raw", r.raw, FieldMark::from_above),
+      Field("layout", r.layout,
+            Help{"how raw numbers are stored: interleaved, or planar for (K,H,W) and (F,K,H,W); "
+                 "never guessed"}),
+      Field("dataset", r.dataset,
+            Help{"array of an .npz, or data set of an .h5, that holds the raw numbers"},
+            IfAbsent{"the one called raw, or the only one"}),
+      Field("raw_format", r.raw_format,
+            Help{"the raw file is a sensor's dump without header, as this .raw.toml file describes "
+                 "it (docs/raw_formats.md)"}),
+      Field("output", r.output, FieldMark::from_above),
+      Field("outputs", r.outputs,
+            Help{"planes to write; others are not computed. averaged: number of averaged "
+                 "measurements; residual: chi-square per degree of freedom; delay, ratio and "
+                 "returns (0 none, 1 single, 2 two, 3 unresolved) only of two-return and tail"},
+            IfAbsent{"depth to status, as many as the output holds"}),
+      Field("kind", r.kind,
+            Help{"depth to write: radial distance, as the camera measures it, or z along the axis "
+                 "(the convention of depth images for simulate and demo); .ply and .pcd hold "
+                 "points either way"}),
+      Field("all_points", r.all_points,
+            Help{"in .ply and .pcd also write points of pixels that are not ok"}),
+      Field("lens", r.lens, FieldMark::from_above),
+      Field("undistort", r.undistort,
+            Help{"write planes without the distortion of the camera's lens: each pixel takes the "
+                 "values of the nearest one; pixels that the lens does not see are invalid"}),
+      Field("frame", r.frame, at_least(0),
+            Help{"decode this frame only, counted from 0; with averaging this mean, with exposures "
+                 "to merge this group; a temporal filter also uses the frames before it"},
+            IfAbsent{"all"}),
+      Field("stack", r.stack,
+            Help{"write all frames to one .npy, (F,H,W), as they come, and each plane but depth to "
+                 "a file of its own, NAME-PLANE.npy"}),
+      Field(
+          "average", r.average, at_least(1),
+          Help{"decode the means of this many consecutive frames; the last one is of those left"}),
+      Field("hdr", r.hdr,
+            Help{"exposure ratios of bracketed frames to the shortest exposure, which is the "
+                 "camera's, such as 1,4,16: each group is merged into one frame, without saturated "
+                 "samples, by their noise"}),
+      Field("stray_light", r.stray_light,
+            Help{"light that the lens scatters, of calibrate stray-light (.npy .npz .exr .pfm), "
+                 "removed from the raw numbers first"}),
+      Field("averaged", r.averaged, left_open(0, 1e9),
+            Help{"raw frames are already averages of this many equal measurements, with so much "
+                 "less noise"}),
+      Field("time_filter", r.time_filter, Help{"options of the temporal filter"}, IfAbsent{"none"}),
+      Field("filter", r.filter, Help{"options of the spatial filter"}, IfAbsent{"none"}),
+      Field("mixed", r.mixed,
+            Help{"find pixels at edges of depth that see two surfaces: label (status mixed, the "
+                 "depth stays), snap (to the depth of the one that gives more light) or drop (no "
+                 "depth)"},
+            IfAbsent{"off"}),
+      Field("offset_map", r.offset_map,
+            Help{"distance by which each pixel decodes too far, in metres (.npy .npz .exr .pfm), "
+                 "subtracted from its depth; NaN marks a dead pixel"}),
+      Field("offset_m", r.offset_m,
+            Help{"distance by which every pixel decodes too far, subtracted from its depth"}),
+      Field("gain_map", r.gain_map,
+            Help{"response of each pixel relative to that of a usual one, removed from signal and "
+                 "ambient; NaN marks a dead pixel"}),
+      Field("memory_mb", r.memory_mb, left_open(0, 1e9),
+            Help{"memory for frames in flight; larger frames are decoded in bands of rows. The "
+                 "program itself takes some 50 MB more"}),
+      Field("policy", r.policy, FieldMark::from_above),
+      Field("other_inputs", r.other_inputs, FieldMark::from_above));
+}
 
 /// How many pixels have which status.
 class StatusCounts {

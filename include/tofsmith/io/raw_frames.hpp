@@ -131,6 +131,9 @@ enum class RawLayout {
   planar,       ///< (K, H, W) or (F, K, H, W): one image per measurement
 };
 
+constexpr std::array<std::string_view, 2> words_of(RawLayout /*any*/) {
+  return {"interleaved", "planar"};
+}
 /// "interleaved", "planar".
 std::string_view name_of(RawLayout layout);
 /// @throws std::invalid_argument for any other word

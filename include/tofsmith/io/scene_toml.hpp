@@ -55,23 +55,32 @@ StagedScene read_scene_toml(const std::filesystem::path& path,
 
 /// Which scene is seen, by name or file.
 struct SceneSource {
-  std::string scene;          ///< a built-in scene, a scene file (.toml), a mesh, or a depth image
-  std::string image;          ///< file of a depth image's albedo; empty: 1
-  std::string ambient_image;  ///< file of each pixel's ambient light; empty: 1
-  DepthKind kind = DepthKind::z;  ///< of a depth image
-  bool linear_image = false;      ///< PNG images hold linear light, not sRGB
-  std::optional<int> width;       ///< of a built-in scene or a mesh, 1 .. 16384; 320
-  std::optional<int> height;      ///< as width; 240
-  std::optional<double> scale_m;  ///< metres per unit of a mesh, > 0; 1
-  double time_s = 0.0;            ///< when a scene that moves is looked at [s]
+  std::string scene;
+  std::string image;
+  std::string ambient_image;
+  DepthKind kind = DepthKind::z;
+  bool linear_image = false;
+  std::optional<int> width;
+  std::optional<int> height;
+  std::optional<double> scale_m;
+  double time_s = 0.0;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SceneSource> auto& s) {
   return std::tuple(
-      Field("scene", s.scene), Field("image", s.image), Field("ambient_image", s.ambient_image),
-      Field("kind", s.kind), Field("linear_image", s.linear_image),
-      Field("width", s.width, closed(1, 16384)), Field("height", s.height, closed(1, 16384)),
-      Field("scale_m", s.scale_m, above(0)), Field("time_s", s.time_s, finite()));
+      Field("scene", s.scene,
+            Help{"a built-in scene, a scene file (.toml), a mesh, or a depth image"}),
+      Field("image", s.image, Help{"albedo of a depth image (.png .npy .exr .pfm)"}),
+      Field("ambient_image", s.ambient_image,
+            Help{"ambient light of each pixel, relative to that of the capture (.png .npy .exr "
+                 ".pfm)"}),
+      Field("kind", s.kind, Help{"what a depth image holds: z along the axis, or radial distance"}),
+      Field("linear_image", s.linear_image, Help{"take PNG images as linear light, not sRGB"}),
+      Field("width", s.width, closed(1, 16384), Help{"columns of a built-in scene or a mesh"},
+            IfAbsent{"320"}),
+      Field("height", s.height, closed(1, 16384), Help{"rows of a built-in scene or a mesh"},
+            IfAbsent{"240"}),
+      Field("scale_m", s.scale_m, above(0), Help{"length of one unit of a mesh"}, IfAbsent{"1"}),
+      Field("time_s", s.time_s, finite(), Help{"when a scene that moves is looked at"}));
 }
 
 /// A scene and the pinhole it is seen through.

@@ -18,23 +18,26 @@ namespace tofsmith {
 
 /// Light of a simulated capture.
 struct CaptureOptions {
-  double signal_e_per_s = 1e4;  ///< S of albedo 1 facing the camera at the reference distance, >= 0
-  double ambient_e_per_s = 1e4;       ///< A where ambient_scale is 1, >= 0
-  double reference_distance_m = 1.0;  ///< where S is signal_e_per_s [m], > 0
-  bool falloff = true;     ///< S = signal albedo cosine / (d / d_ref)^2; else signal albedo
-  std::uint64_t seed = 1;  ///< of all noise
-  int frames = 1;          ///< F, independent noise for each, >= 1
+  double signal_e_per_s = 1e4;
+  double ambient_e_per_s = 1e4;
+  double reference_distance_m = 1.0;
+  bool falloff = true;  ///< S = signal albedo cosine / (d / d_ref)^2; else signal albedo
+  std::uint64_t seed = 1;
+  int frames = 1;  ///< F
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
-  return std::tuple(Field("signal_e_per_s", o.signal_e_per_s, at_least(0)),
-                    Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0)),
-                    Field("reference_distance_m", o.reference_distance_m, above(0)),
-                    Field("falloff", o.falloff), Field("seed", o.seed),
-                    Field("frames", o.frames, at_least(1)));
+  return std::tuple(Field("signal_e_per_s", o.signal_e_per_s, at_least(0),
+                          Help{"signal of albedo 1 facing the camera at the reference distance"}),
+                    Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0), Help{"ambient light"}),
+                    Field("reference_distance_m", o.reference_distance_m, above(0),
+                          Help{"distance at which the signal is as given"}),
+                    Field("falloff", o.falloff, Help{"reduce the signal with distance and angle"}),
+                    Field("seed", o.seed, Help{"seed of all noise"}),
+                    Field("frames", o.frames, closed(1, 100000),
+                          Help{"frames one after another, each with its own noise"}));
 }
 
 /// Signal of a pixel, were the sensor fully open [e/s]; 0 where nothing returns (NaN depth).

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
@@ -22,23 +24,28 @@ enum class DepthSampling {
   uniform,  ///< anywhere in the range
   bins,     ///< on bins only: flatters codes that are wrong in between
 };
+constexpr std::array<std::string_view, 2> words_of(DepthSampling /*any*/) {
+  return {"uniform", "bins"};
+}
+
+/// Circular error above which a depth counts as an outlier, by default.
+inline constexpr double default_outlier_threshold_m = 0.5;
+inline constexpr Help outlier_threshold_help{"circular error above which a depth is an outlier"};
 
 /// Options of evaluate(); fields_of() below describes each of them.
 struct EvaluateOptions {
   std::int64_t trials = 20000;  ///< odd numbers are rounded up
   std::uint64_t seed = 1;
-  double outlier_threshold_m = 0.5;
-  bool sub_bin = true;  ///< false: decode to the nearest bin
+  double outlier_threshold_m = default_outlier_threshold_m;
+  bool sub_bin = true;
   DepthSampling depth = DepthSampling::uniform;
   bool clip_to_open_sensor = false;
   DecodeMethod method = DecodeMethod::zncc;
-  UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< for DecodeMethod::unwrap
-  double target_standard_error = 0.0;                      ///< 0: no target
+  UnwrapWeights unwrap_weights = UnwrapWeights::variance;
+  double target_standard_error = 0.0;
   std::int64_t max_trials = 50'000'000;
-  /// Draws the noise of every measurement even if ZNCC needs fewer numbers, so that methods are
-  /// compared with the same noise.
   bool draw_every_measurement = false;
-  bool bounds = true;  ///< false: bounds stay 0
+  bool bounds = true;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -49,17 +56,24 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
             Help{"trials per operating point; with a target, the number of the first round"}),
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
-            Help{"circular error above which a depth is an outlier [m]"}),
-      Field("sub_bin", o.sub_bin, Help{"decode to the nearest bin only"}), Field("depth", o.depth),
+            outlier_threshold_help),
+      Field("sub_bin", o.sub_bin, Help{"decode between bins"}),
+      Field("depth", o.depth,
+            Help{"where true depths lie: anywhere in the range, or on bins only, which flatters "
+                 "codes"}),
       Field("clip_to_open_sensor", o.clip_to_open_sensor,
             Help{"clip electrons to [0, T (S + A)], like the simulator of the paper's authors"}),
-      Field("method", o.method), Field("unwrap_weights", o.unwrap_weights),
+      Field("method", o.method, decode_method_help),
+      Field("unwrap_weights", o.unwrap_weights, unwrap_weights_help, unwrap_weights_condition),
       Field("target_standard_error", o.target_standard_error, right_open(0, 1),
             Help{"relative standard error of the depth error at which trials end, such as 1% or "
-                 "0.01"}),
+                 "0.01; 0: no target"}),
       Field("max_trials", o.max_trials, closed(2, 4e9),
             Help{"maximum number of trials per operating point with a target"}),
-      Field("draw_every_measurement", o.draw_every_measurement), Field("bounds", o.bounds));
+      Field("draw_every_measurement", o.draw_every_measurement,
+            Help{"draw the noise of every measurement even if zncc needs fewer numbers, so that "
+                 "methods are compared with the same noise"}),
+      Field("bounds", o.bounds, Help{"compute the bounds; otherwise they are 0"}));
 }
 
 /// Depth error at one operating point.

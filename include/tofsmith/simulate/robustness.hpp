@@ -17,30 +17,39 @@ namespace tofsmith {
 
 /// How far a camera may be from what it is said to be, and how its depth error is then measured.
 struct RobustnessOptions {
-  double bandwidth = 0.2;         ///< relative change of the arms' bandwidth, [0, 1); 0: leave out
-  double peak = 0.1;              ///< relative change of the peak power, [0, 1); 0: leave out
-  double edge_jitter_s = 50e-12;  ///< rms, of each arm [s], >= 0; 0: leave out
-  double tap_mismatch = 0.02;     ///< difference of neighbouring taps, [0, 1); 0: leave out
-  double clock_s = 0.0;           ///< grid of the switching times [s], >= 0; 0: leave out
-  double droop = 0.0;             ///< sag of the light within half a period, [0, 1); 0: leave out
-  bool together = false;          ///< also one camera with all of this at once
-  std::int64_t trials = 4000;     ///< per operating point, 2 .. 4e9
-  std::uint64_t seed = 1;         ///< of all trials: every camera sees the same depths and noise
+  double bandwidth = 0.2;
+  double peak = 0.1;
+  double edge_jitter_s = 50e-12;
+  double tap_mismatch = 0.02;
+  double clock_s = 0.0;
+  double droop = 0.0;
+  bool together = false;
+  std::int64_t trials = 4000;
+  std::uint64_t seed = 1;  ///< every camera sees the same depths and noise
   DecodeMethod method = DecodeMethod::zncc;
-  UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< of DecodeMethod::unwrap
+  UnwrapWeights unwrap_weights = UnwrapWeights::variance;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
   return std::tuple(
-      Field("bandwidth", o.bandwidth, right_open(0, 1)), Field("peak", o.peak, right_open(0, 1)),
-      Field("edge_jitter_s", o.edge_jitter_s, closed(0, 1)),
-      Field("tap_mismatch", o.tap_mismatch, right_open(0, 1)),
-      Field("clock_s", o.clock_s, closed(0, 1)), Field("droop", o.droop, right_open(0, 1)),
-      Field("together", o.together), Field("trials", o.trials, closed(2, 4e9)),
-      Field("seed", o.seed), Field("method", o.method), Field("unwrap_weights", o.unwrap_weights));
+      Field("bandwidth", o.bandwidth, right_open(0, 1),
+            Help{"relative change of the arms' bandwidth; 0: leave out"}),
+      Field("peak", o.peak, right_open(0, 1),
+            Help{"relative change of the peak power; 0: leave out"}),
+      Field("edge_jitter_s", o.edge_jitter_s, closed(0, 1),
+            Help{"root mean square edge jitter of each arm; 0: leave out"}),
+      Field("tap_mismatch", o.tap_mismatch, right_open(0, 1),
+            Help{"difference of neighbouring taps; 0: leave out"}),
+      Field("clock_s", o.clock_s, closed(0, 1), Help{"grid of the switching times; 0: leave out"}),
+      Field("droop", o.droop, right_open(0, 1),
+            Help{"sag of the light within half a period; 0: leave out"}),
+      Field("together", o.together, Help{"also judge one camera with all changes at once"}),
+      Field("trials", o.trials, closed(2, 4e9), Help{"trials per operating point"}),
+      Field("seed", o.seed, Help{"seed of all trials"}),
+      Field("method", o.method, decode_method_help),
+      Field("unwrap_weights", o.unwrap_weights, unwrap_weights_help, unwrap_weights_condition));
 }
 
 /// A camera that is not quite what it was said to be.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,28 +28,41 @@ enum class WaveHeader {
   plain,    ///< as in Siglent's application note
   minimal,  ///< name and data only
 };
+constexpr std::array<std::string_view, 3> words_of(WaveHeader /*any*/) {
+  return {"length", "plain", "minimal"};
+}
 
 /// Waveforms and settings for a generator.
 struct UploadRequest {
   std::vector<UploadChannel> channels;
-  double load_ohm = 50.0;  ///< load that the voltages refer to, 1 .. 1e6, or infinity: open circuit
-  bool output_on = false;  ///< switch the outputs on at the end; otherwise they stay off
-  bool read_back = true;   ///< compare the points in the instrument; some models cannot
-  bool reset = true;       ///< reset first, so that no earlier setting remains
-  bool true_arb = false;   ///< Siglent: play every point instead of skipping some
-  WaveHeader wave_header = WaveHeader::length;  ///< Siglent
-  double settle_s = 0.5;                        ///< Siglent: pause after a waveform, 0 .. 60
-  double patience_s = 20.0;     ///< additional time for a reset and for files, 0 .. 600
-  std::string filter = "STEP";  ///< Keysight: STEP, NORM or OFF
+  double load_ohm = 50.0;
+  bool output_on = false;
+  bool read_back = true;
+  bool reset = true;
+  bool true_arb = false;
+  WaveHeader wave_header = WaveHeader::length;
+  double settle_s = 0.5;
+  double patience_s = 20.0;
+  std::string filter = "STEP";
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<UploadRequest> auto& r) {
-  return std::tuple(Field("channels", r.channels, FieldMark::from_above),
-                    Field("load_ohm", r.load_ohm), Field("output_on", r.output_on),
-                    Field("read_back", r.read_back), Field("reset", r.reset),
-                    Field("true_arb", r.true_arb), Field("wave_header", r.wave_header),
-                    Field("settle_s", r.settle_s, closed(0, 60)),
-                    Field("patience_s", r.patience_s, closed(0, 600)), Field("filter", r.filter));
+  constexpr OnlyWith siglent{"a Siglent"}, keysight{"a Keysight"};
+  return std::tuple(
+      Field("channels", r.channels, FieldMark::from_above),
+      Field("load_ohm", r.load_ohm,
+            Help{"load that the voltages refer to, 1 .. 1e6, or inf: open circuit"}),
+      Field("output_on", r.output_on, Help{"switch the outputs on when all is verified"}),
+      Field("read_back", r.read_back,
+            Help{"read the points back from the instrument and compare them; some models cannot"}),
+      Field("reset", r.reset,
+            Help{"reset the instrument first: earlier settings could change what is played"}),
+      Field("true_arb", r.true_arb, Help{"play every point instead of skipping some"}, siglent),
+      Field("wave_header", r.wave_header, Help{"how a waveform is announced; sources disagree"},
+            siglent),
+      Field("settle_s", r.settle_s, closed(0, 60), Help{"pause after a waveform"}, siglent),
+      Field("patience_s", r.patience_s, closed(0, 600),
+            Help{"additional time for a reset and for files"}),
+      Field("filter", r.filter, Help{"filter of the output: STEP, NORM or OFF"}, keysight));
 }
 
 /// Expected content of an answer.
@@ -105,21 +119,24 @@ double load_gain(double load_ohm);
 
 /// The exposures of a code to load and the one to play.
 struct UploadSelection {
-  int light_channel = 1;   ///< channel that plays the light; 0: none
-  int sensor_channel = 2;  ///< channel that plays the sensor's gain; 0: none
-  int exposure = 1;        ///< exposure to play, from 1
-  int tap = 1;             ///< tap that the sensor's channel plays, from 1
-  bool all = false;        ///< load all exposures
+  int light_channel = 1;
+  int sensor_channel = 2;
+  int exposure = 1;
+  int tap = 1;
+  bool all = false;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<UploadSelection> auto& s) {
-  return std::tuple(Field("light_channel", s.light_channel, at_least(0)),
-                    Field("sensor_channel", s.sensor_channel, at_least(0)),
-                    Field("exposure", s.exposure, at_least(1)), Field("tap", s.tap, at_least(1)),
-                    Field("all", s.all));
+  return std::tuple(
+      Field("light_channel", s.light_channel, closed(0, 8),
+            Help{"channel that plays the light; 0: none"}),
+      Field("sensor_channel", s.sensor_channel, closed(0, 8),
+            Help{"channel that plays the sensor's gain; 0: none"}),
+      Field("exposure", s.exposure, at_least(1), Help{"which of the K pairs is played, from 1"}),
+      Field("tap", s.tap, at_least(1), Help{"tap that the sensor's channel plays, from 1"}),
+      Field("all", s.all, Help{"load all K pairs; the chosen exposure is played"}));
 }
 
 /// A code as tables for a model: in its format and, unless the options contain a sample rate, at

@@ -147,23 +147,33 @@ double fastest_sample_rate_hz(std::string_view format);
 /// What hardware a code is exported for. What is not given is the camera's generator's, or else as
 /// much as the code has and the format holds.
 struct ExportOptions {
-  std::string format;                    ///< name of a WaveformFormat
-  std::string variant;                   ///< of the format; empty: its first
-  std::optional<int> samples;            ///< points of the table per period
-  std::optional<int> bits;               ///< amplitude bits of the hardware, <= the format's
-  std::optional<double> sample_rate_hz;  ///< most points per second
-  std::optional<double> edge_grid_s;     ///< binary waveforms switch at multiples of this only
-  std::optional<int> periods;            ///< that a table holds; none: as few as fit the format
-  double low_v = 0.0;                    ///< output at no light and at no gain [V]
-  double high_v = 1.0;  ///< output at the highest peak of the light, and at a gain of 1 [V]
+  std::string format;
+  std::string variant;
+  std::optional<int> samples;
+  std::optional<int> bits;
+  std::optional<double> sample_rate_hz;
+  std::optional<double> edge_grid_s;
+  std::optional<int> periods;
+  double low_v = 0.0;
+  double high_v = 1.0;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ExportOptions> auto& o) {
-  return std::tuple(Field("format", o.format), Field("variant", o.variant),
-                    Field("samples", o.samples), Field("bits", o.bits),
-                    Field("sample_rate_hz", o.sample_rate_hz), Field("edge_grid_s", o.edge_grid_s),
-                    Field("periods", o.periods), Field("low_v", o.low_v),
-                    Field("high_v", o.high_v));
+  return std::tuple(
+      Field("format", o.format, Help{"format of the files"}),
+      Field("variant", o.variant, Help{"variant of the format, where sources disagree about it"},
+            IfAbsent{"its first"}),
+      Field("samples", o.samples, Help{"points of the table that holds one period"}),
+      Field("bits", o.bits,
+            Help{"amplitude bits of the hardware, at most the format's (1 = on and off)"}),
+      Field("sample_rate_hz", o.sample_rate_hz, above(0),
+            Help{"most points per second of the hardware"}),
+      Field("edge_grid_s", o.edge_grid_s, above(0),
+            Help{"grid of the switching times of binary waveforms"}),
+      Field("periods", o.periods, Help{"periods in a table"},
+            IfAbsent{"as few as the format takes"}),
+      Field("low_v", o.low_v, Help{"output at no light and at no gain"}),
+      Field("high_v", o.high_v,
+            Help{"output at the highest peak of the light, and at a gain of 1"}));
 }
 
 /// All waveforms of a code, ready for a format's writer.

@@ -15,8 +15,8 @@
 namespace tofsmith {
 
 namespace {
-constexpr EnumWords<FilterStrength, 3> strength_words("FilterStrength", "filter strength", "light",
-                                                      "normal", "strong");
+constexpr EnumWords<FilterStrength, 3> strength_words("FilterStrength", "filter strength",
+                                                      words_of(FilterStrength{}));
 }  // namespace
 
 std::string_view name_of(FilterStrength strength) { return strength_words.of(strength); }

@@ -25,7 +25,7 @@ namespace tofsmith {
 namespace {
 
 constexpr EnumWords<MixedPixels, all_mixed_pixels.size()> mixed_words("MixedPixels", "mixed",
-                                                                      "label", "snap", "drop");
+                                                                      words_of(MixedPixels{}));
 
 constexpr int reach = 4;
 constexpr int window_pixels = (2 * reach + 1) * (2 * reach + 1);

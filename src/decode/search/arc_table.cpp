@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float float_infinity = std::numeric_limits<float>::infinity();
 constexpr std::int32_t rows_between_windows = block_lanes / 2;
 
 Eigen::VectorXd direction_of(const DirectionTable& directions, std::int32_t row) {
@@ -53,8 +53,8 @@ Bound bound_of(const Eigen::VectorXd& u, const Eigen::VectorXd& a, const Eigen::
   return best;
 }
 
-/// Offset of every row: 0, or -infinity where a lower row has the same direction up to rounding,
-/// which is far less than what ties.
+/// Offset of every row: 0, or -infinity where a lower row has the same direction up to
+/// rounding, which is far less than what ties.
 std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   constexpr double same = 0.1 * tie_tolerance;
   const std::int32_t samples = directions.samples();
@@ -76,7 +76,7 @@ std::vector<float> offsets_of_rows(const DirectionTable& directions) {
     std::int32_t centre, lowest;
   };
   std::vector<Group> groups;  // by place along the line
-  std::vector<float> offset(along.size(), -infinity);
+  std::vector<float> offset(along.size(), -float_infinity);
   for (const std::int32_t n : order) {
     const Eigen::VectorXd direction = direction_of(directions, n);
     const auto is_out_of_reach = [&](const Group& group) {
@@ -102,8 +102,12 @@ std::int32_t min_blocks_per_arc(std::int32_t samples) {
   return (samples + most - 1) / most;
 }
 
-float float_above(double value) { return std::nextafter(static_cast<float>(value), infinity); }
-float float_below(double value) { return std::nextafter(static_cast<float>(value), -infinity); }
+float float_above(double value) {
+  return std::nextafter(static_cast<float>(value), float_infinity);
+}
+float float_below(double value) {
+  return std::nextafter(static_cast<float>(value), -float_infinity);
+}
 
 }  // namespace
 
@@ -128,11 +132,11 @@ KnotLevel::KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc
     BlockLanes* const bounds = lanes + 1 + rank;
     for (int i = 0; i < block_lanes; ++i) {
       const std::int32_t knot = b * arcs_per_block + i;
-      lanes[0].lane[i] = knot <= arcs ? 0.0f : -infinity;
+      lanes[0].lane[i] = knot <= arcs ? 0.0f : -float_infinity;
       for (int j = 0; j < rank; ++j)
         lanes[1 + j].lane[i] = static_cast<float>(directions.direction(row_of_knot(knot), j));
       bounds[0].lane[i] = bounds[2].lane[i] = 1.0f;
-      bounds[1].lane[i] = bounds[3].lane[i] = -infinity;
+      bounds[1].lane[i] = bounds[3].lane[i] = -float_infinity;
     }
     for (int i = 0; i < arcs_per_block; ++i) {
       const std::int32_t arc = b * arcs_per_block + i;
@@ -165,7 +169,7 @@ void ArcTable::fill_rows(const DirectionTable& directions, const std::vector<flo
   for (std::int32_t n = 0; n < row_blocks() * block_lanes; ++n) {
     BlockLanes* const lanes = &rows_[static_cast<std::size_t>(n / block_lanes) * lanes_per_block_];
     const int lane = n % block_lanes;
-    lanes[0].lane[lane] = n < samples_ ? offset[static_cast<std::size_t>(n)] : -infinity;
+    lanes[0].lane[lane] = n < samples_ ? offset[static_cast<std::size_t>(n)] : -float_infinity;
     for (int j = 0; j < rank_; ++j)
       lanes[1 + j].lane[lane] =
           static_cast<float>(directions.direction(std::min(n, samples_ - 1), j));
@@ -184,7 +188,7 @@ void ArcTable::fill_windows(const DirectionTable& directions, const std::vector<
     double radius = min_window_radius;
     for (int i = 0; i < block_lanes; ++i) {
       const std::int32_t n = first + i;
-      lanes[0].lane[i] = n < samples_ ? offset[static_cast<std::size_t>(n)] : -infinity;
+      lanes[0].lane[i] = n < samples_ ? offset[static_cast<std::size_t>(n)] : -float_infinity;
       const Eigen::VectorXd left = direction_of(directions, std::min(n, samples_ - 1)) - middle;
       for (int j = 0; j < rank_; ++j) lanes[1 + j].lane[i] = static_cast<float>(left[j]);
       radius = std::max(radius, left.norm());

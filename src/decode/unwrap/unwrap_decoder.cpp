@@ -41,8 +41,8 @@ std::vector<double> weights_of(const PhaseModel& phases, int measurements, Unwra
   return weights;
 }
 
-constexpr EnumWords<UnwrapWeights, 2> weights_words("UnwrapWeights", "unwrap weights", "variance",
-                                                    "frequency");
+constexpr EnumWords<UnwrapWeights, 2> weights_words("UnwrapWeights", "unwrap weights",
+                                                    words_of(UnwrapWeights{}));
 
 }  // namespace
 

@@ -97,7 +97,7 @@ void check_markers(const RawMarkers& markers, const std::optional<NumberRange>& 
     }
 }
 
-constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", "interleaved", "planar");
+constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", words_of(RawLayout{}));
 
 }  // namespace
 

@@ -64,15 +64,12 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
 
 void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
   const std::filesystem::path& output = request.output;
-  require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
+  check_fields(request);
   require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
-  require(request.average >= 1, "average", request.average, "must be >= 1");
   if (!request.hdr.empty()) {
     check_exposures(request.hdr, "hdr");
     require(request.average == 1, "average", request.average, "goes without hdr");
   }
-  require(request.averaged > 0.0 && std::isfinite(request.averaged), "averaged", request.averaged,
-          "must be > 0");
   if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
   require(!request.undistort || request.lens, "undistort", "true",

@@ -16,10 +16,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr EnumWords<DecodedPlane, all_decoded_planes.size()> plane_words(
-    "DecodedPlane", "plane", "depth", "signal", "ambient", "confidence", "deviation", "status",
-    "delay", "ratio", "returns", "bin", "averaged", "residual");
-constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", "radial", "z");
+constexpr EnumWords<DecodedPlane, all_decoded_planes.size()> plane_words("DecodedPlane", "plane",
+                                                                         words_of(DecodedPlane{}));
+constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", words_of(DepthKind{}));
 
 /// What a plane holds where there is nothing.
 float nothing_of(const Image<float>&) { return std::numeric_limits<float>::quiet_NaN(); }

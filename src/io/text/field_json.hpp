@@ -92,7 +92,9 @@ void read_field(const JsonReader& object, const Field<Value>& field) {
     } else if constexpr (is_list<Value>) {
       using Item = typename Value::value_type;
       for (const JsonReader& item : json.elements())
-        if constexpr (is_row<Item>)
+        if constexpr (!HasFields<Item>)
+          read_value(item, field.value.emplace_back(), field.range);
+        else if constexpr (is_row<Item>)
           field.value.push_back(row_from_json<Item>(item));
         else
           field.value.push_back(fields_from_json<Item>(item));
@@ -151,14 +153,21 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
     else
       object[name] = fields_json(field.value);
   } else if constexpr (is_optional<Type>) {
-    if constexpr (HasFields<typename Type::value_type>)
+    using Content = typename Type::value_type;
+    if constexpr (HasFields<Content>) {
       object[name] = field.value ? fields_json(*field.value) : nlohmann::ordered_json();
-    else if (field.value)
-      object[name] = *field.value;
+    } else if (field.value) {
+      if constexpr (std::is_enum_v<Content>)
+        object[name] = name_of(*field.value);
+      else
+        object[name] = *field.value;
+    }
   } else if constexpr (is_list<Type>) {
     object[name] = nlohmann::ordered_json::array();
     for (const auto& item : field.value)
-      if constexpr (is_row<typename Type::value_type>)
+      if constexpr (!HasFields<typename Type::value_type>)
+        object[name].push_back(item);
+      else if constexpr (is_row<typename Type::value_type>)
         object[name].push_back(row_json(item));
       else
         object[name].push_back(fields_json(item));

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/fields.hpp"
+
+// The description of options structs as JSON, from which other languages derive theirs.
+namespace tofsmith {
+
+namespace detail {
+
+/// "integer", "number", "choice", ...; of a list "integer[]"; of a described struct "table".
+template <typename Value>
+std::string type_of_field() {
+  if constexpr (is_optional<Value>)
+    return type_of_field<typename Value::value_type>();
+  else if constexpr (is_list<Value>)
+    return type_of_field<typename Value::value_type>() + "[]";
+  else if constexpr (HasFields<Value>)
+    return "table";
+  else if constexpr (std::is_same_v<Value, bool>)
+    return "boolean";
+  else if constexpr (std::is_integral_v<Value>)
+    return "integer";
+  else if constexpr (std::is_arithmetic_v<Value>)
+    return "number";
+  else if constexpr (std::is_enum_v<Value>)
+    return "choice";
+  else if constexpr (std::is_same_v<Value, std::filesystem::path>)
+    return "path";
+  else
+    return "text";
+}
+
+template <typename Value>
+nlohmann::ordered_json default_of_field(const Value& value) {
+  if constexpr (is_optional<Value>) {
+    return value ? default_of_field(*value) : nlohmann::ordered_json();
+  } else if constexpr (is_list<Value>) {
+    nlohmann::ordered_json items = nlohmann::ordered_json::array();
+    for (const auto& item : value) items.push_back(default_of_field(item));
+    return items;
+  } else if constexpr (HasWords<Value>) {
+    return word_of(value);
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    return value.string();
+  } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+    return value;
+  } else {  // a struct
+    return nullptr;
+  }
+}
+
+template <typename Value>
+std::vector<std::string> words_of_field() {
+  if constexpr (is_optional<Value> || is_list<Value>) {
+    return words_of_field<typename Value::value_type>();
+  } else if constexpr (HasWords<Value>) {
+    const auto words = words_of(Value{});
+    return {words.begin(), words.end()};
+  } else {
+    return {};
+  }
+}
+
+template <typename Value>
+std::string range_of_field(const Range& range) {
+  if constexpr (is_optional<Value> || is_list<Value>)
+    return range_of_field<typename Value::value_type>(range);
+  else
+    return range.is_restricted ? range.text(std::is_integral_v<Value>) : "";
+}
+
+/// The struct that a field holds, or may hold.
+template <typename Value>
+struct HeldStruct {
+  using Type = Value;
+};
+template <typename Value>
+struct HeldStruct<std::optional<Value>> {
+  using Type = Value;
+};
+
+}  // namespace detail
+
+/// Lists the fields that users set, and those of structs that they hold.
+template <typename Struct>
+nlohmann::ordered_json fields_list(const Struct& its = {}) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    using Held = typename detail::HeldStruct<Value>::Type;
+    if (field.is(FieldMark::from_above) || field.is(FieldMark::apart)) return;
+    nlohmann::ordered_json described = {{"name", field.name},
+                                        {"type", detail::type_of_field<Value>()},
+                                        {"default", detail::default_of_field(field.value)},
+                                        {"help", full_help(field.unit(), field.help, {}, {})},
+                                        {"unit", field.unit()},
+                                        {"range", detail::range_of_field<Value>(field.range)},
+                                        {"words", detail::words_of_field<Value>()},
+                                        {"only_with", field.only_with},
+                                        {"if_absent", field.if_absent}};
+    if constexpr (HasFields<Held>) described["fields"] = fields_list<Held>();
+    list.push_back(std::move(described));
+  });
+  return list;
+}
+
+}  // namespace tofsmith
