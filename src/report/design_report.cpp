@@ -277,9 +277,7 @@ Page design_report(const Camera& camera, const DesignResult& result,
   if (Section others = waveform_section(camera, result); !others.blocks.empty())
     page.sections.push_back(std::move(others));
   page.sections.push_back(coding_curve_section(camera, result));
-  if (scene)
-    page.sections.push_back(
-        scene_section(*scene, camera, winner.code.name(), winner.error.outlier_threshold_m));
+  if (scene) page.sections.push_back(scene_section(*scene, camera, winner.code.name()));
   if (Section found = search_section(result); !found.blocks.empty())
     page.sections.push_back(std::move(found));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});

@@ -106,29 +106,28 @@ std::vector<std::string> error_row(const std::string& light, const std::string& 
           fmt::format("{:.2f}", 100 * error.decoded_share)};
 }
 
-Table error_table(const SceneResult& scene, const Camera& camera, double outlier_threshold_m) {
+Table error_table(const SceneResult& scene) {
   Table table{.id = "scene-errors",
-              .caption = fmt::format("Depth errors on the scene; outliers are off by more than "
-                                     "{:.3g} m or have no depth.",
-                                     outlier_threshold_m),
+              .caption = {},
               .columns = {{"light"},
                           {"code"},
                           {"mean (mm)", true},
                           {"median (mm)", true},
                           {"outliers (%)", true},
                           {"pixels with depth (%)", true}}};
+  double outlier_threshold_m = 0.0;
   const auto add = [&](const std::string& light, const std::string& code, const auto& decoding) {
-    SceneError error = decoding.error;
-    error.outlier_rate = scene_error(decoding.depth_m, scene.truth, camera,
-                                     DepthErrorKind::circular, outlier_threshold_m)
-                             .outlier_rate;
-    table.rows.push_back(error_row(light, code, error));
+    outlier_threshold_m = decoding.error.outlier_threshold_m;
+    table.rows.push_back(error_row(light, code, decoding.error));
   };
   for (const SceneCapture& capture : scene.captures)
     for (const SceneDecoding& d : capture.decodings) {
       add(capture.light, d.code, d);
       if (d.filtered) add(capture.light, d.code + ", filtered", *d.filtered);
     }
+  table.caption = fmt::format(
+      "Depth errors on the scene; outliers are off by more than {:.3g} m or have no depth.",
+      outlier_threshold_m);
   return table;
 }
 
@@ -215,8 +214,8 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
       {.before_name = name_with_error(*standard), .after_name = name_with_error(*best)});
 }
 
-Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code,
-                      double outlier_threshold_m) {
+Section scene_section(const SceneResult& scene, const Camera& camera,
+                      const std::string& best_code) {
   Section section{.title = "A scene: " + scene.name};
   section.blocks.push_back(Paragraph{
       fmt::format("The scene is captured in simulation at each light level and decoded with every "
@@ -240,7 +239,7 @@ Section scene_section(const SceneResult& scene, const Camera& camera, const std:
   if (auto averaged = averaged_figure(scene, best_code))
     section.blocks.push_back(std::move(*averaged));
   if (scene.captures.empty()) return section;
-  section.blocks.push_back(error_table(scene, camera, outlier_threshold_m));
+  section.blocks.push_back(error_table(scene));
   const SceneCapture& brightest = scene.captures.back();
   if (const SceneDecoding* const d = decoding_of(brightest, best_code))
     section.blocks.push_back(cloud_figure(scene, brightest, *d, camera));

@@ -14,9 +14,7 @@ namespace tofsmith {
 
 /// Depth maps, error maps, a table of errors and a point cloud.
 /// @param best_code  the code whose point cloud is drawn
-/// @param outlier_threshold_m  larger errors count as outliers
-Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code,
-                      double outlier_threshold_m);
+Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code);
 
 /// The scene at the middle light level, decoded with a standard code and with the best; none
 /// without captures of both.

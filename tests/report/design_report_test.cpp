@@ -215,7 +215,7 @@ TEST(SceneSection, OfASceneWithoutCapturesShowsTheScene) {
   SceneResult scene = small_scene(camera, {});
   for (const bool captured : {true, false}) {
     if (!captured) scene.captures.clear();
-    const Section section = scene_section(scene, camera, "none", 0.5);
+    const Section section = scene_section(scene, camera, "none");
     expect_sound({.title = "x", .sections = {section}}, 2);
   }
 }

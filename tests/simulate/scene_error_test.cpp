@@ -39,7 +39,7 @@ TEST(SceneError, CountsWhatIsDecodedAndWhatIsNot) {
   EXPECT_NEAR(error.median_m, 0.2, 1e-6);
   EXPECT_DOUBLE_EQ(error.outlier_rate, 0.5);
   EXPECT_DOUBLE_EQ(error.decoded_share, 0.75);
-  EXPECT_EQ(error.outlier_threshold_m, 0.3);
+  EXPECT_EQ(error.outlier_threshold_m, default_outlier_threshold_m);
 }
 
 TEST(SceneError, WrapsTrueDepthAndTheCircularDifference) {

@@ -13,6 +13,7 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/filter.hpp"
 #include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 
@@ -36,7 +37,8 @@ Image<float> depth_difference_m(const Image<float>& decoded_m, const SceneImage&
 
 /// Summary of the differences. @throws std::invalid_argument if the sizes differ
 SceneError scene_error(const Image<float>& decoded_m, const SceneImage& scene, const Camera& camera,
-                       DepthErrorKind kind, double outlier_threshold_m = 0.3);
+                       DepthErrorKind kind,
+                       double outlier_threshold_m = default_outlier_threshold_m);
 
 /// How an image of this size is seen: through the lens, or 60 degrees wide without one.
 /// @throws std::invalid_argument if the lens is of images of another size
