@@ -4,12 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <iterator>
 #include <span>
+#include <vector>
 
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/hash.hpp"
+#include "io/text/shared/field_key.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 #include "tofsmith/version.hpp"
@@ -54,6 +58,29 @@ void append(std::string& text, std::string_view name, std::span<const double> nu
   text += '\n';
 }
 
+/// The fields of EvaluateOptions that differ from their defaults, but those that item_key() always
+/// contains.
+std::string other_options(const EvaluateOptions& options) {
+  static constexpr std::array<std::string_view, 7> always = {
+      "trials",    "seed",           "outlier_threshold_m",
+      "method",    "unwrap_weights", "target_standard_error",
+      "max_trials"};
+  const auto texts = [](const EvaluateOptions& its) {
+    std::vector<std::string> all;
+    for_each_field(its, [&](const auto& field) {
+      std::string text = fmt::format("{} ", field.name);
+      append_key(text, field.value);
+      if (std::ranges::find(always, field.name) == always.end()) all.push_back(std::move(text));
+    });
+    return all;
+  };
+  const std::vector<std::string> given = texts(options), usual = texts({});
+  std::string others;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (given[i] != usual[i]) others += given[i] + "\n";
+  return others;
+}
+
 }  // namespace
 
 std::string setup_key(const Camera& camera, const CodeSet& code) {
@@ -91,6 +118,7 @@ std::string item_key(std::string_view setup, const OperatingRange& light,
     const double goal[] = {options.target_standard_error, static_cast<double>(options.max_trials)};
     append(text, "target ", goal);
   }
+  text += other_options(options);
   append(text, "signal ", light.signal_e_per_s);
   append(text, "ambient ", light.ambient_e_per_s);
   append(text, "albedo ", {&light.albedo, 1});

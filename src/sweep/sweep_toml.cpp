@@ -244,19 +244,20 @@ constexpr EnumWords<SweepCombination, 2> combinations("SweepCombination", "combi
                                                       "zip");
 
 void read_options(TableReader& table, EvaluateOptions& options) {
-  auto trials = static_cast<std::uint64_t>(options.trials);
-  auto max_trials = static_cast<std::uint64_t>(options.max_trials);
-  table.choice("method", options.method,
-               words_by_name<DecodeMethod, all_decode_methods.size()>("DecodeMethod", "method"));
-  table.choice("unwrap_weights", options.unwrap_weights,
-               words_by_name<UnwrapWeights, 2>("UnwrapWeights", "unwrap_weights"));
-  table.value("trials", trials);
-  table.value("target_standard_error", options.target_standard_error);
-  table.value("max_trials", max_trials);
-  table.value("seed", options.seed);
-  table.value("outlier_threshold_m", options.outlier_threshold_m);
-  options.trials = static_cast<std::int64_t>(trials);
-  options.max_trials = static_cast<std::int64_t>(max_trials);
+  for_each_field(options, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (HasWords<Value>) {
+      constexpr auto words = words_of(Value{});
+      table.choice(field.name, field.value,
+                   EnumWords<Value, words.size()>(field.name, field.name, words));
+    } else if constexpr (std::is_same_v<Value, std::int64_t>) {
+      auto count = static_cast<std::uint64_t>(field.value);
+      table.value(field.name, count);
+      field.value = static_cast<std::int64_t>(count);
+    } else {
+      table.value(field.name, field.value);
+    }
+  });
   try {
     options.validate();
   } catch (const InvalidArgument& error) {

@@ -47,6 +47,11 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
       axis("operating.working_distance_m", "[1, 3]"),
       axis("operating.working_distance_m", "[1, 4]"),
       "outlier_threshold_m = 0.25\n",
+      "sub_bin = false\n",
+      "depth = \"bins\"\n",
+      "clip_to_open_sensor = true\n",
+      "draw_every_measurement = true\n",
+      "bounds = false\n",
       "target_standard_error = 0.01\n",
       "target_standard_error = 0.01\nmax_trials = 1000\n"};
   std::set<std::string> keys;

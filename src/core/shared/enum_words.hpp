@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "tofsmith/core/error.hpp"
 
@@ -59,14 +58,5 @@ class EnumWords {
   std::string_view type_, field_;
   std::array<std::string_view, Count> words_;
 };
-
-/// The words that name_of() gives.
-template <typename Enum, std::size_t Count>
-EnumWords<Enum, Count> words_by_name(std::string_view type, std::string_view field) {
-  return [&]<std::size_t... At>(std::index_sequence<At...>) {
-    return EnumWords<Enum, Count>(type, field, name_of(static_cast<Enum>(At))...);
-  }
-  (std::make_index_sequence<Count>());
-}
 
 }  // namespace tofsmith
