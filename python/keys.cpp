@@ -1,10 +1,41 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints the description of all keys of a camera, from which make_camera_fields.py makes Python
-// classes.
+// Prints the descriptions of a camera's keys and of all options structs, from which
+// make_camera_fields.py and make_option_fields.py make Python classes.
 #include <cstdio>
 
+#include "field_list.hpp"
+#include "tofsmith/calibrate/impulse_response.hpp"
+#include "tofsmith/calibrate/photon_transfer.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/scene_toml.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/waveforms/upload_script.hpp"
 
-int main() { return std::puts(tofsmith::camera_keys_json().c_str()) < 0 ? 1 : 0; }
+int main() {
+  using namespace tofsmith;
+  const nlohmann::ordered_json options = {
+      {"CaptureOptions", fields_list<CaptureOptions>()},
+      {"DecodeOptions", fields_list<DecodeOptions>()},
+      {"DecodeRequest", fields_list<DecodeRequest>()},
+      {"DesignOptions", fields_list<DesignOptions>()},
+      {"EvaluateOptions", fields_list<EvaluateOptions>()},
+      {"ExportOptions", fields_list<ExportOptions>()},
+      {"FilterOptions", fields_list<FilterOptions>()},
+      {"MultipathErrorOptions", fields_list<MultipathErrorOptions>()},
+      {"PhotonTransferOptions", fields_list<PhotonTransferOptions>()},
+      {"RequirementOptions", fields_list<RequirementOptions>()},
+      {"ResponseCalibrationOptions", fields_list<ResponseCalibrationOptions>()},
+      {"ResponseRecordOptions", fields_list<ResponseRecordOptions>()},
+      {"RobustnessOptions", fields_list<RobustnessOptions>()},
+      {"SceneSource", fields_list<SceneSource>()},
+      {"TimeFilterOptions", fields_list<TimeFilterOptions>()},
+      {"UploadRequest", fields_list<UploadRequest>()},
+      {"UploadSelection", fields_list<UploadSelection>()},
+  };
+  const nlohmann::ordered_json all = {{"camera", nlohmann::ordered_json::parse(camera_keys_json())},
+                                      {"options", options}};
+  return std::puts(all.dump().c_str()) < 0 ? 1 : 0;
+}

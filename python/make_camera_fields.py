@@ -82,7 +82,8 @@ def class_text(name, help_text, keys):
 
 def main():
     program, output = sys.argv[1:]
-    keys = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
+    printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    keys = json.loads(printed)["camera"]
     tables = {key["key"]: key["help"] for key in keys if key["type"] == "table"}
     parts = {}  # by class: help and keys
     for key in keys:

@@ -35,10 +35,7 @@ std::unique_ptr<FrameBackend> backend_of(const DecodingTable& table, const py::d
   reader.value("device", device)
       .word("method", method, parse_decode_method)
       .word("unwrap_weights", weights, parse_unwrap_weights)
-      .value("low_signal_sigma", options.low_signal_sigma)
-      .value("min_confidence", options.min_confidence)
-      .value("false_alarm_rate", options.false_alarm_rate)
-      .value("model_error_percent", options.model_error_percent);
+      .fields(options);
   const MultipathOptions multipath =
       multipath_options(reader.table("multipath"), "multipath", table.range_m);
   reader.finish();
@@ -127,32 +124,13 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
 DecodeRequest request_of(const std::vector<std::string>& raw, const std::string& output,
                          const py::object& lens, const py::dict& values) {
   DecodeRequest request;
-  std::string raw_format, mixed, offset_map, gain_map, stray_light, rays;
-  std::vector<std::string> outputs;
+  std::filesystem::path rays;
   bool overwrite = false;
   OptionReader reader(values, "");
-  reader.word("layout", request.layout, parse_raw_layout)
-      .word("kind", request.kind, parse_depth_kind)
-      .value("raw_format", raw_format)
-      .value("dataset", request.dataset)
-      .value("outputs", outputs)
-      .value("undistort", request.undistort)
-      .value("frame", request.frame)
-      .value("all_points", request.all_points)
-      .value("stack", request.stack)
-      .value("average", request.average)
-      .value("averaged", request.averaged)
-      .value("hdr", request.hdr)
-      .value("mixed", mixed)
-      .value("offset_map", offset_map)
-      .value("offset_m", request.offset_m)
-      .value("gain_map", gain_map)
-      .value("stray_light", stray_light)
-      .value("rays", rays)
-      .value("memory_mb", request.memory_mb)
+  reader.fields(request, {"time_filter", "filter"})
       .value("other_inputs", request.other_inputs)
-      .value("overwrite", overwrite);
-  if (!mixed.empty()) request.mixed = parse_mixed_pixels(mixed);
+      .value("overwrite", overwrite)
+      .path("rays", rays);
   if (const py::dict filter = reader.table("filter"); !filter.empty())
     request.filter = filter_options(filter);
   if (const py::dict filter = reader.table("time_filter"); !filter.empty())
@@ -160,12 +138,7 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   reader.finish();
   request.raw.assign(raw.begin(), raw.end());
   request.output = output;
-  request.raw_format = raw_format;
-  request.offset_map = offset_map;
-  request.gain_map = gain_map;
-  request.stray_light = stray_light;
   request.policy = policy_of(overwrite);
-  for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
   request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
   return request;
 }

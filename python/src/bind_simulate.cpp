@@ -11,11 +11,6 @@
 
 namespace tofsmith::python {
 
-void parse(const std::string& word, DepthSampling& depth) {
-  if (word != "uniform" && word != "bins") refuse("depth", "'" + word + "'", "uniform or bins");
-  depth = word == "bins" ? DepthSampling::bins : DepthSampling::uniform;
-}
-
 namespace {
 
 /// Options of their own from a dict.

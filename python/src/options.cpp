@@ -31,6 +31,20 @@ py::object whole_number_of(const py::object& given) {
   return py::reinterpret_steal<py::object>(PyNumber_Long(given.ptr()));
 }
 
+py::object numbers_of(const py::object& given, bool whole) {
+  if (py::isinstance<py::bool_>(given) || py::isinstance<py::str>(given)) return given;
+  py::list numbers;
+  if (PySequence_Check(given.ptr()) == 0) {
+    if (PyNumber_Check(given.ptr()) == 0) return given;
+    numbers.append(given);
+  } else {
+    for (const py::handle item : given) numbers.append(item);
+  }
+  if (whole)
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = whole_number_of(numbers[i]);
+  return numbers;
+}
+
 void OptionReader::finish() const {
   for (const auto& entry : values_) {
     const std::string name = py::str(entry.first);
@@ -43,6 +57,18 @@ void OptionReader::finish() const {
     if (!near.empty()) needs.append("; did you mean ").append(near).append("?");
     refuse(owner_.empty() ? "options" : owner_, "the unknown name '" + name + "'", needs);
   }
+}
+
+OptionReader& OptionReader::path(const char* name, std::filesystem::path& field) {
+  const py::object given = take(name);
+  if (given.is_none()) return *this;
+  const auto text = py::reinterpret_steal<py::object>(PyOS_FSPath(given.ptr()));
+  if (!text) PyErr_Clear();
+  if (!text || !py::isinstance<py::str>(text)) wrong_type(name, given, "the name of a file");
+  const auto file = py::cast<std::string>(text);
+  if (file.find('\0') != std::string::npos) wrong_type(name, given, "the name of a file as text");
+  field = file;
+  return *this;
 }
 
 py::object OptionReader::take(const char* name) {

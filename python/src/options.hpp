@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -12,31 +13,11 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/core/fields.hpp"
-#include "tofsmith/decode/decode_method.hpp"
-#include "tofsmith/decode/unwrap_decoder.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/io/decode_recording.hpp"
-#include "tofsmith/simulate/depth_error.hpp"
-#include "tofsmith/waveforms/upload_script.hpp"
 
 namespace tofsmith::python {
-
-/// Words of enumerations. @throws std::invalid_argument for others, with those there are
-void parse(const std::string& word, DepthSampling& depth);
-inline void parse(const std::string& word, DesignMethod& method) {
-  method = parse_design_method(word);
-}
-inline void parse(const std::string& word, DecimalMark& mark) { mark = parse_decimal_mark(word); }
-inline void parse(const std::string& word, WaveHeader& header) { header = parse_wave_header(word); }
-inline void parse(const std::string& word, DecodeMethod& method) {
-  method = parse_decode_method(word);
-}
-inline void parse(const std::string& word, DepthKind& kind) { kind = parse_depth_kind(word); }
-inline void parse(const std::string& word, UnwrapWeights& weights) {
-  weights = parse_unwrap_weights(word);
-}
 
 /// What a Python value must be to become a `Value`, in words.
 template <typename Value>
@@ -69,8 +50,22 @@ constexpr bool is_whole() {
   return std::is_integral_v<Value> && !std::is_same_v<Value, bool>;
 }
 
+/// Whether a field of a type is made of a value of Python: others are set by the library.
+template <typename Value>
+constexpr bool is_given() {
+  if constexpr (is_optional<Value> || is_list<Value>)
+    return is_given<typename Value::value_type>();
+  else
+    return HasFields<Value> || HasWords<Value> || std::is_arithmetic_v<Value> ||
+           std::is_same_v<Value, std::string> || std::is_same_v<Value, std::filesystem::path>;
+}
+
 /// 1e4 as 10000; everything else as it is.
 py::object whole_number_of(const py::object& given);
+
+/// A list of numbers, of a sequence or of a single number; everything else as it is.
+/// @param whole  1e4 as 10000
+py::object numbers_of(const py::object& given, bool whole);
 
 /// How a refusal shows what was given: "str 'abc'".
 std::string shown(py::handle value);
@@ -89,6 +84,9 @@ class OptionReader {
     py::object given = take(name);
     if (given.is_none()) return *this;
     if constexpr (is_whole<Value>()) given = whole_number_of(given);
+    if constexpr (is_list<Value>)
+      if constexpr (std::is_arithmetic_v<typename Value::value_type>)
+        given = numbers_of(given, is_whole<typename Value::value_type>());
     // A bool must be one; a text is no list.
     py::detail::make_caster<Value> caster;
     if (!caster.load(given, !std::is_same_v<Value, bool>)) wrong_type(name, given, needed<Value>());
@@ -98,17 +96,21 @@ class OptionReader {
   /// A field that a function makes of a text.
   template <typename Value, typename Parse>
   OptionReader& word(const char* name, Value& field, Parse parse) {
-    std::string text;
+    std::optional<std::string> text;
     value(name, text);
-    if (!text.empty()) field = parse(text);
+    if (text) field = parse(*text);
     return *this;
   }
-  /// All fields of a struct that are the user's to give, but those named.
+  /// A file's name: a text or an os.PathLike.
+  OptionReader& path(const char* name, std::filesystem::path& field);
+  /// All fields of a struct that users set, but those named.
   template <typename Options>
   OptionReader& fields(Options& options, std::initializer_list<std::string_view> but = {}) {
     for_each_field(options, [&](const auto& field) {
-      if (std::ranges::find(but, field.name) == but.end() && !field.is(FieldMark::from_above))
-        read(field.name, field.value);
+      if constexpr (is_given<std::remove_reference_t<decltype(field.value)>>())
+        if (std::ranges::find(but, field.name) == but.end() && !field.is(FieldMark::from_above) &&
+            !field.is(FieldMark::apart))
+          read(field.name, field.value);
     });
     return *this;
   }
@@ -122,16 +124,29 @@ class OptionReader {
   void read(const char* name, Value& field) {
     if constexpr (HasFields<Value>) {
       read_options(table(name), full_name(name), field);
-    } else if constexpr (std::is_enum_v<Value>) {
-      word(name, field, [](const std::string& text) {
-        Value parsed{};
-        parse(text, parsed);
-        return parsed;
-      });
+    } else if constexpr (HasWords<Value>) {
+      word(name, field,
+           [&](const std::string& text) { return parse_word<Value>(full_name(name), text); });
+    } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+      path(name, field);
     } else if constexpr (is_optional<Value>) {
-      if constexpr (HasFields<typename Value::value_type>) {
+      using Content = typename Value::value_type;
+      if constexpr (HasFields<Content>) {
         const py::dict given = table(name);
         if (!given.empty()) read_options(given, full_name(name), field.emplace());
+      } else if constexpr (HasWords<Content>) {
+        word(name, field,
+             [&](const std::string& text) { return parse_word<Content>(full_name(name), text); });
+      } else {
+        value(name, field);
+      }
+    } else if constexpr (is_list<Value>) {
+      using Item = typename Value::value_type;
+      if constexpr (HasWords<Item>) {
+        std::vector<std::string> words;
+        value(name, words);
+        for (const std::string& text : words)
+          field.push_back(parse_word<Item>(full_name(name), text));
       } else {
         value(name, field);
       }

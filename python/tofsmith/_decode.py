@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
-from typing import Any, BinaryIO, Optional, Union
+from typing import Any, BinaryIO, Optional, Union, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -26,16 +26,18 @@ from ._depth_image import (
 )
 from ._filter import Filter, FilterLike, TimeFilterLike, filter_options
 from ._notebook import table_picture
+from ._option_fields import DecodeOptions, DecodeRequest, MultipathOptions, StreamOptions
+from ._options import takes
 from ._recordings import (
     DecodedRecording,
     DecodedStream,
-    frame_options,
     mixed_word,
-    path_or_none,
+    request_options,
 )
 from ._scene import lens_dict
 
 
+@takes(DecodeOptions)
 class Decoder:
     """Depth from raw measurements. Immutable, safe to use from many threads at once.
 
@@ -49,15 +51,6 @@ class Decoder:
         zncc for any code; ml by maximum likelihood, slower; unwrap for sinusoids of one or more
         frequencies; two-return and tail where light comes back twice or trails off, for codes of
         many independent means.
-    low_signal_sigma : float, optional
-        low_signal below so many standard deviations of the signal (3).
-    min_confidence : float, optional
-        ambiguous below this probability (0.9).
-    false_alarm_rate : float, optional
-        Share of consistent pixels that are marked inconsistent (0.001); 0 disables the status.
-    model_error_percent : float, optional
-        Tolerated error of the camera model, in percent of the signal's part of measurements (0); a
-        larger one of the table replaces it.
     unwrap_weights : {"variance", "frequency"}, optional
         Of unwrap.
     device : str, optional
@@ -65,8 +58,9 @@ class Decoder:
         "auto", the first GPU for frames with a spatial filter, else the CPU; or a number or part
         of a name. Only zncc runs on devices. See docs/gpu.md.
     multipath : dict, optional
-        Of two-return and tail: threshold, shortest_delay_m, longest_delay_m, tail_m, and prior, a
-        dict of single_probability, mean_delay_m, max_ratio; see docs/multipath.md.
+        Of two-return and tail: keys of MultipathOptions; see docs/multipath.md.
+    **options
+        As DecodeOptions.
 
     Raises
     ------
@@ -88,28 +82,26 @@ class Decoder:
         camera: Optional[CameraLike] = None,
         *,
         method: str = "zncc",
-        low_signal_sigma: Optional[float] = None, min_confidence: Optional[float] = None,
-        false_alarm_rate: Optional[float] = None, model_error_percent: Optional[float] = None,
         unwrap_weights: Optional[str] = None,
-        multipath: Optional[Mapping[str, Any]] = None,
+        multipath: Union[MultipathOptions, Mapping[str, Any], None] = None,
         device: str = "cpu",
+        **options: Unpack[DecodeOptions],
     ) -> None:
         table = table_of(code, camera)
         lens = None if camera is None else camera_of(camera).lens
         self._lens = None if lens is None else lens_dict(lens)
         self._inputs = table._inputs
         self._method = _check.one_of(method, "method", tuple(_tofsmith.decode_methods()))
-        options = {
+        given: dict[str, Any] = {
+            **options,
             "method": method,
-            "low_signal_sigma": low_signal_sigma, "min_confidence": min_confidence,
-            "false_alarm_rate": false_alarm_rate, "model_error_percent": model_error_percent,
             "unwrap_weights": unwrap_weights,
             "multipath": None if multipath is None else dict(multipath),
             "device": device,
         }
-        self._handle = _tofsmith.Decoder(table._handle, options)
+        self._handle = _tofsmith.Decoder(table._handle, given)
         self._table = table
-        self._options = options
+        self._options = given
 
     def __copy__(self) -> Decoder:
         return self  # immutable
@@ -229,34 +221,19 @@ class Decoder:
         options = filter_options(filter)
         return Filter(self.table, strength=options.pop("strength"), options=options)
 
+    @takes(DecodeRequest)
     def decode_recording(
         self,
         raw: Path | Sequence[Path],
         output: Path,
         *,
-        layout: str = "interleaved",
         raw_format: Optional[Path] = None,
-        dataset: str = "",
-        outputs: Optional[Iterable[str]] = None,
-        kind: str = "radial",
-        all_points: bool = False,
-        undistort: bool = False,
-        frame: Optional[int] = None,
-        stack: bool = False,
-        average: int = 1,
-        averaged: float = 1.0,
-        hdr: Sequence[float] = (),
         time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
-        mixed: Optional[str] = None,
-        offset_map: Optional[Path] = None,
-        offset_m: float = 0.0,
-        gain_map: Optional[Path] = None,
-        stray_light: Optional[Path] = None,
         rays: Optional[Path] = None,
-        memory_mb: float = 256.0,
         overwrite: bool = False,
         progress: Progress = None,
+        **options: Unpack[DecodeRequest],
     ) -> DecodedRecording:
         """Decodes a recording of any length into files, in memory that does not grow with it, as
         `tofsmith decode` does.
@@ -270,63 +247,23 @@ class Decoder:
             .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
             of each; .ply, .pcd (organized): points with planes as scalars. Files of several frames
             get numbers: name-03.npz.
-        layout : {"interleaved", "planar"}
-            Of .npy, .npz and .h5; never guessed.
         raw_format : str or path, optional
             A .raw.toml file; see docs/raw_formats.md.
-        dataset : str
-            The array of an .npz or data set of an .h5; "": the one called "raw", or the only one.
-        outputs : iterable of str, optional
-            Planes to write, others are not computed: depth, signal, ambient, confidence, deviation,
-            status, bin, averaged (of how many measurements numbers are the mean), residual (chi-square
-            per degree of freedom); of two-return and tail also delay, ratio, returns. None: as many of the usual ones as `output` holds.
-        kind : {"radial", "z"}
-            Distance along the ray, or along the optical axis of the camera's lens (without one: of
-            a view 60 degrees wide); .ply and .pcd hold points either way.
-        all_points : bool
-            Points of pixels that are not ok, too.
-        undistort : bool
-            Planes are those of the ideal pinhole, without the distortion of the camera's lens: each
-            pixel takes the values of the nearest one. Those that the lens does not see are invalid.
-        frame : int, optional
-            This frame alone, counted from 0.
-        stack : bool
-            All frames in one .npy, (F, H, W); planes but depth in files of their own,
-            name-PLANE.npy.
-        average : int
-            Decodes the means of so many consecutive frames; the last is of those that are left.
-            `frame` counts means.
-        averaged : float
-            Of how many equal measurements the numbers are the mean already, > 0: their noise is so
-            much smaller.
-        hdr : sequence of float
-            Exposures of so many consecutive frames, over the shortest, which is the camera's: such
-            as (1, 4, 16). Each group is decoded as one frame, as merge_exposures() makes it; `frame`
-            counts groups. Goes without `average`.
         time_filter : int or dict, optional
-            Adds to each pixel the frames before, or means of frames, as long as they stay the same,
-            as TimeFilter does: max_frames, or a dict of it and other options.
+            Averages the frames before, or means of frames, as long as they stay the same, as
+            TimeFilter does: max_frames, or a dict with keys of TimeFilterOptions.
         filter : {"light", "normal", "strong"} or dict, optional
-            Adds measurements of the same depth before decoding, as Filter does: a strength, or a
-            dict of options with "strength" among them ("normal").
-        mixed : {"label", "snap", "drop"}, optional
-            Finds pixels that see two surfaces, as Decoder.decode() does.
-        offset_map, gain_map : str or path, optional
-            Files of what Decoder.decode() takes as `delay_offset_m` and `gain`.
-        stray_light : str or path, optional
-            What CalibratedStrayLight.write() wrote: light that the lens scatters, taken off the raw
-            numbers before all else.
+            Averages measurements of the same depth before decoding, as Filter does: a strength, or a
+            dict of "strength" ("normal") and keys of FilterOptions.
         rays : str or path, optional
             Rays of points and z as the camera's maker gives them, in place of its lens (.npy): (H,
             W, 2) of x/z and y/z, or (H, W, 3) of directions; pixels of NaN are invalid.
-        offset_m : float
-            How much too far every pixel decodes, beside its map [m].
-        memory_mb : float
-            For frames under way [MB]; larger frames go in bands of rows.
         overwrite : bool
             Replace files that are there; never an input.
         progress : callable, optional
             Called with (fraction, step); False stops.
+        **options
+            As DecodeRequest.
 
         Returns
         -------
@@ -345,48 +282,27 @@ class Decoder:
         -----
         The same bytes for any number of threads and any memory.
         """
-        options = {
-            "layout": layout,
-            "raw_format": path_or_none(raw_format, "raw_format"),
-            "dataset": _check.text(dataset, "dataset"),
-            "frame": None if frame is None else _check.whole(frame, "frame", 0),
-            "all_points": bool(all_points),
-            "stack": bool(stack),
-            "memory_mb": _check.number(memory_mb, "memory_mb"),
-            "overwrite": bool(overwrite),
-            "other_inputs": self._inputs,
-        } | frame_options(
-            outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
-            hdr=hdr, time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
-            offset_m=offset_m, gain_map=gain_map, stray_light=stray_light,
-            rays=rays)
+        given = request_options(options, raw_format=raw_format, time_filter=time_filter,
+                                filter=filter, rays=rays)
+        given |= {"overwrite": bool(overwrite), "other_inputs": self._inputs}
         values = self._handle.decode_recording(
-            _check.paths(raw, "raw"), _check.path(output, "output"), self._lens, options,
+            _check.paths(raw, "raw"), _check.path(output, "output"), self._lens, given,
             _check.progress(progress))
         values["files"] = [FilePath(file) for file in values["files"]]
         return DecodedRecording(**values)
 
+    @takes(StreamOptions)
     def decode_stream(
         self,
         source: BinaryIO,
         sink: Union[BinaryIO, Callable[[dict[str, npt.NDArray[Any]]], object]],
         *,
         raw_format: Path,
-        outputs: Optional[Iterable[str]] = None,
-        kind: str = "radial",
-        undistort: bool = False,
-        average: int = 1,
-        averaged: float = 1.0,
-        hdr: Sequence[float] = (),
         time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
-        mixed: Optional[str] = None,
-        offset_map: Optional[Path] = None,
-        offset_m: float = 0.0,
-        gain_map: Optional[Path] = None,
-        stray_light: Optional[Path] = None,
         rays: Optional[Path] = None,
         progress: Progress = None,
+        **options: Unpack[StreamOptions],
     ) -> DecodedStream:
         """Decodes frames as they come, each handed on before the next is read, in the memory of a
         few frames, as `tofsmith decode - -o -` does: from a pipe, a socket, a running camera.
@@ -402,12 +318,12 @@ class Decoder:
             status and returns uint8, bin int32, little end first.
         raw_format : str or path
             A .raw.toml file; see docs/raw_formats.md.
-        outputs : iterable of str, optional
-            As decode_recording() takes it; None: depth alone.
-        kind, undistort, average, averaged, hdr, time_filter, filter, mixed, offset_map, offset_m, gain_map, stray_light, rays
+        time_filter, filter, rays
             As decode_recording() takes them.
         progress : callable, optional
             Called with (fraction, step); False stops.
+        **options
+            As StreamOptions.
 
         Returns
         -------
@@ -439,13 +355,10 @@ class Decoder:
         if write is None and take is None:
             raise TypeError(f"sink: got {_check.shown(sink)}; needs a callable or a binary file "
                             "object")
-        options = {"raw_format": _check.path(raw_format, "raw_format")} | frame_options(
-            outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
-            hdr=hdr, time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
-            offset_m=offset_m, gain_map=gain_map, stray_light=stray_light,
-            rays=rays)
+        given = request_options(options, raw_format=_check.path(raw_format, "raw_format"),
+                                time_filter=time_filter, filter=filter, rays=rays)
         return DecodedStream(**self._handle.decode_stream(
-            source, take, write, self._lens, options,
+            source, take, write, self._lens, given,
             _check.progress(progress)))
 
     def decode_depth_bins(self, measurements: npt.ArrayLike) -> FloatArray:

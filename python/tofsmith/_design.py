@@ -5,9 +5,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +15,8 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
 from ._code import CodeSet
+from ._option_fields import DesignOptions, RequirementOptions
+from ._options import takes
 from ._reports import DepthErrorReport, RobustnessReport, OperatingMultipathReport, report_of
 
 
@@ -202,75 +203,33 @@ def suggested_exposures(camera: CameraLike, method: str = "best") -> list[int]:
     return _tofsmith.suggested_exposures(camera_of(camera)._handle, _check.text(method, "method"))
 
 
-def _numbers_of(exposures: Union[int, Sequence[int]]) -> list[int]:
-    """One number, or several."""
-    several = exposures if isinstance(exposures, Sequence) else np.atleast_1d(exposures).tolist()
-    return [_check.whole(number, "exposures", 1) for number in several]
-
-
+@takes(DesignOptions)
 def design(
     camera: CameraLike,
     *,
-    method: Optional[str] = None,
-    exposures: Union[int, Sequence[int], None] = None,
     target: Optional[Target] = None,
     normalize: bool = False,
-    robust: Optional[bool] = None,
-    baselines: Optional[Sequence[str]] = None,
-    best_rotation: Optional[bool] = None,
-    trials: Optional[int] = None,
-    search_trials: Optional[int] = None,
-    outlier_threshold_m: Optional[float] = None,
-    seed: Optional[int] = None,
     effort: Optional[float] = None,
-    atlas_cameras: Optional[int] = None,
-    factorize: Optional[Mapping[str, Any]] = None,
-    optimize: Optional[Mapping[str, Any]] = None,
-    search: Optional[Mapping[str, Any]] = None,
     progress: Progress = None,
+    **options: Unpack[DesignOptions],
 ) -> DesignResult:
     """Designs codes for a camera, lets baselines compete, and picks by the camera's depth error.
 
     Parameters
     ----------
     camera : Camera or its name
-    method : {"best", "factorize", "optimize", "search", "atlas"}, optional
-        factorize: waveforms whose correlation functions come close to given ones, as in the paper;
-        optimize: all waveforms together, by depth error itself; search: all codes on a chip clock,
-        with proof where that is possible; best (the default): all that suit the camera; atlas: no
-        search, codes of the atlas and standard codes are judged.
-    exposures : int, or sequence of int, optional
-        Numbers of exposures to design for, 1 .. 8, or of rows, 3 .. 16; None: what suits
-        method and camera.
     target : str, path, CodeSet or ndarray (N, K), optional
         Correlation functions to factorize instead of Hamiltonian ones: a family, a code, a file of
         either kind (.code.json; .csv, .txt, .npy or .npz with `corrfs`), or values at equal steps of
         depth over one period, end point left out.
     normalize : bool
         Rescale the columns of a table to [0, 1].
-    robust : bool, optional
-        Optimize for, and pick by, the worst of the camera's perturbations (False).
-    baselines : sequence of str, optional
-        Families that compete; those the camera cannot play are left out. None: what suits the
-        method (for factorize, the Hamiltonian codes it aims at).
-    best_rotation : bool, optional
-        Give every candidate its best origin of depth (True).
-    trials, search_trials : int, optional
-        Per operating point, for final figures (20000) and while pairs are chosen (600).
-    outlier_threshold_m : float, optional
-        Circular errors beyond are outliers in final figures [m] (0.5).
-    seed : int, optional
-        Of every random choice (1).
     effort : float, optional
         How long to search, 0.01 .. 100 (1): 0.1 for a first look, 3 for the last percent; 0: not at
         all, method "atlas". Options of the methods below are not scaled.
-    atlas_cameras : int, optional
-        How many of the nearest cameras of the atlas lend codes that compete and that searches start
-        from (4); 0: none.
-    factorize, optimize, search : dict, optional
-        Options of the methods by the names of FactorizeOptions, OptimizeOptions and
-        ChipSearchOptions, such as `optimize={"starts": 4, "hops": 0}` for a quick look.
     progress : callable, optional
+    **options
+        As DesignOptions; `optimize={"starts": 4, "hops": 0}` for a quick look.
 
     Returns
     -------
@@ -282,24 +241,9 @@ def design(
         For bad options, or a target that the camera cannot play.
     """
     camera = camera_of(camera)
-    options = {
-        "method": method,
-        "exposures": None if exposures is None else _numbers_of(exposures),
-        "robust": robust,
-        "baselines": None if baselines is None else list(baselines),
-        "best_rotation": best_rotation,
-        "trials": trials,
-        "search_trials": search_trials,
-        "outlier_threshold_m": outlier_threshold_m,
-        "seed": seed,
-        "effort": effort,
-        "atlas_cameras": atlas_cameras,
-        "factorize": None if factorize is None else dict(factorize),
-        "optimize": None if optimize is None else dict(optimize),
-        "search": None if search is None else dict(search),
-    }
+    given: dict[str, Any] = {**options, "effort": effort}
     targets = None if target is None else target_of(target, camera, normalize)
-    result = _tofsmith.design(camera._handle, options, targets, _check.progress(progress))
+    result = _tofsmith.design(camera._handle, given, targets, _check.progress(progress))
     result["candidates"] = [_candidate(c, camera) for c in result["candidates"]]
     return DesignResult(**result)
 
@@ -420,19 +364,13 @@ class Requirements:
         self._handle.write(_check.path(directory), bool(overwrite))
 
 
+@takes(RequirementOptions)
 def find_requirements(
     camera: CameraLike,
     error_m: float,
     *,
-    vary_bandwidth: Optional[bool] = None,
-    vary_power: Optional[bool] = None,
-    vary_exposure: Optional[bool] = None,
-    max_factor: Optional[float] = None,
-    effort: Optional[float] = None,
-    trials: Optional[int] = None,
-    map: Optional[bool] = None,
-    seed: Optional[int] = None,
     progress: Progress = None,
+    **options: Unpack[RequirementOptions],
 ) -> Requirements:
     """The least bandwidth, power and exposure, each by itself, with which a code reaches an error,
     and below what no code can.
@@ -443,19 +381,9 @@ def find_requirements(
         `camera.at_distances(5, albedo=0.3, klux=50)` for the light at a distance.
     error_m : float
         Circular depth error that is asked for [m], > 0.
-    vary_bandwidth, vary_power, vary_exposure : bool, optional
-        What is varied (True).
-    max_factor : float, optional
-        Quantities are varied between 1 / this and this times the camera's (64).
-    effort : float, optional
-        Of every design, as in design() (0.1).
-    trials : int, optional
-        Per operating point (50000).
-    map : bool, optional
-        Also the error over bandwidth and power, if both are varied (True).
-    seed : int, optional
-        Of every random choice (1).
     progress : callable, optional
+    **options
+        As RequirementOptions.
 
     Returns
     -------
@@ -466,19 +394,9 @@ def find_requirements(
     ValueError
         For bad options, or for bandwidth where neither arm has a limit.
     """
-    options = {
-        "error_m": error_m,
-        "vary_bandwidth": vary_bandwidth,
-        "vary_power": vary_power,
-        "vary_exposure": vary_exposure,
-        "max_factor": max_factor,
-        "effort": effort,
-        "trials": trials,
-        "map": map,
-        "seed": seed,
-    }
+    given: dict[str, Any] = {**options, "error_m": error_m}
     handle = camera_of(camera)._handle
-    found = _tofsmith.find_requirements(handle, options, _check.progress(progress))
+    found = _tofsmith.find_requirements(handle, given, _check.progress(progress))
     found["code"] = CodeSet._of(found["code"])
     for s in found["varied"]:
         s["code"] = CodeSet._of(s["code"])

@@ -4,33 +4,25 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Optional, Unpack
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
+from ._option_fields import EvaluateOptions, RobustnessOptions
+from ._options import takes
 from ._reports import DepthErrorReport, GeneratorLoss, RobustnessReport, report_of
 
 
+@takes(EvaluateOptions)
 def evaluate(
     code: CodeLike,
     camera: CameraLike,
     *,
-    trials: Optional[int] = None,
-    seed: Optional[int] = None,
-    outlier_threshold_m: Optional[float] = None,
-    sub_bin: Optional[bool] = None,
-    depth: Optional[str] = None,
-    clip_to_open_sensor: Optional[bool] = None,
-    method: Optional[str] = None,
-    unwrap_weights: Optional[str] = None,
-    target_standard_error: Optional[float] = None,
-    max_trials: Optional[int] = None,
-    draw_every_measurement: Optional[bool] = None,
-    bounds: Optional[bool] = None,
     progress: Progress = None,
+    **options: Unpack[EvaluateOptions],
 ) -> DepthErrorReport:
     """Monte Carlo depth error at every operating point of the camera, with bounds beside it.
 
@@ -38,31 +30,9 @@ def evaluate(
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
-    trials : int, optional
-        Per operating point (20000); with a target: at first.
-    seed : int, optional
-        Of all trials (1): codes are compared on the same depths and noise.
-    outlier_threshold_m : float, optional
-        Circular errors beyond are outliers [m] (0.5).
-    sub_bin : bool, optional
-        Decode between bins (True).
-    depth : {"uniform", "bins"}, optional
-        Where true depths lie; bins flatters codes.
-    clip_to_open_sensor : bool, optional
-        Clip electrons to [0, T (S + A)] (False), as the paper's authors' simulator does.
-    method, unwrap_weights : str, optional
-        As of Decoder.
-    target_standard_error : float, optional
-        Trials go on at a point until the standard error is at most this share of the error that the
-        camera is judged by; 0 (the default): no target.
-    max_trials : int, optional
-        Per operating point with a target (50e6).
-    draw_every_measurement : bool, optional
-        Draw the noise of every measurement even where it could be drawn in the plane that ZNCC
-        looks at (False): so methods are compared on the same noise.
-    bounds : bool, optional
-        Also compute the bounds (True); else they are 0.
     progress : callable, optional
+    **options
+        As EvaluateOptions.
 
     Raises
     ------
@@ -70,23 +40,10 @@ def evaluate(
         If the code does not fit, the method cannot decode it, or an option breaks a rule.
     """
     camera = camera_of(camera)
-    options = {
-        "trials": trials,
-        "seed": seed,
-        "outlier_threshold_m": outlier_threshold_m,
-        "sub_bin": sub_bin,
-        "depth": depth,
-        "clip_to_open_sensor": clip_to_open_sensor,
-        "method": method,
-        "unwrap_weights": unwrap_weights,
-        "target_standard_error": target_standard_error,
-        "max_trials": max_trials,
-        "draw_every_measurement": draw_every_measurement,
-        "bounds": bounds,
-    }
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
-    return report_of(_tofsmith.evaluate(handle, camera._handle, options, callback), camera)
+    values = _tofsmith.evaluate(handle, camera._handle, dict(options), callback)
+    return report_of(values, camera)
 
 
 def best_rotation(
@@ -113,8 +70,13 @@ def best_rotation(
     return _tofsmith.best_rotation(handle, camera._handle, options, callback)
 
 
+@takes(EvaluateOptions)
 def generator_loss(
-    code: CodeLike, camera: CameraLike, *, progress: Progress = None, **options: Any
+    code: CodeLike,
+    camera: CameraLike,
+    *,
+    progress: Progress = None,
+    **options: Unpack[EvaluateOptions],
 ) -> GeneratorLoss:
     """What the limits of a camera's waveform generators do to a code.
 
@@ -125,12 +87,12 @@ def generator_loss(
         With generators, such as "prototype"; the camera without them has the nominal waveforms.
     progress : callable, optional
     **options
-        As of evaluate(): trials, seed, method, ..
+        As EvaluateOptions.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
-    values = _tofsmith.generator_loss(handle, camera._handle, options, callback)
+    values = _tofsmith.generator_loss(handle, camera._handle, dict(options), callback)
     nominal, actual, uncalibrated = (
         report_of(values[name], camera) for name in ("nominal", "actual", "uncalibrated")
     )
@@ -166,10 +128,15 @@ def table_depth_error_m(
     return _tofsmith.table_depth_error_m(handle, *light, *counts)
 
 
+@takes(RobustnessOptions)
 def robustness(
-    code: CodeLike, camera: CameraLike, *, progress: Progress = None, **options: Any
+    code: CodeLike,
+    camera: CameraLike,
+    *,
+    progress: Progress = None,
+    **options: Unpack[RobustnessOptions],
 ) -> RobustnessReport:
-    """Judges a code on perturbations of its camera.
+    """Judges a code on perturbations of its camera; see docs/robustness.md.
 
     Parameters
     ----------
@@ -177,11 +144,10 @@ def robustness(
     camera : Camera or its name
     progress : callable, optional
     **options
-        bandwidth (0.2), peak (0.1), edge_jitter_s (50e-12), tap_mismatch (0.02), clock_s (0), droop
-        (0), together (False), trials (4000), seed (1), method, unwrap_weights; 0 leaves a change
-        out. See docs/robustness.md.
+        As RobustnessOptions.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
-    return RobustnessReport(**_tofsmith.robustness(handle, camera._handle, options, callback))
+    values = _tofsmith.robustness(handle, camera._handle, dict(options), callback)
+    return RobustnessReport(**values)

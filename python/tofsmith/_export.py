@@ -7,12 +7,14 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import Any, Optional
+from typing import Any, Unpack
 
 from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import Path
 from ._code import CodeLike, code_of
+from ._option_fields import ExportOptions
+from ._options import takes
 
 
 @dataclass(frozen=True)
@@ -67,21 +69,15 @@ def waveform_formats() -> list[WaveformFormat]:
     return [WaveformFormat(**values) for values in _tofsmith.waveform_formats()]
 
 
+@takes(ExportOptions)
 def export_waveforms(
     code: CodeLike,
     camera: CameraLike,
     output: Path,
     format: str,
     *,
-    variant: Optional[str] = None,
-    samples: Optional[int] = None,
-    bits: Optional[int] = None,
-    sample_rate_hz: Optional[float] = None,
-    edge_grid_s: Optional[float] = None,
-    periods: Optional[int] = None,
-    low_v: Optional[float] = None,
-    high_v: Optional[float] = None,
     overwrite: bool = False,
+    **options: Unpack[ExportOptions],
 ) -> ExportedCode:
     """Writes all waveforms of a code as tables of a generator or pattern memory.
 
@@ -94,21 +90,9 @@ def export_waveforms(
         waveforms in one.
     format : str
         One of waveform_formats().
-    variant : str, optional
-        Of the format.
-    samples : int, optional
-        Points of the table per period.
-    bits : int, optional
-        Amplitude bits of the hardware.
-    sample_rate_hz : float, optional
-        Most points per second.
-    edge_grid_s : float, optional
-        Binary waveforms switch at multiples of this only [s].
-    periods : int, optional
-        That a table holds; as few as fit the format unless given.
-    low_v, high_v : float, optional
-        Output at no light and gain, and at the highest peak and a gain of 1 [V] (0, 1).
     overwrite : bool
+    **options
+        As ExportOptions.
 
     Raises
     ------
@@ -118,19 +102,9 @@ def export_waveforms(
         If a file exists and `overwrite` is not set, or cannot be written.
     """
     camera = camera_of(camera)
-    options = {
-        "variant": variant,
-        "samples": samples,
-        "bits": bits,
-        "sample_rate_hz": sample_rate_hz,
-        "edge_grid_s": edge_grid_s,
-        "periods": periods,
-        "low_v": low_v,
-        "high_v": high_v,
-    }
     handle = code_of(code, camera)._handle
     camera_handle, files, manifest, notes = _tofsmith.export_waveforms(
-        handle, camera._handle, _check.path(output), _check.text(format, "format"), options,
+        handle, camera._handle, _check.path(output), _check.text(format, "format"), dict(options),
         bool(overwrite)
     )
     made = Camera._of(camera_handle)

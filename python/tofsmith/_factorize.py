@@ -6,12 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, Unpack
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Progress
 from ._design import Target, target_of
+from ._option_fields import FactorizeOptions
+from ._options import takes
 from ._waveform import Waveform
 
 
@@ -85,6 +87,7 @@ class Alternation:
     playable_residual_rms: FloatArray
 
 
+@takes(FactorizeOptions)
 def factorize(
     target: Target,
     camera: CameraLike,
@@ -93,7 +96,7 @@ def factorize(
     normalize: bool = False,
     seed: int = 1,
     progress: Progress = None,
-    **options: Any,
+    **options: Unpack[FactorizeOptions],
 ) -> list[Factorization]:
     """Finds waveforms whose correlation functions on the camera come closest to given ones.
 
@@ -110,9 +113,7 @@ def factorize(
         Seed of the random starts.
     progress : callable, optional
     **options
-        Fields of FactorizeOptions: random_starts (30), max_iterations (12), objective_tolerance
-        (1e-4), total_variation_weights, feed_back_projection, structured_starts, keep_naive,
-        refine_edges, refined, kept.
+        As FactorizeOptions.
 
     Returns
     -------
@@ -142,7 +143,7 @@ def factorize(
     results = []
     for index in chosen:
         found = _tofsmith.factorize(
-            targets, index, camera._handle, options | {"seed": seed}, callback)
+            targets, index, camera._handle, {**options, "seed": seed}, callback)
         found["pairs"] = [_pair(values) for values in found["pairs"]]
         results.append(Factorization(**found))
     return results
@@ -157,7 +158,7 @@ def alternate(
     start: int = 0,
     normalize: bool = False,
     seed: int = 1,
-    **options: Any,
+    **options: Unpack[FactorizeOptions],
 ) -> Alternation:
     """Runs the alternation of factorize() once, without refining switching times afterwards.
 
@@ -179,7 +180,7 @@ def alternate(
     weight = _check.number(total_variation_weight, "total_variation_weight")
     values = _tofsmith.alternate(
         targets, _measurement(measurement, targets), camera._handle,
-        _check.whole(start, "start", 0), weight, options | {"seed": seed})
+        _check.whole(start, "start", 0), weight, {**options, "seed": seed})
     for name in ("relaxed", "playable"):
         values[name] = tuple(Waveform._of(handle) for handle in values[name])
     return Alternation(**values)

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,8 @@ from ._camera import CameraLike
 from ._check import Progress, RawLike
 from ._code import CodeLike
 from ._decoding_table import DecodingTable, table_of
+from ._option_fields import FilterOptions, TimeFilterOptions
+from ._options import takes
 
 #: A strength, or a dict of "strength" and fields of FilterOptions.
 FilterLike = Union[str, Mapping[str, Any]]
@@ -84,8 +86,7 @@ class Filter(_OfTable):
         normal adds over 25 x 25 pixels, and once more along the slopes found; light over 5 x 5
         pixels, several times as fast; strong goes along the slopes twice.
     options : dict, optional
-        For experts, instead of what the strength says: windows, slope_rounds, max_difference_sigma,
-        trusted_pixels, same_depth_sigma, own_light_sigma.
+        For experts, instead of what the strength says: keys of FilterOptions.
     device : str, optional
         OpenCL device that filters, as for Decoder. See docs/gpu.md.
 
@@ -112,7 +113,7 @@ class Filter(_OfTable):
         camera: Optional[CameraLike] = None,
         *,
         strength: str = "normal",
-        options: Optional[Mapping[str, Any]] = None,
+        options: Union[FilterOptions, Mapping[str, Any], None] = None,
         device: str = "cpu",
     ) -> None:
         _check.one_of(strength, "strength", tuple(_tofsmith.filter_strengths()))
@@ -168,6 +169,7 @@ class Filter(_OfTable):
         return self._handle.apply(*_frames(raw, averaged, layout), _check.progress(progress))
 
 
+@takes(TimeFilterOptions)
 class TimeFilter(_OfTable):
     """Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
     before anything is decoded. What changes starts anew, so that nothing smears. No frame waits for
@@ -182,16 +184,8 @@ class TimeFilter(_OfTable):
         As Decoder takes it.
     camera : Camera or its name
         Needed unless `code` is a DecodingTable.
-    max_frames : int
-        The newest frame weighs at least 1 / max_frames.
-    max_difference_sigma : float
-        Pixels that differ by more standard deviations start anew.
-    before_filter : bool
-        A Filter comes next, which leaves so little noise that smaller changes matter: look for
-        those that only 24 x 24 pixels together show, too.
-    look_ahead : int
-        So many later frames are added to each, too, as long as they stay the same: each waits for
-        them, and end() gives those that still wait after the last.
+    **options
+        As TimeFilterOptions. With `look_ahead`, end() gives the frames that still wait after the last.
 
     Raises
     ------
@@ -213,17 +207,10 @@ class TimeFilter(_OfTable):
         self,
         code: CodeLike | DecodingTable,
         camera: Optional[CameraLike] = None,
-        *,
-        max_frames: int = 64,
-        max_difference_sigma: float = 5.0,
-        before_filter: bool = False,
-        look_ahead: int = 0,
+        **options: Unpack[TimeFilterOptions],
     ) -> None:
-        self._handle: _tofsmith.TimeFilter = _tofsmith.TimeFilter(table_of(code, camera)._handle, {
-            "max_frames": _check.whole(max_frames, "max_frames", 1),
-            "max_difference_sigma": _check.number(max_difference_sigma, "max_difference_sigma"),
-            "before_filter": bool(before_filter),
-            "look_ahead": _check.whole(look_ahead, "look_ahead", 0)})
+        self._handle: _tofsmith.TimeFilter = _tofsmith.TimeFilter(
+            table_of(code, camera)._handle, dict(options))
 
     def add(
         self,

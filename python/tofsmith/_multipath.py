@@ -4,9 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +16,8 @@ from ._check import FloatArray, Progress
 from ._code import CodeLike, code_of
 from ._bounds import light_of
 from ._light import ExponentialTail
+from ._option_fields import MultipathErrorOptions
+from ._options import takes
 
 
 @dataclass(frozen=True)
@@ -118,19 +119,13 @@ def _maps(values: dict[str, Any]) -> MultipathMaps:
     )
 
 
+@takes(MultipathErrorOptions)
 def multipath_error(
     code: CodeLike,
     camera: CameraLike,
     *,
-    delay_m: Union[float, Sequence[float], None] = None,
-    ratio: Union[float, Sequence[float], None] = None,
-    tail_m: Union[float, Sequence[float], None] = None,
-    signal_e_per_s: Union[float, Sequence[float], None] = None,
-    ambient_e_per_s: Optional[float] = None,
-    trials: Optional[int] = None,
-    seed: Optional[int] = None,
-    decoding: Optional[Mapping[str, Any]] = None,
     progress: Progress = None,
+    **options: Unpack[MultipathErrorOptions],
 ) -> MultipathErrorReport:
     """Bias and error of single-path against two-return and tail decoding, in the camera's noise.
 
@@ -138,36 +133,14 @@ def multipath_error(
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
-    delay_m : float or sequence of float, optional
-        Of a second return behind the direct one [m].
-    ratio : float or sequence of float, optional
-        S2 / S1, in [0, 1].
-    tail_m : float or sequence of float, optional
-        Mean delays of tails [m].
-    signal_e_per_s : float or sequence of float, optional
-        S1 [e/s].
-    ambient_e_per_s : float, optional
-    trials : int, optional
-        Per place of a map (2000).
-    seed : int, optional
-    decoding : dict, optional
-        As `multipath` of Decoder, without tail_m.
     progress : callable, optional
+    **options
+        As MultipathErrorOptions; `decoding` as `multipath` of Decoder, without tail_m.
     """
     camera = camera_of(camera)
-    options = {
-        "delay_m": _check.numbers(delay_m, "delay_m"),
-        "ratio": _check.numbers(ratio, "ratio"),
-        "tail_m": _check.numbers(tail_m, "tail_m"),
-        "signal_e_per_s": _check.numbers(signal_e_per_s, "signal_e_per_s"),
-        "ambient_e_per_s": ambient_e_per_s,
-        "trials": trials,
-        "seed": seed,
-        "decoding": None if decoding is None else dict(decoding),
-    }
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
-    values = _tofsmith.multipath_error(handle, camera._handle, options, callback)
+    values = _tofsmith.multipath_error(handle, camera._handle, dict(options), callback)
     maps = [_maps(m) for m in values.pop("maps")]
     return MultipathErrorReport(**values, maps=maps)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, Unpack
 
 import numpy.typing as npt
 
@@ -14,6 +14,8 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import Path
 from ._code import CodeLike, code_of
+from ._option_fields import PhotonTransferOptions
+from ._options import takes
 from ._reports import Estimate
 
 
@@ -73,15 +75,14 @@ class PhotonTransfer:
         self._handle.write_report(_check.path(path), bool(overwrite))
 
 
+@takes(PhotonTransferOptions)
 def photon_transfer(
     levels: Union[npt.ArrayLike, Sequence[npt.ArrayLike]],
     camera: CameraLike,
     *,
     dark: Optional[npt.ArrayLike] = None,
-    black_level_dn: Optional[float] = None,
-    adc_bits: Optional[int] = None,
     code: Optional[CodeLike] = None,
-    averaged: float = 1.0,
+    **options: Unpack[PhotonTransferOptions],
 ) -> PhotonTransfer:
     """Noise of a sensor from pairs of frames of the same light.
 
@@ -93,15 +94,11 @@ def photon_transfer(
     camera : Camera or its name
     dark : array_like, shape (F, H, W, K), optional
         Pairs of frames with the light off.
-    black_level_dn : float, optional
-        If it is known [DN]; None: from the dark frames, or else the camera's.
-    adc_bits : int, optional
-        None: the camera's, or else the fewest usual ones.
     code : CodeSet, name of a family or file, optional
         What was played: of cameras that read differences, whose shot noise follows from the light
         that the code collects where each pixel decodes to; with no other light in the room.
-    averaged : float
-        Of how many equal frames each frame is the mean already, > 0.
+    **options
+        As PhotonTransferOptions.
 
     Raises
     ------
@@ -118,8 +115,6 @@ def photon_transfer(
     """
     given: Sequence[Any] = levels if isinstance(levels, (list, tuple)) else [levels]
     frames = [_check.frames(level, f"levels[{i}]") for i, level in enumerate(given)]
-    options = {"black_level_dn": black_level_dn, "adc_bits": adc_bits,
-               "averaged": _check.number(averaged, "averaged")}
     camera = camera_of(camera)
     reads_differences = camera.sensor.readout == "difference"
     if reads_differences != (code is not None):
@@ -129,7 +124,7 @@ def photon_transfer(
                          "code: goes with cameras that read differences (sensor.readout)")
     played = None if code is None else code_of(code, camera)._handle
     dark_frames = None if dark is None else _check.frames(dark, "dark")
-    handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, played, options)
+    handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, played, dict(options))
     fields = handle.fields()
     for name in ("gain_e_per_dn", "read_noise_e", "black_level_dn", "full_well_e"):
         fields[name] = None if fields[name] is None else Estimate(*fields[name])

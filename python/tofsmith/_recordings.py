@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Optional
@@ -73,46 +73,24 @@ class DecodedStream:
     seconds: float
 
 
-def path_or_none(path: Optional[Path], what: str) -> Optional[str]:
-    return None if path is None else _check.path(path, what)
-
-
-def frame_options(
-    outputs: Optional[Iterable[str]],
+def request_options(
+    options: Mapping[str, Any],
     *,
-    kind: str,
-    undistort: bool,
-    average: int,
-    averaged: float,
-    hdr: Sequence[float],
+    raw_format: Optional[Path],
     time_filter: Optional[TimeFilterLike],
     filter: Optional[FilterLike],
-    mixed: Optional[str],
-    offset_map: Optional[Path],
-    offset_m: float,
-    gain_map: Optional[Path],
-    stray_light: Optional[Path],
     rays: Optional[Path],
 ) -> dict[str, Any]:
-    """What recordings and streams share, as the library takes it."""
-    planes = tuple(_tofsmith.decoded_planes())
+    """Options of recordings and streams, as the library takes them."""
     words = {plane: word for word, plane in plane_words.items()}
+    outputs = options.get("outputs")
     return {
-        "outputs": [] if outputs is None else [
-            _check.one_of(words.get(plane, plane), "outputs", planes) for plane in outputs],
-        "kind": kind,
-        "undistort": bool(undistort),
-        "average": _check.whole(average, "average", 1),
-        "averaged": _check.number(averaged, "averaged"),
-        "hdr": [_check.number(exposure, "hdr") for exposure in hdr],
+        **options,
+        "outputs": None if outputs is None else [words.get(plane, plane) for plane in outputs],
+        "raw_format": raw_format,
         "time_filter": None if time_filter is None else time_filter_options(time_filter),
         "filter": None if filter is None else filter_options(filter),
-        "mixed": mixed_word(mixed),
-        "offset_map": path_or_none(offset_map, "offset_map"),
-        "offset_m": _check.number(offset_m, "offset_m"),
-        "gain_map": path_or_none(gain_map, "gain_map"),
-        "stray_light": path_or_none(stray_light, "stray_light"),
-        "rays": path_or_none(rays, "rays"),
+        "rays": rays,
     }
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, Unpack
 
 import numpy.typing as npt
 
@@ -14,6 +14,8 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._camera_fields import ImpulseResponse
 from ._check import FloatArray, Path
+from ._option_fields import ResponseRecordOptions
+from ._options import takes
 from ._reports import Estimate
 
 
@@ -170,39 +172,25 @@ class CalibratedResponse:
         )
 
 
+@takes(ResponseRecordOptions)
 def read_response_record(
     path: Path,
-    *,
-    time_step_s: Optional[float] = None,
-    time_unit_s: Optional[float] = None,
-    column: Optional[str] = None,
-    decimal: Optional[str] = None,
+    **options: Unpack[ResponseRecordOptions],
 ) -> ResponseRecord:
     """A record of an oscilloscope (text of times and values), or a histogram (.npy, values alone).
 
     Parameters
     ----------
     path : str or path
-    time_step_s : float, optional
-        Of files without times [s].
-    time_unit_s : float, optional
-        Of the column of times [s], such as 1e-9; what its name says unless given, or 1.
-    column : str, optional
-        Name or number (from 1) of the values, where there are several.
-    decimal : {"auto", "point", "comma"}, optional
+    **options
+        As ResponseRecordOptions.
 
     Raises
     ------
     OSError
         Naming file and line for what is no record.
     """
-    options = {
-        "time_step_s": time_step_s,
-        "time_unit_s": time_unit_s,
-        "column": column,
-        "decimal": decimal,
-    }
-    return ResponseRecord(**_tofsmith.read_response_record(_check.path(path), options))
+    return ResponseRecord(**_tofsmith.read_response_record(_check.path(path), dict(options)))
 
 
 def calibrate_impulse_response(

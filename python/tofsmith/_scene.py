@@ -8,7 +8,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,8 @@ from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._light import ExponentialTail, MultipathReturns, Transients, light_dict
 from ._notebook import depth_picture
+from ._option_fields import CaptureOptions, SceneSource
+from ._options import takes
 
 FloatImage = npt.NDArray[np.float32]
 
@@ -88,18 +90,11 @@ def built_in_scene(
     return load_scene(_check.text(name, "name"), width=width, height=height, time_s=time_s)
 
 
+@takes(SceneSource)
 def load_scene(
     scene: Path,
     lens: Optional[Lens] = None,
-    *,
-    image: Optional[Path] = None,
-    ambient_image: Optional[Path] = None,
-    kind: Optional[str] = None,
-    linear_image: Optional[bool] = None,
-    width: Optional[int] = None,
-    height: Optional[int] = None,
-    scale_m: Optional[float] = None,
-    time_s: Optional[float] = None,
+    **options: Unpack[SceneSource],
 ) -> Scene:
     """A scene by its name or file, as `tofsmith simulate` takes it, ray cast.
 
@@ -110,20 +105,8 @@ def load_scene(
         image (.npy .npz .exr .pfm, .png in mm).
     lens : Lens, optional
         Of a depth image; 60 degrees wide unless given.
-    image : str or path, optional
-        Albedo of a depth image (.png .npy .exr .pfm).
-    ambient_image : str or path, optional
-        Ambient light of each pixel.
-    kind : str, optional
-        What a depth image holds: "z" along the axis (the default), or "radial" distance.
-    linear_image : bool, optional
-        PNG images hold linear light, not sRGB.
-    width, height : int, optional
-        Of built-in scenes and meshes (320 x 240).
-    scale_m : float, optional
-        Metres per unit of a mesh (1).
-    time_s : float, optional
-        When a scene that moves is looked at [s] (0).
+    **options
+        As SceneSource.
 
     Raises
     ------
@@ -132,18 +115,11 @@ def load_scene(
     OSError
         For what is no scene, with the nearest name, and for files that cannot be read.
     """
-    options = {
-        "image": None if image is None else _check.path(image, "image"),
-        "ambient_image": None if ambient_image is None else _check.path(ambient_image),
-        "kind": kind,
-        "linear_image": linear_image,
-        "width": width,
-        "height": height,
-        "scale_m": scale_m,
-        "time_s": time_s,
-    }
+    given: dict[str, Any] = dict(options)
+    for file in {"image", "ambient_image"} & given.keys():
+        given[file] = None if given[file] is None else _check.path(given[file], file)
     name = _check.path(scene, "scene")
-    seen = _tofsmith.load_scene(name, None if lens is None else lens_dict(lens), options)
+    seen = _tofsmith.load_scene(name, None if lens is None else lens_dict(lens), given)
     view = lens_from(seen.pop("lens"))
     return Scene(**seen, lens=view)
 
@@ -196,6 +172,7 @@ def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     return points
 
 
+@takes(CaptureOptions)
 def capture(
     scene: Union[Scene, str, npt.NDArray[Any]],
     code: CodeLike,
@@ -203,10 +180,6 @@ def capture(
     *,
     signal_e_per_s: Optional[float] = None,
     ambient_e_per_s: Optional[float] = None,
-    reference_distance_m: Optional[float] = None,
-    falloff: Optional[bool] = None,
-    seed: Optional[int] = None,
-    frames: Optional[int] = None,
     stray_light: Optional[npt.ArrayLike] = None,
     returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
     tail: Optional[ExponentialTail] = None,
@@ -214,6 +187,7 @@ def capture(
     bounces: int = 0,
     bounce_rays: int = 256,
     progress: Progress = None,
+    **options: Unpack[CaptureOptions],
 ) -> npt.NDArray[np.float32]:
     """Raw measurements of a scene.
 
@@ -229,14 +203,6 @@ def capture(
         point's unless given.
     ambient_e_per_s : float, optional
         A [e/s]; so is this.
-    reference_distance_m : float, optional
-        [m] (1).
-    falloff : bool, optional
-        S = signal albedo cosine / (d / d_ref)^2 (the default); else signal albedo.
-    seed : int, optional
-        Of all noise (1); the same bits for any number of threads.
-    frames : int, optional
-        F, independent noise for each (1).
     stray_light : array_like, shape (2 R + 1, 2 Q + 1), optional
         Share of a pixel's light that the lens scatters to each other, the middle being the pixel
         itself; remove_stray_light() takes it off again.
@@ -251,6 +217,8 @@ def capture(
         1: also light that one other surface sends on, gathered by so many rays a pixel, as
         bounced_light() says; of a name or file. (0)
     progress : callable, optional
+    **options
+        As CaptureOptions.
 
     Returns
     -------
@@ -264,20 +232,17 @@ def capture(
     OSError
         For what is no scene.
     """
-    options: dict[str, Any] = {
+    given: dict[str, Any] = {
+        **options,
         "signal_e_per_s": signal_e_per_s,
         "ambient_e_per_s": ambient_e_per_s,
-        "reference_distance_m": reference_distance_m,
-        "falloff": falloff,
-        "seed": seed,
-        "frames": frames,
         "stray_light": stray_light,
     }
     raw: npt.NDArray[np.float32]
     if isinstance(scene, (str, os.PathLike)):
         raw = capture_staged(
             scene, code, camera, returns=returns, tail=tail, transients=transients,
-            bounces=bounces, bounce_rays=bounce_rays, progress=progress, **options
+            bounces=bounces, bounce_rays=bounce_rays, progress=progress, **given
         ).raw
     else:
         if _bounce_rays(bounces, bounce_rays, returns, transients):
@@ -290,10 +255,10 @@ def capture(
             light_dict(returns, tail, transients, seen.depth_m),
             code_of(code, camera)._handle,
             camera._handle,
-            options,
+            given,
             _check.progress(progress),
         )
-    if frames is not None:
+    if options.get("frames") is not None:
         return raw
     only: npt.NDArray[np.float32] = raw[0]
     return only

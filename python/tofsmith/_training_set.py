@@ -10,7 +10,7 @@ import pickle
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, Unpack
 
 import numpy.typing as npt
 
@@ -20,6 +20,8 @@ from ._camera_fields import Lens
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._executor import Dispatcher, ExecutorLike, require_build
+from ._option_fields import CaptureOptions
+from ._options import takes
 from ._scene import Scene, centred_lens, lens_dict, scene_named, scene_planes
 
 #: As of capture(), or a function that returns one when its turn comes.
@@ -105,6 +107,7 @@ def _write_on_executor(
     return training_set.write_index([outcomes[name] for name in names])
 
 
+@takes(CaptureOptions)
 def write_training_set(
     directory: Path,
     scenes: Mapping[str, SceneLike],
@@ -113,14 +116,11 @@ def write_training_set(
     *,
     signal_range: Optional[tuple[float, float]] = None,
     ambient_range: Optional[tuple[float, float]] = None,
-    reference_distance_m: Optional[float] = None,
-    falloff: Optional[bool] = None,
-    seed: Optional[int] = None,
-    frames: Optional[int] = None,
     shard: Optional[tuple[int, int]] = None,
     executor: Optional[ExecutorLike] = None,
     threads: int = 1,
     progress: Progress = None,
+    **options: Unpack[CaptureOptions],
 ) -> TrainingSetRun:
     """Captures and decodes every scene; writes KEY.npz (raw, depth_m, true_depth_m, albedo) and
     KEY.json (parameters) of each, and an index, as `tofsmith simulate` of many scenes does.
@@ -136,10 +136,6 @@ def write_training_set(
     camera : Camera or its name
     signal_range, ambient_range : (float, float), optional
         [e/s], drawn log-uniformly for every scene; None: the middle operating point's.
-    reference_distance_m, falloff, frames : optional
-        As of capture().
-    seed : int, optional
-        Of the whole set (1): noise and light depend on it and the scene's name and content alone.
     shard : (index, count), optional
         One part of the work, from 1, by the scenes' names.
     executor : concurrent.futures.Executor or a function that starts one, optional
@@ -149,6 +145,8 @@ def write_training_set(
         Threads of each worker of the executor; 0: as many as there are cores.
     progress : callable, optional
         What is finished when it stops the work is kept.
+    **options
+        As CaptureOptions. Noise and light depend on `seed` and the scene's name and content alone.
 
     Raises
     ------
@@ -165,13 +163,10 @@ def write_training_set(
     >>> run = write_training_set("set", scenes, "hamiltonian-k4", "paper-10f0")  # doctest: +SKIP
     """
     known = camera_of(camera)
-    options = {
+    given: dict[str, Any] = {
+        **options,
         "signal_range": None if signal_range is None else list(signal_range),
         "ambient_range": None if ambient_range is None else list(ambient_range),
-        "reference_distance_m": reference_distance_m,
-        "falloff": falloff,
-        "seed": seed,
-        "frames": frames,
         "shard": None if shard is None else list(shard),
     }
     if not isinstance(scenes, Mapping) or not scenes:
@@ -183,11 +178,11 @@ def write_training_set(
     if executor is None:
         load = functools.partial(_planes, scenes, known.lens)
         values = _tofsmith.write_training_set(
-            folder, names, load, known_code._handle, known._handle, options, callback
+            folder, names, load, known_code._handle, known._handle, given, callback
         )
     else:
         _check.whole(threads, "threads", 0, 65536)
-        plan = (os.path.abspath(folder), known_code, known, options)
+        plan = (os.path.abspath(folder), known_code, known, given)
         values = _write_on_executor(plan, scenes, names, executor, threads, callback)
     values["index"] = FilePath(values["index"])
     return TrainingSetRun(**values)

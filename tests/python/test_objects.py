@@ -184,10 +184,11 @@ def test_one_number_will_do_where_a_list_is_asked_for():
      "a measurement; read_raw('raw.npy') reads one"),
     (lambda: ts.plot.depth_maps("depth.npy"), TypeError, "not the name of a file (read_depth()"),
     (lambda: ts.multipath_error("hamiltonian-k5", "paper-10f0", delay_m="1 m"), TypeError,
-     "delay_m: got str '1 m'; needs a number"),
+     "delay_m: got str '1 m'; needs a list of numbers"),
     (lambda: ts.CodeSet("hamiltonian-k4"), TypeError, "use build_family(name, camera)"),
     (lambda: ts.Camera(fundamental_frequency_hz=20), ValueError, "20 MHz are 20e6"),
-    (lambda: ts.design("paper-10f0", exposures=[2.5]), TypeError, "exposures: got float 2.5"),
+    (lambda: ts.design("paper-10f0", exposures=[2.5]), TypeError,
+     "exposures: got list [2.5]; needs a list of whole numbers"),
 ])
 def test_what_is_meant_otherwise_is_told(call, error, text):
     with pytest.raises(error) as caught:

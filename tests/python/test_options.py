@@ -17,14 +17,8 @@ quick = {"trials": 1000, "method": "factorize"}
 #: Struct, header, a call that names the options it knows when it is given `unknown`, and the fields
 #: that are given in other ways.
 structs = [
-    ("EvaluateOptions", "simulate/depth_error.hpp",
-     lambda o: ts.generator_loss("square-k4", "paper-10f0", **o), set()),
-    ("RobustnessOptions", "simulate/robustness.hpp",
-     lambda o: ts.robustness("square-k4", "paper-10f0", **o), set()),
     ("FactorizeOptions", "design/factorize.hpp",
      lambda o: ts.design("paper-10f0", **quick, factorize=o), {"seed"}),
-    ("FactorizeOptions", "design/factorize.hpp",
-     lambda o: ts.factorize("hamiltonian-k3", "paper-10f0", **o), set()),
     ("OptimizeOptions", "design/optimize.hpp",
      lambda o: ts.design("paper-10f0", **quick, optimize=o), {"seed"}),
     ("ChipSearchOptions", "design/chip_search.hpp",
@@ -39,11 +33,16 @@ structs = [
 #: Struct, header, function or class whose keywords are its fields.
 keywords = [
     ("EvaluateOptions", "simulate/depth_error.hpp", ts.evaluate, set()),
+    ("EvaluateOptions", "simulate/depth_error.hpp", ts.generator_loss, set()),
+    ("RobustnessOptions", "simulate/robustness.hpp", ts.robustness, set()),
+    ("FactorizeOptions", "design/factorize.hpp", ts.factorize, set()),
     ("CaptureOptions", "simulate/capture.hpp", ts.capture, set()),
     ("DesignOptions", "design/design.hpp", ts.design, set()),
     ("RequirementOptions", "design/design.hpp", ts.find_requirements, set()),
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
+    ("DecodeRequest", "io/decode_recording.hpp", ts.Decoder.decode_recording,
+     {"lens", "policy", "other_inputs"}),
     ("TimeFilterOptions", "decode/time_filter.hpp", ts.TimeFilter, set()),
     ("ExportOptions", "waveforms/waveform_export.hpp", ts.export_waveforms, set()),
     ("ResponseRecordOptions", "calibrate/impulse_response.hpp", ts.read_response_record, set()),

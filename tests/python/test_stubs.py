@@ -35,7 +35,8 @@ def test_stubs_agree_with_the_compiled_part(tmp_path):
     # What pybind11 makes of any class: a metaclass, and an __init__ that refuses where there is none.
     allowed = tmp_path / "allowed.txt"
     allowed.write_text("tofsmith\\._tofsmith\\.[A-Z]\\w*(\\.__init__)?\n")
-    done = run_mypy(tmp_path, "mypy.stubtest", "--allowlist", str(allowed), "tofsmith._tofsmith")
+    done = run_mypy(tmp_path, "mypy.stubtest", "--allowlist", str(allowed),
+                    "--mypy-config-file", str(root / "pyproject.toml"), "tofsmith._tofsmith")
     assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -196,7 +196,7 @@ def test_decode_refuses_alike(ways, camera):
         assert str(caught.value) in done.stderr
     with pytest.raises(OSError, match="choose another name"):
         decoder.decode_recording("raw.npy", "raw.npy", frame=0, overwrite=True)
-    with pytest.raises(ValueError, match="outputs: got str 'deep'; needs one of depth, "):
+    with pytest.raises(ValueError, match="outputs = deep; must be depth, "):
         decoder.decode_recording("raw.npy", "d.npz", outputs=["deep"])
     with pytest.raises(ValueError, match="filter strength = weak; must be light, normal or strong"):
         decoder.decode_recording("raw.npy", "d.npz", filter="weak")
