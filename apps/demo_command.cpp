@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "commands.hpp"
+#include "described_options.hpp"
 #include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
@@ -33,8 +34,7 @@ namespace fs = std::filesystem;
 struct DemoArguments {
   CameraArguments camera;
   SceneSource scene{.scene = "table-top"};
-  std::uint64_t seed = 1;
-  int trials = 20000;
+  DesignOptions options;
   double effort = 1.0;
   std::string output = "tofsmith-demo";
 };
@@ -47,11 +47,7 @@ constexpr std::array depth_files = {"depth.npy", "depth.npz", "depth.exr", "dept
                                     "depth.png"};
 
 DesignOptions design_options(const DemoArguments& arguments) {
-  DesignOptions options;
-  options.seed = arguments.seed;
-  options.trials = arguments.trials;
-  options = with_effort(std::move(options), arguments.effort);
-  return options;
+  return with_effort(arguments.options, arguments.effort);
 }
 
 /// The winner and the sinusoids.
@@ -161,12 +157,12 @@ void run(const DemoArguments& arguments, const Session& session) {
 
   // 3. Capture the scene at three light levels and decode it.
   const SceneResult scene =
-      capture_scene(std::move(loaded), arguments.seed, camera, result, parts[1]);
+      capture_scene(std::move(loaded), arguments.options.seed, camera, result, parts[1]);
 
   // 4. Write everything, the report last.
   const OutputPolicy policy = session.output_policy();
   write_scene_result(directory.path() / "scene", scene, policy);
-  write_products(directory.path(), scene, camera, result, arguments.seed, policy);
+  write_products(directory.path(), scene, camera, result, arguments.options.seed, policy);
   directory.write(camera, result, options, policy);
   write_report(session, directory.path(), policy);
   report(progress, 1.0, "done");
@@ -188,11 +184,9 @@ void add_demo_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--depth", arguments->scene.scene, scene_help)->capture_default_str();
   add_scene_options(*command, arguments->scene);
-  command->add_option("--seed", arguments->seed, "seed of every random choice")
-      ->capture_default_str();
-  command->add_option("--trials", arguments->trials, "trials per operating point")
-      ->check(CLI::Range(1000, 100000000))
-      ->capture_default_str();
+  const FieldOptions options(*command, arguments->options);
+  options.add("seed", "--seed");
+  options.add("trials", "--trials");
   add_effort(*command, arguments->effort);
   command->callback([arguments, &session] {
     session.directory = arguments->output;
