@@ -29,10 +29,13 @@ NESTED = {"factorize": "FactorizeOptions", "optimize": "OptimizeOptions",
 ELSEWHERE = {"CaptureOptions": {"signal_e_per_s", "ambient_e_per_s"},
              "RequirementOptions": {"error_m"}, "ExportOptions": {"format"},
              "SceneSource": {"scene"}, "MultipathOptions": {"status_thresholds"},
+             "UploadRequest": {"filter"},
              "DecodeRequest": {"time_filter", "filter", "raw_format"}}
 # Classes for functions that take a part of the fields of a struct.
 PARTS = {"StreamOptions": ("DecodeRequest", {"layout", "dataset", "all_points", "frame", "stack",
                                              "memory_mb"})}
+# Classes for functions that take the fields of several structs.
+JOINED = {"UploadOptions": ("UploadSelection", "UploadRequest")}
 # Texts that name files.
 FILES = {"image", "ambient_image"}
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",
@@ -108,6 +111,8 @@ def main():
         structs.update(structs_in(name, fields))
     for name, (struct, without) in PARTS.items():
         structs[name] = [field for field in structs[struct] if field["name"] not in without]
+    for name, together in JOINED.items():
+        structs[name] = [field for struct in together for field in structs[struct]]
     text = HEADER + "".join(class_text(*struct) for struct in structs.items())
     text += "\n\nOPTIONS: dict[type[Any], tuple[Option, ...]] = {\n"
     for name, fields in structs.items():

@@ -7,18 +7,20 @@ On Debian: ``apt install python3-pyvisa python3-pyvisa-py``. Only upload() needs
 
 from __future__ import annotations
 
+import functools
 import re
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, NamedTuple, NoReturn, Optional
+from typing import Any, NamedTuple, NoReturn, Optional, Union, Unpack
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import Progress
 from ._code import CodeLike, code_of
+from ._option_fields import ExportOptions, UploadOptions
+from ._options import takes
 from ._tofsmith import (
     AnswerCheck,
     GeneratorModel,
@@ -77,8 +79,15 @@ class UploadReport:
     steps: list[tuple[str, str, str]]
 
 
+@takes(UploadOptions)
 def upload_script(
-    code: CodeLike, camera: CameraLike, model: str, **options: Any
+    code: CodeLike,
+    camera: CameraLike,
+    model: str,
+    *,
+    filter: str = "step",
+    tables: Union[ExportOptions, Mapping[str, Any], None] = None,
+    **options: Unpack[UploadOptions],
 ) -> UploadScript:
     """Returns the messages that upload() would send to a model, without connecting.
 
@@ -88,8 +97,10 @@ def upload_script(
     camera : Camera or its name
     model : str
         Name of one of generator_models().
-    **options
+    filter, tables
         As in upload().
+    **options
+        As UploadOptions.
 
     Raises
     ------
@@ -98,9 +109,12 @@ def upload_script(
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
-    return _tofsmith.upload_script(handle, camera._handle, _check.text(model, "model"), options)
+    given: dict[str, Any] = {
+        **options, "filter": filter, "tables": None if tables is None else dict(tables)}
+    return _tofsmith.upload_script(handle, camera._handle, _check.text(model, "model"), given)
 
 
+@takes(UploadOptions)
 def upload(
     code: CodeLike,
     camera: CameraLike,
@@ -108,8 +122,10 @@ def upload(
     *,
     model: Optional[str] = None,
     timeout_s: float = 5.0,
+    filter: str = "step",
+    tables: Union[ExportOptions, Mapping[str, Any], None] = None,
     progress: Progress = None,
-    **options: Any,
+    **options: Unpack[UploadOptions],
 ) -> UploadReport:
     """Loads a code into a generator, sets it, reads points and settings back and compares them.
 
@@ -129,11 +145,12 @@ def upload(
         Longest wait for an answer [s]; blocks get another second for each 100 kB.
     progress : callable, optional
         Called before every message; the upload stops if it returns False.
+    filter : {"step", "normal", "off"}
+        Filter of the output of a Keysight.
+    tables : dict, optional
+        Options of export_waveforms(), such as {"samples": 500, "low_v": 0, "high_v": 2}.
     **options
-        light_channel (1), sensor_channel (2; 0: none), exposure (1), tap (1), all (False: one
-        exposure); load_ohm (50), output_on (False), read_back (True), reset (True), true_arb
-        (False), wave_header ("length"), settle_s (0.5), patience_s (20), filter ("step"); tables, a
-        dict of options of export_waveforms(), such as {"samples": 500, "low_v": 0, "high_v": 2}.
+        As UploadOptions.
 
     Raises
     ------
@@ -149,12 +166,14 @@ def upload(
     if not 0 < seconds <= 3600:
         raise ValueError(f"timeout_s: got {seconds:g}; needs a number in (0, 3600]")
     progress = _check.progress(progress)
-    script = None if model is None else upload_script(code, camera, model, **options)
+    to_script = functools.partial(
+        upload_script, code, camera, filter=filter, tables=tables, **options)
+    script = None if model is None else to_script(model)
     session = _Session(resource_name, seconds)
     try:
         identity = session.identify()
         if script is None:
-            script = upload_script(code, camera, _identified(identity, session), **options)
+            script = to_script(_identified(identity, session))
         steps, numbers = _send(session, script, progress)
     finally:
         session.close()
@@ -194,7 +213,7 @@ def _printable(data: bytes | str, most: int = 60) -> str:
     return shown if len(text) <= most else f"{shown}... ({len(text)} bytes)"
 
 
-@cache
+@functools.cache
 def _visa_library() -> tuple[Any, Any]:
     """PyVISA and its resource manager."""
     try:

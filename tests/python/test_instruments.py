@@ -372,9 +372,10 @@ refusals = [
 @pytest.mark.parametrize("options, message", refusals, ids=[r[1][:30] for r in refusals])
 def test_bad_options_are_refused_by_name_before_connecting(options, message):
     options = {"model": "33522"} | options
-    with pytest.raises(ValueError, match=re.escape(message)):
+    kind = TypeError if "exposre" in options else ValueError
+    with pytest.raises(kind, match=re.escape(message)):
         instruments.upload_script("square-k4", "paper-10f0", **options)
-    with pytest.raises(ValueError, match=re.escape(message)):
+    with pytest.raises(kind, match=re.escape(message)):
         instruments.upload("square-k4", "paper-10f0", "127.0.0.1:1", **options)
 
 
