@@ -200,7 +200,7 @@ def test_decode_refuses_alike(ways, camera):
         decoder.decode_recording("raw.npy", "d.npz", outputs=["deep"])
     with pytest.raises(ValueError, match="filter strength = weak; must be light, normal or strong"):
         decoder.decode_recording("raw.npy", "d.npz", filter="weak")
-    with pytest.raises(ValueError, match="average: got 0"):
+    with pytest.raises(ValueError, match="average = 0; must be >= 1"):
         decoder.decode_recording("raw.npy", "d.npz", average=0)
     with pytest.raises(ValueError, match="averaged = 0; must be > 0"):
         decoder.decode_recording("raw.npy", "d.npz", averaged=0)
