@@ -47,6 +47,11 @@ CLI::Option* add_converted(CLI::App& command, const std::string& option, Value& 
         option, [&value, convert](const std::string& text) { value = convert(text); }, help);
 }
 
+template <typename Single>
+inline constexpr bool is_option_value =
+    HasWords<Single> || std::is_arithmetic_v<Single> || std::is_same_v<Single, std::string> ||
+    std::is_same_v<Single, std::filesystem::path>;
+
 template <typename Enum>
 std::vector<std::string> texts_of_words() {
   const auto words = words_of(Enum{});
@@ -101,7 +106,7 @@ CLI::Option* add_field_option(CLI::App& command, Options& options, std::string_v
   for_each_field(options, [&](const auto& each) {
     using Value = std::remove_cvref_t<decltype(each.value)>;
     using Single = typename detail::SingleOf<Value>::Type;
-    if constexpr (!HasFields<Single> && (!std::is_enum_v<Single> || HasWords<Single>)) {
+    if constexpr (detail::is_option_value<Single>) {
       if (each.name == field) added = add_option_of(command, each, option);
     }
   });
