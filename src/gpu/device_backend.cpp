@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/device_backend.hpp"
 
+#include <mutex>
 #include <utility>
 
 #include "core/shared/working_threads.hpp"
@@ -108,36 +109,73 @@ class DevicePipeline final : public FramePipeline {
 class DeviceBackend final : public FrameBackend {
  public:
   DeviceBackend(const Device& device, std::unique_ptr<const DepthDecoder> decoder,
-                const DeviceOptions& options, bool is_automatic)
+                const DeviceOptions& options)
       : cpu_(cpu_backend(std::move(decoder))),
         options_(options),
-        is_automatic_(is_automatic),
         on_device_(device, *cpu_->decoder().correlation_decoder(), options) {}
 
   const DepthDecoder& decoder() const override { return cpu_->decoder(); }
   std::string device() const override { return on_device_.device().info().name; }
   std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
                                          int width) const override {
-    const bool is_slow_to_process =
-        steps.filter && std::int64_t{height} * width >= auto_min_pixels_to_filter;
-    if (is_automatic_ && !is_slow_to_process) return cpu_->prepare(steps, height, width);
     return std::make_unique<DevicePipeline>(on_device_, options_, decoder().table(), steps, height,
                                             width);
   }
 
  private:
+  std::unique_ptr<FrameBackend> cpu_;  // has the decoder
+  DeviceOptions options_;
+  DeviceDecoder on_device_;
+};
+
+/// Loads no driver before a frame needs it.
+class AutomaticBackend final : public FrameBackend {
+ public:
+  AutomaticBackend(DeviceFinder find_device, std::unique_ptr<const DepthDecoder> decoder,
+                   const DeviceOptions& options)
+      : find_device_(std::move(find_device)),
+        cpu_(cpu_backend(std::move(decoder))),
+        options_(options) {}
+
+  const DepthDecoder& decoder() const override { return cpu_->decoder(); }
+  /// "cpu" until a frame needs the device.
+  std::string device() const override {
+    const std::lock_guard lock(mutex_);
+    return on_device_ ? on_device_->device().info().name : cpu_->device();
+  }
+  std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
+                                         int width) const override {
+    const bool is_slow_on_cpu =
+        steps.filter && std::int64_t{height} * width >= auto_min_pixels_to_filter;
+    if (!is_slow_on_cpu || !has_device()) return cpu_->prepare(steps, height, width);
+    return std::make_unique<DevicePipeline>(*on_device_, options_, decoder().table(), steps, height,
+                                            width);
+  }
+
+ private:
+  bool has_device() const {
+    const std::lock_guard lock(mutex_);
+    if (!has_looked_)
+      if (const std::optional<Device> device = find_device_())
+        on_device_.emplace(*device, *decoder().correlation_decoder(), options_);
+    has_looked_ = true;
+    return on_device_.has_value();
+  }
+
+  DeviceFinder find_device_;
   std::unique_ptr<FrameBackend> cpu_;
   DeviceOptions options_;
-  bool is_automatic_;
-  DeviceDecoder on_device_;
+  mutable std::mutex mutex_;
+  mutable bool has_looked_ = false;
+  mutable std::optional<DeviceDecoder> on_device_;  // is not changed once it is there
 };
 
 }  // namespace
 
-std::unique_ptr<FrameBackend> device_backend(const Device& device,
-                                             std::unique_ptr<const DepthDecoder> decoder,
-                                             const DeviceOptions& options, bool is_automatic) {
-  return std::make_unique<DeviceBackend>(device, std::move(decoder), options, is_automatic);
+std::unique_ptr<FrameBackend> automatic_backend(DeviceFinder find_device,
+                                                std::unique_ptr<const DepthDecoder> decoder,
+                                                const DeviceOptions& options) {
+  return std::make_unique<AutomaticBackend>(std::move(find_device), std::move(decoder), options);
 }
 
 std::unique_ptr<FrameBackend> frame_backend(std::string_view device,
@@ -146,13 +184,13 @@ std::unique_ptr<FrameBackend> frame_backend(std::string_view device,
   if (device == "cpu") return cpu_backend(std::move(decoder));
   const bool is_zncc = decoder->correlation_decoder() != nullptr;
   if (device == "auto") {
-    const std::optional<Device> gpu = is_zncc ? Device::first_gpu() : std::nullopt;
-    if (!gpu) return cpu_backend(std::move(decoder));
-    return device_backend(*gpu, std::move(decoder), options, true);
+    options.validate();
+    return is_zncc ? automatic_backend(Device::first_gpu, std::move(decoder), options)
+                   : cpu_backend(std::move(decoder));
   }
   require(is_zncc, "method", name_of(decoder->method()),
           "must be zncc, by which alone devices decode, or the device cpu");
-  return device_backend(Device::named(device), std::move(decoder), options, false);
+  return std::make_unique<DeviceBackend>(Device::named(device), std::move(decoder), options);
 }
 
 }  // namespace tofsmith

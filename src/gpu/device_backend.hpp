@@ -2,17 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "tofsmith/gpu.hpp"
 
 namespace tofsmith {
 
-/// Returns the backend of a device. @param decoder  of DecodeMethod::zncc
-/// @param is_automatic  frames without a spatial filter, or below auto_min_pixels_to_filter, are
-///                      processed by the CPU
-std::unique_ptr<FrameBackend> device_backend(const Device& device,
-                                             std::unique_ptr<const DepthDecoder> decoder,
-                                             const DeviceOptions& options, bool is_automatic);
+/// Returns the device that `auto` uses; none: there is none.
+using DeviceFinder = std::function<std::optional<Device>()>;
+
+/// Returns the backend of the device `auto`: the CPU for frames without a spatial filter or below
+/// auto_min_pixels_to_filter, else the device, which is looked for when the first such frame comes.
+/// @param decoder  of DecodeMethod::zncc
+std::unique_ptr<FrameBackend> automatic_backend(DeviceFinder find_device,
+                                                std::unique_ptr<const DepthDecoder> decoder,
+                                                const DeviceOptions& options);
 
 }  // namespace tofsmith

@@ -112,8 +112,13 @@ TEST_F(DevicePipelines, NeedNoHostMemoryForWhatTheDeviceKeeps) {
 }
 
 TEST_F(DevicePipelines, LeaveSmallAndUnfilteredFramesToTheCpuIfAutomatic) {
+  int searches = 0;
+  const auto find_device = [&] {
+    ++searches;
+    return std::optional(device());
+  };
   const std::unique_ptr<FrameBackend> on =
-      device_backend(device(), make_decoder(DecodeMethod::zncc, setup_.decoder.table()), {}, true);
+      automatic_backend(find_device, make_decoder(DecodeMethod::zncc, setup_.decoder.table()), {});
   const Filter filter(setup_.decoder.table());
   const auto host_bytes = [&](const Filter* in_space, int rows) {
     const FrameSteps steps{.time_filter = TimeFilterOptions{}, .filter = in_space};
@@ -121,7 +126,12 @@ TEST_F(DevicePipelines, LeaveSmallAndUnfilteredFramesToTheCpuIfAutomatic) {
   };
   EXPECT_GT(host_bytes(nullptr, 1000), 0.0);  // on the CPU
   EXPECT_GT(host_bytes(&filter, 74), 0.0);
+  EXPECT_EQ(on->device(), "cpu");
+  EXPECT_EQ(searches, 0);
   EXPECT_EQ(host_bytes(&filter, 75), 0.0);
+  EXPECT_EQ(host_bytes(&filter, 76), 0.0);
+  EXPECT_EQ(on->device(), device().info().name);
+  EXPECT_EQ(searches, 1);
 }
 
 TEST_F(DevicePipelines, AreChosenByName) {
