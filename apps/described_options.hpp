@@ -16,20 +16,6 @@ namespace tofsmith::apps {
 
 namespace detail {
 
-/// The type of a single value: of an optional value, or of an item of a list.
-template <typename Value>
-struct SingleOf {
-  using Type = Value;
-};
-template <typename Item>
-struct SingleOf<std::vector<Item>> {
-  using Type = Item;
-};
-template <typename Content>
-struct SingleOf<std::optional<Content>> {
-  using Type = Content;
-};
-
 /// Adds an option whose texts, words or paths become values.
 template <typename Value, typename Convert>
 CLI::Option* add_converted(CLI::App& command, const std::string& option, Value& value,
@@ -65,14 +51,14 @@ std::vector<std::string> texts_of_words() {
 template <typename Value>
 CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
                            const std::string& option) {
-  using Single = typename detail::SingleOf<Value>::Type;
+  using Single = SingleValue<Value>;
   const std::string help = field.help_text();
   CLI::Option* added = nullptr;
   if constexpr (std::is_same_v<Value, bool>) {
     added = command.add_flag(option, field.value, option[0] == '!' ? "do not " + help : help);
   } else if constexpr (HasWords<Single>) {
     added = detail::add_converted(command, option, field.value, help, [](const std::string& word) {
-      return static_cast<Single>(index_of_word("", words_of(Single{}), word));
+      return parse_word<Single>("", word);
     });
     added->check(one_of(detail::texts_of_words<Single>()));
     if constexpr (std::is_enum_v<Value>)
@@ -105,7 +91,7 @@ CLI::Option* add_field_option(CLI::App& command, Options& options, std::string_v
   CLI::Option* added = nullptr;
   for_each_field(options, [&](const auto& each) {
     using Value = std::remove_cvref_t<decltype(each.value)>;
-    using Single = typename detail::SingleOf<Value>::Type;
+    using Single = SingleValue<Value>;
     if constexpr (detail::is_option_value<Single>) {
       if (each.name == field) added = add_option_of(command, each, option);
     }

@@ -57,56 +57,38 @@ nlohmann::ordered_json default_of_field(const Value& value) {
   }
 }
 
-template <typename Value>
+template <typename Single>
 std::vector<std::string> words_of_field() {
-  if constexpr (is_optional<Value> || is_list<Value>) {
-    return words_of_field<typename Value::value_type>();
-  } else if constexpr (HasWords<Value>) {
-    const auto words = words_of(Value{});
+  if constexpr (HasWords<Single>) {
+    const auto words = words_of(Single{});
     return {words.begin(), words.end()};
   } else {
     return {};
   }
 }
 
-template <typename Value>
-std::string range_of_field(const Range& range) {
-  if constexpr (is_optional<Value> || is_list<Value>)
-    return range_of_field<typename Value::value_type>(range);
-  else
-    return range.is_restricted ? range.text(std::is_integral_v<Value>) : "";
-}
-
-/// The struct that a field holds, or may hold.
-template <typename Value>
-struct HeldStruct {
-  using Type = Value;
-};
-template <typename Value>
-struct HeldStruct<std::optional<Value>> {
-  using Type = Value;
-};
-
 }  // namespace detail
 
-/// Lists the fields that users set, and those of structs that they hold.
+/// Lists the fields that users set, with the fields of nested structs.
 template <typename Struct>
 nlohmann::ordered_json fields_list(const Struct& its = {}) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for_each_field(its, [&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(field.value)>;
-    using Held = typename detail::HeldStruct<Value>::Type;
+    using Single = SingleValue<Value>;
     if (field.is(FieldMark::from_above) || field.is(FieldMark::apart)) return;
+    const std::string range =
+        field.range.is_restricted ? field.range.text(std::is_integral_v<Single>) : "";
     nlohmann::ordered_json described = {{"name", field.name},
                                         {"type", detail::type_of_field<Value>()},
                                         {"default", detail::default_of_field(field.value)},
                                         {"help", full_help(field.unit(), field.help, {}, {})},
                                         {"unit", field.unit()},
-                                        {"range", detail::range_of_field<Value>(field.range)},
-                                        {"words", detail::words_of_field<Value>()},
+                                        {"range", range},
+                                        {"words", detail::words_of_field<Single>()},
                                         {"only_with", field.only_with},
                                         {"if_absent", field.if_absent}};
-    if constexpr (HasFields<Held>) described["fields"] = fields_list<Held>();
+    if constexpr (HasFields<Single>) described["fields"] = fields_list<Single>();
     list.push_back(std::move(described));
   });
   return list;

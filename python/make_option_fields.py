@@ -11,7 +11,7 @@ import sys
 import textwrap
 
 HEADER = '''# Made by make_option_fields.py of the descriptions of the options in C++. Do not edit.
-"""Options of functions: dicts whose keys may be absent. None stands for the default."""
+"""Options of functions: dicts whose keys may be absent. None selects the default."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def annotation(field):
 
 
 def documentation(field):
-    """One sentence: what the field is, its default, range and condition."""
+    """One sentence with the meaning, default, range and condition of a field."""
     text = field["help"][0].upper() + field["help"][1:]
     default = field["if_absent"]
     if not default and field["default"] not in (None, "", []):
@@ -96,7 +96,7 @@ def option_text(field):
 
 
 def structs_in(name, fields):
-    """Each struct with its fields, those that it holds first."""
+    """Each struct with its fields, nested structs first."""
     for field in fields:
         if "fields" in field and field["name"] in NESTED:
             yield from structs_in(NESTED[field["name"]], field["fields"])

@@ -86,9 +86,9 @@ inline constexpr std::int64_t auto_min_pixels_to_filter = 75'000;
 
 /// Returns the backend for a device that a user names: "cpu"; "auto", the first GPU for frames with
 /// a spatial filter, but the CPU for small frames, for methods other than zncc, and where there is
-/// no GPU; else Device::named().
-/// Averaged, filtered and decoded numbers are those of the CPU: the same bits where the device
-/// rounds quotients and roots correctly and has doubles.
+/// no GPU; else Device::named(). "auto" loads no driver before a frame needs the GPU. Averaged,
+/// filtered and decoded numbers are those of the CPU: the same bits where the device rounds
+/// quotients and roots correctly and has doubles.
 ///
 /// Devices average frames if they have doubles, and filter them in time unless the filter looks
 /// ahead; else the CPU does, and the device filters in space and decodes.

@@ -50,7 +50,7 @@ constexpr bool is_whole() {
   return std::is_integral_v<Value> && !std::is_same_v<Value, bool>;
 }
 
-/// Whether a field of a type is made of a value of Python: others are set by the library.
+/// Returns true if users set fields of this type; the library sets the others.
 template <typename Value>
 constexpr bool is_given() {
   if constexpr (is_optional<Value> || is_list<Value>)
@@ -63,7 +63,7 @@ constexpr bool is_given() {
 /// 1e4 as 10000; everything else as it is.
 py::object whole_number_of(const py::object& given);
 
-/// A list of numbers, of a sequence or of a single number; everything else as it is.
+/// Converts a sequence of numbers, or a single number, to a list; returns anything else unchanged.
 /// @param whole  1e4 as 10000
 py::object numbers_of(const py::object& given, bool whole);
 

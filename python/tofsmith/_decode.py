@@ -58,7 +58,7 @@ class Decoder:
         "auto", the first GPU for frames with a spatial filter, else the CPU; or a number or part
         of a name. Only zncc runs on devices. See docs/gpu.md.
     multipath : dict, optional
-        Of two-return and tail: keys of MultipathOptions; see docs/multipath.md.
+        For two-return and tail: keys of MultipathOptions; see docs/multipath.md.
     **options
         As DecodeOptions.
 

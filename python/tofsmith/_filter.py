@@ -86,7 +86,7 @@ class Filter(_OfTable):
         normal adds over 25 x 25 pixels, and once more along the slopes found; light over 5 x 5
         pixels, several times as fast; strong goes along the slopes twice.
     options : dict, optional
-        For experts, instead of what the strength says: keys of FilterOptions.
+        For experts: keys of FilterOptions, in place of the values of the strength.
     device : str, optional
         OpenCL device that filters, as for Decoder. See docs/gpu.md.
 

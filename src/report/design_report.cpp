@@ -120,7 +120,7 @@ void add_convergence(const DesignResult& result, Section& section) {
   }
 }
 
-/// The smallest error so far of every search.
+/// The smallest error of every search by step.
 void add_search_progress(const DesignResult& result, Section& section) {
   ColourAssignment colours;
   for (const Candidate& c : result.candidates) {

@@ -58,8 +58,8 @@ void append(std::string& text, std::string_view name, std::span<const double> nu
   text += '\n';
 }
 
-/// The fields of EvaluateOptions that differ from their defaults, but those that item_key() always
-/// contains.
+/// The fields of EvaluateOptions that differ from their defaults, except those that item_key()
+/// always contains.
 std::string other_options(const EvaluateOptions& options) {
   static constexpr std::array<std::string_view, 7> always = {
       "trials",    "seed",           "outlier_threshold_m",

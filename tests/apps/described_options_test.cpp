@@ -63,7 +63,7 @@ class OvenCommand {
     });
   }
 
-  /// The message of what is refused, or "".
+  /// The message of the error, or "".
   std::string parse(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);
     try {

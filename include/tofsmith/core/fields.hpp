@@ -47,8 +47,8 @@ struct ByEffort {
   int min = 0;
 };
 
-/// What a field is, as a noun phrase, or what a flag does, as an imperative. Without unit, range,
-/// words and default, which follow from the field.
+/// A noun phrase for a field, or an imperative for a flag, without unit, range, words and default,
+/// which follow from the field.
 struct Help {
   std::string_view text;
 };
@@ -192,13 +192,24 @@ inline constexpr bool is_optional<std::optional<Value>> = true;
 
 namespace detail {
 template <typename Value>
-constexpr bool is_number() {
-  if constexpr (is_optional<Value> || is_list<Value>)
-    return is_number<typename Value::value_type>();
-  else
-    return std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>;
-}
+struct SingleValueOf {
+  using Type = Value;
+};
+template <typename Item>
+struct SingleValueOf<std::vector<Item>> {
+  using Type = Item;
+};
+template <typename Content>
+struct SingleValueOf<std::optional<Content>> {
+  using Type = Content;
+};
+}  // namespace detail
 
+/// The type of an item of a list, or of an optional value; else the type itself.
+template <typename Value>
+using SingleValue = typename detail::SingleValueOf<Value>::Type;
+
+namespace detail {
 template <typename Value>
 void check(const char* name, const Value& value, const Range& range, std::string_view owner,
            std::string_view which = "must be ") {
@@ -216,7 +227,9 @@ void check(const char* name, const Value& value, const Range& range, std::string
 
 template <typename Value>
 std::string_view Field<Value>::unit() const {
-  return detail::is_number<std::remove_const_t<Value>>() ? unit_of_key(name) : std::string_view();
+  using Single = SingleValue<std::remove_const_t<Value>>;
+  constexpr bool is_number = std::is_arithmetic_v<Single> && !std::is_same_v<Single, bool>;
+  return is_number ? unit_of_key(name) : std::string_view();
 }
 
 /// Checks the range of every field; members that are structs check their own.

@@ -46,7 +46,7 @@ DesignMethod parse_design_method(std::string_view name);
 /// How the codes of a camera are designed and judged.
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
-  /// Each once. Factorization aims at Hamiltonian codes, which have 3 .. 6 exposures. On cameras
+  /// Each once. Factorization aims at Hamiltonian codes, which have 3 to 6 exposures. On cameras
   /// that read rows of one exposure: numbers of rows.
   std::vector<int> exposures;
   /// A target of the user's, factorized instead of the Hamiltonian ones.
@@ -90,7 +90,7 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
             Help{"optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter and 2 % "
                  "tap mismatch"}),
       Field("baselines", o.baselines,
-            Help{"families that compete; those that the camera cannot play are left out"},
+            Help{"families that compete, except for those unusable on the camera"},
             IfAbsent{"what suits the method"}),
       Field("atlas_cameras", o.atlas_cameras, closed(0, 1000),
             Help{"how many of the nearest cameras of the atlas lend codes, which compete and are "

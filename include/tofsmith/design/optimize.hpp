@@ -33,7 +33,7 @@ struct OptimizeOptions {
   /// E3 is the error of the direct depth if pairs of returns are searched on the bins of a grid. It
   /// keeps pairs from looking like others.
   double two_return_weight = 0.02;
-  /// Larger errors count as so many times worse for the judge, up to 1.25 times.
+  /// Above it, the judge multiplies the error by the ratio to this limit, at most by 1.25.
   double max_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule

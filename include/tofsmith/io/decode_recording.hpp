@@ -100,8 +100,8 @@ struct DecodeRequest {
   std::vector<double> hdr;
   std::filesystem::path stray_light;  ///< image of shares, as StrayLight takes it
   double averaged = 1.0;              ///< multiplied by `average`
-  /// Of the frames, or means of frames, one after another. `frame` counts all frames before it in,
-  /// and with `look_ahead` those after it. With `filter` it is `before_filter`.
+  /// Applies to consecutive frames, or means of frames. `frame` also uses the frames before it,
+  /// and with `look_ahead` the frames after it. With `filter` it is `before_filter`.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< after the temporal filter
   std::optional<MixedPixels> mixed;     ///< see mark_mixed_pixels()
@@ -146,7 +146,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             IfAbsent{"all"}),
       Field("stack", r.stack,
             Help{"write all frames to one .npy, (F,H,W), as they come, and each plane but depth to "
-                 "a file of its own, NAME-PLANE.npy"}),
+                 "a separate file, NAME-PLANE.npy"}),
       Field(
           "average", r.average, at_least(1),
           Help{"decode the means of this many consecutive frames; the last one is of those left"}),
@@ -158,8 +158,8 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"light that the lens scatters, of calibrate stray-light (.npy .npz .exr .pfm), "
                  "removed from the raw numbers first"}),
       Field("averaged", r.averaged, left_open(0, 1e9),
-            Help{"raw frames are already averages of this many equal measurements, with so much "
-                 "less noise"}),
+            Help{"number of equal measurements of which the raw frames are already averages; sets "
+                 "their noise"}),
       Field("time_filter", r.time_filter, Help{"options of the temporal filter"}, IfAbsent{"none"}),
       Field("filter", r.filter, Help{"options of the spatial filter"}, IfAbsent{"none"}),
       Field("mixed", r.mixed,

@@ -73,7 +73,7 @@ auto fields_of(ConstOrNot<SceneSource> auto& s) {
       Field("ambient_image", s.ambient_image,
             Help{"ambient light of each pixel, relative to that of the capture (.png .npy .exr "
                  ".pfm)"}),
-      Field("kind", s.kind, Help{"what a depth image holds: z along the axis, or radial distance"}),
+      Field("kind", s.kind, Help{"content of a depth image: z along the axis, or radial distance"}),
       Field("linear_image", s.linear_image, Help{"take PNG images as linear light, not sRGB"}),
       Field("width", s.width, closed(1, 16384), Help{"columns of a built-in scene or a mesh"},
             IfAbsent{"320"}),

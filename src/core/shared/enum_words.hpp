@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
@@ -43,18 +42,10 @@ class EnumWords {
 
   /// @throws std::invalid_argument for any other word
   Enum parse(std::string_view word) const {
-    const auto at = std::find(words_.begin(), words_.end(), word);
-    if (at == words_.end()) reject(field_, word, "must be " + listed());
-    return static_cast<Enum>(at - words_.begin());
+    return static_cast<Enum>(index_of_word(field_, words_, word));
   }
 
  private:
-  /// "a, b or c".
-  std::string listed() const {
-    return fmt::format("{} or {}", fmt::join(words_.begin(), words_.end() - 1, ", "),
-                       words_.back());
-  }
-
   std::string_view type_, field_;
   std::array<std::string_view, Count> words_;
 };
