@@ -48,6 +48,7 @@ auto fields_of(ConstOrNot<Oven> auto& o) {
 namespace apps {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -118,13 +119,13 @@ TEST(DescribedOptions, RefuseWhatTheirDescriptionExcludes) {
 
 TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
   const std::string help = OvenCommand().help();
-  EXPECT_THAT(help, HasSubstr("--trays INT:in [1, 9]=4"));
+  EXPECT_THAT(help, ContainsRegex("--trays INT:in .1, 9.( .4.|=4)"));
   EXPECT_THAT(help, HasSubstr("number of trays"));
   EXPECT_THAT(help, HasSubstr("power [W]"));
   EXPECT_THAT(help, HasSubstr("width of the door [m] (as wide as the oven)"));
   EXPECT_THAT(help, HasSubstr("do not circulate the air"));
   EXPECT_THAT(help, HasSubstr("brown the top; only with heat top"));
-  EXPECT_THAT(help, HasSubstr("--heat TEXT:{top,bottom,both}=both"));
+  EXPECT_THAT(help, ContainsRegex("--heat TEXT:.top,bottom,both.( .both.|=both)"));
   EXPECT_THAT(help, HasSubstr("heat at night (none)"));
   EXPECT_THAT(help, HasSubstr("times [s]"));
 }

@@ -54,7 +54,7 @@ def seen_hand(study: Study) -> Any:
     else:
         scene = tofsmith.load_scene(study.mesh, width=width, height=3 * width // 4)
         points = tofsmith.points_m(scene.depth_m, scene.lens)
-        size_m = max(np.nanmax(points[..., axis]) - np.nanmin(points[..., axis]) for axis in range(3))
+        size_m = float(np.max(np.nanmax(points, axis=(0, 1)) - np.nanmin(points, axis=(0, 1))))
         scene = replace(scene, depth_m=scene.depth_m * (SIZE_M / size_m),
                         albedo=np.full_like(scene.depth_m, ALBEDO))
     rows, columns = np.nonzero(np.isfinite(scene.depth_m))

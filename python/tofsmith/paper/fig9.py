@@ -30,7 +30,7 @@ def reproduce(study: Study) -> None:
                                           seed=study.seed)
                             for density in OPTICAL_DENSITIES]
                 for code in (ours, *baselines)}
-    percent = {}  # of the range, with standard errors: (filters, 2)
+    percent: dict[str, Any] = {}  # of the range, with standard errors: (filters, 2)
     for name, ranges in measured.items():
         errors_m = np.array([errors for _, errors in ranges])  # (filters, shifts, estimates)
         variance_m2 = errors_m.var(axis=2, ddof=1) / errors_m.shape[2]
@@ -53,9 +53,9 @@ def reproduce(study: Study) -> None:
     study.picture("waveforms", plot.waveforms(played, camera),
                   "The redesigned code as the generators play it, and its correlation functions.")
     study.table("errors_percent_of_range", [
-        {"code": name, "optical_density": density, "error": error, "standard_error": se}
+        {"code": name, "optical_density": density, "error": float(error), "standard_error": float(se)}
         for name, values in percent.items()
-        for density, (error, se) in zip(OPTICAL_DENSITIES, values.tolist())])
+        for density, error, se in zip(OPTICAL_DENSITIES, *values.T)])
 
 
 def draw_errors(percent: dict[str, Any]) -> Figure:

@@ -59,8 +59,9 @@ def ideal_targets(family: str) -> Any:
 
 def centred(modulation: Waveform, demodulation: Waveform) -> tuple[Waveform, Waveform]:
     """The same pair, delayed so that the middle of the longest pulse is at half the period."""
-    rise, fall = max(modulation.on_intervals, key=lambda on: float(on[1] - on[0]))
-    delay = 0.5 - 0.5 * (rise + fall)
+    intervals = modulation.on_intervals
+    rise, fall = intervals[np.argmax(intervals[:, 1] - intervals[:, 0]), :]
+    delay = 0.5 - 0.5 * float(rise + fall)
     return modulation.delayed(delay), demodulation.delayed(delay)
 
 
