@@ -199,6 +199,10 @@ void Playback::validate(int taps) const {
     require(sorted[e] == static_cast<int>(e), "playback.order",
             fmt::format("{}", fmt::join(order, ", ")),
             "must hold each of 0, 1, .. once: the code's exposures as they are played");
+  const int given =
+      (offset_m != 0.0 || !offsets_m.empty()) + !offset_rad.empty() + !offset_counts.empty();
+  require(given <= 1, "playback.offset_m", fmt::format("{} kinds of offset", given),
+          "must be the only one of offset_m, offset_rad and offset_counts");
 }
 
 double Temperature::signal_gain() const { return std::exp(signal_per_c * above_reference_c()); }
@@ -257,22 +261,43 @@ std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& 
   return std::nullopt;
 }
 
-/// The first exposure of every run of exposures with the same modulation.
-std::vector<int> frequency_starts(const CodeSet& code) {
-  std::vector<int> starts;
-  for (int e = 0; e < code.exposures(); ++e)
-    if (e == 0 || !(code.modulation(e) == code.modulation(e - 1))) starts.push_back(e);
-  return starts;
-}
-
-std::optional<BrokenRule> contrasts_misfit(const CodeSet& code, const Sensor& sensor) {
-  const std::size_t count = sensor.modulation_contrasts.size();
-  const std::size_t frequencies = frequency_starts(code).size();
+/// Why a list does not have one value per exposure or per frequency of a code.
+std::optional<BrokenRule> list_misfit(const std::string& key, const std::vector<double>& list,
+                                      const CodeSet& code) {
+  const std::size_t count = list.size(), frequencies = code.frequency_starts().size();
   if (count == 0 || count == frequencies || count == static_cast<std::size_t>(code.exposures()))
     return std::nullopt;
-  return broken("number of sensor.modulation_contrast", count,
+  return broken("number of " + key, count,
                 fmt::format("must equal the {} exposures or the {} frequencies of code {}",
                             code.exposures(), frequencies, code.name()));
+}
+
+/// The values of a list for every exposure.
+std::vector<double> per_exposure(const std::string& key, const std::vector<double>& list,
+                                 const CodeSet& code) {
+  require(list_misfit(key, list, code));
+  if (list.size() == static_cast<std::size_t>(code.exposures())) return list;
+  std::vector<double> values(static_cast<std::size_t>(code.exposures()), 0.0);
+  const std::vector<int> starts = code.frequency_starts();
+  for (std::size_t f = 0; f < starts.size(); ++f)
+    std::fill(values.begin() + starts[f], values.end(), list[f]);
+  return values;
+}
+
+struct NamedList {
+  const char* key;
+  const std::vector<double>& values;
+};
+
+std::optional<BrokenRule> lists_misfit(const CodeSet& code, const Camera& camera) {
+  const Playback playback = camera.playback.value_or(Playback());
+  for (const auto& [key, values] :
+       {NamedList{"sensor.modulation_contrast", camera.sensor.modulation_contrasts},
+        {"playback.offset_m", playback.offsets_m},
+        {"playback.offset_rad", playback.offset_rad},
+        {"playback.offset_counts", playback.offset_counts}})
+    if (auto misfit = list_misfit(key, values, code)) return misfit;
+  return std::nullopt;
 }
 
 std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& camera) {
@@ -305,7 +330,7 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
         fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
   if (!camera.sensor.drain)
     if (auto unfilled = unfilled_taps(code, what)) return unfilled;
-  if (auto misfit = contrasts_misfit(code, camera.sensor)) return misfit;
+  if (auto misfit = lists_misfit(code, camera)) return misfit;
   if (auto others = other_exposures_listed(camera, code.exposures(), " of " + what)) return others;
   return pulse_not_generated(code, camera);
 }
@@ -313,15 +338,23 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
 }  // namespace
 
 std::vector<double> Sensor::contrasts_of(const CodeSet& code) const {
-  const auto exposures = static_cast<std::size_t>(code.exposures());
-  if (modulation_contrasts.empty()) return std::vector<double>(exposures, modulation_contrast);
-  require(contrasts_misfit(code, *this));
-  if (modulation_contrasts.size() == exposures) return modulation_contrasts;
-  std::vector<double> contrasts(exposures, 0.0);
-  const std::vector<int> starts = frequency_starts(code);
-  for (std::size_t f = 0; f < starts.size(); ++f)
-    std::fill(contrasts.begin() + starts[f], contrasts.end(), modulation_contrasts[f]);
-  return contrasts;
+  if (modulation_contrasts.empty())
+    return std::vector<double>(static_cast<std::size_t>(code.exposures()), modulation_contrast);
+  return per_exposure("sensor.modulation_contrast", modulation_contrasts, code);
+}
+
+std::vector<double> Playback::offsets_of(const CodeSet& code, double range_m) const {
+  if (!offsets_m.empty()) return per_exposure("playback.offset_m", offsets_m, code);
+  const bool in_counts = offset_rad.empty();
+  if (in_counts && offset_counts.empty())
+    return std::vector<double>(static_cast<std::size_t>(code.exposures()), offset_m);
+  const double period = in_counts ? counts_per_period : 2 * std::numbers::pi;
+  std::vector<double> offsets = in_counts
+                                    ? per_exposure("playback.offset_counts", offset_counts, code)
+                                    : per_exposure("playback.offset_rad", offset_rad, code);
+  for (int e = 0; e < code.exposures(); ++e)
+    offsets[static_cast<std::size_t>(e)] *= range_m / (period * code.modulation(e).repetitions());
+  return offsets;
 }
 
 std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera) {

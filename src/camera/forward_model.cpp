@@ -83,14 +83,23 @@ std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> d
   return taps;
 }
 
-/// Contrasts in the order of the camera's exposures.
-std::vector<double> played_contrasts(const CodeSet& code, const Camera& camera) {
-  std::vector<double> of_code = camera.sensor.contrasts_of(code);
+/// Values of the code's exposures in the order of the camera's exposures.
+std::vector<double> in_camera_order(std::vector<double> of_code, const Camera& camera) {
   if (!camera.playback || camera.playback->order.size() != of_code.size()) return of_code;
-  std::vector<double> played;
+  std::vector<double> of_camera;
   for (const int exposure : camera.playback->order)
-    played.push_back(of_code[static_cast<std::size_t>(exposure)]);
-  return played;
+    of_camera.push_back(of_code[static_cast<std::size_t>(exposure)]);
+  return of_camera;
+}
+
+/// Constant that the camera adds to the depth of each of its exposures [m].
+std::vector<double> offsets_m(const CodeSet& code, const Camera& camera) {
+  const Playback playback = camera.playback.value_or(Playback());
+  std::vector<double> offsets =
+      in_camera_order(playback.offsets_of(code, camera.range_m()), camera);
+  for (double& offset_m : offsets)
+    offset_m += camera.temperature ? camera.temperature->offset_m() : 0.0;
+  return offsets;
 }
 
 }  // namespace
@@ -119,7 +128,7 @@ double constant_variance_e2_of(const Sensor& sensor) {
 ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     : samples_(code.samples()),
       taps_(code.is_signed() ? 2 : code.taps()),
-      contrasts_(played_contrasts(code, camera)),
+      contrasts_(in_camera_order(camera.sensor.contrasts_of(code), camera)),
       sensitivity_(sensitivities(code, camera.sensor)) {
   camera.validate();
   require_fits(code, camera);
@@ -130,9 +139,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
   const ActualCode actual = actual_code(code, camera);
-  const double offset_m = (camera.playback ? camera.playback->offset_m : 0.0) +
-                          (camera.temperature ? camera.temperature->offset_m() : 0.0);
-  const double moved = -offset_m / camera.range_m();
+  const std::vector<double> offset_m = offsets_m(code, camera);
   const bool reversed = camera.playback && camera.playback->reversed;
   if (camera.temperature) signal_gain_ = camera.temperature->signal_gain();
   const std::vector<Waveform> demodulation = tap_functions(code, actual.demodulation);
@@ -145,12 +152,13 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     const Waveform& m = actual.modulation[static_cast<std::size_t>(exposure)];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
-    if (offset_m != 0.0 || reversed) functions_.back() = functions_.back().moved(moved, reversed);
+    const double moved = -offset_m[static_cast<std::size_t>(exposure)] / camera.range_m();
+    if (moved != 0.0 || reversed) functions_.back() = functions_.back().moved(moved, reversed);
     gain[i] = d.mean();
     tap_exposure_s_[i] = camera.exposure_s.of(exposure, code.exposures());
   }
   if (code.is_rows()) {
-    read_rows(code, actual.modulation.front(), transfer, moved);
+    read_rows(code, actual.modulation.front(), transfer, -offset_m.front() / camera.range_m());
     return;
   }
   readout_ = readout_matrix(tap_values, sensor.readout);

@@ -138,6 +138,13 @@ Eigen::MatrixXd CodeSet::demodulation_samples() const {
   return columns;
 }
 
+std::vector<int> CodeSet::frequency_starts() const {
+  std::vector<int> starts;
+  for (int e = 0; e < exposures(); ++e)
+    if (e == 0 || !(modulation(e) == modulation(e - 1))) starts.push_back(e);
+  return starts;
+}
+
 CodeSet CodeSet::renamed(std::string name) const {
   CodeSet copy = *this;
   copy.name_ = std::move(name);

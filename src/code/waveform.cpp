@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "code/shared/on_intervals.hpp"
 #include "core/shared/periodic.hpp"
@@ -218,6 +219,16 @@ Eigen::VectorXd Waveform::cell_averages(int samples) const {
     }
   }
   return cells;
+}
+
+int Waveform::repetitions() const {
+  constexpr int highest = 1024;
+  constexpr double negligible = 1e-6;
+  const Eigen::VectorXd amplitude = harmonics(highest).tail(highest).cwiseAbs();
+  int divisor = 0;
+  for (int n = 1; n <= highest; ++n)
+    if (amplitude[n - 1] > negligible * amplitude.maxCoeff()) divisor = std::gcd(divisor, n);
+  return std::max(1, divisor);
 }
 
 Eigen::VectorXcd Waveform::harmonics(int highest) const {

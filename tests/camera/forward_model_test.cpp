@@ -128,6 +128,51 @@ TEST(ForwardModel, ContrastMayDifferPerExposureOrPerFrequency) {
   }
 }
 
+/// Message that `check` throws; none if it does not throw.
+template <typename Check>
+std::optional<std::string> refusal(Check&& check) {
+  try {
+    check();
+    return std::nullopt;
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+}
+
+TEST(ForwardModel, OffsetMayDifferPerExposureOrPerFrequency) {
+  Camera camera = built_in_camera("paper-30x");
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  const CodeSet code = build_family("multifrequency-1x3-5x2", camera);
+  const auto correlation = [&](const Playback& playback, double depth_bin) {
+    camera.playback = playback;
+    return ForwardModel(code, camera).correlation(depth_bin);
+  };
+  // 24 bins are a tenth of the range; 5 f0 has a fifth of the period.
+  const double bin_m = camera.bin_m();
+  const Eigen::VectorXd first = correlation({}, 100.0 + 24.0),
+                        second = correlation({}, 100.0 - 6.0);
+  Eigen::VectorXd expected(5);
+  expected << first.head(3), second.tail(2);
+  const double turn = 2 * std::numbers::pi;
+  for (const Playback& playback :
+       {Playback{.offsets_m = {24 * bin_m, -6 * bin_m}},
+        Playback{.offsets_m = {24 * bin_m, 24 * bin_m, 24 * bin_m, -6 * bin_m, -6 * bin_m}},
+        Playback{.offset_rad = {0.1 * turn, -0.125 * turn}},
+        Playback{.offset_counts = {409.6, -512}},
+        Playback{.offset_counts = {100, -125}, .counts_per_period = 1000}})
+    EXPECT_LT((correlation(playback, 100.0) - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_THAT(*refusal([&] {
+    correlation({.offset_rad = {1, 2, 3}}, 0.0);
+  }),
+              testing::HasSubstr("number of playback.offset_rad = 3; must equal the 5 exposures or "
+                                 "the 2 frequencies"));
+  EXPECT_THAT(*refusal([&] {
+    correlation({.offset_m = 1.0, .offset_rad = {1, 2}}, 0.0);
+  }),
+              testing::HasSubstr("must be the only one of offset_m, offset_rad and offset_counts"));
+}
+
 TEST(ForwardModel, WithoutADrainEveryElectronGoesToATap) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
@@ -139,17 +184,6 @@ TEST(ForwardModel, WithoutADrainEveryElectronGoesToATap) {
   EXPECT_THROW(require_fits(leaky, camera), std::invalid_argument);
   camera.sensor.drain = true;
   EXPECT_NO_THROW(require_fits(leaky, camera));
-}
-
-/// What `check` throws, or none.
-template <typename Check>
-std::optional<std::string> refusal(Check&& check) {
-  try {
-    check();
-    return std::nullopt;
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
 }
 
 TEST(WhyNotPlayable, SaysWhatTheCheckThrows) {

@@ -186,7 +186,22 @@ struct Playback {
   std::vector<int> order;
   bool reversed = false;  ///< chi(-z) is measured instead of chi(z)
   bool inverted = false;  ///< taps are swapped; a single tap is open where the code closes it
-  double offset_m = 0.0;
+  double offset_m = 0.0;  ///< constant that the camera adds to depth
+  std::vector<double>
+      offsets_m;  ///< the same per exposure or frequency of the code; empty: offset_m
+  /// The same per exposure or frequency, as phase of the frequency [rad]; replaces offset_m.
+  std::vector<double> offset_rad;
+  /// The same in counts of the frequency's period; replaces offset_m.
+  std::vector<double> offset_counts;
+  double counts_per_period = 4096.0;
+
+  bool has_list() const {
+    return !offsets_m.empty() || !offset_rad.empty() || !offset_counts.empty();
+  }
+  /// Returns the constant that the camera adds to the depth of each exposure of a code [m].
+  /// @param range_m  depth of a period of the fundamental frequency
+  /// @throws InvalidArgument if a list does not have one value per exposure or frequency
+  std::vector<double> offsets_of(const CodeSet& code, double range_m) const;
 
   /// @throws std::invalid_argument naming the field as playback.*, value and rule
   void validate(int taps) const;
@@ -201,8 +216,20 @@ inline void describe(FieldVisitor& fields, Playback& playback) {
                playback.order);
   fields.value(Key("reversed", "Delay runs backwards"), playback.reversed);
   fields.value(Key("inverted", "Signs are opposite: taps are swapped"), playback.inverted);
-  fields.value(Key("offset_m", "Constant that the camera adds to depth", finite()),
-               playback.offset_m);
+  fields.value(Key("offset_m",
+                   "Constant that the camera adds to depth; a list contains one value per "
+                   "exposure or per frequency of the code",
+                   finite()),
+               NumberOrList{playback.offset_m, playback.offsets_m});
+  fields.value(Key("offset_rad",
+                   "Constant that the camera adds to the phase of each exposure or of each "
+                   "frequency of the code",
+                   finite()),
+               playback.offset_rad);
+  fields.value(Key("offset_counts", "As offset_rad, in counts", finite()), playback.offset_counts);
+  fields.value(
+      Key("counts_per_period", "Counts of one period of the phase, for offset_counts", above(0)),
+      playback.counts_per_period);
 }
 
 /// Dependence of depth and signal on the temperature of the camera, as a calibration finds it.

@@ -67,6 +67,9 @@ class Waveform {
   double duty() const;
   /// Number of jumps in one period; 0 for a sum of cosines.
   int edges() const;
+  /// Number of times that the waveform repeats in one period: the greatest common divisor of its
+  /// harmonics, at least 1.
+  int repetitions() const;
 
   /// Means over N cells of the period: what a generator with N samples plays. Keeps the mean.
   Eigen::VectorXd cell_averages(int samples) const;
@@ -169,6 +172,8 @@ class CodeSet {
   const Waveform& demodulation(int measurement) const {
     return demodulation_[static_cast<std::size_t>(measurement)];
   }
+  /// First exposure of each frequency, which is a run of exposures with the same modulation.
+  std::vector<int> frequency_starts() const;
   /// Modulation that measurement i sees.
   const Waveform& modulation_of(int measurement) const {
     return modulation(exposure_of(measurement));
