@@ -26,7 +26,20 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
     terms.push_back({{"name", term.name},
                      {"value_m", term.value_m.value},
                      {"standard_error_m", term.value_m.standard_error}});
+  nlohmann::ordered_json frequencies = nlohmann::ordered_json::array();
+  for (const CalibratedFrequency& its : found.frequencies) {
+    nlohmann::ordered_json harmonics = nlohmann::ordered_json::array();
+    for (const CalibratedHarmonic& h : its.harmonics)
+      harmonics.push_back({{"harmonic", h.harmonic},
+                           {"in_phase", estimate_json(h.in_phase)},
+                           {"quadrature", estimate_json(h.quadrature)}});
+    frequencies.push_back({{"frequency_hz", its.frequency_hz},
+                           {"offset_m", estimate_json(its.offset_m)},
+                           {"contrast", estimate_json(its.contrast)},
+                           {"harmonics", harmonics}});
+  }
   return {{"pixels", found.pixels},
+          {"frequencies", frequencies},
           {"reversed", found.reversed},
           {"known_share", found.known_share},
           {"mean_error_m", found.mean_error_m},
@@ -45,6 +58,12 @@ std::string lines_of(const CalibratedDepth& found) {
       "{} pixels: depth is {:+.4g} m off in the mean, {} rms around it; {} on blocks held out once "
       "corrected\n",
       found.pixels, found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m));
+  const auto frequencies = frequency_rows(found);
+  for (std::size_t i = 1; i < frequencies.size(); ++i) {
+    const auto& row = frequencies[i];
+    lines += fmt::format("{} MHz: offset {} {} mm, contrast {} {}, harmonics {}\n", row[0], row[1],
+                         row[2], row[3], row[4], row[5]);
+  }
   const auto rows = depth_term_rows(found);
   for (std::size_t i = 1; i < rows.size(); ++i)
     lines += rows[i][1].empty()

@@ -179,8 +179,21 @@ py::dict depth_dict(const CalibratedDepth& found) {
   py::list terms;
   for (const CalibratedTerm& term : found.terms)
     terms.append(py::make_tuple(term.name, pair_of(term.value_m)));
+  py::list frequencies;
+  for (const CalibratedFrequency& its : found.frequencies) {
+    py::dict harmonics;
+    for (const CalibratedHarmonic& h : its.harmonics)
+      harmonics[py::int_(h.harmonic)] = py::make_tuple(pair_of(h.in_phase), pair_of(h.quadrature));
+    py::dict frequency;
+    frequency["frequency_hz"] = its.frequency_hz;
+    frequency["offset_m"] = pair_of(its.offset_m);
+    frequency["contrast"] = pair_of(its.contrast);
+    frequency["harmonics"] = harmonics;
+    frequencies.append(frequency);
+  }
   py::dict dict;
   dict["reversed"] = found.reversed;
+  dict["frequencies"] = frequencies;
   dict["terms"] = terms;
   dict["far_terms"] = found.far_terms;
   dict["known_share"] = found.known_share;

@@ -56,7 +56,7 @@ from ._correlation_calibration import (
     calibrate_correlation,
     read_delay_sweep,
 )
-from ._depth_calibration import CalibratedDepth
+from ._depth_calibration import CalibratedDepth, CalibratedFrequency
 from ._decode import Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
@@ -193,6 +193,7 @@ __all__ = [
     "AtlasEntry",
     "CalibratedCorrelation",
     "CalibratedDepth",
+    "CalibratedFrequency",
     "CalibratedResponse",
     "CalibratedStrayLight",
     "Camera",

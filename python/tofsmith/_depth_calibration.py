@@ -21,6 +21,28 @@ from ._reports import Estimate
 
 
 @dataclass(frozen=True)
+class CalibratedFrequency:
+    """One frequency of a code, as reference depth determines it.
+
+    Attributes
+    ----------
+    frequency_hz : float
+    offset_m : Estimate
+        Constant that the camera adds to the depth of this frequency.
+    contrast : Estimate
+        Amplitude relative to that of the camera's model. The geometric mean of all frequencies is 1.
+    harmonics : dict of int to (Estimate, Estimate)
+        Harmonics of the frequency beyond the camera's model, as shares of the fundamental's
+        amplitude, in phase with its maximum and in quadrature. Only determined ones are listed.
+    """
+
+    frequency_hz: float
+    offset_m: Estimate
+    contrast: Estimate
+    harmonics: dict[int, tuple[Estimate, Estimate]]
+
+
+@dataclass(frozen=True)
 class CalibratedDepth:
     """What reference depth says of a camera.
 
@@ -28,6 +50,8 @@ class CalibratedDepth:
     ----------
     reversed : bool
         Delay runs backwards; the table does, too.
+    frequencies : list of CalibratedFrequency
+        One per frequency of the code; the table contains these values. Empty for a single frequency.
     terms : dict of str to Estimate
         Of the known part of the range [m]: offset, cos 4, sin 4, row, row^2 column, log signal, ..
         A 95 % interval is +- 1.96 standard errors.
@@ -52,6 +76,7 @@ class CalibratedDepth:
     """
 
     reversed: bool
+    frequencies: list[CalibratedFrequency]
     terms: dict[str, Estimate]
     far_terms: list[str]
     known_share: float
@@ -70,7 +95,7 @@ class CalibratedDepth:
         return DecodingTable._of(self._handle.decoding_table(camera_of(camera)._handle))
 
     def camera(self, camera: CameraLike) -> Camera:
-        """The camera with the offset and the direction of delay that were found."""
+        """The camera with the offsets, contrasts and the direction of delay that were found."""
         return Camera._of(self._handle.camera(camera_of(camera)._handle))
 
     def write_table(self, path: Path, *, overwrite: bool = False) -> None:
@@ -119,5 +144,12 @@ def calibrate_depth(
         _check.progress(progress),
     )
     fields = handle.fields()
+    fields["frequencies"] = [
+        CalibratedFrequency(
+            its["frequency_hz"], Estimate(*its["offset_m"]), Estimate(*its["contrast"]),
+            {n: (Estimate(*a), Estimate(*b)) for n, (a, b) in its["harmonics"].items()},
+        )
+        for its in fields["frequencies"]
+    ]
     fields["terms"] = {name: Estimate(*value) for name, value in fields["terms"]}
     return CalibratedDepth(**fields, _handle=handle)

@@ -9,6 +9,7 @@
 
 #include "calibrate/depth_error_picture.hpp"
 #include "calibrate/depth_term_choice.hpp"
+#include "calibrate/frequency_calibration.hpp"
 #include "calibrate/harmonic_basis.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
@@ -110,6 +111,18 @@ Eigen::VectorXd solve_robustly(const std::vector<int>& columns, int rounds, Dept
 int part_of(double depth_m, double range_m) {
   const double share = depth_m / range_m - std::floor(depth_m / range_m);
   return std::min(range_parts - 1, static_cast<int>(share * range_parts));
+}
+
+/// Mean of the nominal depth error and its root mean square around the mean, without outliers [m].
+struct DepthError {
+  double mean_m = 0.0, rms_m = 0.0;
+};
+
+DepthError error_of(DepthFit& fit) {
+  weigh(fit.error_m, fit);
+  const double weights = fit.weight.sum();
+  return {wrapped_difference_m(fit.start_m + fit.weight.dot(fit.error_m) / weights, fit.range_m),
+          std::sqrt(fit.weight.dot(fit.error_m.cwiseAbs2()) / weights)};
 }
 
 /// In which parts of the nominal range enough samples count.
@@ -314,22 +327,45 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   CalibratedDepth result;
   const ForwardModel model(code, camera);
   result.table = nominal_table(model, code, camera);
-  const DecodingTable table = make_decoding_table(result.table, camera);
-  const double range_m = table.range_m;
+  const double range_m = camera.range_m();
   const ProgressParts parts(progress, {3.0, 1.0, 1.0});
+
+  // Each frequency of the code; how far the model's depths are off is found first.
+  std::optional<DepthError> nominal;
+  if (auto by_frequency = calibrate_frequencies(frames, reference, code, camera)) {
+    auto samples =
+        decoded_samples(frames, reference, make_decoding_table(result.table, camera), parts[0]);
+    if (!samples.empty()) {
+      DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
+      nominal = error_of(fit);
+    }
+    result.table.correlation = by_frequency->correlation;
+    result.frequencies = std::move(by_frequency->frequencies);
+    result.offsets_m = std::move(by_frequency->offsets_m);
+    result.contrasts = std::move(by_frequency->contrasts);
+    result.notes = std::move(by_frequency->notes);
+    result.reversed = by_frequency->reversed;
+  } else if (camera.playback && camera.playback->has_list()) {
+    const std::vector<double> offsets_m = camera.playback->offsets_of(code, range_m);
+    for (const int start : code.frequency_starts())
+      result.offsets_m.push_back(offsets_m[static_cast<std::size_t>(start)]);
+  }
+  const DecodingTable table = make_decoding_table(result.table, camera);
 
   // Pixels that can be compared, and the direction of delay.
   std::vector<ReferenceSample> samples = reference_samples(frames, reference, table, parts[0]);
   result.pixels = static_cast<std::int64_t>(samples.size());
-  result.reversed = runs_backwards(samples, reference, frames.height, frames.width, range_m);
-  if (result.reversed) turn_backwards(result.table, samples, range_m);
+  const bool turned = runs_backwards(samples, reference, frames.height, frames.width, range_m);
+  if (turned) turn_backwards(result.table, samples, range_m);
+  result.reversed = result.reversed != turned;
 
   // All terms, robustly: which pixels count.
   DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
-  weigh(fit.error_m, fit);
-  result.mean_error_m =
-      wrapped_difference_m(fit.start_m + fit.weight.dot(fit.error_m) / fit.weight.sum(), range_m);
-  result.rms_before_m = std::sqrt((fit.weight.dot(fit.error_m.cwiseAbs2())) / fit.weight.sum());
+  const DepthError error = error_of(fit);
+  result.mean_error_m = nominal.value_or(error).mean_m;
+  result.rms_before_m = nominal.value_or(error).rms_m;
+  for (double& offset_m : result.offsets_m)
+    offset_m = error.mean_m + (turned ? -offset_m : offset_m);
   std::vector<bool> has = parts_with_depths(fit);
   const auto covered_parts = static_cast<int>(std::ranges::count(has, true));
   const double covered = static_cast<double>(covered_parts) / range_parts;
@@ -374,7 +410,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
       model_error_percent(frames, fit, make_decoding_table(result.table, camera), parts[2]);
   result.table.model_error_percent = result.model_error_percent.value_or(0.0);
   result.picture =
-      picture_of(fit, fitted_m, wrapped_difference_m(result.mean_error_m - fit.start_m, range_m));
+      picture_of(fit, fitted_m, wrapped_difference_m(error.mean_m - fit.start_m, range_m));
   add_notes(fit, reference, fitted_m, covered, result);
   return result;
 }
@@ -382,9 +418,17 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
 Camera with_depth(Camera camera, const CalibratedDepth& found) {
   Playback playback = camera.playback.value_or(Playback());
   // The mean, not the term: where part of the range is known, harmonics share the offset.
-  playback.offset_m =
-      found.mean_error_m + (found.reversed ? -playback.offset_m : playback.offset_m);
   playback.reversed = playback.reversed != found.reversed;
+  playback.offsets_m = found.offsets_m;
+  if (found.offsets_m.empty())
+    playback.offset_m =
+        found.mean_error_m + (found.reversed ? -playback.offset_m : playback.offset_m);
+  else
+    playback.offset_m = 0.0;
+  playback.offset_rad.clear();
+  playback.offset_counts.clear();
+  const bool mixes_taps = camera.sensor.taps >= 2 || camera.sensor.is_signed();
+  if (!found.contrasts.empty() && mixes_taps) camera.sensor.modulation_contrasts = found.contrasts;
   camera.playback = playback;
   camera.validate();
   return camera;

@@ -101,6 +101,30 @@ std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& fou
   return rows;
 }
 
+std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& found) {
+  if (found.frequencies.empty()) return {};
+  std::vector<std::vector<std::string>> rows{{"frequency (MHz)", "offset (mm)", "95 % (mm)",
+                                              "contrast", "95 %",
+                                              "harmonics (% of the fundamental)"}};
+  for (const CalibratedFrequency& its : found.frequencies) {
+    std::string harmonics;
+    for (const CalibratedHarmonic& h : its.harmonics) {
+      const double share = std::hypot(h.in_phase.value, h.quadrature.value);
+      const double error = std::hypot(h.in_phase.standard_error, h.quadrature.standard_error);
+      if (share > 3.0 * error)
+        harmonics +=
+            fmt::format("{}{}: {:.2f}", harmonics.empty() ? "" : ", ", h.harmonic, 100.0 * share);
+    }
+    rows.push_back({fmt::format("{:.6g}", 1e-6 * its.frequency_hz),
+                    fmt::format("{:.3f}", 1e3 * its.offset_m.value),
+                    fmt::format("± {:.3f}", 1.96e3 * its.offset_m.standard_error),
+                    fmt::format("{:.4f}", its.contrast.value),
+                    fmt::format("± {:.4f}", 1.96 * its.contrast.standard_error),
+                    harmonics.empty() ? "none beyond the model" : harmonics});
+  }
+  return rows;
+}
+
 Page depth_report(const CalibratedDepth& found, const std::string& source,
                   const std::string& command_line) {
   Page page{.title = fmt::format("Depth of {} against a reference", source),
@@ -114,6 +138,13 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
         {{"before", found.picture.before_image_m}, {"corrected", found.picture.after_image_m}},
         {.label = "depth error", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.02});
   };
+  if (!found.frequencies.empty())
+    page.sections.push_back(
+        {"Frequencies",
+         {table_of_rows("frequencies",
+                        "Offset that the camera adds to depth, contrast relative to the camera's "
+                        "model and harmonics beyond it, of each frequency.",
+                        frequency_rows(found), {5})}});
   page.sections.push_back(
       {"Over depth",
        {error_figure(found), table_of_rows("terms",

@@ -84,10 +84,9 @@ double wrapped_difference_m(double difference_m, double range_m) {
   return difference_m - range_m * std::floor(difference_m / range_m + 0.5);
 }
 
-std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
-                                               const ReferenceDepth& reference,
-                                               const DecodingTable& table,
-                                               const Progress& progress) {
+std::vector<ReferenceSample> decoded_samples(const RawFrames& frames,
+                                             const ReferenceDepth& reference,
+                                             const DecodingTable& table, const Progress& progress) {
   validate(frames, reference);
   // Errors of the model, which calibration is to find, must not drop pixels.
   const Decoder decoder(table, {.false_alarm_rate = 0.0});
@@ -110,6 +109,14 @@ std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
                            deviation_m});
       }
   }
+  return samples;
+}
+
+std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
+                                               const ReferenceDepth& reference,
+                                               const DecodingTable& table,
+                                               const Progress& progress) {
+  std::vector<ReferenceSample> samples = decoded_samples(frames, reference, table, progress);
   require(samples.size() >= min_compared, "reference", fmt::format("{} pixels", samples.size()),
           fmt::format("must have depth in at least {} pixels that decode", min_compared));
   return samples;

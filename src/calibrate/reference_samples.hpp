@@ -21,7 +21,12 @@ struct ReferenceSample {
 };
 
 /// Pixels of all frames, every so many rows and columns so that they are not too many.
-/// @throws std::invalid_argument if sizes disagree or hardly a pixel can be compared
+/// @throws std::invalid_argument if sizes disagree
+std::vector<ReferenceSample> decoded_samples(const RawFrames& frames,
+                                             const ReferenceDepth& reference,
+                                             const DecodingTable& table, const Progress& progress);
+/// The same.
+/// @throws std::invalid_argument also if fewer than 100 pixels can be compared
 std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
                                                const ReferenceDepth& reference,
                                                const DecodingTable& table,

@@ -17,6 +17,9 @@ namespace tofsmith {
 /// them.
 std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found);
 std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& found);
+/// Offset, contrast and harmonics of each frequency, as rows with a header; empty for a single
+/// frequency.
+std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& found);
 std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
 
 /// Pages of calibrations: what was found, as tables and figures, and the notes.

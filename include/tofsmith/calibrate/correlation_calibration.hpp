@@ -137,6 +137,22 @@ struct CalibratedTerm {
   Estimate value_m;  ///< its 95 % interval is +- 1.96 standard errors
 };
 
+/// Harmonic of a correlation function beyond the camera's model.
+struct CalibratedHarmonic {
+  int harmonic = 2;   ///< of the frequency
+  Estimate in_phase;  ///< share of the fundamental's amplitude, in phase with it at its maximum
+  Estimate quadrature;
+};
+
+/// One frequency of a code, as reference depth determines it.
+struct CalibratedFrequency {
+  double frequency_hz = 0.0;
+  Estimate offset_m;  ///< constant that the camera adds to the depth of this frequency
+  /// Amplitude relative to that of the camera's model; the geometric mean of all frequencies is 1.
+  Estimate contrast;
+  std::vector<CalibratedHarmonic> harmonics;  ///< only determined ones
+};
+
 /// The error of nominal depth, less its mean, to be looked at: means over pixels that count; not a
 /// number where there are none.
 struct DepthErrorPicture {
@@ -150,8 +166,13 @@ struct DepthErrorPicture {
 
 /// What reference depth says of a camera.
 struct CalibratedDepth {
-  MeasuredTable table;                 ///< the nominal functions, with the correction
-  bool reversed = false;               ///< delay runs backwards; the table does too
+  MeasuredTable table;    ///< the nominal functions, with the correction
+  bool reversed = false;  ///< delay runs backwards; the table does too
+  /// One per frequency of the code; the table contains these values. Empty: a single frequency.
+  std::vector<CalibratedFrequency> frequencies;
+  /// For with_depth(): offset [m] and contrast of each frequency of the code, as the keys
+  /// playback.offset_m and sensor.modulation_contrast; empty: a single frequency.
+  std::vector<double> offsets_m, contrasts;
   std::vector<CalibratedTerm> terms;   ///< of the known part of the range
   std::vector<std::string> far_terms;  ///< names of those that count beyond it
   double known_share = 0.0;            ///< of the range in which the reference had depths
@@ -168,8 +189,10 @@ struct CalibratedDepth {
 };
 
 /// The depth error of a nominal code against reference depth, on any part of the range.
-///   1. The code decodes the frames; delay that runs backwards is turned.
-///   2. Offset, harmonics 1 to 8 of the phase, a field over rows and columns of degree 0 to 4 and
+///   1. Of codes of several frequencies: offset, contrast and harmonics of each frequency, which
+///      become part of the table.
+///   2. The code decodes the frames; delay that runs backwards is turned. Offset, harmonics 1 to 8
+///   of the phase, a field over rows and columns of degree 0 to 4 and
 ///      terms in the logarithm of the signal, by least squares with Tukey's biweight (flying pixels
 ///      and wrong references count for nothing), at the phase that the reference predicts, so that
 ///      noise of the depth is not taken for an error that depends on it.

@@ -1,0 +1,546 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate/frequency_calibration.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <set>
+
+#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/reference_samples.hpp"
+#include "core/shared/decompositions.hpp"
+#include "core/shared/periodic.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int max_harmonic = 20;
+constexpr std::size_t min_pixels = 100;
+
+/// Measurements with known depth.
+struct ReferencePixels {
+  Eigen::MatrixXd electrons;  // (K, P)
+  std::vector<double> depth_m;
+  std::vector<int> tile;
+  int tiles = 0;
+
+  Eigen::Index size() const { return electrons.cols(); }
+};
+
+ReferencePixels reference_pixels(const RawFrames& frames, const ReferenceDepth& reference,
+                                 const DecodingTable& table) {
+  constexpr double max_pixels = 2e4;
+  constexpr double enough_tiles = 400.0;
+  const double all = static_cast<double>(frames.pixels_per_frame()) * frames.frames;
+  const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(all / max_pixels))));
+  const int k = frames.measurements;
+  const int side = static_cast<int>(
+      std::ceil(std::sqrt(static_cast<double>(frames.pixels_per_frame()) / enough_tiles)));
+  const int tile_columns = (frames.width + side - 1) / side;
+  const double highest = table.saturation_level.value_or(INFINITY);
+  const double lowest = table.lower_saturation_level.value_or(-INFINITY);
+  ReferencePixels pixels;
+  pixels.tiles = tile_columns * ((frames.height + side - 1) / side);
+  std::vector<double> electrons;
+  for (int f = 0; f < frames.frames; ++f)
+    for (int row = f % stride; row < frames.height; row += stride)
+      for (int column = f % stride; column < frames.width; column += stride) {
+        const double depth_m = reference_at(reference, f, row, column);
+        const float* raw = frames.frame(f) + (std::ptrdiff_t{row} * frames.width + column) * k;
+        const bool is_valid = std::all_of(
+            raw, raw + k, [&](float number) { return number > lowest && number < highest; });
+        if (!(depth_m > 0.0) || !is_valid) continue;
+        for (int i = 0; i < k; ++i)
+          electrons.push_back((static_cast<double>(raw[i]) - table.black_level[i]) *
+                                  table.gain_e_per_raw[i] -
+                              table.dark_electrons[i]);
+        pixels.depth_m.push_back(depth_m);
+        pixels.tile.push_back(row / side * tile_columns + column / side);
+      }
+  pixels.electrons = Eigen::Map<Eigen::MatrixXd>(electrons.data(), k,
+                                                 static_cast<Eigen::Index>(pixels.depth_m.size()));
+  return pixels;
+}
+
+/// Correlation functions of a camera and the fundamental of each.
+struct Fundamentals {
+  DecodingTable table;                         // of many rows
+  std::vector<int> repetitions;                // of every frequency, in units of f0
+  std::vector<std::size_t> frequency;          // of every measurement
+  std::vector<std::complex<double>> harmonic;  // of every measurement
+
+  int measurements() const { return table.measurements(); }
+  /// Row of correlation functions at a depth (K), between two rows of the table.
+  Eigen::VectorXd at(double depth_m) const {
+    const auto rows = static_cast<double>(table.samples());
+    const double row = (depth_m / table.range_m - std::floor(depth_m / table.range_m)) * rows;
+    const auto low = static_cast<Eigen::Index>(row) % table.samples();
+    const double share = row - std::floor(row);
+    return (1.0 - share) * table.correlation.row(low) +
+           share * table.correlation.row((low + 1) % table.samples());
+  }
+  double phase_rad(std::size_t its_frequency, double depth_m) const {
+    return turn * repetitions[its_frequency] * depth_m / table.range_m;
+  }
+};
+
+Fundamentals fundamentals_of(const CodeSet& code, const Camera& camera,
+                             const std::vector<int>& repetitions) {
+  constexpr int points_per_repetition = 1024;
+  const ForwardModel model(code, camera);
+  const int fine = std::max(1, points_per_repetition * repetitions.back() / code.samples());
+  Fundamentals found{.table = make_decoding_table(model, camera), .repetitions = repetitions};
+  found.table.correlation = model.correlation_table(fine * code.samples());
+  Eigen::VectorXcd spectrum;
+  for (int i = 0; i < found.measurements(); ++i) {
+    PeriodicTransform(found.table.samples()).forward(found.table.correlation.col(i), spectrum);
+    const auto strength = [&](int n) { return std::norm(spectrum[n]); };
+    const auto strongest = std::ranges::max_element(repetitions, {}, strength);
+    found.frequency.push_back(static_cast<std::size_t>(strongest - repetitions.begin()));
+    found.harmonic.push_back(spectrum[*strongest] / static_cast<double>(found.table.samples()));
+  }
+  return found;
+}
+
+/// Phasors of every frequency in every pixel, S exp(i phase), (F, P); empty if the measurements do
+/// not determine them.
+Eigen::MatrixXcd phasors_of(const Fundamentals& model, const ReferencePixels& pixels) {
+  constexpr double independent = 1e-6;
+  const auto frequencies = static_cast<Eigen::Index>(model.repetitions.size());
+  const Eigen::VectorXd& exposure_s = model.table.exposure_s;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(model.measurements(), 2 * frequencies + 1);
+  for (int i = 0; i < model.measurements(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto column = 2 * static_cast<Eigen::Index>(model.frequency[k]);
+    system(i, column) = 2 * exposure_s[i] * model.harmonic[k].real();
+    system(i, column + 1) = -2 * exposure_s[i] * model.harmonic[k].imag();
+  }
+  system.rightCols(1) = exposure_s.cwiseProduct(model.table.ambient_gain);
+  const bool sees_ambient = system.rightCols(1).norm() > independent * system.norm();
+  if (!sees_ambient) system.conservativeResize(Eigen::NoChange, 2 * frequencies);
+  const auto [rank, inverse] = pseudo_inverse(system, independent);
+  if (rank < system.cols()) return {};
+  const Eigen::MatrixXd parts = inverse * pixels.electrons;
+  Eigen::MatrixXcd phasors(frequencies, pixels.size());
+  for (Eigen::Index f = 0; f < frequencies; ++f) {
+    phasors.row(f).real() = parts.row(2 * f);
+    phasors.row(f).imag() = parts.row(2 * f + 1);
+  }
+  return phasors;
+}
+
+/// Offset and contrast of every frequency as its phasors have them.
+struct PhasorOffsets {
+  std::vector<double> offset_rad, contrast;
+  double agreement = 0.0;  // least over frequencies; 1: phases follow the reference exactly
+};
+
+PhasorOffsets offsets_of(const Fundamentals& model, const ReferencePixels& pixels,
+                         const Eigen::MatrixXcd& phasors) {
+  PhasorOffsets found{.agreement = 1.0};
+  const Eigen::RowVectorXd log_mean = phasors.cwiseAbs().array().log().colwise().mean();
+  for (Eigen::Index f = 0; f < phasors.rows(); ++f) {
+    std::complex<double> sum = 0.0;
+    std::vector<double> log_contrast;
+    for (Eigen::Index p = 0; p < phasors.cols(); ++p) {
+      const double length = std::abs(phasors(f, p));
+      if (!(length > 0.0)) continue;
+      sum += phasors(f, p) / length *
+             std::polar(1.0, -model.phase_rad(static_cast<std::size_t>(f),
+                                              pixels.depth_m[static_cast<std::size_t>(p)]));
+      log_contrast.push_back(std::log(length) - log_mean[p]);
+    }
+    found.offset_rad.push_back(std::arg(sum));
+    found.contrast.push_back(std::exp(median_of(std::move(log_contrast))));
+    found.agreement =
+        std::min(found.agreement, std::abs(sum) / static_cast<double>(phasors.cols()));
+  }
+  return found;
+}
+
+/// The camera with an offset and a contrast for every exposure.
+struct CalibratedCamera {
+  Camera camera;
+  std::vector<double> offset_m, contrast;  // of every exposure of the code
+
+  bool mixes_taps() const { return camera.sensor.taps >= 2 || camera.sensor.is_signed(); }
+  void apply() {
+    Playback playback = camera.playback.value_or(Playback());
+    playback.offset_m = 0.0;
+    playback.offset_rad.clear();
+    playback.offset_counts.clear();
+    playback.offsets_m = offset_m;
+    camera.playback = playback;
+    if (mixes_taps()) camera.sensor.modulation_contrasts = contrast;
+  }
+};
+
+std::vector<std::size_t> frequency_of_exposures(const CodeSet& code,
+                                                const std::vector<int>& repetitions) {
+  std::vector<std::size_t> frequency;
+  for (int e = 0; e < code.exposures(); ++e)
+    frequency.push_back(static_cast<std::size_t>(
+        std::ranges::lower_bound(repetitions, code.modulation(e).repetitions()) -
+        repetitions.begin()));
+  return frequency;
+}
+
+/// Moves offsets by phases and scales contrasts; the geometric mean of contrasts stays unless one
+/// would exceed 1.
+void adjust(CalibratedCamera& calibrated, const std::vector<std::size_t>& frequency,
+            const std::vector<int>& repetitions, const std::vector<double>& offset_rad,
+            const std::vector<double>& contrast) {
+  const double range_m = calibrated.camera.range_m();
+  for (std::size_t e = 0; e < frequency.size(); ++e) {
+    const double period_m = range_m / repetitions[frequency[e]];
+    calibrated.offset_m[e] = wrapped_difference_m(
+        calibrated.offset_m[e] + offset_rad[frequency[e]] / turn * period_m, period_m);
+    if (calibrated.mixes_taps()) calibrated.contrast[e] *= contrast[frequency[e]];
+  }
+  const double largest = std::ranges::max(calibrated.contrast);
+  if (largest > 1.0)
+    for (double& c : calibrated.contrast) c /= largest;
+  calibrated.apply();
+}
+
+/// Deviations b of every frequency: columns of real and imaginary parts.
+class HarmonicFit {
+ public:
+  HarmonicFit(const Fundamentals& model, const ReferencePixels& pixels, int rows)
+      : model_(model), pixels_(pixels) {
+    for (std::size_t f = 0; f < model.repetitions.size(); ++f)
+      for (int h = 1; h <= max_harmonic && h * model.repetitions[f] < rows / 2; ++h)
+        terms_.push_back({f, h});
+    prior_.resize(columns());
+    mean_contrast_ = Eigen::VectorXd::Zero(columns());
+    for (std::size_t t = 0; t < terms_.size(); ++t)
+      prior_.segment(2 * static_cast<Eigen::Index>(t), 2)
+          .setConstant(1.0 / (terms_[t].harmonic * terms_[t].harmonic));
+    for (std::size_t t = 0; t < terms_.size(); ++t)
+      if (terms_[t].harmonic == 1)
+        mean_contrast_[2 * static_cast<Eigen::Index>(t)] =
+            1.0 / static_cast<double>(model.repetitions.size());
+    deviation_ = Eigen::VectorXd::Zero(columns());
+    weight_.assign(static_cast<std::size_t>(pixels.size()), 1.0);
+  }
+
+  void solve() {
+    constexpr int rounds = 8;
+    for (int round = 0; round < rounds; ++round) {
+      weigh();
+      const Sums sums = all_sums();
+      const Eigen::VectorXd data = sums.moment.rowwise().sum() / misfit_;
+      deviation_ += solve_symmetric(information_of(sums), data - prior_information() * deviation_);
+    }
+    estimate_errors();
+  }
+
+  struct Term {
+    std::size_t frequency;
+    int harmonic;
+  };
+  const std::vector<Term>& terms() const { return terms_; }
+  std::complex<double> deviation(std::size_t term) const {
+    const auto at = 2 * static_cast<Eigen::Index>(term);
+    return {deviation_[at], deviation_[at + 1]};
+  }
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
+  /// Whether the frames say more of a deviation than the prior; of a fundamental: of its phase.
+  bool is_determined(std::size_t term) const {
+    const auto at = 2 * static_cast<Eigen::Index>(term);
+    const double real = terms_[term].harmonic == 1 ? 0.0 : posterior_[at];
+    return std::max(real, posterior_[at + 1]) < 0.25 * prior_[at] * prior_[at];
+  }
+  /// What the deviations add to the correlation functions at a depth (K).
+  Eigen::VectorXd added(double depth_m) const { return functions(depth_m) * deviation_; }
+
+ private:
+  struct Sums {
+    Eigen::MatrixXd gram;    // (columns, columns)
+    Eigen::MatrixXd moment;  // (columns, tiles)
+  };
+  /// What one pixel adds to the sums.
+  struct PixelTerms {
+    Eigen::MatrixXd design;    // (K, columns), weighted, without what signal and ambient explain
+    Eigen::VectorXd residual;  // (K), likewise
+    bool is_valid = false;
+  };
+
+  Eigen::Index columns() const { return 2 * static_cast<Eigen::Index>(terms_.size()); }
+  /// The measurements do not determine the mean contrast, because the brightness of the scene is
+  /// not known: it stays.
+  Eigen::MatrixXd prior_information() const {
+    constexpr double known = 1e-3;
+    Eigen::MatrixXd information = mean_contrast_ * mean_contrast_.transpose() / (known * known);
+    information.diagonal() += prior_.cwiseAbs2().cwiseInverse();
+    return information;
+  }
+  Eigen::MatrixXd information_of(const Sums& sums) const {
+    return sums.gram / misfit_ + prior_information();
+  }
+
+  /// Derivatives of the correlation functions by the deviations at a depth (K, columns).
+  Eigen::MatrixXd functions(double depth_m) const {
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(model_.measurements(), columns());
+    for (std::size_t t = 0; t < terms_.size(); ++t)
+      for (int i = 0; i < model_.measurements(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (model_.frequency[k] != terms_[t].frequency) continue;
+        const double phase_rad =
+            std::arg(model_.harmonic[k]) + model_.phase_rad(terms_[t].frequency, depth_m);
+        const std::complex<double> value =
+            std::polar(2 * std::abs(model_.harmonic[k]), terms_[t].harmonic * phase_rad);
+        values(i, 2 * static_cast<Eigen::Index>(t)) = value.real();
+        values(i, 2 * static_cast<Eigen::Index>(t) + 1) = -value.imag();
+      }
+    return values;
+  }
+
+  PixelTerms terms_of(Eigen::Index pixel) const {
+    const DecodingTable& table = model_.table;
+    const double depth_m = pixels_.depth_m[static_cast<std::size_t>(pixel)];
+    Eigen::MatrixXd design = functions(depth_m);
+    Eigen::MatrixXd light(model_.measurements(), 2);
+    light.col(0) = table.exposure_s.cwiseProduct(model_.at(depth_m) + design * deviation_);
+    light.col(1) = table.exposure_s.cwiseProduct(table.ambient_gain);
+    const bool sees_ambient = light.col(1).norm() > 1e-9 * table.exposure_s.norm();
+    if (!sees_ambient) light.conservativeResize(Eigen::NoChange, 1);
+    const Eigen::VectorXd electrons = pixels_.electrons.col(pixel);
+    const double signal = least_squares(light, electrons)[0];
+    if (!(signal > 0.0)) return {};
+    const double mean_shot = table.shot().mean();
+    const Eigen::VectorXd variance_e2 =
+        (table.exposure_s * (signal * mean_shot) +
+         table.exposure_s.cwiseProduct(table.shot_ambient()) * table.hidden_ambient_e_per_s +
+         table.shot_dark() + table.constant_variance_e2)
+            .cwiseMax(1.0);
+    const Eigen::VectorXd scale = variance_e2.cwiseSqrt().cwiseInverse();
+    light = scale.asDiagonal() * light;
+    const Eigen::MatrixXd rest = complement_of(light);
+    design =
+        rest.transpose() * (scale.cwiseProduct(signal * table.exposure_s)).asDiagonal() * design;
+    return {std::move(design), rest.transpose() * scale.cwiseProduct(electrons), true};
+  }
+
+  template <typename Add>
+  void for_each_pixel(const Add& add) const {
+    parallel_for_blocks(pixels_.size(), block_size, [&](IndexRange range) {
+      for (Eigen::Index p = range.begin; p < range.end; ++p) add(p, range.begin / block_size);
+    });
+  }
+
+  Sums all_sums() const {
+    const auto blocks = static_cast<std::size_t>((pixels_.size() + block_size - 1) / block_size);
+    std::vector<Sums> parts(blocks, {Eigen::MatrixXd::Zero(columns(), columns()),
+                                     Eigen::MatrixXd::Zero(columns(), pixels_.tiles)});
+    for_each_pixel([&](Eigen::Index p, std::int64_t block) {
+      const auto at = static_cast<std::size_t>(p);
+      if (weight_[at] == 0.0) return;
+      const PixelTerms pixel = terms_of(p);
+      if (!pixel.is_valid) return;
+      Sums& sums = parts[static_cast<std::size_t>(block)];
+      sums.gram.noalias() += weight_[at] * pixel.design.transpose() * pixel.design;
+      sums.moment.col(pixels_.tile[at]).noalias() +=
+          weight_[at] * pixel.design.transpose() * pixel.residual;
+    });
+    for (std::size_t b = 1; b < parts.size(); ++b) {
+      parts[0].gram += parts[b].gram;
+      parts[0].moment += parts[b].moment;
+    }
+    return std::move(parts[0]);
+  }
+
+  /// Weights by the residuals, and their usual size.
+  void weigh() {
+    constexpr double reach = 4.0;
+    std::vector<double> size(static_cast<std::size_t>(pixels_.size()), INFINITY);
+    for_each_pixel([&](Eigen::Index p, std::int64_t) {
+      const PixelTerms pixel = terms_of(p);
+      if (pixel.is_valid && pixel.residual.size() > 0)
+        size[static_cast<std::size_t>(p)] =
+            pixel.residual.squaredNorm() / static_cast<double>(pixel.residual.size());
+    });
+    misfit_ = std::max(1.0, median_of(size));
+    for (std::size_t p = 0; p < size.size(); ++p) {
+      const double u = std::sqrt(size[p] / misfit_) / reach;
+      weight_[p] = u < 1.0 ? std::pow(1.0 - u * u, 2) : 0.0;
+    }
+  }
+
+  void estimate_errors() {
+    const Sums sums = all_sums();
+    const Eigen::MatrixXd inverse =
+        solve_symmetric(information_of(sums), Eigen::MatrixXd::Identity(columns(), columns()));
+    const Eigen::MatrixXd spread = inverse * sums.moment / misfit_;
+    const auto used =
+        static_cast<double>((sums.moment.colwise().squaredNorm().array() > 0).count());
+    const double freedom = std::max(1.0, used - static_cast<double>(columns()));
+    covariance_ = spread * spread.transpose() * (used / freedom);
+    posterior_ = inverse.diagonal();
+  }
+
+  static constexpr std::int64_t block_size = 512;
+  const Fundamentals& model_;
+  const ReferencePixels& pixels_;
+  std::vector<Term> terms_;
+  Eigen::VectorXd prior_;          // standard deviations
+  Eigen::VectorXd mean_contrast_;  // coefficients of the mean of Re b_1 over frequencies
+  Eigen::VectorXd deviation_;      // b
+  Eigen::MatrixXd covariance_;
+  Eigen::VectorXd posterior_;  // variances, with the prior
+  std::vector<double> weight_;
+  double misfit_ = 1.0;  // usual variance of a residual over that of its noise
+};
+
+/// Standard error of a linear combination of deviations.
+double error_of(const HarmonicFit& fit, const Eigen::VectorXd& combination) {
+  return std::sqrt(combination.dot(fit.covariance() * combination));
+}
+
+std::string list_of(const std::vector<int>& numbers) {
+  return fmt::format("{}", fmt::join(numbers, ", "));
+}
+
+/// Offset, contrast and harmonics of every frequency.
+void report_frequencies(const HarmonicFit& fit, const Fundamentals& model,
+                        const CalibratedCamera& calibrated,
+                        const std::vector<std::size_t>& frequency_of_exposure,
+                        const std::vector<double>& initial_contrast, FrequencyCalibration& result) {
+  const Eigen::Index columns = fit.covariance().cols();
+  const std::size_t frequencies = model.repetitions.size();
+  std::vector<std::size_t> first_term(frequencies, 0);
+  for (std::size_t t = fit.terms().size(); t-- > 0;) first_term[fit.terms()[t].frequency] = t;
+  // b_1 relative to 1 + b_1: real part of the logarithm, the contrast, and imaginary part, the
+  // phase.
+  Eigen::MatrixXd log_contrast =
+      Eigen::MatrixXd::Zero(columns, static_cast<Eigen::Index>(frequencies));
+  for (std::size_t f = 0; f < frequencies; ++f)
+    log_contrast(2 * static_cast<Eigen::Index>(first_term[f]), static_cast<Eigen::Index>(f)) = 1.0;
+  const Eigen::VectorXd mean_contrast = log_contrast.rowwise().mean();
+  double mean_log = 0.0;
+  for (std::size_t f = 0; f < frequencies; ++f)
+    mean_log += std::log(initial_contrast[f] * std::abs(1.0 + fit.deviation(first_term[f]))) /
+                static_cast<double>(frequencies);
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    CalibratedFrequency found{.frequency_hz = model.repetitions[f] *
+                                              calibrated.camera.fundamental_frequency_hz};
+    const std::complex<double> gain = 1.0 + fit.deviation(first_term[f]);
+    const auto exposure = static_cast<std::size_t>(std::ranges::find(frequency_of_exposure, f) -
+                                                   frequency_of_exposure.begin());
+    const double period_m = model.table.range_m / model.repetitions[f];
+    Eigen::VectorXd phase = Eigen::VectorXd::Zero(columns);
+    phase[2 * static_cast<Eigen::Index>(first_term[f]) + 1] = 1.0;
+    const double size = std::abs(gain);
+    found.offset_m = {calibrated.offset_m[exposure], error_of(fit, phase) / size / turn * period_m};
+    const double contrast = std::exp(std::log(initial_contrast[f] * size) - mean_log);
+    found.contrast = {
+        contrast,
+        contrast * error_of(fit, log_contrast.col(static_cast<Eigen::Index>(f)) - mean_contrast)};
+    std::vector<int> unknown;
+    for (std::size_t t = 0; t < fit.terms().size(); ++t) {
+      const auto [its, harmonic] = fit.terms()[t];
+      if (its != f || harmonic == 1) continue;
+      if (!fit.is_determined(t)) {
+        unknown.push_back(harmonic);
+        continue;
+      }
+      const auto at = 2 * static_cast<Eigen::Index>(t);
+      const std::complex<double> share =
+          fit.deviation(t) * std::polar(1.0 / size, -harmonic * std::arg(gain));
+      found.harmonics.push_back(
+          {harmonic,
+           {share.real(), std::sqrt(fit.covariance()(at, at)) / size},
+           {share.imag(), std::sqrt(fit.covariance()(at + 1, at + 1)) / size}});
+    }
+    const std::string name = fmt::format("{:.6g} MHz", 1e-6 * found.frequency_hz);
+    if (!fit.is_determined(first_term[f]))
+      result.notes.push_back(fmt::format("{}: the offset is not determined by these frames", name));
+    if (!unknown.empty())
+      result.notes.push_back(fmt::format(
+          "{}: harmonics {} are not determined by these frames and stay as in the camera's model; "
+          "depths that cover its period, {:.3g} m, determine them",
+          name, list_of(unknown), period_m));
+    result.frequencies.push_back(std::move(found));
+  }
+}
+
+/// Frequencies of a code in units of f0, in order.
+std::vector<int> repetitions_of(const CodeSet& code) {
+  std::set<int> found;
+  for (const int e : code.frequency_starts()) found.insert(code.modulation(e).repetitions());
+  return {found.begin(), found.end()};
+}
+
+}  // namespace
+
+std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frames,
+                                                          const ReferenceDepth& reference,
+                                                          const CodeSet& code,
+                                                          const Camera& camera) {
+  if (code.is_rows()) return std::nullopt;
+  const std::vector<int> repetitions = repetitions_of(code);
+  if (repetitions.size() < 2) return std::nullopt;
+  const std::vector<std::size_t> frequency = frequency_of_exposures(code, repetitions);
+
+  // Direction of delay, offsets and contrasts by the phases.
+  constexpr double agrees = 0.6, clearly = 0.05;
+  CalibratedCamera calibrated{
+      camera, camera.playback.value_or(Playback()).offsets_of(code, camera.range_m()),
+      camera.sensor.contrasts_of(code)};
+  ReferencePixels pixels;
+  PhasorOffsets offsets;
+  FrequencyCalibration result;
+  for (const bool reversed : {false, true}) {
+    Camera tried = camera;
+    if (reversed) {
+      tried.playback = tried.playback.value_or(Playback());
+      tried.playback->reversed = !tried.playback->reversed;
+    }
+    const Fundamentals model = fundamentals_of(code, tried, repetitions);
+    pixels = reference_pixels(frames, reference, model.table);
+    if (pixels.depth_m.size() < min_pixels) return std::nullopt;
+    const Eigen::MatrixXcd phasors = phasors_of(model, pixels);
+    if (phasors.size() == 0) return std::nullopt;
+    const PhasorOffsets found = offsets_of(model, pixels, phasors);
+    if (reversed && found.agreement < offsets.agreement + clearly) break;
+    offsets = found;
+    result.reversed = reversed;
+    calibrated.camera = tried;
+  }
+  if (offsets.agreement < agrees) return std::nullopt;
+  adjust(calibrated, frequency, repetitions, offsets.offset_rad, offsets.contrast);
+
+  // Harmonics, and the last digits of offsets and contrasts.
+  const Fundamentals model = fundamentals_of(code, calibrated.camera, repetitions);
+  HarmonicFit fit(model, pixels, code.samples());
+  fit.solve();
+  result.correlation = ForwardModel(code, calibrated.camera).correlation_table(code.samples());
+  for (Eigen::Index row = 0; row < result.correlation.rows(); ++row)
+    result.correlation.row(row) +=
+        fit.added(static_cast<double>(row) * model.table.range_m / code.samples()).transpose();
+  std::vector<double> offset_rad(repetitions.size()), contrast(repetitions.size());
+  for (std::size_t t = 0; t < fit.terms().size(); ++t) {
+    if (fit.terms()[t].harmonic != 1) continue;
+    offset_rad[fit.terms()[t].frequency] = std::arg(1.0 + fit.deviation(t));
+    contrast[fit.terms()[t].frequency] = std::abs(1.0 + fit.deviation(t));
+  }
+  adjust(calibrated, frequency, repetitions, offset_rad, contrast);
+  if (!calibrated.mixes_taps()) std::ranges::fill(offsets.contrast, 1.0);
+  report_frequencies(fit, model, calibrated, frequency, offsets.contrast, result);
+  for (const int start : code.frequency_starts()) {
+    result.offsets_m.push_back(calibrated.offset_m[static_cast<std::size_t>(start)]);
+    result.contrasts.push_back(calibrated.contrast[static_cast<std::size_t>(start)]);
+  }
+  result.camera = calibrated.camera;
+  return result;
+}
+
+}  // namespace tofsmith
