@@ -32,6 +32,8 @@ std::string lens_setting(const PinholeView& view) {
     keys += fmt::format(", distortion_model = \"{}\", distortion = [{}]",
                         name_of(view.distortion->model),
                         fmt::join(view.distortion->coefficients, ", "));
+  if (view.distortion && view.distortion->max_radius)
+    keys += fmt::format(", distortion_max_radius = {}", *view.distortion->max_radius);
   return "lens={ " + keys + " }";
 }
 

@@ -20,8 +20,9 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr EnumWords<DistortionModel, 2> model_words("DistortionModel", "distortion_model",
-                                                    distortion_models);
+constexpr EnumWords<DistortionModel, distortion_models.size()> model_words("DistortionModel",
+                                                                           "distortion_model",
+                                                                           distortion_models);
 
 /// A place and its image, and how the image moves with it.
 struct Imaged {
@@ -32,7 +33,8 @@ struct Imaged {
 /// OpenCV's formulas with all coefficients there.
 class OpenCvFormula {
  public:
-  explicit OpenCvFormula(const std::vector<double>& given) {
+  /// @param cross  factor of p1 x y and p2 x y; 1 in rational-6kt
+  explicit OpenCvFormula(const std::vector<double>& given, double cross = 2.0) : cross_(cross) {
     std::copy_n(given.begin(), std::min(given.size(), c_.size()), c_.begin());
   }
 
@@ -49,13 +51,13 @@ class OpenCvFormula {
     const double x_dq = s1 + 2 * q * s2, y_dq = s3 + 2 * q * s4;
     Imaged result;
     result.image = {
-        x * radial + 2 * p1 * x * y + p2 * (q + 2 * x * x) + q * (s1 + q * s2),
-        y * radial + p1 * (q + 2 * y * y) + 2 * p2 * x * y + q * (s3 + q * s4),
+        x * radial + cross_ * p1 * x * y + p2 * (q + 2 * x * x) + q * (s1 + q * s2),
+        y * radial + p1 * (q + 2 * y * y) + cross_ * p2 * x * y + q * (s3 + q * s4),
     };
-    result.slope << radial + 2 * x * (x * dq + x_dq) + 2 * p1 * y + 6 * p2 * x,
-        2 * y * (x * dq + x_dq) + 2 * p1 * x + 2 * p2 * y,
-        2 * x * (y * dq + y_dq) + 2 * p1 * x + 2 * p2 * y,
-        radial + 2 * y * (y * dq + y_dq) + 6 * p1 * y + 2 * p2 * x;
+    result.slope << radial + 2 * x * (x * dq + x_dq) + cross_ * p1 * y + 6 * p2 * x,
+        2 * y * (x * dq + x_dq) + cross_ * p1 * x + 2 * p2 * y,
+        2 * x * (y * dq + y_dq) + 2 * p1 * x + cross_ * p2 * y,
+        radial + 2 * y * (y * dq + y_dq) + 6 * p1 * y + cross_ * p2 * x;
     return result;
   }
 
@@ -65,6 +67,7 @@ class OpenCvFormula {
 
  private:
   std::array<double, 12> c_{};
+  double cross_;
 };
 
 /// The polynomial of a fisheye, of places whose distance from the axis is the angle.
@@ -98,8 +101,9 @@ class FisheyeFormula {
 
 template <typename Use>
 auto with_formula(const LensDistortion& distortion, const Use& use) {
-  return distortion.model == DistortionModel::opencv ? use(OpenCvFormula(distortion.coefficients))
-                                                     : use(FisheyeFormula(distortion.coefficients));
+  const std::vector<double>& given = distortion.coefficients;
+  if (distortion.model == DistortionModel::fisheye) return use(FisheyeFormula(given));
+  return use(OpenCvFormula(given, distortion.model == DistortionModel::opencv ? 2.0 : 1.0));
 }
 
 /// The place next to `start` whose image is `target`, by Newton's method. None where it would be
@@ -154,8 +158,6 @@ Followed follow(const Formula& formula, const Vector2d& image, double first_step
 
 std::string_view name_of(DistortionModel model) { return model_words.of(model); }
 
-DistortionModel parse_distortion_model(std::string_view word) { return model_words.parse(word); }
-
 Vector2d LensDistortion::distort(const Vector2d& ideal) const {
   return with_formula(*this, [&](const auto& formula) -> Vector2d {
     return formula(formula.of_ideal(ideal)).image;
@@ -165,7 +167,8 @@ Vector2d LensDistortion::distort(const Vector2d& ideal) const {
 std::optional<Vector2d> LensDistortion::undistort(const Vector2d& distorted) const {
   return with_formula(*this, [&](const auto& formula) -> std::optional<Vector2d> {
     const Followed way = follow(formula, distorted, 1.0);
-    return way.reach < 1.0 ? std::nullopt : formula.ideal_of(way.place);
+    const auto ideal = way.reach < 1.0 ? std::nullopt : formula.ideal_of(way.place);
+    return ideal && max_radius && ideal->norm() > *max_radius ? std::nullopt : ideal;
   });
 }
 
@@ -173,7 +176,9 @@ double LensDistortion::reach(const Vector2d& distorted) const {
   constexpr double careful_step = 0.125;
   return with_formula(*this, [&](const auto& formula) {
     const Followed way = follow(formula, distorted, careful_step);
-    if (formula.ideal_of(way.place)) return way.reach;
+    const auto ideal = formula.ideal_of(way.place);
+    if (max_radius && (!ideal || ideal->norm() >= *max_radius)) return 1.0;
+    if (ideal) return way.reach;
     // A fisheye's right angle, which one image in that direction is at.
     const Vector2d edge = (0.5 * std::numbers::pi / way.place.norm()) * way.place;
     return std::min(way.reach, formula(edge).image.norm() / distorted.norm());
@@ -184,13 +189,17 @@ void LensDistortion::validate(std::string_view field) const {
   const std::size_t count = coefficients.size();
   const std::string shown = fmt::format("[{}]", fmt::join(coefficients, ", "));
   if (model == DistortionModel::opencv)
-    require(count == 4 || count == 5 || count == 8 || count == 12, field, shown,
-            "must be 4, 5, 8 or 12 numbers: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4]]]");
-  else
+    require(count == 4 || count == 5 || count == 8 || count == 12 || count == 14, field, shown,
+            "must be 4, 5, 8, 12 or 14 numbers: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]");
+  else if (model == DistortionModel::fisheye)
     require(count == 4, field, shown, "must be 4 numbers of a fisheye: k1 k2 k3 k4");
+  else
+    require(count == 8, field, shown, "must be 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
   require(std::all_of(coefficients.begin(), coefficients.end(),
                       [](double c) { return std::isfinite(c); }),
           field, shown, "must be finite");
+  require(count < 14 || (coefficients[12] == 0.0 && coefficients[13] == 0.0), field, shown,
+          "must have a tilt of 0, its last two numbers: a tilted sensor is not supported");
 }
 
 }  // namespace tofsmith

@@ -12,18 +12,18 @@
 
 namespace tofsmith {
 
-/// By which formulas a lens distorts; both are OpenCV's.
+/// Formulas of distortions, of OpenCV and of the Azure Kinect's SDK.
 enum class DistortionModel {
-  opencv,   ///< radial (rational), tangential and thin prism, of x/z and y/z
-  fisheye,  ///< a polynomial of the angle off the axis
+  opencv,        ///< radial (rational), tangential and thin prism, of x/z and y/z
+  fisheye,       ///< a polynomial of the angle off the axis
+  rational_6kt,  ///< Azure Kinect: radial (rational) and a tangential term of its own
 };
 
 /// Words for the enumerators, in their order.
-inline constexpr std::array<std::string_view, 2> distortion_models = {"opencv", "fisheye"};
-/// "opencv", "fisheye".
+inline constexpr std::array<std::string_view, 3> distortion_models = {"opencv", "fisheye",
+                                                                      "rational-6kt"};
+/// "opencv", "fisheye", "rational-6kt".
 std::string_view name_of(DistortionModel model);
-/// @throws std::invalid_argument for any other word
-DistortionModel parse_distortion_model(std::string_view word);
 
 /// How a lens moves the image of a point away from where an ideal pinhole has it. Places are those
 /// in the plane z = 1: x/z and y/z of an ideal ray, and (u - cx) / fx, (v - cy) / fy of a pixel.
@@ -31,26 +31,35 @@ DistortionModel parse_distortion_model(std::string_view word);
 ///   opencv   x' = x R + 2 p1 x y + p2 (r^2 + 2 x^2) + s1 r^2 + s2 r^4
 ///            y' = y R + p1 (r^2 + 2 y^2) + 2 p2 x y + s3 r^2 + s4 r^4
 ///            R = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
+///   rational-6kt  as opencv without thin prism, but p1 x y for 2 p1 x y and p2 x y for 2 p2 x y
 ///   fisheye  r' = a + k1 a^3 + k2 a^5 + k3 a^7 + k4 a^9,  a = atan r, the same direction
 ///
 /// A ray belongs to a place only as far as places move outwards with their rays: where the
 /// distortion folds back, several rays would meet one place.
-/// @see OpenCV 4, modules calib3d: projectPoints() and fisheye::projectPoints()
+/// @see OpenCV 4, modules calib3d: projectPoints() and fisheye::projectPoints(); Azure Kinect
+/// Sensor
+///      SDK, src/transformation/intrinsic_transformation.c
 struct LensDistortion {
   DistortionModel model = DistortionModel::opencv;
-  /// opencv: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4]]]; fisheye: k1 k2 k3 k4. Those left out are 0.
+  /// opencv: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]; fisheye: k1 k2 k3 k4; rational-6kt:
+  /// k1 k2 p1 p2 k3 k4 k5 k6. Numbers left out are 0. The last two of opencv are the tilt of the
+  /// sensor.
   std::vector<double> coefficients;
+  /// Distance from the axis at z = 1 up to which the formulas hold; pixels beyond it see nothing.
+  /// None: as far as the distortion does not fold back.
+  std::optional<double> max_radius = {};
 
   /// Where the image of an ideal place falls.
   Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;
   /// Whose image falls there; none where the distortion folds back before, or a fisheye looks 90
-  /// degrees off the axis or more.
+  /// degrees off the axis or more, and beyond max_radius.
   std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
-  /// How much of the way from the axis to `distorted` undistort() can go, in [0, 1]; 1: all of it.
+  /// How much of the way from the axis to `distorted` undistort() can go, in [0, 1]; 1: all of it,
+  /// or to max_radius.
   double reach(const Eigen::Vector2d& distorted) const;
 
-  /// @throws std::invalid_argument naming `field`, value and rule: how many numbers there are, and
-  ///         that they are finite
+  /// @throws std::invalid_argument naming `field`, value and rule: how many numbers there are, that
+  ///         they are finite, and that the sensor is not tilted
   void validate(std::string_view field) const;
 
   friend bool operator==(const LensDistortion&, const LensDistortion&) = default;
@@ -69,6 +78,12 @@ inline void describe(FieldVisitor& fields, LensDistortion& distortion, bool has_
                    .required("[-0.3, 0.1, 0.0, 0.0]")
                    .only(has_coefficients, condition),
                distortion.coefficients);
+  fields.value(Key("distortion_max_radius",
+                   "Largest distance of rays from the optical axis at z = 1; pixels beyond it are "
+                   "invalid",
+                   above(0))
+                   .only(has_coefficients, condition),
+               distortion.max_radius);
 }
 
 }  // namespace tofsmith

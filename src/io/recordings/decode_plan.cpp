@@ -38,6 +38,11 @@ void load_map(const std::filesystem::path& path, const char* name, int height, i
   maps.*map = std::move(alone.*map);
 }
 
+/// Whether a lens may have pixels that see nothing.
+bool has_blind_pixels(const Lens& lens) {
+  return !lens.rays.empty() || (lens.distortion && lens.distortion->max_radius);
+}
+
 PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
   PixelMaps maps;
   load_map(request.offset_map, "offset", height, width, &PixelMaps::delay_offset_m, maps);
@@ -47,7 +52,7 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
     for (float& offset_m : maps.delay_offset_m.pixels)
       offset_m += static_cast<float>(request.offset_m);
   }
-  if (request.lens && !request.lens->rays.empty()) {
+  if (request.lens && has_blind_pixels(*request.lens)) {
     // A pixel that sees nothing is one that is dead.
     if (maps.delay_offset_m.empty()) maps.delay_offset_m = Image<float>(height, width, 0.0f);
     const PixelRays rays = rays_of(request.lens, view_of(request.lens, width, height));
