@@ -21,6 +21,23 @@ double share(std::int64_t part, std::int64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// The part of the sensor of an Azure Kinect that makes frames of a size.
+/// @see Azure Kinect Sensor SDK, src/transformation/mode_specific_calibration.c
+void take_azure_kinect_mode(PinholeView& view) {
+  struct Mode {
+    int width, height, binning, first_column, first_row;
+  };
+  constexpr Mode modes[] = {{640, 576, 1, 192, 180}, {320, 288, 2, 96, 90}, {512, 512, 2, 0, 0}};
+  for (const auto& [width, height, binning, first_column, first_row] : modes) {
+    if (view.width != width || view.height != height) continue;
+    view.fx_px /= binning;
+    view.fy_px /= binning;
+    // Places of pixels count from the middle of the first one.
+    view.cx_px = (view.cx_px + 0.5) / binning - 0.5 - first_column;
+    view.cy_px = (view.cy_px + 0.5) / binning - 0.5 - first_row;
+  }
+}
+
 }  // namespace
 
 PinholeView view_of(const std::optional<Lens>& lens, int width, int height) {
@@ -31,7 +48,10 @@ PinholeView view_of(const std::optional<Lens>& lens, int width, int height) {
             fmt::format("{} x {}", height, width),
             fmt::format("must be {} x {}, of which lens.height_px and lens.width_px say it is",
                         *lens->height_px, *lens->width_px));
-  return {lens->fx_px, lens->fy_px, lens->cx_px, lens->cy_px, width, height, lens->distortion};
+  PinholeView view{lens->fx_px, lens->fy_px, lens->cx_px,     lens->cy_px,
+                   width,       height,      lens->distortion};
+  if (lens->frame_modes) take_azure_kinect_mode(view);
+  return view;
 }
 
 Lens lens_of(const PinholeView& view) {

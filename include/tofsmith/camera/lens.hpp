@@ -12,6 +12,14 @@
 
 namespace tofsmith {
 
+/// Sensors whose frames are parts of their image, by the size of the frames.
+enum class FrameModes {
+  azure_kinect,  ///< 640 x 576, 320 x 288, 512 x 512 or 1024 x 1024 of a sensor of 1024 x 1024
+};
+
+/// Words for the enumerators, in their order.
+inline constexpr std::array<std::string_view, 1> frame_modes_words = {"azure-kinect"};
+
 /// Pinhole of the sensor and distortion of its lens. Required for point clouds and for conversion
 /// between z-depth and radial distance.
 struct Lens {
@@ -21,6 +29,7 @@ struct Lens {
   double cy_px = 0.0;                                ///< row of the optical axis [px]
   std::optional<LensDistortion> distortion = {};     ///< none: an ideal pinhole
   std::optional<int> width_px = {}, height_px = {};  ///< size of the images [px]; none: any
+  std::optional<FrameModes> frame_modes = {};        ///< none: frames are whole images
   /// Replaces all other members: path of an array (.npy) with the ray of each pixel, (H, W, 2) of
   /// x/z and y/z or (H, W, 3) of directions. Pixels with NaN see nothing. Empty: the pinhole.
   std::string rays = {};
@@ -28,16 +37,22 @@ struct Lens {
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
-/// Keys of [lens] that describe the pinhole. `calibration` names a file that replaces most of them;
-/// readers of documents load it.
+/// Keys of [lens] that describe the pinhole. `calibration` names a file that replaces most of them,
+/// `calibration_camera` one of its cameras; readers of documents load it.
 inline void describe(FieldVisitor& fields, Lens& lens) {
   fields.value(Key("rays", "File with the ray of each pixel (.npy), instead of a pinhole"),
                InputPath{lens.rays});
   const bool has_rays = !lens.rays.empty();
   std::string calibration;
-  fields.value(Key("calibration", "Calibration file of OpenCV or ROS, instead of the numbers")
+  fields.value(Key("calibration",
+                   "Calibration file of OpenCV, ROS, Kalibr or an Azure Kinect, instead of the "
+                   "numbers")
                    .only(!has_rays, "no rays"),
                InputPath{calibration});
+  std::optional<std::string> camera;
+  fields.value(Key("calibration_camera", "Camera of a calibration file with several cameras")
+                   .only(!calibration.empty(), "calibration"),
+               camera);
   const bool is_pinhole = !has_rays && calibration.empty();
   const std::string_view condition = has_rays ? "no rays" : "no calibration";
   fields.value(Key("fx_px", "Focal length in columns", above(0))
@@ -67,6 +82,13 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
       Key("height_px", "Height of the images; frames of another size are rejected", at_least(1))
           .only(is_pinhole, condition),
       lens.height_px);
+  Key modes("frame_modes",
+            "Sensor whose frames are parts of its image, binned or not; the pinhole is that of the "
+            "whole sensor");
+  modes.only(is_pinhole, condition);
+  fields.part(modes, lens.frame_modes, [&](FieldVisitor& inner, FrameModes& sensor) {
+    inner.choice(modes, sensor, frame_modes_words);
+  });
 }
 
 /// Blur of the image before it falls on pixels, and its sampling in simulations. Light is blurred,

@@ -62,6 +62,9 @@ std::string camera_keys_json();
 std::string camera_to_toml(const Camera& camera);
 /// A lens under the keys of a camera file, as JSON on one line.
 std::string lens_to_json(const Lens& lens);
+/// The same back, unchecked but for its keys.
+/// @throws IoError "lens:line:column: .." for a key that is missing, unknown or of another type
+Lens lens_from_json(const std::string& json);
 /// The rays of a lens's map (Lens::rays), or of the view where it has none.
 /// @throws IoError if the map cannot be read, is of another shape or type, or holds a ray that does
 ///         not go forward

@@ -9,6 +9,7 @@
 
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
+#include "io/text/field_reader.hpp"
 #include "io/text/field_writer.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -19,24 +20,23 @@ nlohmann::ordered_json lens_document(const Lens& lens) { return described_json(l
 
 std::string lens_to_json(const Lens& lens) { return lens_document(lens).dump(); }
 
-Lens lens_from_json(const JsonReader& json) {
-  if (const auto rays = json.optional_member("rays")) return {.rays = rays->text()};
-  Lens lens{.fx_px = json.member("fx_px").number(),
-            .fy_px = json.member("fy_px").number(),
-            .cx_px = json.member("cx_px").number(),
-            .cy_px = json.member("cy_px").number()};
-  if (const auto coefficients = json.optional_member("distortion")) {
-    LensDistortion& distortion = lens.distortion.emplace();
-    for (const JsonReader& number : coefficients->elements())
-      distortion.coefficients.push_back(number.number());
-    const JsonReader model = json.member("distortion_model");
-    try {
-      distortion.model = parse_distortion_model(model.text());
-    } catch (const std::invalid_argument& error) {
-      model.fail(error.what());
-    }
-  }
+Lens lens_from_json(const std::string& json) {
+  const TomlDocument document(format_toml(nlohmann::ordered_json::parse(json)), "lens");
+  TableReader::Places places;
+  TableReader table(document, places);
+  FieldReader reader(table);
+  Lens lens;
+  describe(reader, lens);
+  table.finish();
   return lens;
+}
+
+Lens lens_from_json(const JsonReader& json) {
+  try {
+    return lens_from_json(json.dump());
+  } catch (const IoError& error) {
+    json.fail(error.what());
+  }
 }
 
 nlohmann::ordered_json camera_document(const Camera& camera) {
