@@ -29,7 +29,7 @@ ImpulseResponse read_impulse_response(const std::filesystem::path& path,
 }
 
 Lens read_lens_calibration(const std::filesystem::path& path,
-                           std::optional<DistortionModel> /*model*/) {
+                           std::optional<DistortionModel> /*model*/, std::string_view /*camera*/) {
   refuse_file(path.string(), "fx_px, fy_px, cx_px and cy_px in its place");
 }
 

@@ -67,12 +67,15 @@ TEST(CameraLens, IsRefusedWithThePlaceAndTheRule) {
                 "pixel_pitch_m = 1 }",
                 "c.toml:2:78: lens.focus_distance_m = 1; must be > "
                 "lens.focal_length_m: nothing nearer is ever sharp"},
-        BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, distortion = [1, 2] }",
-                "c.toml:2:67: lens.distortion = [1, 2]; must be 4, 5, 8 or 12 numbers: k1 k2 p1 p2 "
-                "[k3 [k4 k5 k6 [s1 s2 s3 s4]]]"},
+        BadLine{
+            "lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, distortion = [1, 2] }",
+            "c.toml:2:67: lens.distortion = [1, 2]; must be 4, 5, 8, 12 or 14 numbers: k1 k2 p1 "
+            "p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]"},
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, distortion_model = \"mei\" }",
                 "c.toml:2:73: lens.distortion_model: found \"mei\"; expected one of \"opencv\", "
-                "\"fisheye\""},
+                "\"fisheye\", \"rational-6kt\""},
+        BadLine{"lens.calibration_camera = \"cam1\"",
+                "c.toml:2:27: lens.calibration_camera: is only valid with calibration"},
         BadLine{"lens.distortion = [0, 0, 0, 0]",
                 "c.toml:2:1: found no lens.fx_px; expected a line such as `fx_px = 525.0`"},
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, width_px = 4 }",

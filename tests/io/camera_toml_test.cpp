@@ -183,9 +183,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:3:1: unknown key light.peak_facter; did you mean light.peak_factor?"},
         BadLine{"[lihgt]", "c.toml:2:2: unknown key lihgt; did you mean light?"},
         BadLine{"[lens]\nzzzzzz = 1\nfx_px=1\nfy_px=1\ncx_px=1\ncy_px=1",
-                "c.toml:3:1: unknown key lens.zzzzzz; expected rays, calibration, fx_px, fy_px, "
-                "cx_px, cy_px, distortion_model, distortion, width_px, height_px, blur, "
-                "blur_sigma_px, focal_length_m, f_number, focus_distance_m, pixel_pitch_m, "
+                "c.toml:3:1: unknown key lens.zzzzzz; expected rays, calibration, "
+                "calibration_camera, fx_px, fy_px, cx_px, cy_px, distortion_model, distortion, "
+                "distortion_max_radius, width_px, height_px, frame_modes, blur, blur_sigma_px, "
+                "focal_length_m, f_number, focus_distance_m, pixel_pitch_m, "
                 "pixel_samples"},
         BadLine{"sensor.readout_gap_s = -1e-3",
                 "c.toml:2:24: sensor.readout_gap_s = -0.001; must be finite and >= 0"},

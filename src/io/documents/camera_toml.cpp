@@ -44,12 +44,13 @@ void load_response(const std::string& name, const FieldReader& reader,
 }
 
 /// Reads the calibration of the lens that the camera names, if it names one.
-void load_lens(const FieldReader& reader, std::optional<Lens>& lens) {
+void load_lens(const FieldReader& reader, const TomlDocument& document, std::optional<Lens>& lens) {
   const auto file = reader.files().find("lens.calibration");
   if (file == reader.files().end()) return;
   std::optional<DistortionModel> model;
   if (lens->distortion) model = lens->distortion->model;
-  lens = read_lens_calibration(file->second, model);
+  const auto camera = document.root().at_path("lens.calibration_camera").value_or(std::string());
+  lens = read_lens_calibration(file->second, model, camera);
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ Camera parse_camera_toml(std::string_view text, std::string_view source_name, Se
   table.finish();
   load_response("light.impulse_response", reader, places, camera.light.impulse_response);
   load_response("sensor.impulse_response", reader, places, camera.sensor.impulse_response);
-  load_lens(reader, camera.lens);
+  load_lens(reader, document, camera.lens);
   try {
     camera.validate();
   } catch (const InvalidArgument& error) {

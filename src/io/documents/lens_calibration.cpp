@@ -3,16 +3,13 @@
 #include "io/documents/lens_calibration.hpp"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <initializer_list>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/shared/text_numbers.hpp"
+#include "io/documents/calibration_file.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -20,79 +17,83 @@ namespace tofsmith {
 
 namespace {
 
-/// A calibration file, which knows its own name.
-class CalibrationFile {
- public:
-  CalibrationFile(std::string_view text, std::string_view name) : name_(name) {
-    try {
-      root_ = YAML::Load(std::string(text));
-    } catch (const YAML::Exception& error) {
-      throw IoError(place_of(error.mark), fmt::format("is no YAML: {}", error.msg));
-    }
-    if (!root_.IsMap())
-      throw IoError(name_,
-                    "found no keys; expected the YAML of a lens's calibration: "
-                    "camera_matrix and distortion_coefficients, or K and D");
-  }
+// Names of the same value in files of OpenCV and its users, of ROS and of Kalibr, as plain_key().
+using Names = std::initializer_list<std::string_view>;
+const Names matrix_names = {"cameramatrix", "intrinsicmatrix", "intrinsics", "intrinsic", "k", "m",
+                            "mtx"};
+const Names distortion_names = {"distortioncoefficients",
+                                "distortioncoeffs",
+                                "distortioncoeff",
+                                "distcoeffs",
+                                "distcoeff",
+                                "distortion",
+                                "dist",
+                                "d"};
+const Names width_names = {"imagewidth", "width"};
+const Names height_names = {"imageheight", "height"};
+const Names size_names = {"imagesize", "resolution", "size"};
 
-  /// The value of the first of these keys that is there.
-  YAML::Node find(std::initializer_list<const char*> keys) const {
-    for (const char* key : keys)
-      if (const YAML::Node value = root_[key]) return value;
-    return YAML::Node(YAML::NodeType::Undefined);
-  }
-
-  /// The numbers of a list, or of the `data` of a matrix.
-  std::vector<double> numbers(const YAML::Node& node, const std::string& key) const {
-    const YAML::Node data = node.IsMap() ? node["data"] : node;
-    if (!data || !data.IsSequence())
-      fail(node, fmt::format("{}: expected a list of numbers, or a matrix with its data", key));
-    std::vector<double> values;
-    for (const YAML::Node& entry : data) values.push_back(number(entry, key));
-    return values;
-  }
-
-  double number(const YAML::Node& node, const std::string& key) const {
-    const std::optional<double> value = node.IsScalar() ? number_in(node.Scalar()) : std::nullopt;
-    if (!value || !std::isfinite(*value))
-      fail(node, fmt::format("{}: found {}; expected a finite number", key,
-                             node.IsScalar() ? node.Scalar() : "no number"));
-    return *value;
-  }
-
-  std::optional<int> whole(std::initializer_list<const char*> keys) const {
-    const YAML::Node node = find(keys);
-    if (!node) return std::nullopt;
-    const double value = number(node, *keys.begin());
-    constexpr double largest = 1e6;
-    if (!(value >= 0.0 && value <= largest && value == std::floor(value)))
-      fail(node, fmt::format("{}: found {}; expected a whole number from 0 to {}", *keys.begin(),
-                             value, largest));
-    return static_cast<int>(value);
-  }
-
-  [[noreturn]] void fail(const YAML::Node& node, const std::string& problem) const {
-    throw IoError(place_of(node.Mark()), problem);
-  }
-  [[noreturn]] void missing(const std::string& what) const {
-    throw IoError(name_, fmt::format("found no {}", what));
-  }
-
- private:
-  std::string place_of(const YAML::Mark& mark) const {
-    return mark.is_null() ? name_ : fmt::format("{}:{}:{}", name_, mark.line + 1, mark.column + 1);
-  }
-
-  std::string name_;
-  YAML::Node root_;
+/// One camera of a file, by the name under which users select it; "" of the only one.
+struct NamedCamera {
+  std::string name;
+  CalibrationFile file;
 };
 
+std::vector<NamedCamera> cameras_in(const CalibrationFile& file) {
+  std::vector<NamedCamera> cameras;
+  for (const std::string& name : file.names_in(matrix_names))
+    cameras.push_back({name, file.camera(file.root(), name)});
+  if (!cameras.empty()) return cameras;
+  for (const auto& entry : file.root())
+    if (entry.second.IsMap())
+      if (const CalibrationFile table = file.camera(entry.second, "");
+          !table.names_in(matrix_names).empty())
+        cameras.push_back({entry.first.Scalar(), table});
+  return cameras;
+}
+
+/// @param preferred  camera of a file that has several if `name` is empty; itself empty: none
+CalibrationFile select_camera(const CalibrationFile& file, std::vector<NamedCamera> cameras,
+                              std::string_view name, std::string_view preferred = "") {
+  if (name.empty()) name = preferred;
+  std::vector<std::string> names;
+  for (const NamedCamera& camera : cameras) {
+    const bool is_only_one = name.empty() && cameras.size() == 1;
+    if (is_only_one || plain_key(camera.name) == plain_key(name)) return camera.file;
+    names.push_back(camera.name);
+  }
+  if (!name.empty())
+    file.fail(fmt::format("found no camera {}; expected {}", name,
+                          names == std::vector<std::string>{""}
+                              ? "no calibration_camera, as the file has only one camera"
+                              : fmt::format("one of {}", fmt::join(names, ", "))));
+  file.fail(fmt::format("found cameras {}; expected calibration_camera = \"{}\" or another of them",
+                        fmt::join(names, ", "), names.front()));
+}
+
+std::optional<int> whole(const CalibrationFile& file, Names names) {
+  const YAML::Node node = file.find(names);
+  return node ? std::optional(file.whole(node, *names.begin())) : std::nullopt;
+}
+
+/// Kalibr's camera_model.
+void check_pinhole(const CalibrationFile& file) {
+  if (const YAML::Node node = file.find({"cameramodel"}))
+    if (const std::string& word = node.Scalar(); word != "pinhole" && word != "fisheye")
+      file.fail(node, fmt::format("camera_model: found {}; expected pinhole; calibrate the camera "
+                                  "with that model",
+                                  word));
+}
+
+/// The nine numbers of a matrix, or Kalibr's fx fy cx cy.
 void read_matrix(const CalibrationFile& file, Lens& lens) {
-  const YAML::Node node = file.find({"camera_matrix", "Camera_Matrix", "cameraMatrix", "K", "k"});
-  if (!node) file.missing("camera_matrix, or K; expected the nine numbers of a pinhole");
-  const std::vector<double> k = file.numbers(node, "camera_matrix");
+  const YAML::Node node = file.find(matrix_names);
+  if (!node) file.fail("found no camera_matrix, or K; expected the nine numbers of a pinhole");
+  std::vector<double> k = file.numbers(node, "camera_matrix");
+  if (k.size() == 4) k = {k[0], 0.0, k[2], 0.0, k[1], k[3], 0.0, 0.0, 1.0};
   if (k.size() != 9)
-    file.fail(node, fmt::format("camera_matrix: found {} numbers; expected 9", k.size()));
+    file.fail(node,
+              fmt::format("camera_matrix: found {} numbers; expected 9, or fx fy cx cy", k.size()));
   if (!(k[0] > 0.0 && k[4] > 0.0))
     file.fail(node, fmt::format("camera_matrix: found focal lengths {} and {}; expected them > 0",
                                 k[0], k[4]));
@@ -101,55 +102,68 @@ void read_matrix(const CalibrationFile& file, Lens& lens) {
   lens.fx_px = k[0], lens.cx_px = k[2], lens.fy_px = k[4], lens.cy_px = k[5];
 }
 
-/// What the file says of its model, if anything.
+/// The model that the file states, if any. Kalibr's radtan is OpenCV's with four numbers.
 std::optional<DistortionModel> model_of(const CalibrationFile& file) {
-  if (const YAML::Node node = file.find({"distortion_model"})) {
-    const std::string word = node.IsScalar() ? node.Scalar() : "";
-    if (word == "plumb_bob" || word == "rational_polynomial" || word == "opencv")
-      return DistortionModel::opencv;
-    if (word == "equidistant" || word == "fisheye") return DistortionModel::fisheye;
+  if (const YAML::Node node = file.find({"distortionmodel"})) {
+    const std::string word = plain_key(node.Scalar());
+    for (const char* same : {"plumbbob", "rationalpolynomial", "opencv", "radtan", "none"})
+      if (word == same) return DistortionModel::opencv;
+    for (const char* same : {"equidistant", "fisheye", "equi"})
+      if (word == same) return DistortionModel::fisheye;
     if (!word.empty())
       file.fail(node, fmt::format("distortion_model: found {}; expected plumb_bob, "
-                                  "rational_polynomial, equidistant or fisheye",
-                                  word));
+                                  "rational_polynomial, radtan, equidistant, fisheye or none",
+                                  node.Scalar()));
   }
-  if (const auto is_fisheye = file.whole({"fisheye_model"}))
+  if (const auto is_fisheye = whole(file, {"fisheyemodel"}))
     return *is_fisheye > 0 ? DistortionModel::fisheye : DistortionModel::opencv;
   return std::nullopt;
 }
 
-void read_distortion(const CalibrationFile& file, std::optional<DistortionModel> model,
-                     Lens& lens) {
-  const YAML::Node node = file.find({"distortion_coefficients", "Distortion_Coefficients",
-                                     "dist_coeffs", "distCoeffs", "D", "d"});
-  if (!node) file.missing("distortion_coefficients, or D; expected OpenCV's numbers, 0 for none");
-  LensDistortion distortion{model_of(file).value_or(model.value_or(DistortionModel::opencv)),
-                            file.numbers(node, "distortion_coefficients")};
-  std::vector<double>& c = distortion.coefficients;
-  constexpr std::size_t with_tilt = 14;
-  if (c.size() == with_tilt && distortion.model == DistortionModel::opencv) {
-    if (c[12] != 0.0 || c[13] != 0.0)
-      file.fail(node, fmt::format("distortion_coefficients: found a sensor tilted by {} and {}; "
-                                  "expected the first twelve numbers alone, or 0 there",
-                                  c[12], c[13]));
-    c.resize(12);
-  }
-  const bool is_none = std::all_of(c.begin(), c.end(), [](double number) { return number == 0.0; });
-  if (is_none && distortion.model == DistortionModel::opencv) return;
+void check(const CalibrationFile& file, const YAML::Node& node, const LensDistortion& distortion) {
   try {
     distortion.validate("distortion_coefficients");
   } catch (const std::invalid_argument& error) {
     file.fail(node, error.what());
   }
+}
+
+void read_distortion(const CalibrationFile& file, std::optional<DistortionModel> model,
+                     Lens& lens) {
+  const YAML::Node node = file.find(distortion_names);
+  if (!node) {
+    if (const YAML::Node stated = file.find({"distortionmodel"});
+        stated && stated.Scalar() == "none")
+      return;
+    file.fail("found no distortion_coefficients, or D; expected OpenCV's numbers, 0 for none");
+  }
+  LensDistortion distortion{model_of(file).value_or(model.value_or(DistortionModel::opencv)),
+                            file.numbers(node, "distortion_coefficients")};
+  const std::vector<double>& c = distortion.coefficients;
+  const bool is_none = std::all_of(c.begin(), c.end(), [](double number) { return number == 0.0; });
+  if (is_none && distortion.model == DistortionModel::opencv) return;
+  check(file, node, distortion);
   lens.distortion = std::move(distortion);
+}
+
+/// Width and height; ROS writes 0 where it does not know them.
+void read_size(const CalibrationFile& file, Lens& lens) {
+  lens.width_px = whole(file, width_names);
+  lens.height_px = whole(file, height_names);
+  const YAML::Node size = file.find(size_names);
+  if (size && size.IsSequence() && size.size() == 2) {
+    lens.width_px = file.whole(size[0], "image_size");
+    lens.height_px = file.whole(size[1], "image_size");
+  }
+  if (lens.width_px.value_or(0) == 0 || lens.height_px.value_or(0) == 0)
+    lens.width_px = lens.height_px = std::nullopt;
 }
 
 /// Pixels of calibrations are those of whole images.
 void check_whole_images(const CalibrationFile& file) {
   for (const char* key : {"binning_x", "binning_y"})
-    if (file.whole({key}).value_or(0) > 1)
-      file.fail(file.find({key}),
-                fmt::format("{}: expected at most 1: images that are not binned", key));
+    if (const YAML::Node node = file.find({plain_key(key)}); node && file.whole(node, key) > 1)
+      file.fail(node, fmt::format("{}: expected at most 1: images that are not binned", key));
   const YAML::Node part = file.find({"roi"});
   if (!part || !part.IsMap()) return;
   for (const char* key : {"x_offset", "y_offset"})
@@ -157,27 +171,94 @@ void check_whole_images(const CalibrationFile& file) {
       file.fail(offset, fmt::format("roi.{}: expected 0: images that are not cut", key));
 }
 
-}  // namespace
+/// The cameras of an Azure Kinect by the ends of their places: D0, the depth camera, and PV0.
+std::vector<NamedCamera> azure_kinect_cameras(const CalibrationFile& file, const YAML::Node& list) {
+  std::vector<NamedCamera> cameras;
+  for (const YAML::Node& camera : list) {
+    if (!camera.IsMap() || !camera["Location"]) continue;
+    const std::string place = camera["Location"].Scalar();
+    constexpr std::string_view start = "CALIBRATION_CameraLocation";
+    cameras.push_back(
+        {place.substr(place.starts_with(start) ? start.size() : 0), file.camera(camera, "")});
+  }
+  return cameras;
+}
 
-Lens parse_lens_calibration(std::string_view text, std::string_view source_name,
-                            std::optional<DistortionModel> model) {
-  const CalibrationFile file(text, source_name);
-  Lens lens;
-  read_matrix(file, lens);
-  read_distortion(file, model, lens);
-  check_whole_images(file);
-  lens.width_px = file.whole({"image_width", "image_Width", "width"});
-  lens.height_px = file.whole({"image_height", "image_Height", "height"});
-  // ROS writes 0 where it does not know.
-  if (lens.width_px.value_or(0) == 0 || lens.height_px.value_or(0) == 0)
-    lens.width_px = lens.height_px = std::nullopt;
+/// The value of a key that must be there.
+YAML::Node required(const CalibrationFile& file, const YAML::Node& table, const char* key) {
+  if (!table.IsMap() || !table[key])
+    file.fail(table, fmt::format("found no {}; expected the calibration of an Azure Kinect", key));
+  return table[key];
+}
+
+/// The factory calibration of an Azure Kinect: lengths are in widths and heights of the sensor,
+/// from its corner. @see Azure Kinect Sensor SDK, src/calibration/calibration.c
+Lens read_azure_kinect(const CalibrationFile& file) {
+  const YAML::Node intrinsics = required(file, file.root(), "Intrinsics");
+  const YAML::Node list = required(file, intrinsics, "ModelParameters");
+  const YAML::Node type = required(file, intrinsics, "ModelType");
+  const std::vector<double> p = file.numbers(list, "ModelParameters");
+  if (p.size() < 14)
+    file.fail(list, fmt::format("ModelParameters: found {} numbers; expected 14", p.size()));
+  const bool is_brown = type.Scalar().ends_with("BrownConrady");
+  if (!is_brown && !type.Scalar().ends_with("Rational6KT"))
+    file.fail(type, fmt::format("ModelType: found {}; expected BrownConrady or Rational6KT",
+                                type.Scalar()));
+  if (p[10] != 0.0 || p[11] != 0.0)
+    file.fail(list, fmt::format("ModelParameters: found a centre of distortion of ({}, {}); "
+                                "expected (0, 0), the optical axis",
+                                p[10], p[11]));
+  const int width = file.whole(required(file, file.root(), "SensorWidth"), "SensorWidth");
+  const int height = file.whole(required(file, file.root(), "SensorHeight"), "SensorHeight");
+  Lens lens{.fx_px = p[2] * width,
+            .fy_px = p[3] * height,
+            .cx_px = p[0] * width - 0.5,
+            .cy_px = p[1] * height - 0.5};
+  if (!(lens.fx_px > 0.0 && lens.fy_px > 0.0))
+    file.fail(list, fmt::format("ModelParameters: found focal lengths {} and {} px; expected them "
+                                "> 0",
+                                lens.fx_px, lens.fy_px));
+  lens.distortion =
+      LensDistortion{is_brown ? DistortionModel::opencv : DistortionModel::rational_6kt,
+                     {p[4], p[5], p[13], p[12], p[6], p[7], p[8], p[9]}};
+  check(file, list, *lens.distortion);
+  const YAML::Node radius = file.find({"metricradius"});
+  const double found = radius ? file.number(radius, "MetricRadius") : 0.0;
+  constexpr double not_found = 1e-4, default_radius = 1.7;  // as in the SDK
+  lens.distortion->max_radius = found > not_found ? found : default_radius;
+  if (width == 1024 && height == 1024)
+    lens.frame_modes = FrameModes::azure_kinect;
+  else
+    lens.width_px = width, lens.height_px = height;
   return lens;
 }
 
-Lens read_lens_calibration(const std::filesystem::path& path,
-                           std::optional<DistortionModel> model) {
-  return parse_lens_calibration(read_text_file(path, max_settings_file_bytes), path.string(),
-                                model);
+}  // namespace
+
+Lens parse_lens_calibration(std::string_view text, std::string_view source_name,
+                            std::optional<DistortionModel> model, std::string_view camera) {
+  const CalibrationFile document(text, source_name);
+  if (const YAML::Node device = document.root()["CalibrationInformation"]) {
+    const YAML::Node list = required(document, device, "Cameras");
+    return read_azure_kinect(
+        select_camera(document, azure_kinect_cameras(document, list), camera, "D0"));
+  }
+  const std::vector<NamedCamera> cameras = cameras_in(document);
+  const CalibrationFile file =
+      cameras.empty() ? document : select_camera(document, cameras, camera);
+  Lens lens;
+  check_pinhole(file);
+  read_matrix(file, lens);
+  read_distortion(file, model, lens);
+  check_whole_images(file);
+  read_size(file, lens);
+  return lens;
+}
+
+Lens read_lens_calibration(const std::filesystem::path& path, std::optional<DistortionModel> model,
+                           std::string_view camera) {
+  return parse_lens_calibration(read_text_file(path, max_settings_file_bytes), path.string(), model,
+                                camera);
 }
 
 }  // namespace tofsmith

@@ -10,20 +10,26 @@
 
 namespace tofsmith {
 
-/// The lens that a calibration found: of OpenCV's FileStorage in YAML (`camera_matrix`,
-/// `distortion_coefficients`, `fisheye_model`, `image_width`, `image_height`, as its calibration
-/// sample writes them), or of ROS, a camera's file or a camera_info message (`K`, `D`,
-/// `distortion_model` plumb_bob, rational_polynomial, equidistant or fisheye, `width`, `height`).
-/// A distortion that is 0 throughout is none.
-/// @param source_name  path of the file, or what errors shall call it
-/// @param model        of files that say none, where four numbers may be either; none: opencv
-/// @throws IoError "file:line:column: .." for what is no YAML, what is missing, skewed pixels,
-/// tilted
-///         sensors, images that are binned or cut, and numbers that are none
+/// Returns the lens of a calibration file:
+/// - OpenCV's FileStorage as YAML, XML or JSON: `camera_matrix`, `distortion_coefficients`,
+///   `fisheye_model`, `image_width`, `image_height` and other spellings of these names,
+/// - ROS, a camera's file or a camera_info message: `K`, `D`, `distortion_model`, `width`,
+/// `height`,
+/// - Kalibr's camchain: `intrinsics`, `distortion_coeffs`, `distortion_model`, `resolution`,
+/// - the factory calibration of an Azure Kinect (JSON).
+/// There is no distortion if all its numbers are 0.
+/// @param source_name  path of the file, or its name in errors
+/// @param model        of files without one, in which four numbers are ambiguous; none: opencv
+/// @param camera       one of several cameras, such as "cam1", or "2" of cameraMatrix2; empty: the
+///                     only one, or the depth camera of an Azure Kinect
+/// @throws IoError "file:line:column: .." for syntax errors, missing values, several cameras,
+/// skewed
+///         pixels, tilted sensors, other models, and images that are binned or cut
 Lens parse_lens_calibration(std::string_view text, std::string_view source_name,
-                            std::optional<DistortionModel> model = {});
+                            std::optional<DistortionModel> model = {},
+                            std::string_view camera = {});
 /// The same of a file. @throws IoError, also if it cannot be read
 Lens read_lens_calibration(const std::filesystem::path& path,
-                           std::optional<DistortionModel> model = {});
+                           std::optional<DistortionModel> model = {}, std::string_view camera = {});
 
 }  // namespace tofsmith
