@@ -127,6 +127,8 @@ def load_scene(
 def lens_dict(lens: Lens) -> dict[str, Any]:
     """A lens under the keys of a camera file."""
     _check.instance(lens, Lens, "lens")
+    if lens.rays:  # in place of all other keys
+        return {"rays": lens.rays}
     keys = {key: getattr(lens, key) for key in lens.__dataclass_fields__}
     return {key: value for key, value in keys.items() if value is not None}
 

@@ -135,16 +135,26 @@ struct Followed {
   double reach;  ///< share of the way
 };
 
+/// Returns true if a place lies beyond the largest radius of a lens, if it has one.
+template <typename Formula>
+bool is_beyond(const Formula& formula, const Vector2d& place, std::optional<double> max_radius) {
+  if (!max_radius) return false;
+  const auto ideal = formula.ideal_of(place);
+  return !ideal || ideal->norm() > *max_radius;
+}
+
 /// Goes from the axis straight to an image and takes the place along, so that it stays on the first
 /// fold. @param first_step  share of the way; steps get as short as the way bends
 template <typename Formula>
-Followed follow(const Formula& formula, const Vector2d& image, double first_step) {
+Followed follow(const Formula& formula, const Vector2d& image, double first_step,
+                std::optional<double> max_radius) {
   constexpr double shortest_step = 1e-6;
   Followed way{Vector2d::Zero(), 0.0};
   for (double step = first_step; way.reach < 1.0;) {
     const double next = std::min(1.0, way.reach + step);
     if (const auto place = next_place(formula, way.place, next * image)) {
       way = {*place, next};
+      if (is_beyond(formula, *place, max_radius)) break;
       step = std::min(2.0 * step, first_step);
     } else {
       step *= 0.5;
@@ -166,19 +176,18 @@ Vector2d LensDistortion::distort(const Vector2d& ideal) const {
 
 std::optional<Vector2d> LensDistortion::undistort(const Vector2d& distorted) const {
   return with_formula(*this, [&](const auto& formula) -> std::optional<Vector2d> {
-    const Followed way = follow(formula, distorted, 1.0);
-    const auto ideal = way.reach < 1.0 ? std::nullopt : formula.ideal_of(way.place);
-    return ideal && max_radius && ideal->norm() > *max_radius ? std::nullopt : ideal;
+    const Followed way = follow(formula, distorted, 1.0, max_radius);
+    const bool is_seen = way.reach >= 1.0 && !is_beyond(formula, way.place, max_radius);
+    return is_seen ? formula.ideal_of(way.place) : std::nullopt;
   });
 }
 
 double LensDistortion::reach(const Vector2d& distorted) const {
   constexpr double careful_step = 0.125;
   return with_formula(*this, [&](const auto& formula) {
-    const Followed way = follow(formula, distorted, careful_step);
-    const auto ideal = formula.ideal_of(way.place);
-    if (max_radius && (!ideal || ideal->norm() >= *max_radius)) return 1.0;
-    if (ideal) return way.reach;
+    const Followed way = follow(formula, distorted, careful_step, max_radius);
+    if (is_beyond(formula, way.place, max_radius)) return 1.0;
+    if (formula.ideal_of(way.place)) return way.reach;
     // A fisheye's right angle, which one image in that direction is at.
     const Vector2d edge = (0.5 * std::numbers::pi / way.place.norm()) * way.place;
     return std::min(way.reach, formula(edge).image.norm() / distorted.norm());

@@ -95,6 +95,16 @@ const char* const ros_yaml =
     "D: [0.42, -2.6, 0.0006, -0.0002, 1.5, 0.31, -2.4, 1.42]\n"
     "K: [225.0, 0.0, 160.5, 0.0, 226.0, 118.0, 0.0, 0.0, 1.0]\nbinning_x: 0\n"
     "roi: {x_offset: 0, y_offset: 0, height: 0, width: 0, do_rectify: false}\n";
+const char* const opencv_xml =
+    "<?xml version=\"1.0\"?>\n<opencv_storage>\n<K><rows>3</rows><data>\n"
+    "60. 0. 39.5 0. 61. 29.5 0. 0. 1.</data></K>\n<D>0 0 0 0 <!-- none --></D>\n</opencv_storage>";
+const char* const kalibr_yaml =
+    "cam0:\n  camera_model: pinhole\n  distortion_coeffs: [-0.1, 0.02, 0.001, -0.002]\n"
+    "  distortion_model: radtan\n  intrinsics: [60, 61, 39.5, 29.5]\n  resolution: [80, 60]\n";
+const char* const azure_kinect_json =
+    "{\"CalibrationInformation\":{\"Cameras\":[{\"Intrinsics\":{\"ModelParameters\":"
+    "[0.5,0.51,0.49,0.48,0.9,0.5,0.03,1.3,0.8,0.1,0,0,2e-4,-3e-4],\"ModelType\":\"BrownConrady\"},"
+    "\"Location\":\"D0\",\"MetricRadius\":1.7,\"SensorHeight\":6,\"SensorWidth\":8}]}}";
 const char* const scene_toml =
     "[view]\nwidth = 4\nheight = 3\nfield_of_view_deg = 60\n[[plane]]\n"
     "point_m = [0, 0, 2]\nnormal = [0, 0, -1]\nalbedo = 0.5\n[[sphere]]\n"
@@ -118,7 +128,8 @@ std::vector<Reader> text_readers() {
           {"raw-toml", [](Input bytes) { parse_raw_format(text_of(bytes)); },
            [] { return built_in(&built_in_raw_format_names, &built_in_raw_format_toml); }},
           {"lens", [](Input bytes) { parse_lens_calibration(text_of(bytes), "lens.yaml"); },
-           seeds({bytes_of(opencv_yaml), bytes_of(ros_yaml)})},
+           seeds({bytes_of(opencv_yaml), bytes_of(ros_yaml), bytes_of(opencv_xml),
+                  bytes_of(kalibr_yaml), bytes_of(azure_kinect_json)})},
           {"code-json", [](Input bytes) { parse_code_json(text_of(bytes)); },
            [] {
              return std::vector<Bytes>{bytes_of(code_to_json(small_code("hamiltonian-k3"))),

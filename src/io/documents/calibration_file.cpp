@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// What keys are called that name a camera: cameraMatrix1, D_cam0, left_camera_matrix.
+/// Returns true for the name of a camera in a key: cameraMatrix1, D_cam0, left_camera_matrix.
 bool names_a_camera(std::string_view part) {
   constexpr std::array<std::string_view, 7> words = {"left",  "right",  "depth", "ir",
                                                      "color", "colour", "rgb"};
@@ -36,7 +36,7 @@ std::optional<std::string> name_beside(std::string_view key, std::string_view ba
   return std::nullopt;
 }
 
-/// What YAML::Load() cannot read of what OpenCV and others write, replaced by as many characters.
+/// Replaces what OpenCV and others write and YAML::Load() does not read; lines stay the same.
 std::string readable(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark
   while (text.ends_with('\0')) text.remove_suffix(1);  // as an Azure Kinect's calibration ends

@@ -82,7 +82,7 @@ class StorageXml {
   }
 
  private:
-  /// The text between `<` here and the next `end`, after which reading goes on.
+  /// Returns the text between `<` here and the next `end`, and moves behind that.
   std::string_view until(std::string_view end) {
     const std::size_t found = text_.find(end, at_);
     if (found == std::string_view::npos) fail(fmt::format("found <; expected {} after it", end));

@@ -38,7 +38,7 @@ void load_map(const std::filesystem::path& path, const char* name, int height, i
   maps.*map = std::move(alone.*map);
 }
 
-/// Whether a lens may have pixels that see nothing.
+/// Returns true if some pixels of a lens may see nothing.
 bool has_blind_pixels(const Lens& lens) {
   return !lens.rays.empty() || (lens.distortion && lens.distortion->max_radius);
 }
