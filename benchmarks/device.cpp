@@ -67,10 +67,11 @@ std::int64_t differences(const std::vector<Value>& a, const std::vector<Value>& 
 /// Tells how many bins, statuses and bits of other planes differ.
 void tell_differences(const Planes& a, const Planes& b) {
   std::int64_t floats = 0;
-  for (const auto plane :
-       {&DepthImage::depth_m, &DepthImage::signal_e_per_s, &DepthImage::ambient_e_per_s,
-        &DepthImage::confidence, &DepthImage::predicted_standard_deviation_m})
-    floats += differences((a.image.*plane).pixels, (b.image.*plane).pixels);
+  for_each_plane(
+      [&]<typename Value>(const Image<Value>& one, const Image<Value>& other) {
+        if constexpr (std::is_same_v<Value, float>) floats += differences(one.pixels, other.pixels);
+      },
+      a.image, b.image);
   fmt::print(
       "{:<16} of {} pixels {} bins, {} statuses and {} floats differ (asked: 0, 0, none by "
       "2e-6)\n",

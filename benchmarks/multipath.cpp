@@ -47,7 +47,7 @@ void run() {
   const Decoder single(table);
   const TwoReturnDecoder two(table);
   const TailDecoder tail(table);
-  MultipathImage image(1, pixels);
+  DepthImage image(1, pixels), image_of_two(usual_planes(true), 1, pixels);
   const ThreadLimit one_core(1);
   AskedFigures asked;
   fmt::print("{:>22}{:>16}{:>16}{:>16}{:>12}{:>16}\n", "pixels of two returns", "single (us/px)",
@@ -56,9 +56,9 @@ void run() {
   for (const double share : {0.0, 0.1, 1.0}) {
     const std::vector<float> raw = frame(table, share);
     const RawView view = RawView::interleaved(raw.data(), 1, pixels, table.measurements());
-    const Turns turns({{pixels, [&] { single.decode(view, DecodedView::of(image.direct)); }},
-                       {pixels, [&] { two.decode(view, image.view()); }},
-                       {pixels, [&] { tail.decode(view, image.view()); }}},
+    const Turns turns({{pixels, [&] { single.decode(view, DecodedView::of(image)); }},
+                       {pixels, [&] { two.decode(view, DecodedView::of(image_of_two)); }},
+                       {pixels, [&] { tail.decode(view, DecodedView::of(image_of_two)); }}},
                       7);
     if (share == 0.0) none_s = turns.min_s(1);
     const double per_two_us = share > 0.0 ? 1e6 * (turns.min_s(1) - none_s) / share : 0.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "decode_frame.hpp"
@@ -27,14 +28,13 @@ inline void read_and_write(const std::vector<float>& raw, int measurements,
       seen |= bits;
     }
     const auto value = static_cast<std::int32_t>(seen >> 9);
-    const auto fill = [&](auto* plane, auto written) {
-      if (plane != nullptr) std::fill_n(plane + first, count, written);
-    };
-    fill(planes.bin, value);
-    for (float* plane : {planes.depth_m, planes.signal_e_per_s, planes.ambient_e_per_s,
-                         planes.confidence, planes.predicted_standard_deviation_m})
-      fill(plane, static_cast<float>(value));
-    fill(planes.status, static_cast<PixelStatus>(value & 1));
+    for_each_plane(
+        [&]<typename Value>(Value* plane) {
+          if (plane != nullptr)
+            std::fill_n(plane + first, count,
+                        static_cast<Value>(std::is_enum_v<Value> ? value & 1 : value));
+        },
+        planes);
     asm volatile("" ::: "memory");
   }
 }

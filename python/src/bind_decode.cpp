@@ -47,28 +47,21 @@ std::unique_ptr<FrameBackend> backend_of(const DecodingTable& table, const py::d
 class Planes {
  public:
   Planes(const py::dict& arrays, const RawArray& raw) : shape_(raw.plane_shape()) {
-    take(arrays, "bin", view_.bin);
-    take(arrays, "depth_m", view_.depth_m);
-    take(arrays, "signal_e_per_s", view_.signal_e_per_s);
-    take(arrays, "ambient_e_per_s", view_.ambient_e_per_s);
-    take(arrays, "confidence", view_.confidence);
-    take(arrays, "predicted_standard_deviation_m", view_.predicted_standard_deviation_m);
-    take(arrays, "status", view_.status);
-    take(arrays, "residual", view_.residual);
-    take(arrays, "delay_m", view_.delay_m);
-    take(arrays, "ratio", view_.ratio);
-    take(arrays, "returns", view_.returns);
+    for (const PlaneDescription& described : plane_descriptions)
+      with_plane(
+          described.plane, [&](auto*& plane) { take(arrays, described.member, plane); }, view_);
   }
   const DecodedView& view() const { return view_; }
 
  private:
   template <typename Item>
-  void take(const py::dict& arrays, const char* name, Item*& plane) {
+  void take(const py::dict& arrays, std::string_view member, Item*& plane) {
+    const std::string name(member);
     if (!arrays.contains(name)) return;
     using Stored = std::conditional_t<std::is_enum_v<Item>, std::uint8_t, Item>;
     const py::dtype needs = py::dtype::of<Stored>();
-    const std::string argument = std::string("out.") + name;
-    const py::array array = arrays[name];
+    const std::string argument = "out." + name;
+    const py::array array = arrays[py::str(name)];
     if (!array.dtype().is(needs) && !array.dtype().equal(needs))
       refuse(argument, "dtype " + std::string(py::str(static_cast<py::handle>(array.dtype()))),
              std::string(py::str(static_cast<py::handle>(needs))));
@@ -107,7 +100,7 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
     const ProgressParts parts(progress, raw.frames.size());
     const std::unique_ptr<FramePipeline> pipeline =
         backend.prepare({.filter = filter ? &filter->filter() : nullptr,
-                         .keeps_filtered = corrections.mixed.has_value()},
+                         .keeps_filtered = corrections.mixed || planes.view().averaged},
                         raw.height, raw.width);
     std::vector<float> signal;  // where the correction alone needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
@@ -297,11 +290,6 @@ void bind_decode(py::module_& module) {
   module.def("mixed_pixels", [] {
     std::vector<std::string> names;
     for (const MixedPixels mixed : all_mixed_pixels) names.emplace_back(name_of(mixed));
-    return names;
-  });
-  module.def("decoded_planes", [] {
-    std::vector<std::string> names;
-    for (const DecodedPlane plane : all_decoded_planes) names.emplace_back(name_of(plane));
     return names;
   });
   module.def("pixel_statuses", [] {

@@ -66,23 +66,10 @@ std::size_t read_some(const py::object& source, std::span<std::byte> into) {
   return found.size();
 }
 
-template <typename Item>
-py::array array_of(std::span<const std::byte> bytes, int height, int width) {
-  py::array_t<Item> array({height, width});
+py::array array_of(DecodedPlane plane, std::span<const std::byte> bytes, int height, int width) {
+  py::array array(py::dtype(std::string(name_of(type_of(plane)))), {height, width});
   std::memcpy(array.mutable_data(), bytes.data(), bytes.size());
   return array;
-}
-
-py::array array_of(DecodedPlane plane, std::span<const std::byte> bytes, int height, int width) {
-  switch (plane) {
-    case DecodedPlane::status:
-    case DecodedPlane::returns:
-      return array_of<std::uint8_t>(bytes, height, width);
-    case DecodedPlane::bin:
-      return array_of<std::int32_t>(bytes, height, width);
-    default:
-      return array_of<float>(bytes, height, width);
-  }
 }
 
 }  // namespace

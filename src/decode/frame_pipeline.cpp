@@ -81,10 +81,20 @@ class CpuBackend final : public FrameBackend {
   std::unique_ptr<const DepthDecoder> decoder_;
 };
 
+/// Writes the number of measurements that each decoded pixel averages.
+void keep_averaged(const RawView& raw, float* averaged) {
+  if (raw.averaged)
+    std::copy_n(raw.averaged, raw.pixels(), averaged);
+  else
+    std::fill_n(averaged, raw.pixels(), 1.0f);
+}
+
 /// Filters and decodes once, and corrects the planes.
 void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, std::size_t first,
-                 std::size_t pixels, const DecodedView& decoded, const UnfilteredPixels& unfiltered,
+                 std::size_t pixels, const DecodedView& wanted, const UnfilteredPixels& unfiltered,
                  const Progress& progress) {
+  DecodedView decoded = wanted;
+  decoded.averaged = nullptr;  // written below
   pipeline.decode(decoded, progress, unfiltered.mixed);
   const DecodingTable& table = pipeline.table();
   if (table.correction)
@@ -94,6 +104,7 @@ void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, s
   if (corrections.mixed)
     mark_mixed_pixels(table, pipeline.numbers(), *corrections.mixed, decoded, corrections.maps, {},
                       unfiltered);
+  if (wanted.averaged) keep_averaged(pipeline.numbers(), wanted.averaged);
 }
 
 }  // namespace

@@ -163,31 +163,19 @@ std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes
 void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
                                              const std::vector<std::int32_t>& open,
                                              const DecodedView& decoded) const {
-  const std::size_t count = open.size();
-  DepthImage image(1, static_cast<int>(count));
-  std::vector<std::int32_t> bin(count);
-  image.residual = image.depth_m;
-  DecodedView here = DecodedView::of(image);
-  here.bin = bin.data();
-  const auto only_wanted = [](auto*& from, const auto* to) {
-    if (!to) from = nullptr;
-  };
-  const auto for_each_plane = [&](const auto& use) {
-    use(here.bin, decoded.bin);
-    use(here.depth_m, decoded.depth_m);
-    use(here.signal_e_per_s, decoded.signal_e_per_s);
-    use(here.ambient_e_per_s, decoded.ambient_e_per_s);
-    use(here.confidence, decoded.confidence);
-    use(here.predicted_standard_deviation_m, decoded.predicted_standard_deviation_m);
-    use(here.status, decoded.status);
-    use(here.residual, decoded.residual);
-  };
-  for_each_plane(only_wanted);
-  decoder.decode(numbers, here);
-  for_each_plane([&](const auto* from, auto* to) {
-    if (to)
-      for (std::size_t i = 0; i < count; ++i) to[open[i]] = from[i];
-  });
+  std::vector<DecodedPlane> wanted;
+  for (const PlaneDescription& described : plane_descriptions)
+    if (with_plane(
+            described.plane, [](const auto* plane) { return plane != nullptr; }, decoded))
+      wanted.push_back(described.plane);
+  DepthImage image(wanted, 1, static_cast<int>(open.size()));
+  decoder.decode(numbers, DecodedView::of(image));
+  for_each_plane(
+      [&](const auto& from, auto* to) {
+        if (to)
+          for (std::size_t i = 0; i < open.size(); ++i) to[open[i]] = from.pixels[i];
+      },
+      image, decoded);
 }
 
 DeviceDecoder::DeviceDecoder(const Device& device, const Decoder& decoder,

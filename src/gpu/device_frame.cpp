@@ -181,7 +181,8 @@ void DeviceFrame::find_depth(int from) {
   float wanted = 0.0f;  // nothing is fetched
   tile_.decode({.depth_m = &wanted, .predicted_standard_deviation_m = &wanted});
   decide_open_pixels();
-  run(take_depth_, parameters_, tile_.depth(), tile_.deviation(), &planes_);
+  run(take_depth_, parameters_, tile_.plane(DecodedPlane::depth),
+      tile_.plane(DecodedPlane::deviation), &planes_);
 }
 
 /// What single precision does not prove, the decoder decides here.

@@ -2,9 +2,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/device_tile.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 namespace tofsmith {
+
+namespace {
+
+/// True if the kernel write_planes fills the plane; bins come from the kernel match.
+constexpr bool is_written(const PlaneDescription& described) {
+  return described.is_of_every_decoder() && described.plane != DecodedPlane::bin;
+}
+
+/// Planes in the order of the arguments of write_planes.
+constexpr auto written_planes = [] {
+  std::array<DecodedPlane, std::ranges::count_if(plane_descriptions, is_written)> planes;
+  std::size_t count = 0;
+  for (const PlaneDescription& described : plane_descriptions)
+    if (is_written(described)) planes[count++] = described.plane;
+  return planes;
+}();
+
+}  // namespace
 
 OpenNumbers::OpenNumbers(std::vector<float> numbers, int measurements, const NoiseRatios& noise)
     : measurements_(measurements), noise_(noise), numbers_(std::move(numbers)) {
@@ -39,8 +60,8 @@ DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_do
 }
 
 std::int64_t DeviceTile::bytes_per_pixel() const {
-  constexpr std::int64_t words = 11;  // averaged, bins, open ones, planes
-  return 4 * (outputs_.records().layout.measurements + words);
+  constexpr std::int64_t words = 4;  // averaged, bins, open ones
+  return 4 * (outputs_.records().layout.measurements + words + std::ssize(written_planes));
 }
 
 const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, const NoiseRatios& noise) {
@@ -73,12 +94,20 @@ void DeviceTile::decode(const DecodedView& wanted) {
   parameters.finds_residual = outputs_.needs_residuals(wanted) ? 1 : 0;
   parameters.lobe_noise = raw_.noise().of_lobes;
   parameters.residual_noise = raw_.noise().of_residual;
-  queue_.run(write_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
-             raw_.averaged(), &bins_, &opened_, &open_, room_for(wanted.depth_m, depth_),
-             room_for(wanted.signal_e_per_s, signal_), room_for(wanted.ambient_e_per_s, ambient_),
-             room_for(wanted.confidence, confidence_),
-             room_for(wanted.predicted_standard_deviation_m, deviation_),
-             room_for(wanted.status, status_), room_for(wanted.residual, residual_));
+  std::apply(
+      [&](auto... planes) {
+        queue_.run(write_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
+                   raw_.averaged(), &bins_, &opened_, &open_, room_for(planes, wanted)...);
+      },
+      written_planes);
+}
+
+/// Null for a plane that is not wanted.
+const DeviceMemory* DeviceTile::room_for(DecodedPlane plane, const DecodedView& wanted) {
+  const std::size_t bytes = with_plane(
+      plane, [](const auto* values) { return values ? sizeof(*values) : 0; }, wanted);
+  DeviceMemory& memory = planes_[static_cast<std::size_t>(plane)];
+  return bytes > 0 ? room(memory, raw_.tile().pixels * static_cast<std::int64_t>(bytes)) : nullptr;
 }
 
 void DeviceTile::fetch(const DecodedView& to) const {
@@ -90,20 +119,16 @@ void DeviceTile::fetch(const DecodedView& to) const {
   fetch_plane(has_best_bins ? best_bins_ : bins_, to.bin);
   if (to.bin)
     for (std::int64_t i = 0; i < raw_.tile().pixels; ++i) to.bin[i] = nearest_bin(to.bin[i]);
-  fetch_plane(depth_, to.depth_m);
-  fetch_plane(signal_, to.signal_e_per_s);
-  fetch_plane(ambient_, to.ambient_e_per_s);
-  fetch_plane(confidence_, to.confidence);
-  fetch_plane(deviation_, to.predicted_standard_deviation_m);
-  fetch_plane(status_, to.status);
-  fetch_plane(residual_, to.residual);
+  for (const DecodedPlane written : written_planes)
+    with_plane(
+        written, [&](auto* values) { fetch_plane(*plane(written), values); }, to);
 }
 
 void DeviceTile::release() {
   raw_.release();
-  for (DeviceMemory* memory : {&bins_, &best_bins_, &open_, &some_numbers_, &depth_, &signal_,
-                               &ambient_, &confidence_, &deviation_, &status_, &residual_})
+  for (DeviceMemory* memory : {&bins_, &best_bins_, &open_, &some_numbers_})
     *memory = DeviceMemory();
+  planes_ = {};
 }
 
 std::vector<std::int32_t> DeviceTile::open_pixels() const {
@@ -135,8 +160,8 @@ void DeviceTile::put_depth(const std::vector<std::int32_t>& open, const std::vec
     queue_.run(scatter_, std::ssize(open), &open_, static_cast<std::int32_t>(open.size()), some,
                plane);
   };
-  put(depth_m, &depth_);
-  put(deviation_m, &deviation_);
+  put(depth_m, plane(DecodedPlane::depth));
+  put(deviation_m, plane(DecodedPlane::deviation));
 }
 
 }  // namespace tofsmith

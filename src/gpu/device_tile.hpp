@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -58,17 +60,15 @@ class DeviceTile {
 
   const DeviceQueue& queue() const { return queue_; }
   const DeviceRaw& raw() const { return raw_; }
-  const DeviceMemory* depth() const { return &depth_; }
-  const DeviceMemory* deviation() const { return &deviation_; }
+  const DeviceMemory* plane(DecodedPlane plane) const {
+    return &planes_[static_cast<std::size_t>(plane)];
+  }
 
  private:
   DeviceMemory* room(DeviceMemory& memory, std::int64_t bytes) const {
     return reserve(queue_, memory, bytes);
   }
-  template <typename Value>
-  DeviceMemory* room_for(const Value* plane, DeviceMemory& memory) const {
-    return plane ? room(memory, raw_.tile().pixels * std::int64_t{sizeof(Value)}) : nullptr;
-  }
+  const DeviceMemory* room_for(DecodedPlane plane, const DecodedView& wanted);
   void start_list_of_open();
   void find_bins(const MatchParameters& parameters, const DeviceMemory& bins) const;
 
@@ -84,7 +84,7 @@ class DeviceTile {
   DeviceMemory words_;  // of the tables
   DeviceRaw raw_;
   DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
-  DeviceMemory depth_, signal_, ambient_, confidence_, deviation_, status_, residual_;
+  std::array<DeviceMemory, plane_descriptions.size()> planes_;  // of written_planes
 };
 
 }  // namespace tofsmith

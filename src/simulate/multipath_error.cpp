@@ -143,8 +143,8 @@ MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
   add_errors(single_.decode(raw, 0, parts[0]).depth_m, true_m, result.single_bias_m,
              result.single_error_m);
   if (!decoder) return result;
-  const MultipathImage image = decoder->decode(raw, 0, parts[1]);
-  add_errors(image.direct.depth_m, true_m, result.bias_m, result.error_m);
+  const DepthImage image = decoder->decode(raw, 0, parts[1]);
+  add_errors(image.depth_m, true_m, result.bias_m, result.error_m);
   const auto share = [&](ReturnStatus status) {
     return static_cast<double>(
                std::count(image.returns.pixels.begin(), image.returns.pixels.end(), status)) /

@@ -89,8 +89,8 @@ MultipathScene multipath_scene(std::string name, const SceneImage& truth, const 
     scene.decodings.push_back({method, std::move(depth_m), std::move(error_m)});
   };
   add("single-path", Decoder(table).decode(raw).depth_m);
-  MultipathImage decoded = two_return.decode(raw, 0, parts[1]);
-  add("two-return", std::move(decoded.direct.depth_m));
+  DepthImage decoded = two_return.decode(raw, 0, parts[1]);
+  add("two-return", std::move(decoded.depth_m));
   scene.returns = std::move(decoded.returns);
   for (std::size_t i = 0; i + 1 < delay_edges_m.size(); ++i)
     if (DelayClass its = class_of(scene, delay_edges_m[i], delay_edges_m[i + 1]); its.pixels > 0)

@@ -109,7 +109,7 @@ struct OperatingMultipathTrials {
     const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
     return error_of(pixel, camera, later, options, progress,
                     [&](const RawFrames& raw, const Progress& part) {
-                      return decoder.decode(raw, 0, part).direct.depth_m;
+                      return decoder.decode(raw, 0, part).depth_m;
                     });
   }
 

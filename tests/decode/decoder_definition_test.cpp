@@ -49,9 +49,9 @@ void expect_definition_of(const Decoder& decoder, const std::vector<float>& raw)
                                         decoder.measurements()),
                    outputs.view());
     for (std::size_t i = 0; i < matched.pixels(); ++i)
-      ASSERT_EQ(outputs.bin[i], table.nearest_bin(expected.bin[i])) << i;
+      ASSERT_EQ(outputs.bin.pixels[i], table.nearest_bin(expected.bin.pixels[i])) << i;
     expect_definition(outputs, matched);
-    expect_close_confidence(outputs.confidence, expected.confidence);
+    expect_close_confidence(outputs.confidence.pixels, expected.confidence.pixels);
   });
 }
 
@@ -88,7 +88,7 @@ TEST(Decoder, NeedsNoContrastEverywhere) {
   const std::vector<std::int32_t> bins = bins_of(Decoder(table), raw);
   const Outputs expected = Matched(table, raw).expected();
   for (std::size_t i = 0; i < bins.size(); ++i)
-    ASSERT_EQ(bins[i], table.nearest_bin(expected.bin[i])) << i;
+    ASSERT_EQ(bins[i], table.nearest_bin(expected.bin.pixels[i])) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -259,8 +259,8 @@ TEST(Decoder, RecoversDepthsFromTwoMeasurementsWhereAmbientLightCancels) {
     Outputs bins(pixels);
     decoder.decode(RawView::interleaved(raw.data(), 1, pixels, 2), bins.view(1));
     for (std::size_t i = 0; i < pixels; ++i) {
-      EXPECT_EQ(all.bin[i], static_cast<int>(i) % samples);
-      EXPECT_EQ(bins.bin[i], static_cast<int>(i) % samples);
+      EXPECT_EQ(all.bin.pixels[i], static_cast<int>(i) % samples);
+      EXPECT_EQ(bins.bin.pixels[i], static_cast<int>(i) % samples);
     }
   });
 }

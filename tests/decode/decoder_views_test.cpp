@@ -112,8 +112,9 @@ TEST_P(ViewsOfCode, GiveTheSamePlanesInEveryTypeAndLayout) {
   const Outputs expected = decoded(
       setup.decoder, RawView::interleaved(raw.data(), height, width, setup.decoder.measurements()));
   const auto has_depth = [](float depth_m) { return std::isfinite(depth_m); };
-  ASSERT_GT(std::count_if(expected.depth_m.begin(), expected.depth_m.end(), has_depth),
-            static_cast<std::ptrdiff_t>(frame_pixels / 2));
+  ASSERT_GT(
+      std::count_if(expected.depth_m.pixels.begin(), expected.depth_m.pixels.end(), has_depth),
+      static_cast<std::ptrdiff_t>(frame_pixels / 2));
   expect_same_in_all_layouts<float>(setup.decoder, raw, expected);
   expect_same_in_all_layouts<double>(setup.decoder, raw, expected);
   expect_same_in_all_layouts<std::uint16_t>(setup.decoder, raw, expected);
@@ -162,8 +163,8 @@ void expect_bins_of_the_reference(const Decoder& decoder, double signal, double 
     SCOPED_TRACE(layout.name);
     const Frame<Number> frame(raw, layout);
     for_each_target([&] {
-      EXPECT_EQ(decoded(decoder, frame.view).bin, expected);
-      EXPECT_EQ(decoded(decoder, frame.view, 1).bin, expected);
+      EXPECT_EQ(decoded(decoder, frame.view).bin.pixels, expected);
+      EXPECT_EQ(decoded(decoder, frame.view, 1).bin.pixels, expected);
     });
   }
 }
@@ -192,8 +193,8 @@ TEST(Decoder, BinsOfDoublesUseDigitsThatFloatsLack) {
   const Frame<double> frame(raw, layouts(4).front());
   const Outputs outputs = decoded(setup.decoder, frame.view);
   for (std::size_t i = 0; i < frame_pixels; ++i)
-    ASSERT_EQ(outputs.bin[i], reference.bin(&raw[4 * i])) << i;
-  EXPECT_EQ(outputs.bin[77], 77);
+    ASSERT_EQ(outputs.bin.pixels[i], reference.bin(&raw[4 * i])) << i;
+  EXPECT_EQ(outputs.bin.pixels[77], 77);
 }
 
 template <typename Number>
@@ -202,10 +203,11 @@ void expect_zeros_without_return(const Decoder& decoder) {
   const Frame<Number> frame(zeros, layouts(decoder.measurements()).front());
   const Outputs outputs = decoded(decoder, frame.view);
   for (std::size_t i = 0; i < frame_pixels; ++i) {
-    ASSERT_EQ(outputs.status[i], PixelStatus::no_return);
-    ASSERT_TRUE(std::isnan(outputs.depth_m[i]) && std::isnan(outputs.signal[i]));
-    ASSERT_EQ(outputs.bin[i], outputs.bin[0]);
-    ASSERT_GE(outputs.bin[i], 0);
+    ASSERT_EQ(outputs.status.pixels[i], PixelStatus::no_return);
+    ASSERT_TRUE(std::isnan(outputs.depth_m.pixels[i]) &&
+                std::isnan(outputs.signal_e_per_s.pixels[i]));
+    ASSERT_EQ(outputs.bin.pixels[i], outputs.bin.pixels[0]);
+    ASSERT_GE(outputs.bin.pixels[i], 0);
   }
 }
 
@@ -225,15 +227,17 @@ void expect_invalid(const Decoder& decoder, const std::vector<float>& raw, Numbe
   const auto k_count = static_cast<std::size_t>(decoder.measurements());
   for (std::size_t i = 0; i < frame_pixels; i += 7) numbers[i * k_count + i % k_count] = bad;
   const Frame<Number> frame(numbers, layouts(decoder.measurements()).front());
-  const Outputs outputs = decoded(decoder, frame.view);
-  for (std::size_t i = 0; i < frame_pixels; ++i) {
-    ASSERT_EQ(outputs.status[i] == PixelStatus::invalid, i % 7 == 0) << i;
-    ASSERT_EQ(outputs.bin[i] < 0, i % 7 == 0) << i;
-    if (i % 7 != 0) continue;
-    for (const auto* plane : {&outputs.depth_m, &outputs.signal, &outputs.ambient,
-                              &outputs.confidence, &outputs.deviation_m})
-      ASSERT_TRUE(std::isnan((*plane)[i]));
-  }
+  const Outputs outputs = decoded(decoder, frame.view, ~0u);
+  for (std::size_t i = 0; i < frame_pixels; ++i)
+    ASSERT_EQ(outputs.status.pixels[i] == PixelStatus::invalid, i % 7 == 0) << i;
+  for (const DecodedPlane plane : decoder_planes)
+    with_plane(
+        plane,
+        [&]<typename Value>(const Image<Value>& values) {
+          for (std::size_t i = 0; i < frame_pixels; i += 7)
+            ASSERT_TRUE(same<Value>({values.pixels[i]}, {no_value<Value>})) << name_of(plane);
+        },
+        outputs);
 }
 
 TEST(Decoder, NumbersThatAreNoneAreInvalidInBothFloatingTypes) {

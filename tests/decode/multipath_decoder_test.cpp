@@ -58,7 +58,7 @@ struct TwoBucket {
   }
 };
 
-double share(const MultipathImage& image, ReturnStatus status) {
+double share(const DepthImage& image, ReturnStatus status) {
   return static_cast<double>(std::ranges::count(image.returns.pixels, status)) /
          static_cast<double>(image.returns.size());
 }
@@ -67,17 +67,16 @@ TEST(TwoReturnDecoder, RecoversBothReturnsWithoutNoise) {
   const TwoBucket setup;
   const TwoReturnDecoder decoder(setup.table);
   std::vector<double> true_m;
-  const MultipathImage image = decoder.decode(setup.pixels(64, 1e6, 0.3, 1.0, 0.0, true_m));
+  const DepthImage image = decoder.decode(setup.pixels(64, 1e6, 0.3, 1.0, 0.0, true_m));
   EXPECT_EQ(share(image, ReturnStatus::two), 1.0);
   // A search from coarse places may end in another valley of chi^2 now and then.
   int found = 0;
   for (std::size_t i = 0; i < true_m.size(); ++i)
-    found +=
-        std::abs(circular_difference(image.direct.depth_m.pixels[i], true_m[i],
-                                     setup.camera.range_m())) < 0.01 &&
-        std::abs(image.delay_m.pixels[i] - 1.0f) < 0.03f &&
-        std::abs(image.ratio.pixels[i] - 0.3f) < 0.02f &&
-        std::abs(image.direct.ambient_e_per_s.pixels[i] - ambient_e_per_s) < 0.05 * ambient_e_per_s;
+    found += std::abs(circular_difference(image.depth_m.pixels[i], true_m[i],
+                                          setup.camera.range_m())) < 0.01 &&
+             std::abs(image.delay_m.pixels[i] - 1.0f) < 0.03f &&
+             std::abs(image.ratio.pixels[i] - 0.3f) < 0.02f &&
+             std::abs(image.ambient_e_per_s.pixels[i] - ambient_e_per_s) < 0.05 * ambient_e_per_s;
   EXPECT_GE(found, 61);
 }
 
@@ -85,14 +84,14 @@ TEST(TwoReturnDecoder, LowersErrorFourfoldAndDeviationsHold) {
   const TwoBucket setup;
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(400, 1e5, 0.3, 1.0, 1.0, true_m);
-  const MultipathImage image = TwoReturnDecoder(setup.table).decode(raw);
+  const DepthImage image = TwoReturnDecoder(setup.table).decode(raw);
   const double single = setup.mean_error_m(Decoder(setup.table).decode(raw).depth_m, true_m);
-  EXPECT_GT(single, 4.0 * setup.mean_error_m(image.direct.depth_m, true_m));
+  EXPECT_GT(single, 4.0 * setup.mean_error_m(image.depth_m, true_m));
   int within = 0;
   for (std::size_t i = 0; i < true_m.size(); ++i)
-    within += std::abs(circular_difference(image.direct.depth_m.pixels[i], true_m[i],
-                                           setup.camera.range_m())) <
-              3.0 * image.direct.predicted_standard_deviation_m.pixels[i];
+    within +=
+        std::abs(circular_difference(image.depth_m.pixels[i], true_m[i], setup.camera.range_m())) <
+        3.0 * image.predicted_standard_deviation_m.pixels[i];
   EXPECT_GT(within, 0.94 * 400);
 }
 
@@ -100,14 +99,14 @@ TEST(TwoReturnDecoder, LeavesSingleReturnsAlone) {
   const TwoBucket setup;
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(2000, 1e4, 0.0, 0.0, 1.0, true_m);
-  const MultipathImage image = TwoReturnDecoder(setup.table).decode(raw);
+  const DepthImage image = TwoReturnDecoder(setup.table).decode(raw);
   const DepthImage single = Decoder(setup.table).decode(raw);
   EXPECT_LE(share(image, ReturnStatus::two), 0.015);
-  EXPECT_LT(setup.mean_error_m(image.direct.depth_m, true_m),
+  EXPECT_LT(setup.mean_error_m(image.depth_m, true_m),
             1.06 * setup.mean_error_m(single.depth_m, true_m));
   for (std::size_t i = 0; i < true_m.size(); ++i) {
     if (image.returns.pixels[i] == ReturnStatus::two) continue;
-    ASSERT_EQ(image.direct.depth_m.pixels[i], single.depth_m.pixels[i]);
+    ASSERT_EQ(image.depth_m.pixels[i], single.depth_m.pixels[i]);
     ASSERT_TRUE(std::isnan(image.delay_m.pixels[i]));
   }
 }
@@ -151,10 +150,10 @@ TEST(TwoReturnDecoder, GivesTheSameBitsForAnyNumberOfThreadsAndNeighbours) {
   for (int i = 0; i < 600; i += 37)
     decoder.decode_depth_bins(raw.frame(0) + i * raw.measurements, 1, &alone[i]);
   for (int i = 0; i < 600; i += 37) EXPECT_EQ(alone[i], whole[i]);
-  const MultipathImage many = decoder.decode(raw);
+  const DepthImage many = decoder.decode(raw);
   const ThreadLimit one(1);
-  const MultipathImage few = decoder.decode(raw);
-  EXPECT_EQ(many.direct.depth_m.pixels, few.direct.depth_m.pixels);
+  const DepthImage few = decoder.decode(raw);
+  EXPECT_EQ(many.depth_m.pixels, few.depth_m.pixels);
   EXPECT_EQ(many.returns.pixels, few.returns.pixels);
 }
 
@@ -164,7 +163,7 @@ TEST(TwoReturnDecoder, DecodesAlikeOnEveryInstructionSet) {
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(48, 1e6, 0.3, 1.0, 0.0, true_m);
   for_each_target(
-      [&] { EXPECT_LT(setup.mean_error_m(decoder.decode(raw).direct.depth_m, true_m), 0.01); });
+      [&] { EXPECT_LT(setup.mean_error_m(decoder.decode(raw).depth_m, true_m), 0.01); });
 }
 
 TEST(TwoReturnDecoder, MarksWhatHasNoDepth) {
@@ -172,9 +171,9 @@ TEST(TwoReturnDecoder, MarksWhatHasNoDepth) {
   std::vector<double> true_m;
   RawFrames raw = setup.pixels(2, 1e5, 0.3, 1.0, 0.0, true_m);
   raw.values[3] = std::numeric_limits<float>::quiet_NaN();
-  const MultipathImage image = TwoReturnDecoder(setup.table).decode(raw);
+  const DepthImage image = TwoReturnDecoder(setup.table).decode(raw);
   EXPECT_EQ(image.returns.pixels[0], ReturnStatus::none);
-  EXPECT_EQ(image.direct.status.pixels[0], PixelStatus::invalid);
+  EXPECT_EQ(image.status.pixels[0], PixelStatus::invalid);
   EXPECT_EQ(image.returns.pixels[1], ReturnStatus::two);
 }
 
@@ -182,11 +181,11 @@ TEST(TwoReturnDecoder, LeansOnItsPriorInDimLight) {
   const TwoBucket setup;
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(150, 1e4, 0.3, 0.5, 1.0, true_m);
-  const MultipathImage likely = TwoReturnDecoder(setup.table, {.threshold = 2.0}).decode(raw);
-  const MultipathImage believed =
+  const DepthImage likely = TwoReturnDecoder(setup.table, {.threshold = 2.0}).decode(raw);
+  const DepthImage believed =
       TwoReturnDecoder(setup.table, {.threshold = 2.0, .prior = ReturnPrior{}}).decode(raw);
-  EXPECT_LT(setup.mean_error_m(believed.direct.depth_m, true_m),
-            setup.mean_error_m(likely.direct.depth_m, true_m));
+  EXPECT_LT(setup.mean_error_m(believed.depth_m, true_m),
+            setup.mean_error_m(likely.depth_m, true_m));
 }
 
 TEST(TwoReturnDecoder, RefusesCodesThatCannotTellReturns) {
@@ -250,9 +249,9 @@ TEST(TailDecoder, LowersTheErrorOfATailFivefold) {
     for (Eigen::Index k = 0; k < mean.size(); ++k)
       raw.values.push_back(static_cast<float>(mean[k] + std::sqrt(variance[k]) * random.normal()));
   }
-  const MultipathImage image = TailDecoder(setup.table).decode(raw);
+  const DepthImage image = TailDecoder(setup.table).decode(raw);
   EXPECT_GT(setup.mean_error_m(Decoder(setup.table).decode(raw).depth_m, true_m),
-            5.0 * setup.mean_error_m(image.direct.depth_m, true_m));
+            5.0 * setup.mean_error_m(image.depth_m, true_m));
 }
 
 }  // namespace

@@ -390,11 +390,12 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
 
 TEST(DecodedPlanes, HaveOneNameEach) {
   std::set<std::string_view> names;
-  for (const DecodedPlane plane : all_decoded_planes) {
-    names.insert(name_of(plane));
-    EXPECT_EQ(parse_decoded_plane(name_of(plane)), plane);
+  for (const PlaneDescription& described : plane_descriptions) {
+    names.insert(name_of(described.plane));
+    EXPECT_EQ(parse_decoded_plane(described.word), described.plane);
+    EXPECT_THAT(std::string(help_of_outputs()), HasSubstr(std::string(described.help)));
   }
-  EXPECT_EQ(names.size(), all_decoded_planes.size());
+  EXPECT_EQ(names.size(), plane_descriptions.size());
   EXPECT_THROW(parse_decoded_plane("depth_m"), std::invalid_argument);
   EXPECT_EQ(usual_planes().size(), 6u);
   EXPECT_EQ(usual_planes(true).size(), 9u);

@@ -82,7 +82,7 @@ struct Planes {
   std::vector<std::int32_t> bin = std::vector<std::int32_t>(height * width);
   std::vector<PixelStatus> status = std::vector<PixelStatus>(height * width);
   DecodedView view() {
-    return {.bin = bin.data(), .depth_m = depth_m.data(), .status = status.data()};
+    return {.depth_m = depth_m.data(), .status = status.data(), .bin = bin.data()};
   }
 };
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "decode/output/lobe_posterior.hpp"
@@ -23,66 +24,62 @@
 
 namespace tofsmith {
 
-/// All planes of a row of pixels.
-struct Outputs {
-  explicit Outputs(std::size_t pixels)
-      : bin(pixels, -7),
-        depth_m(pixels, -7.0f),
-        signal(pixels, -7.0f),
-        ambient(pixels, -7.0f),
-        confidence(pixels, -7.0f),
-        deviation_m(pixels, -7.0f),
-        residual(pixels, -7.0f),
-        status(pixels, static_cast<PixelStatus>(77)) {}
+/// The planes that every decoder fills, the bin first.
+inline const std::vector<DecodedPlane> decoder_planes = [] {
+  std::vector<DecodedPlane> planes{DecodedPlane::bin};
+  for (const PlaneDescription& described : plane_descriptions)
+    if (described.is_of_every_decoder() && described.plane != DecodedPlane::bin)
+      planes.push_back(described.plane);
+  return planes;
+}();
 
-  /// @param planes  bit p: whether plane p of the view is wanted
-  DecodedView view(unsigned planes = 255) {
-    const auto wanted = [planes](unsigned p, auto& plane) {
-      return planes >> p & 1u ? plane.data() : nullptr;
-    };
-    return {wanted(0, bin),        wanted(1, depth_m),     wanted(2, signal), wanted(3, ambient),
-            wanted(4, confidence), wanted(5, deviation_m), wanted(6, status), wanted(7, residual)};
+/// These planes of a row of pixels, at first with values that no decoder gives.
+struct Outputs : DepthImage {
+  explicit Outputs(std::size_t pixels) : DepthImage(decoder_planes, 1, static_cast<int>(pixels)) {
+    for_each_plane(
+        []<typename Value>(Image<Value>& plane) {
+          std::ranges::fill(plane.pixels, static_cast<Value>(std::is_enum_v<Value> ? 77 : -7));
+        },
+        *this);
   }
 
-  std::vector<std::int32_t> bin;
-  std::vector<float> depth_m, signal, ambient, confidence, deviation_m, residual;
-  std::vector<PixelStatus> status;
+  /// @param planes  bit p: whether plane p of decoder_planes is wanted
+  DecodedView view(unsigned planes = ~0u) {
+    DecodedView wanted;
+    for (std::size_t p = 0; p < decoder_planes.size(); ++p)
+      if (planes >> p & 1u)
+        with_plane(
+            decoder_planes[p], [](auto*& to, auto& from) { to = from.pixels.data(); }, wanted,
+            *this);
+    return wanted;
+  }
 };
 
-/// Whether floats are the same bits; NaN equals NaN.
-inline testing::AssertionResult same(const std::vector<float>& a, const std::vector<float>& b) {
+/// Compares values bit by bit; NaN equals NaN.
+template <typename Value>
+testing::AssertionResult same(const std::vector<Value>& a, const std::vector<Value>& b) {
+  if (a.size() != b.size()) return testing::AssertionFailure() << "sizes differ";
   for (std::size_t i = 0; i < a.size(); ++i)
-    if (std::memcmp(&a[i], &b[i], sizeof(float)) != 0)
-      return testing::AssertionFailure() << a[i] << " != " << b[i] << " of pixel " << i;
+    if (std::memcmp(&a[i], &b[i], sizeof(Value)) != 0)
+      return testing::AssertionFailure()
+             << static_cast<double>(a[i]) << " != " << static_cast<double>(b[i]) << " of pixel "
+             << i;
   return testing::AssertionSuccess();
 }
 
-inline void expect_same(const Outputs& a, const Outputs& b) {
-  EXPECT_EQ(a.bin, b.bin);
-  EXPECT_TRUE(same(a.depth_m, b.depth_m));
-  EXPECT_TRUE(same(a.signal, b.signal));
-  EXPECT_TRUE(same(a.ambient, b.ambient));
-  EXPECT_TRUE(same(a.confidence, b.confidence));
-  EXPECT_TRUE(same(a.deviation_m, b.deviation_m));
-  EXPECT_TRUE(same(a.residual, b.residual));
-  EXPECT_EQ(a.status, b.status);
-}
-
 /// The wanted planes are those of `all`, and the others are as they were.
+/// @param planes  as of Outputs::view()
 inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes) {
   const Outputs none(all.bin.size());
-  const auto expected = [planes, &all, &none](unsigned p) -> const Outputs& {
-    return planes >> p & 1u ? all : none;
-  };
-  EXPECT_EQ(some.bin, expected(0).bin);
-  EXPECT_TRUE(same(some.depth_m, expected(1).depth_m));
-  EXPECT_TRUE(same(some.signal, expected(2).signal));
-  EXPECT_TRUE(same(some.ambient, expected(3).ambient));
-  EXPECT_TRUE(same(some.confidence, expected(4).confidence));
-  EXPECT_TRUE(same(some.deviation_m, expected(5).deviation_m));
-  EXPECT_EQ(some.status, expected(6).status);
-  EXPECT_TRUE(same(some.residual, expected(7).residual));
+  for (std::size_t p = 0; p < decoder_planes.size(); ++p)
+    with_plane(
+        decoder_planes[p],
+        [&](const auto& its, const auto& expected) {
+          EXPECT_TRUE(same(its.pixels, expected.pixels)) << name_of(decoder_planes[p]);
+        },
+        some, planes >> p & 1u ? all : none);
 }
+inline void expect_same(const Outputs& a, const Outputs& b) { expect_only(a, b, ~0u); }
 
 /// Pixels matched to bins, and their outputs, in plain double arithmetic.
 class Matched {
@@ -121,7 +118,7 @@ class Matched {
       }
       const PixelDecoding decoding = decoding_of(i);
       store_pixel(table_, options_, &raw_[i * k_count()], decoding, i, result.view());
-      result.bin[i] = bin_[i];  // the best one, which may not be the nearest
+      result.bin.pixels[i] = bin_[i];  // the best one, which may not be the nearest
     }
     return result;
   }
@@ -222,27 +219,30 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   const double float_error_bin = 1e-4 + 1.2e-7 * table.samples();
   int other_status = 0;
   for (std::size_t i = 0; i < matched.pixels(); ++i) {
-    other_status += outputs.status[i] != expected.status[i];
-    ASSERT_EQ(std::isnan(outputs.depth_m[i]), std::isnan(expected.depth_m[i])) << i;
-    if (std::isnan(expected.depth_m[i])) continue;
-    ASSERT_LE(off_rows(outputs.depth_m[i], matched.decoding_of(i).depth_row, table),
+    other_status += outputs.status.pixels[i] != expected.status.pixels[i];
+    ASSERT_EQ(std::isnan(outputs.depth_m.pixels[i]), std::isnan(expected.depth_m.pixels[i])) << i;
+    if (std::isnan(expected.depth_m.pixels[i])) continue;
+    ASSERT_LE(off_rows(outputs.depth_m.pixels[i], matched.decoding_of(i).depth_row, table),
               float_error_bin)
         << i;
-    ASSERT_GE(outputs.depth_m[i], 0.0f);
-    ASSERT_LT(outputs.depth_m[i], static_cast<float>(table.range_m));
+    ASSERT_GE(outputs.depth_m.pixels[i], 0.0f);
+    ASSERT_LT(outputs.depth_m.pixels[i], static_cast<float>(table.range_m));
   }
   // Noise at the best bin moves the thresholds a little.
   EXPECT_LE(other_status, 5 + static_cast<int>(matched.pixels()) / 500);
   const double brightest_e_per_s = matched.brightest_e_per_s();
-  expect_near(outputs.signal, expected.signal, 2e-6, 1e-6 * brightest_e_per_s, "signal");
+  expect_near(outputs.signal_e_per_s.pixels, expected.signal_e_per_s.pixels, 2e-6,
+              1e-6 * brightest_e_per_s, "signal");
   // Where the best row is not the nearest, the kernel extrapolates the signal a little from it.
-  expect_near(outputs.ambient, expected.ambient, 2e-6, 4e-6 * brightest_e_per_s, "ambient");
-  expect_similar(outputs.deviation_m, expected.deviation_m);
+  expect_near(outputs.ambient_e_per_s.pixels, expected.ambient_e_per_s.pixels, 2e-6,
+              4e-6 * brightest_e_per_s, "ambient");
+  expect_similar(outputs.predicted_standard_deviation_m.pixels,
+                 expected.predicted_standard_deviation_m.pixels);
   const auto plus_one = [](std::vector<float> values) {
     for (float& value : values) value += 1.0f;
     return values;
   };
-  expect_similar(plus_one(outputs.residual), plus_one(expected.residual), 0.03);
+  expect_similar(plus_one(outputs.residual.pixels), plus_one(expected.residual.pixels), 0.03);
 }
 
 }  // namespace tofsmith

@@ -5,7 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
@@ -52,19 +56,101 @@ inline constexpr std::array all_return_statuses = {ReturnStatus::none, ReturnSta
 /// "none", "single", "two", "unresolved".
 std::string_view name_of(ReturnStatus status);
 
-/// What a decoder says about every pixel of a frame; all planes are (H, W). Pixels without depth
-/// (invalid, no_return) hold NaN in every plane but status.
+/// Who fills a plane, and whether it is written unless others are requested.
+enum class PlaneUse {
+  usual,       ///< every decoder; written by default
+  on_request,  ///< every decoder
+  of_returns,  ///< decoders of several returns; written by default with these
+  of_frames    ///< decode_frame() alone, from the numbers that it decodes
+};
+
+// Every plane that a decoded frame can have. This is the only list: structs, names, help texts,
+// files and Python classes follow from it. The member in DepthImage and DecodedView has a unit; the
+// word is the name on the command line and in files.
+//   PLANE(type of a pixel, member, word, unit, use, help)
+#define TOFSMITH_DECODED_PLANES(PLANE)                                                          \
+  PLANE(float, depth_m, depth, "m", usual, "distance along the ray, in [0, range)")             \
+  PLANE(float, signal_e_per_s, signal, "e/s", usual, "light of the return")                     \
+  PLANE(float, ambient_e_per_s, ambient, "e/s", usual,                                          \
+        "all other light, NaN where differences hide it")                                       \
+  PLANE(float, confidence, confidence, "", usual,                                               \
+        "probability that the depth lies in the main lobe")                                     \
+  PLANE(float, predicted_standard_deviation_m, deviation, "m", usual,                           \
+        "predicted standard deviation of depth around the right peak")                          \
+  PLANE(PixelStatus, status, status, "", usual, "whether the depth can be trusted")             \
+  PLANE(float, delay_m, delay, "m", of_returns, "delay of the second return, NaN without one")  \
+  PLANE(float, ratio, ratio, "", of_returns,                                                    \
+        "light of the second return relative to the first, NaN without a second")               \
+  PLANE(ReturnStatus, returns, returns, "", of_returns, "number of returns")                    \
+  PLANE(std::int32_t, bin, bin, "", on_request,                                                 \
+        "best bin (zncc) or nearest bin (other methods), -1 where a measurement is not finite") \
+  PLANE(float, averaged, averaged, "", of_frames, "number of averaged measurements")            \
+  PLANE(float, residual, residual, "", on_request,                                              \
+        "chi-square of the measurements per degree of freedom, NaN without degrees of freedom")
+
+/// A plane of a decoded frame.
+enum class DecodedPlane {
+#define TOFSMITH_PLANE(type, member, word, unit, use, help) word,
+  TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
+#undef TOFSMITH_PLANE
+};
+
+struct PlaneDescription {
+  DecodedPlane plane;
+  std::string_view word, member, unit;
+  PlaneUse use;
+  std::string_view help;
+
+  constexpr bool is_of_every_decoder() const {
+    return use == PlaneUse::usual || use == PlaneUse::on_request;
+  }
+};
+/// In the order of DecodedPlane.
+inline constexpr std::array plane_descriptions = {
+#define TOFSMITH_PLANE(type, member, word, unit, use, help) \
+  PlaneDescription{DecodedPlane::word, #word, #member, unit, PlaneUse::use, help},
+    TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
+#undef TOFSMITH_PLANE
+};
+constexpr const PlaneDescription& description_of(DecodedPlane plane) {
+  return plane_descriptions.at(static_cast<std::size_t>(plane));
+}
+
+constexpr auto words_of(DecodedPlane /*any*/) {
+  std::array<std::string_view, plane_descriptions.size()> words;
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = plane_descriptions[i].word;
+  return words;
+}
+/// "depth", "signal", ...: the word of the enumerator.
+std::string_view name_of(DecodedPlane plane);
+/// @throws std::invalid_argument for any other word
+DecodedPlane parse_decoded_plane(std::string_view name);
+/// Returns the help text with the meaning of codes and the methods that fill the plane.
+std::string help_of(DecodedPlane plane);
+/// Returns the planes that are written by default. @param multipath  by decoders of several returns
+std::vector<DecodedPlane> usual_planes(bool multipath = false);
+
+/// The value of a plane at pixels without depth.
+template <typename Value>
+inline constexpr Value no_value = std::numeric_limits<Value>::quiet_NaN();
+template <>
+inline constexpr std::int32_t no_value<std::int32_t> = -1;
+template <>
+inline constexpr PixelStatus no_value<PixelStatus> = PixelStatus::invalid;
+template <>
+inline constexpr ReturnStatus no_value<ReturnStatus> = ReturnStatus::none;
+
+/// The planes of a decoded frame, (H, W) each or empty. Pixels without depth (invalid, no_return)
+/// hold NaN in every plane of floats.
 struct DepthImage {
-  Image<float> depth_m;          ///< distance along the ray [m], in [0, range)
-  Image<float> signal_e_per_s;   ///< S [e/s]
-  Image<float> ambient_e_per_s;  ///< A [e/s]; NaN where differences hide it; noise may make it < 0
-  Image<float> confidence;       ///< that no far-off depth is the true one, in [0, 1]
-  Image<float> predicted_standard_deviation_m;  ///< of depth around the right peak [m]
-  Image<PixelStatus> status;
-  Image<float> residual;  ///< as DecodedView::residual; empty unless the caller gives it a size
+#define TOFSMITH_PLANE(type, member, word, unit, use, help) Image<type> member;
+  TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
+#undef TOFSMITH_PLANE
 
   DepthImage() = default;
-  DepthImage(int height, int width);
+  /// With the usual planes.
+  DepthImage(int height, int width) : DepthImage(usual_planes(), height, width) {}
+  DepthImage(const std::vector<DecodedPlane>& planes, int height, int width);
   int height() const { return status.height; }
   int width() const { return status.width; }
 };
@@ -72,27 +158,35 @@ struct DepthImage {
 /// Where a decoder writes: planes of H x W values, row by row, in the caller's memory. A null plane
 /// is not wanted, and what only it needs is not computed. Owns nothing.
 struct DecodedView {
-  std::int32_t* bin = nullptr;       ///< as decode_bins of the decoder: in [0, N), or -1
-  float* depth_m = nullptr;          ///< as the planes of DepthImage
-  float* signal_e_per_s = nullptr;   ///< [e/s]
-  float* ambient_e_per_s = nullptr;  ///< [e/s]
-  float* confidence = nullptr;       ///< in [0, 1]
-  float* predicted_standard_deviation_m = nullptr;  ///< [m]
-  PixelStatus* status = nullptr;
-  /// Chi-square per degree of freedom of the measurements around the decoded depth, signal and
-  /// ambient light: 1 on average. NaN where the code leaves no degree of freedom.
-  float* residual = nullptr;
-  // Of decoders of several returns; others leave them as they are.
-  float* delay_m = nullptr;  ///< as the planes of MultipathImage
-  float* ratio = nullptr;
-  ReturnStatus* returns = nullptr;
+#define TOFSMITH_PLANE(type, member, word, unit, use, help) type* member = nullptr;
+  TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
+#undef TOFSMITH_PLANE
 
   bool wants_bins_only() const;
-  /// All planes of an image that have a size; no bins.
+  /// All planes of an image that have a size.
   static DecodedView of(DepthImage& image);
   /// The same planes from a later pixel on.
   DecodedView from(std::size_t pixel) const;
 };
+
+/// Calls `use` with one plane of each of `of`: images, or pointers of views.
+template <typename Use, typename... Planes>
+auto with_plane(DecodedPlane plane, const Use& use, Planes&... of) {
+#define TOFSMITH_PLANE(type, member, word, unit, use_of, help) \
+  if (plane == DecodedPlane::word) return use(of.member...);
+  TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
+#undef TOFSMITH_PLANE
+  throw std::invalid_argument("plane: not a value of DecodedPlane");
+}
+
+/// Calls `use` with every plane in turn, as with_plane().
+template <typename Use, typename... Planes>
+void for_each_plane(const Use& use, Planes&... of) {
+#define TOFSMITH_PLANE(type, member, word, unit, use_of, help) use(of.member...);
+  TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
+#undef TOFSMITH_PLANE
+}
+#undef TOFSMITH_DECODED_PLANES
 
 /// What differs from pixel to pixel of a sensor, of the size of its frames. A map left empty is not
 /// applied; NaN in a map marks a dead pixel.

@@ -102,8 +102,9 @@ struct PlaneCorrections {
   std::optional<MixedPixels> mixed;  ///< marks mixed pixels, in whole frames; none: not looked for
 };
 
-/// Decodes the frame that is ready, or rows of it, and corrects its planes. If a filtered frame has
-/// mixed pixels, it is filtered again without them, so that their neighbours take nothing from
+/// Decodes the frame that is ready, or rows of it, and corrects its planes; fills the plane
+/// `averaged`, which with a spatial filter requires FrameSteps::keeps_filtered. If a filtered frame
+/// has mixed pixels, it is filtered again without them, so that their neighbours take nothing from
 /// them.
 /// @param first_row, rows  that were submitted
 /// @param decoded          planes whose first value belongs to the first of the rows

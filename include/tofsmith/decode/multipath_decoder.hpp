@@ -59,21 +59,6 @@ auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
       Field("status_thresholds", o.status_thresholds, Help{"thresholds of the single return"}));
 }
 
-/// What a decoder of several returns says about every pixel of a frame; all planes are (H, W).
-struct MultipathImage {
-  DepthImage direct;            ///< of the direct return
-  Image<float> delay_m;         ///< of the second return behind it [m]; NaN where there is none
-  Image<float> ratio;           ///< r = S2 / S1, in [0, 1]; NaN where there is none
-  Image<ReturnStatus> returns;  ///< how many returns the pixel shows
-
-  MultipathImage() = default;
-  MultipathImage(int height, int width);
-  int height() const { return direct.height(); }
-  int width() const { return direct.width(); }
-  /// Where a decoder writes all of it.
-  DecodedView view();
-};
-
 /// What TwoReturnDecoder and TailDecoder share: a model of one return, and one of light that comes
 /// later too for the pixels that one return does not explain.
 ///
@@ -103,8 +88,8 @@ class MultipathDecoder {
   /// @note the same bits for any number of threads; processors without fused multiply-add differ in
   ///       the last ones
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K), into a new image.
-  MultipathImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
+  /// The same for frame `frame` of several (F, H, W, K), into a new image with the usual planes.
+  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Positions in [0, N) of many pixels; see Decoder::decode_depth_bins. NaN also without return.
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;

@@ -17,43 +17,11 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/frame_pipeline.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
-
-/// What decoders say of every pixel of a frame, as the planes of DecodedView.
-enum class DecodedPlane {
-  depth,       ///< [m], float
-  signal,      ///< [e/s], float
-  ambient,     ///< [e/s], float
-  confidence,  ///< in [0, 1], float
-  deviation,   ///< predicted standard deviation of depth [m], float
-  status,      ///< PixelStatus, uint8
-  delay,       ///< of a second return [m], float
-  ratio,       ///< of a second return, float
-  returns,     ///< ReturnStatus, uint8
-  bin,         ///< of zncc the one that scores best, of others the nearest; int32
-  averaged,    ///< of how many measurements a pixel's numbers are the mean, in variance; float
-  residual,    ///< chi-square per degree of freedom, float
-};
-
-inline constexpr std::array all_decoded_planes = {
-    DecodedPlane::depth,     DecodedPlane::signal, DecodedPlane::ambient,  DecodedPlane::confidence,
-    DecodedPlane::deviation, DecodedPlane::status, DecodedPlane::delay,    DecodedPlane::ratio,
-    DecodedPlane::returns,   DecodedPlane::bin,    DecodedPlane::averaged, DecodedPlane::residual};
-
-constexpr std::array<std::string_view, 12> words_of(DecodedPlane /*any*/) {
-  return {"depth", "signal", "ambient", "confidence", "deviation", "status",
-          "delay", "ratio",  "returns", "bin",        "averaged",  "residual"};
-}
-/// "depth", "signal", ..: the word of the enumerator, which arrays of .npz files have too.
-std::string_view name_of(DecodedPlane plane);
-/// @throws std::invalid_argument for any other word
-DecodedPlane parse_decoded_plane(std::string_view name);
-/// The planes that are written unless others are asked for: depth to status; of decoders of several
-/// returns also delay, ratio and returns. Not bin, averaged and residual.
-std::vector<DecodedPlane> usual_planes(bool multipath = false);
 
 /// Which distance is written as depth.
 enum class DepthKind {
@@ -69,6 +37,11 @@ DepthKind parse_depth_kind(std::string_view name);
 
 /// Whether an output of this name holds points: .ply, .pcd.
 bool holds_points(const std::filesystem::path& path);
+
+/// Type of the values of a plane in files; statuses are uint8.
+NpyType type_of(DecodedPlane plane);
+/// Returns the help text of DecodeRequest::outputs, which lists the planes.
+std::string_view help_of_outputs();
 
 /// A recording to be decoded into files.
 struct DecodeRequest {
@@ -125,10 +98,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"the raw file is a sensor's dump without header, as this .raw.toml file describes "
                  "it (docs/raw_formats.md)"}),
       Field("output", r.output, FieldMark::from_above),
-      Field("outputs", r.outputs,
-            Help{"planes to write; others are not computed. averaged: number of averaged "
-                 "measurements; residual: chi-square per degree of freedom; delay, ratio and "
-                 "returns (0 none, 1 single, 2 two, 3 unresolved) only of two-return and tail"},
+      Field("outputs", r.outputs, Help{help_of_outputs()},
             IfAbsent{"depth to status, as many as the output holds"}),
       Field("kind", r.kind,
             Help{"depth to write: radial distance, as the camera measures it, or z along the axis "
@@ -260,8 +230,7 @@ void decode_stream(const DecodeRequest& request, const FrameBackend& backend,
                    DecodedStream& result);
 
 /// Writes what a decoder gave of a frame, by extension as DecodeRequest::output.
-/// @param planes      of depth, signal, ambient, confidence, deviation, status; not of .npy .pfm
-///                    .png
+/// @param planes      not of .npy .pfm .png
 /// @param view        of points (.ply, .pcd)
 /// @param all_points  of pixels that are not ok, too
 /// @throws std::invalid_argument for a plane that is not there; IoError for an unknown extension,

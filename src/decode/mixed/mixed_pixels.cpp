@@ -279,10 +279,12 @@ bool read_electrons(const RawView& raw, const RawScale& scale, int row, int x,
 }
 
 void drop(const DecodedView& decoded, std::size_t i) {
-  for (float* plane :
-       {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s, decoded.confidence,
-        decoded.predicted_standard_deviation_m, decoded.residual, decoded.delay_m, decoded.ratio})
-    if (plane) plane[i] = std::numeric_limits<float>::quiet_NaN();
+  for_each_plane(
+      [i]<typename Value>(Value* plane) {
+        if constexpr (std::is_same_v<Value, float>)
+          if (plane) plane[i] = no_value<float>;
+      },
+      decoded);
 }
 
 /// What is known of a pixel that sees two surfaces.

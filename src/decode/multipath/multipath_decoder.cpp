@@ -29,20 +29,6 @@ void MultipathOptions::validate(double range_m) const {
   if (prior) check_fields(*prior, "ReturnPrior::");
 }
 
-MultipathImage::MultipathImage(int height, int width)
-    : direct(height, width),
-      delay_m(direct.depth_m),
-      ratio(direct.depth_m),
-      returns(height, width, ReturnStatus::none) {}
-
-DecodedView MultipathImage::view() {
-  DecodedView view = DecodedView::of(direct);
-  view.delay_m = delay_m.pixels.data();
-  view.ratio = ratio.pixels.data();
-  view.returns = returns.pixels.data();
-  return view;
-}
-
 struct MultipathDecoder::Plan {
   MultipathEngine engine;
 };
@@ -86,11 +72,10 @@ void MultipathDecoder::decode(const RawView& raw, const DecodedView& decoded,
   plan_->engine.decode(raw, decoded, progress);
 }
 
-MultipathImage MultipathDecoder::decode(const RawFrames& raw, int frame,
-                                        const Progress& progress) const {
-  const RawView view = view_of_frame(raw, frame);
-  MultipathImage image(raw.height, raw.width);
-  decode(view, image.view(), progress);
+DepthImage MultipathDecoder::decode(const RawFrames& raw, int frame,
+                                    const Progress& progress) const {
+  DepthImage image(usual_planes(true), raw.height, raw.width);
+  decode(view_of_frame(raw, frame), DecodedView::of(image), progress);
   return image;
 }
 

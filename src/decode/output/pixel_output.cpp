@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/shared/shared_progress.hpp"
@@ -17,8 +16,6 @@
 namespace tofsmith {
 
 namespace {
-
-constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
 PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, const float* raw,
                       const PixelDecoding& pixel) {
@@ -42,7 +39,7 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
   const PixelEstimate& estimate = pixel.estimate;
   const bool has_depth = estimate.signal_e_per_s > 0.0;
   const auto store = [&](float* plane, double value) {
-    if (plane) plane[at] = has_depth ? static_cast<float>(value) : no_value;
+    if (plane) plane[at] = has_depth ? static_cast<float>(value) : no_value<float>;
   };
   // Rounding to float can land on the end of the range, which is its beginning.
   const bool at_end =
@@ -59,12 +56,11 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
 }
 
 void store_invalid(std::size_t at, const DecodedView& decoded) {
-  if (decoded.bin) decoded.bin[at] = -1;
-  for (float* plane :
-       {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s, decoded.confidence,
-        decoded.predicted_standard_deviation_m, decoded.residual})
-    if (plane) plane[at] = no_value;
-  if (decoded.status) decoded.status[at] = PixelStatus::invalid;
+  for_each_plane(
+      [at]<typename Value>(Value* plane) {
+        if (plane) plane[at] = no_value<Value>;
+      },
+      decoded);
 }
 
 void require_measurements(const RawView& raw, int measurements) {

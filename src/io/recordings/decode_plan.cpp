@@ -85,7 +85,8 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("goes with a .npy file; the output is {}", output.string()));
   for (const DecodedPlane plane : request.outputs) {
-    require(!is_multipath_plane(plane) || finds_multipath(decoder), "outputs", name_of(plane),
+    require(description_of(plane).use != PlaneUse::of_returns || finds_multipath(decoder),
+            "outputs", name_of(plane),
             fmt::format("goes with two-return or tail, which alone fill it; the method is {}",
                         name_of(decoder.method())));
     require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
@@ -160,14 +161,11 @@ PlaneCorrections corrections_of(const DecodeRequest& request, const DecodingTabl
 }
 
 bool decode_next(PreparedFrames& input, const PlaneCorrections& corrections, const Band& band,
-                 const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress) {
+                 const DecodeTarget& target, DepthImage& planes, const Progress& progress) {
   const ProgressParts parts(progress, {input.effort(), input.decode_effort()});
   if (!input.next(band.frame, parts[0])) return false;
-  const std::size_t first = target.first_pixel(band);
-  const DecodedView decoded = planes.view().from(first);
-  FramePipeline& pipeline = input.pipeline();
-  decode_frame(pipeline, corrections, band.first_row, band.rows, decoded, parts[1]);
-  if (planes.has(DecodedPlane::averaged)) planes.keep_averaged(pipeline.numbers(), first);
+  const DecodedView decoded = DecodedView::of(planes).from(target.first_pixel(band));
+  decode_frame(input.pipeline(), corrections, band.first_row, band.rows, decoded, parts[1]);
   if (target.as_z && decoded.depth_m)
     turn_into_z(decoded.depth_m, band.first_row, band.rows, target.pixel_rays);
   return true;

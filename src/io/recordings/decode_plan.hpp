@@ -43,6 +43,6 @@ PlaneCorrections corrections_of(const DecodeRequest& request, const DecodingTabl
 
 /// Decodes the next band of the frames to where it belongs in the planes; false after the last.
 bool decode_next(PreparedFrames& input, const PlaneCorrections& corrections, const Band& band,
-                 const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress);
+                 const DecodeTarget& target, DepthImage& planes, const Progress& progress);
 
 }  // namespace tofsmith

@@ -190,7 +190,7 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
                    DecodeOutput& output, const Progress& progress, DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
-  DecodedPlanes planes(target.needed_planes(), target.in_rows() ? rows : height, width);
+  DepthImage planes(target.needed_planes(), target.in_rows() ? rows : height, width);
   const std::vector<Band> bands =
       bands_of(target.first_frame, target.first_frame + target.frames, height, rows);
   ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
@@ -201,10 +201,10 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
     decode_next(input, corrections, band, target, planes, here);
-    if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
+    if (target.undistortion) undistort(planes, *target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)
-      statuses.add(std::span(planes.statuses().pixels)
+      statuses.add(std::span(planes.status.pixels)
                        .subspan(target.first_pixel(band), static_cast<std::size_t>(pixels)));
     output.take(band.frame, band.first_row, band.rows, planes);
     result.pixels += pixels;

@@ -127,7 +127,7 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
   const std::unique_ptr<FramePipeline> pipeline = backend.prepare(preparation.steps, height, width);
   PreparedFrames input([&] { return frames.next(); }, preparation, *pipeline,
                        std::numeric_limits<int>::max());
-  DecodedPlanes planes(target.needed_planes(), height, width);
+  DepthImage planes(target.needed_planes(), height, width);
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
     report(progress, 0.0, fmt::format("frame {}", result.frames));
@@ -136,9 +136,9 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
     const auto frame = static_cast<int>(
         std::min<std::int64_t>(result.frames, std::numeric_limits<int>::max() / 2));
     if (!decode_next(input, corrections, {frame, 0, height}, target, planes, parts[0])) break;
-    if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
-    if (target.count_statuses) result.statuses.add(planes.statuses().pixels);
-    for (const DecodedPlane plane : target.planes) write(planes.items(plane, height));
+    if (target.undistortion) undistort(planes, *target.undistortion, target.as_z);
+    if (target.count_statuses) result.statuses.add(planes.status.pixels);
+    for (const DecodedPlane plane : target.planes) write(items_of(planes, plane, height));
     ++result.frames;
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

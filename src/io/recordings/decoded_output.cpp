@@ -22,12 +22,14 @@ namespace tofsmith {
 
 namespace {
 
-NpzArrays arrays(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& planes) {
+NpzArrays arrays(const DepthImage& decoded, const std::vector<DecodedPlane>& planes) {
   NpzArrays result;
   for (const DecodedPlane plane : planes) {
-    NpyArray array(type_of_plane(plane), {static_cast<std::size_t>(decoded.height()),
-                                          static_cast<std::size_t>(decoded.width())});
-    std::ranges::copy(decoded.items(plane, decoded.height()), array.bytes().begin());
+    const auto [height, width] = with_plane(
+        plane, [](const auto& image) { return std::pair(image.height, image.width); }, decoded);
+    NpyArray array(type_of(plane),
+                   {static_cast<std::size_t>(height), static_cast<std::size_t>(width)});
+    std::ranges::copy(items_of(decoded, plane, height), array.bytes().begin());
     result.emplace(name_of(plane), std::move(array));
   }
   return result;
@@ -35,31 +37,31 @@ NpzArrays arrays(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& 
 
 /// Points of pixels with depth that are ok, or of all with depth.
 /// @param organized  others stand there, too, as NaN
-PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& planes,
+PointCloud cloud(const DepthImage& decoded, const std::vector<DecodedPlane>& planes,
                  const PixelRays& pixel_rays, bool all_points, bool organized) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   PointCloud result;
   std::vector<std::size_t> kept;
-  result.points_m.reserve(
-      decoded.depth_m().size());  // growing would take twice as much for a while
-  kept.reserve(decoded.depth_m().size());
-  for (int row = 0; row < decoded.height(); ++row)
-    for (int column = 0; column < decoded.width(); ++column) {
-      const float depth_m = decoded.depth_m()(row, column);
+  result.points_m.reserve(decoded.depth_m.size());  // growing would take twice as much for a while
+  kept.reserve(decoded.depth_m.size());
+  for (int row = 0; row < decoded.depth_m.height; ++row)
+    for (int column = 0; column < decoded.depth_m.width; ++column) {
+      const float depth_m = decoded.depth_m(row, column);
       const Eigen::Vector3d point = pixel_rays.ray(row, column) * static_cast<double>(depth_m);
       const bool has_point =
-          point.allFinite() && (all_points || decoded.statuses()(row, column) == PixelStatus::ok);
+          point.allFinite() && (all_points || decoded.status(row, column) == PixelStatus::ok);
       if (!has_point && !organized) continue;
       if (has_point)
         result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
                                    static_cast<float>(point.z())});
       else
         result.points_m.push_back({nan, nan, nan});
-      kept.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(decoded.width()) +
+      kept.push_back(static_cast<std::size_t>(row) *
+                         static_cast<std::size_t>(decoded.depth_m.width) +
                      static_cast<std::size_t>(column));
     }
   for (const DecodedPlane plane : planes) {
-    const Image<float> values = decoded.floats(plane);
+    const Image<float> values = floats_of(decoded, plane);
     PointScalar scalar{std::string(name_of(plane)), {}};
     scalar.values.reserve(kept.size());
     for (const std::size_t i : kept) scalar.values.push_back(values.pixels[i]);
@@ -94,7 +96,7 @@ std::size_t writing_bytes_per_pixel(std::string_view extension,
 
 }  // namespace
 
-void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
+void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
                   const std::vector<DecodedPlane>& planes, const PixelRays& pixel_rays,
                   bool all_points, OutputPolicy policy) {
   const std::string extension = path.extension().string();
@@ -103,30 +105,30 @@ void write_planes(const std::filesystem::path& path, const DecodedPlanes& decode
   } else if (extension == ".ply") {
     write_ply(path, cloud(decoded, planes, pixel_rays, all_points, false), policy);
   } else if (extension == ".pcd") {
-    write_pcd(path, cloud(decoded, planes, pixel_rays, all_points, true), decoded.height(),
-              decoded.width(), policy);
+    write_pcd(path, cloud(decoded, planes, pixel_rays, all_points, true), decoded.depth_m.height,
+              decoded.depth_m.width, policy);
   } else if (extension == ".exr") {
     ExrPlanes channels;
     for (const DecodedPlane plane : planes)
       channels[plane == DecodedPlane::depth ? "Z" : std::string(name_of(plane))] =
-          decoded.floats(plane);
+          floats_of(decoded, plane);
     write_exr(path, channels, policy);
   } else {
-    write_depth(path, decoded.depth_m(), policy);
+    write_depth(path, decoded.depth_m, policy);
   }
 }
 
 void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<DecodedPlane>& planes, const PinholeView& view,
                    OutputPolicy policy, bool all_points) {
-  const DecodedPlanes decoded(image);
   for (const DecodedPlane plane : planes)
-    if (!decoded.has(plane))
+    if (with_plane(
+            plane, [](const auto& values) { return values.empty(); }, image))
       throw std::invalid_argument(
           fmt::format("planes = {}; must be planes that the image has", name_of(plane)));
   check_decoded_output(path, policy);
-  write_planes(path, decoded, planes, holds_points(path) ? PixelRays(view) : PixelRays(),
-               all_points, policy);
+  write_planes(path, image, planes, holds_points(path) ? PixelRays(view) : PixelRays(), all_points,
+               policy);
 }
 
 bool holds_points(const std::filesystem::path& path) {
@@ -196,7 +198,7 @@ DecodeOutput::DecodeOutput(DecodeTarget target) : target_(std::move(target)) {
   for (const std::filesystem::path& path : paths) check_decoded_output(path, target_.policy);
 }
 
-void DecodeOutput::take(int frame, int first_row, int rows, const DecodedPlanes& planes) {
+void DecodeOutput::take(int frame, int first_row, int rows, const DepthImage& planes) {
   const bool first = first_row == 0, last = first_row + rows == target_.view.height;
   if (!target_.in_rows()) {
     if (last)
@@ -206,7 +208,7 @@ void DecodeOutput::take(int frame, int first_row, int rows, const DecodedPlanes&
   }
   if (first && !(target_.stack && frame > target_.first_frame)) open_files(frame);
   for (std::size_t i = 0; i < files_.size(); ++i)
-    files_[i]->append(planes.items(target_.planes[i], rows));
+    files_[i]->append(items_of(planes, target_.planes[i], rows));
   if (last && !target_.stack) close_files();
 }
 
@@ -217,8 +219,8 @@ void DecodeOutput::open_files(int frame) {
   if (target_.stack) shape.insert(shape.begin(), static_cast<std::size_t>(target_.frames));
   for (const DecodedPlane plane : target_.planes)
     files_.push_back(std::make_unique<NpyItemWriter>(
-        target_.stack ? stack_path(target_.path, plane) : target_.frame_path(frame),
-        type_of_plane(plane), shape, target_.policy));
+        target_.stack ? stack_path(target_.path, plane) : target_.frame_path(frame), type_of(plane),
+        shape, target_.policy));
 }
 
 void DecodeOutput::close_files() {

@@ -23,7 +23,7 @@ namespace tofsmith {
 ///                    and status too
 /// @param pixel_rays  of points; other files need none
 /// @param all_points  though their pixels are not ok
-void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
+void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
                   const std::vector<DecodedPlane>& planes, const PixelRays& pixel_rays,
                   bool all_points, OutputPolicy policy);
 
@@ -79,7 +79,7 @@ class DecodeOutput {
   /// @param planes  of exactly these rows, from its first row on, if target.in_rows(); else of the
   ///                whole frame, complete once the last rows come
   /// @throws IoError if a file cannot be written
-  void take(int frame, int first_row, int rows, const DecodedPlanes& planes);
+  void take(int frame, int first_row, int rows, const DepthImage& planes);
   /// Gives the stack its name. Call it once, last.
   void finish();
 
