@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints the descriptions of a camera's keys and of all options structs, from which
-// make_camera_fields.py and make_option_fields.py make Python classes.
+// Prints the descriptions of a camera's keys, of all options structs and of decoded planes, from
+// which make_camera_fields.py, make_option_fields.py and make_decoded_planes.py make Python
+// classes.
 #include <cstdio>
 
 #include "field_list.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
@@ -35,7 +37,17 @@ int main() {
       {"UploadRequest", fields_list<UploadRequest>()},
       {"UploadSelection", fields_list<UploadSelection>()},
   };
+  nlohmann::ordered_json planes = nlohmann::ordered_json::array();
+  for (const PlaneDescription& described : plane_descriptions)
+    planes.push_back({{"word", described.word},
+                      {"member", described.member},
+                      {"type", name_of(type_of(described.plane))},
+                      {"unit", described.unit},
+                      {"is_usual", described.use == PlaneUse::usual},
+                      {"is_multipath", described.use == PlaneUse::of_returns},
+                      {"help", help_of(described.plane)}});
   const nlohmann::ordered_json all = {{"camera", nlohmann::ordered_json::parse(camera_keys_json())},
-                                      {"options", options}};
+                                      {"options", options},
+                                      {"planes", planes}};
   return std::puts(all.dump().c_str()) < 0 ? 1 : 0;
 }

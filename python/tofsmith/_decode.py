@@ -16,14 +16,8 @@ from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Path, Progress, RawLike
 from ._code import CodeLike
 from ._decoding_table import DecodingTable, table_of
-from ._depth_image import (
-    DepthImage,
-    multipath_planes,
-    plane_names,
-    plane_types,
-    planes_of,
-    usual_planes,
-)
+from ._decoded_planes import multipath_planes, plane_types, usual_planes
+from ._depth_image import DepthImage, plane_names, planes_of
 from ._filter import Filter, FilterLike, TimeFilterLike, filter_options
 from ._notebook import table_picture
 from ._option_fields import DecodeOptions, DecodeRequest, MultipathOptions, StreamOptions
@@ -160,7 +154,7 @@ class Decoder:
         layout : {"interleaved", "planar"}
             Never guessed.
         planes : iterable of str, optional
-            Names of planes of DepthImage; others are not computed. None: all but bin.
+            Names of planes of DepthImage; others are not computed. None: the usual ones.
         out : DepthImage, optional
             Planes to write into: C order, of the frame's shape; instead of `planes`.
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional

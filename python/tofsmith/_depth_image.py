@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check
+from ._decoded_planes import DecodedPlanes, multipath_planes, plane_types, plane_words
 from ._notebook import depth_picture
 
 
@@ -39,74 +40,9 @@ class ReturnStatus(IntEnum):
     unresolved = 3
 
 
-#: Planes by name, in the order in which they are shown.
-plane_types: dict[str, type[np.generic]] = {
-    "bin": np.int32,
-    "depth_m": np.float32,
-    "signal_e_per_s": np.float32,
-    "ambient_e_per_s": np.float32,
-    "confidence": np.float32,
-    "predicted_standard_deviation_m": np.float32,
-    "status": np.uint8,
-    "residual": np.float32,
-    "delay_m": np.float32,
-    "ratio": np.float32,
-    "returns": np.uint8,
-}
-multipath_planes = ("delay_m", "ratio", "returns")
-usual_planes = tuple(
-    p for p in plane_types if p not in ("bin", "residual") and p not in multipath_planes)
-
-
-#: Words that recordings and `tofsmith decode --outputs` have for some of them.
-plane_words = {
-    "depth": "depth_m",
-    "signal": "signal_e_per_s",
-    "ambient": "ambient_e_per_s",
-    "deviation": "predicted_standard_deviation_m",
-    "delay": "delay_m",
-}
-
-
 @dataclass(eq=False, repr=False)
-class DepthImage:
-    """What a decoder says about every pixel; all planes are (H, W) or (F, H, W), None if not asked
-    for. Pixels without depth (invalid, no_return) hold NaN in every plane of floats.
-
-    Attributes
-    ----------
-    depth_m : ndarray of float32
-        Distance along the ray [m], in [0, range).
-    signal_e_per_s, ambient_e_per_s : ndarray of float32
-        S and A [e/s]; A is NaN where differences hide it.
-    confidence : ndarray of float32
-        That no far-off depth is the true one, in [0, 1].
-    predicted_standard_deviation_m : ndarray of float32
-        Of depth around the right peak [m].
-    status : ndarray of uint8
-        PixelStatus.
-    residual : ndarray of float32
-        Chi-square per degree of freedom of the measurements around the decoded light; NaN if the
-        code leaves no degree of freedom.
-    bin : ndarray of int32
-        The best bin in [0, N); -1 where a measurement is NaN or infinite.
-    delay_m, ratio : ndarray of float32
-        Of a second return (two-return, tail); NaN where there is none.
-    returns : ndarray of uint8
-        ReturnStatus (two-return, tail).
-    """
-
-    depth_m: Optional[npt.NDArray[np.float32]] = None
-    signal_e_per_s: Optional[npt.NDArray[np.float32]] = None
-    ambient_e_per_s: Optional[npt.NDArray[np.float32]] = None
-    confidence: Optional[npt.NDArray[np.float32]] = None
-    predicted_standard_deviation_m: Optional[npt.NDArray[np.float32]] = None
-    status: Optional[npt.NDArray[np.uint8]] = None
-    residual: Optional[npt.NDArray[np.float32]] = None
-    bin: Optional[npt.NDArray[np.int32]] = None
-    delay_m: Optional[npt.NDArray[np.float32]] = None
-    ratio: Optional[npt.NDArray[np.float32]] = None
-    returns: Optional[npt.NDArray[np.uint8]] = None
+class DepthImage(DecodedPlanes):
+    __doc__ = DecodedPlanes.__doc__
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, DepthImage):

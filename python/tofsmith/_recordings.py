@@ -11,7 +11,7 @@ from typing import Any, Optional
 
 from . import _check, _tofsmith
 from ._check import Path
-from ._depth_image import plane_words
+from ._decoded_planes import plane_words
 from ._filter import FilterLike, TimeFilterLike, filter_options, time_filter_options
 
 

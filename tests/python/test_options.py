@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Options have the names of the library's headers, none missing."""
 
+import dataclasses
 import re
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 import tofsmith as ts
 from tofsmith import instruments
+from tofsmith._decoded_planes import multipath_planes, plane_types, plane_words, usual_planes
 
 headers = Path(__file__).resolve().parents[2] / "include" / "tofsmith"
 quick = {"trials": 1000, "method": "factorize"}
@@ -100,9 +102,20 @@ def test_every_option_of_an_upload_can_be_given():
         instruments.upload_script("square-k4", "paper-10f0", "33522", exposur=1)
 
 
-def test_every_plane_of_a_decoded_image_is_there():
-    planes = fields("DecodedView", "decode/depth_image.hpp")
-    names = {name for name in vars(ts.DepthImage)["__dataclass_fields__"]}
-    assert names == planes
-    image = ts.decode(np.ones((1, 1, 4), np.float32), "hamiltonian-k4", "paper-10f0")
-    assert set(image.planes()) == planes - {"bin", "residual", "delay_m", "ratio", "returns"}
+def test_every_plane_is_an_attribute_and_can_be_decoded():
+    raw = np.ones((1, 1, 9), np.float32)
+    decoder = ts.Decoder("multifrequency-1x3-4x3-7x3", "paper-10f0", method="two-return")
+    image = decoder.decode(raw, planes=plane_types)
+    names = {field.name for field in dataclasses.fields(ts.DepthImage)}
+    assert names == set(plane_types) == set(image.planes()) == set(plane_words.values())
+    for name, plane in image.planes().items():
+        assert plane.dtype == plane_types[name]
+        assert f"    {name} : ndarray of {plane.dtype}" in ts.DepthImage.__doc__
+    assert set(decoder.decode(raw).planes()) == set(usual_planes + multipath_planes)
+
+
+def test_every_plane_is_documented():
+    page = (headers.parents[1] / "docs" / "decoding.md").read_text()
+    rows = [line.split("|")[1:3] for line in page.splitlines() if line.startswith("| `")]
+    for word, name in plane_words.items():
+        assert any(f"`{word}`" in words and f"`{name}`" in names for words, names in rows), word

@@ -41,7 +41,7 @@ refusals = [
     (lambda: decoder().decode(raw, layout="KHW"), ValueError, "layout: got str 'KHW'; needs one of interleaved, planar"),
     (lambda: decoder().decode([[1.0]]), TypeError, "raw[0]: got list [1.0]; needs a numpy.ndarray"),
     (lambda: decoder().decode(np.zeros(20, np.dtype([("a", "f4"), ("b", "u1")]))["a"].reshape(1, 5, 4)), ValueError, "needs a multiple of the 4 bytes"),
-    (lambda: decoder().decode(raw, planes=["deep"]), ValueError, "planes: got str 'deep'; needs one of bin, depth_m"),
+    (lambda: decoder().decode(raw, planes=["deep"]), ValueError, "planes: got str 'deep'; needs one of depth_m, signal"),
     (lambda: decoder().decode(raw, planes=["delay_m"]), ValueError, "planes: got str 'delay_m'; needs one of"),
     (lambda: decoder().decode(raw, planes=[]), ValueError, "planes: got none; needs at least one"),
     (lambda: decoder().decode(raw, out=read_only_plane()), ValueError, "out.depth_m: got a read-only array; needs one that can be written"),
