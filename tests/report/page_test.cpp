@@ -119,8 +119,9 @@ TEST(Page, RejectsRepeatedIdsAndRowsThatDoNotFit) {
 }
 
 TEST(Page, ReplacesBytesThatAreNotUtf8) {
-  const std::string document = page_document(page_of({Paragraph{"a\xff"
-                                                                "b"}}));
+  const std::string document =
+      page_document(page_of({Paragraph{"a\xff"
+                                       "b"}}));
   EXPECT_TRUE(json::accept(document));
   EXPECT_NE(document.find("a\ufffdb"), std::string::npos);
 }
