@@ -48,6 +48,13 @@ double held_out_rms_m(const std::vector<NormalSums>& sums, const TermChoice& cho
   return std::sqrt(left / std::max(1e-300, weight));
 }
 
+/// Whether the terms have a size that a depth error can have. Terms that the depths of the reference
+/// do not tell apart are far larger and cancel each other.
+bool is_plausible(const NormalSums& all, const TermChoice& choice, double range_m) {
+  constexpr double largest_share = 0.1;
+  return all.solve(choice.columns()).lpNorm<Eigen::Infinity>() < largest_share * range_m;
+}
+
 /// Sets of harmonics that errors of usual cameras have; of k equally spaced phases, k and 2 k.
 std::vector<unsigned> harmonic_sets(int highest) {
   const auto set = [](std::initializer_list<int> list) {
@@ -80,11 +87,14 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree) {
     TermChoice choice;
     double near_m, far_m;
   };
+  NormalSums all;
+  for (const NormalSums& cell : sums) all.add(cell);
   std::vector<Candidate> candidates;
   for (const unsigned harmonics : harmonic_sets(highest_harmonic))
     for (int degree = 0; degree <= max_degree; ++degree)
       for (int signal = 0; signal <= max_error_signal; ++signal) {
         const TermChoice choice{harmonics, degree, signal};
+        if (choice.size() > 1 && !is_plausible(all, choice, fit.range_m)) continue;
         candidates.push_back(
             {choice, held_out_rms_m(sums, choice, false), held_out_rms_m(sums, choice, true)});
       }

@@ -247,6 +247,21 @@ TEST(DepthCalibration, APartOfTheRangeIsKnownAndTheRestIsTheModelsWord) {
   EXPECT_NEAR(with_depth(phase_camera(), found).playback->offset_m, 0.7, 15e-3);
 }
 
+TEST(DepthCalibration, TermsHaveTheSizeOfDepthErrorsOnAnyPartOfTheRange) {
+  for (const double share : {0.05, 0.1, 0.2, 0.4})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      Bench bench{.first_share = 0.3, .last_share = 0.3 + share, .seed = seed, .truth = wiggle()};
+      bench.run();
+      const CalibratedDepth found = bench.calibrate();
+      for (const CalibratedTerm& term : found.terms) {
+        const double offset_m = term.name == "offset" ? found.mean_error_m : 0.0;
+        EXPECT_LT(std::abs(term.value_m.value - offset_m), 0.11 * bench.range_m)
+            << share << " of the range, " << term.name;
+      }
+      EXPECT_LT(bench.median_error_m(found.table), 2e-3);
+    }
+}
+
 TEST(DepthCalibration, DepthAlongTheAxisIsTurnedByTheLens) {
   Bench bench{.wrong_share = 0.0, .truth = wiggle()};
   bench.run();
