@@ -191,7 +191,7 @@ struct DecodedRecording {
 /// @throws std::invalid_argument "field = value; rule" for a request that cannot be, before any
 ///         file is written
 /// @throws IoError as RawFramesReader, for maps that do not fit, outputs that exist, are inputs or
-///         cannot hold the range, and frames that need more than `memory_mb`
+///         cannot hold a depth, and frames that need more than `memory_mb`
 /// @throws Interrupted if progress says so; frames that are finished keep their files
 /// @note the same bits for any number of threads and any memory
 DecodedRecording decode_recording(const DecodeRequest& request, const FrameBackend& backend,

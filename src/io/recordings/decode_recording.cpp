@@ -87,17 +87,6 @@ void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& tar
   for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
 }
 
-/// Before any frame is decoded.
-void check_range_fits(const std::filesystem::path& path, double range_m) {
-  constexpr double largest_m = 65.535;
-  if (path.extension() == ".png" && range_m > largest_m)
-    throw IoError(path.string(),
-                  fmt::format("found a range of {:.4g} m; expected at most {} m, all "
-                              "that 16 bits of millimetres hold (write .npy, .exr "
-                              "or .pfm)",
-                              range_m, largest_m));
-}
-
 double bytes_of_planes(const DecodeTarget& target, int rows) {
   return static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width * rows;
 }
@@ -250,7 +239,6 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   const PlaneCorrections corrections =
       corrections_of(request, table, request.raw.front().string(), reader.height(), reader.width());
   check_inputs_are_kept(request, asked);
-  check_range_fits(asked.path, table.range_m);
   DecodeOutput output(std::move(asked));
   const DecodeTarget& target = output.target();
   const std::optional<Filter> filter = filter_of(request, table);
