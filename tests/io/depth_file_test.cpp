@@ -128,11 +128,22 @@ TEST(DepthFile, RefusesArraysThatAreNoDepthImage) {
   EXPECT_THAT(read_refusal(directory / "a.npy"), HasSubstr("shape (2, 3, 4); expected (H, W)"));
   write_npy(directory / "a.npy", NpyArray(NpyType::uint16, {2, 3}), overwrite);
   EXPECT_THAT(read_refusal(directory / "a.npy"),
-              HasSubstr("type uint16; expected float32 or float64"));
+              HasSubstr("type uint16; expected float16, float32 or float64"));
   write_npy(directory / "a.npy", NpyArray(NpyType::float32, {2, 0}), overwrite);
   EXPECT_THAT(read_refusal(directory / "a.npy"), HasSubstr("2 x 0 pixels"));
   write_npy(directory / "a.npy", NpyArray(NpyType::float32, {1, 70000}), overwrite);
   EXPECT_THAT(read_refusal(directory / "a.npy"), HasSubstr("1 x 70000 pixels"));
+}
+
+TEST(DepthFile, ReadsHalfPrecision) {
+  const TemporaryDirectory directory;
+  NpyArray halves(NpyType::float16, {1, 3});
+  const std::uint16_t bits[] = {0x3e00, 0x0001, 0x7c00};  // 1.5, 2^-24, infinity
+  std::memcpy(halves.bytes().data(), bits, sizeof(bits));
+  write_npy(directory / "a.npy", halves, overwrite);
+  write_npz(directory / "a.npz", {{"depth", halves}}, overwrite);
+  for (const char* file : {"a.npy", "a.npz"})
+    expect_same(read_depth(directory / file), image_of(1, 3, {1.5f, 0x1p-24f, nan}));
 }
 
 TEST(DepthFile, TakesTheArrayCalledDepthOrTheOnlyOne) {

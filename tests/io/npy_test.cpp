@@ -134,7 +134,7 @@ TEST(Npy, RefusesItemsItDoesNotUnderstandByName) {
   EXPECT_THAT(descr_refusal("'<c8'"), HasSubstr("complex"));
   EXPECT_THAT(descr_refusal("[('x', '<f4'), ('y', '<f4')]"), HasSubstr("records"));
   EXPECT_THAT(descr_refusal("'<U2'"), HasSubstr("type '<U2'; expected one of bool"));
-  EXPECT_THAT(descr_refusal("'<f2'"), HasSubstr("'<f2'"));
+  EXPECT_THAT(descr_refusal("'<f16'"), HasSubstr("'<f16'"));
   EXPECT_THAT(descr_refusal("'|f4'"), HasSubstr("'|f4'"));
   EXPECT_THAT(descr_refusal("'=f4'"), HasSubstr("'=f4'"));
   EXPECT_THAT(descr_refusal("''"), HasSubstr("type ''"));

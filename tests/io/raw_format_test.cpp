@@ -7,7 +7,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "damaged_files.hpp"
 #include "raw_packer.hpp"
@@ -239,6 +242,22 @@ TEST(RawFormat, RefusesFilesThatAreNoWholeNumberOfFrames) {
   EXPECT_THAT(error(16 + 88, 3), HasSubstr("gives 2 measurements per pixel; expected 3"));
   options.format->frames = 2;
   EXPECT_THAT(error(16 + 88), HasSubstr("found 104 bytes; expected 192"));
+}
+
+TEST(RawFrames, OfHalfPrecisionComeAsFloats) {
+  const TemporaryDirectory directory;
+  NpyArray halves(NpyType::float16, {1, 2, 3});
+  const std::array<std::uint16_t, 6> bits = {0x3c00, 0xfbff, 0x0001, 0x8000, 0x7c00, 0x3555};
+  std::memcpy(halves.bytes().data(), bits.data(), sizeof(bits));
+  write_npy(directory / "a.npy", halves, OutputPolicy::overwrite);
+  write_npz(directory / "a.npz", {{"raw", halves}}, OutputPolicy::overwrite);
+  for (const char* name : {"a.npy", "a.npz"}) {
+    const RawFramesReader reader(directory / name);
+    EXPECT_EQ(reader.type(), NpyType::float32);
+    EXPECT_FALSE(reader.holds_integers());
+    EXPECT_THAT(reader.read_frame(0).values,
+                testing::ElementsAre(1.0f, -65504.0f, 0x1p-24f, -0.0f, INFINITY, 0x1.554p-2f));
+  }
 }
 
 TEST(RawFrames, OfInt16ComeAsFloats) {

@@ -42,9 +42,21 @@ def test_recordings_decode_to_the_same_bytes(tmp_path):
             decoder.decode_recording(tmp_path / name, tmp_path / "none.npy", stack=True)
 
 
+def test_half_precision_decodes_as_the_same_numbers_in_single_precision(tmp_path):
+    halves = np.linspace(-3e4, 3e4, 4 * 4 * 4).reshape(4, 4, 4).astype(np.float16)
+    halves[0, 0] = [np.float16(6e-8), np.inf, -np.inf, np.nan]
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["raw"] = halves.astype(">f2")
+    np.save(tmp_path / "a.npy", halves)
+    np.savez(tmp_path / "a.npz", raw=np.asfortranarray(halves))
+    for name in ("a.h5", "a.npy", "a.npz"):
+        read = ts.read_raw(tmp_path / name)
+        np.testing.assert_array_equal(read.reshape(halves.shape), halves.astype(np.float32))
+
+
 def test_types_that_are_no_numbers_are_not_taken(tmp_path):
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["mask"] = np.zeros((4, 4, 4), bool)
-        file["half"] = np.zeros((4, 4, 4), np.float16)
+        file["complex"] = np.zeros((4, 4, 4), np.complex64)
     with pytest.raises(OSError, match="no data set of numbers"):
         ts.read_raw(tmp_path / "a.h5")

@@ -25,7 +25,7 @@ constexpr double luminance_rec709(double red, double green, double blue) {
 }
 
 /// One number per pixel, as the file holds it, by the file's extension:
-///   .npy   float32 or float64 of shape (H, W)
+///   .npy   float16, float32 or float64 of shape (H, W)
 ///   .npz   the same, of the array `name`, or of the only one
 ///   .exr   the channel `name`, "Z" or "Y", or the only one, or R, G and B if all are equal
 ///   .pfm   grey
@@ -71,7 +71,7 @@ enum class Transfer { srgb, linear };
 
 /// Albedo, shape (H, W), as the Rec. 709 luminance of a picture:
 ///   .png   8 or 16 bits, grey or RGB, alpha ignored; 1.0 is full white
-///   .npy   float32 or float64, (H, W) or (H, W, 3), linear
+///   .npy   floats, (H, W) or (H, W, 3), linear
 ///   .exr   "Y", the only channel, or R, G and B, linear
 ///   .pfm   grey or RGB, linear
 /// @param png_transfer  PNG files rarely say; photographs are sRGB, measured albedo may be linear

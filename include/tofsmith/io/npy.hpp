@@ -27,6 +27,7 @@ enum class NpyType {
   uint16,
   uint32,
   uint64,
+  float16,  ///< IEEE half precision; C++ has no type for its items, which to_floats() converts
   float32,
   float64
 };
@@ -35,6 +36,8 @@ enum class NpyType {
 std::size_t item_size(NpyType type);
 /// NumPy's name of the type, such as "float32" or "bool".
 std::string_view name_of(NpyType type);
+/// Returns true for floats of any size.
+bool is_float(NpyType type);
 
 /// Length of every axis, slowest first; empty for a single number.
 using NpyShape = std::vector<std::size_t>;

@@ -72,7 +72,7 @@ std::string last_words() {
 std::optional<NpyType> number_type(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   if (H5Tget_class(type) == H5T_FLOAT) {
-    if (bytes == 4) return NpyType::float32;
+    if (bytes == 2 || bytes == 4) return NpyType::float32;  // the library converts halves exactly
     if (bytes == 8) return NpyType::float64;
     return {};
   }

@@ -6,9 +6,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 #include "io/arrays/npy_header.hpp"
+#include "io/half_precision.hpp"
 #include "io/shared/byte_order.hpp"
 
 namespace tofsmith {
@@ -29,7 +31,19 @@ std::vector<Number> converted(const NpyArray& array) {
 }
 
 template <typename Number>
+std::vector<Number> converted_halves(const NpyArray& array) {
+  std::vector<Number> numbers(array.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::uint16_t bits;
+    std::memcpy(&bits, array.bytes().data() + i * sizeof(bits), sizeof(bits));
+    numbers[i] = static_cast<Number>(float_of_half(bits));
+  }
+  return numbers;
+}
+
+template <typename Number>
 std::vector<Number> to_numbers(const NpyArray& array) {
+  if (array.type() == NpyType::float16) return converted_halves<Number>(array);
   return converted<Number, std::int8_t, std::int16_t, std::int32_t, std::int64_t, std::uint8_t,
                    std::uint16_t, std::uint32_t, std::uint64_t, float, double>(array);
 }
@@ -38,6 +52,10 @@ std::vector<Number> to_numbers(const NpyArray& array) {
 
 std::size_t item_size(NpyType type) { return npy_types[static_cast<std::size_t>(type)].bytes; }
 std::string_view name_of(NpyType type) { return npy_types[static_cast<std::size_t>(type)].name; }
+
+bool is_float(NpyType type) {
+  return type == NpyType::float16 || type == NpyType::float32 || type == NpyType::float64;
+}
 
 std::string describe_shape(const NpyShape& shape) {
   if (shape.size() == 1) return fmt::format("({},)", shape[0]);

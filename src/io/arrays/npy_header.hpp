@@ -21,7 +21,7 @@ struct NpyTypeEntry {
   std::string_view code;  ///< NumPy's letter and size, without the byte order
   std::size_t bytes;      ///< per item
 };
-inline constexpr std::array<NpyTypeEntry, 11> npy_types = {{
+inline constexpr std::array<NpyTypeEntry, 12> npy_types = {{
     {NpyType::boolean, "bool", "b1", 1},
     {NpyType::int8, "int8", "i1", 1},
     {NpyType::int16, "int16", "i2", 2},
@@ -31,6 +31,7 @@ inline constexpr std::array<NpyTypeEntry, 11> npy_types = {{
     {NpyType::uint16, "uint16", "u2", 2},
     {NpyType::uint32, "uint32", "u4", 4},
     {NpyType::uint64, "uint64", "u8", 8},
+    {NpyType::float16, "float16", "f2", 2},
     {NpyType::float32, "float32", "f4", 4},
     {NpyType::float64, "float64", "f8", 8},
 }};

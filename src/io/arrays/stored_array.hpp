@@ -26,8 +26,8 @@ struct StoredArray {
 /// @param reader  of a file in C order
 StoredArray stored_array(NpyReader reader);
 
-/// A data set of an HDF5 file: whole numbers of 8 to 64 bits, float32 or float64, in any byte order
-/// and chunks, with the filters that the HDF5 library has.
+/// A data set of an HDF5 file: whole numbers of 8 to 64 bits or floats of 16 (read as float32), 32
+/// or 64 bits, in any byte order and chunks, with the filters that the HDF5 library has.
 /// @param dataset    its name, with groups ("/camera/raw"); empty: the one called "raw", or the
 /// only
 ///                   one of numbers

@@ -37,8 +37,8 @@ NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
 }
 
 void require_floats(const NpyArray& array, std::string_view file) {
-  if (array.type() == NpyType::float32 || array.type() == NpyType::float64) return;
-  throw IoError(file, fmt::format("found items of type {}; expected float32 or float64",
+  if (is_float(array.type())) return;
+  throw IoError(file, fmt::format("found items of type {}; expected float16, float32 or float64",
                                   name_of(array.type())));
 }
 

@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// @throws IoError unless the array is float32 or float64 of shape (H, W)
+/// @throws IoError unless the array holds floats, shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
 /// `name` if an array is called so, else the name of the only one.
@@ -23,7 +23,7 @@ std::string name_called_or_only(const NpzReader& archive, std::string_view name,
 NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
                               std::string_view file);
 
-/// @throws IoError unless the array holds float32 or float64
+/// @throws IoError unless the array holds floats
 void require_floats(const NpyArray& array, std::string_view file);
 
 /// @throws IoError if the image has colours

@@ -67,6 +67,7 @@ NpyType decoded_type(NpyType stored) {
       return stored;
     case NpyType::int8:
     case NpyType::int16:
+    case NpyType::float16:
       return NpyType::float32;
     default:
       return NpyType::float64;
@@ -150,7 +151,7 @@ void RawFramesReader::open_array(const std::filesystem::path& path, const RawRea
   sizes_ = checked_raw_sizes(stored,
                              is_one_measurement ? with_measurements(shape, path.string()) : shape,
                              options, path.string());
-  holds_integers_ = stored != NpyType::float32 && stored != NpyType::float64;
+  holds_integers_ = !is_float(stored);
   holds_unsigned_ = is_unsigned(stored);
   marking_ = options.marking;
   check_markers(marking_.markers, stored, path.string());

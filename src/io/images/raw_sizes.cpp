@@ -62,7 +62,7 @@ NumberRange whole_numbers(int bits, bool is_unsigned) {
 }
 
 std::optional<NumberRange> range_of(NpyType type) {
-  if (type == NpyType::float32 || type == NpyType::float64) return std::nullopt;
+  if (is_float(type)) return std::nullopt;
   return whole_numbers(8 * static_cast<int>(item_size(type)), is_unsigned(type));
 }
 
@@ -136,7 +136,7 @@ bool is_unsigned(NpyType type) {
 }
 
 void check_markers(const RawMarkers& markers, NpyType type, const std::string& file) {
-  check_markers(markers, range_of(type), type == NpyType::float32 ? 24 : 53,
+  check_markers(markers, range_of(type), is_float(type) && type != NpyType::float64 ? 24 : 53,
                 fmt::format("numbers of type {}", name_of(type)), file);
 }
 

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <half.h>
+
+#include <cstdint>
+
+namespace tofsmith {
+
+/// Returns the number of an IEEE half-precision float, which single precision holds exactly.
+inline float float_of_half(std::uint16_t bits) { return half(half::FromBits, bits); }
+
+}  // namespace tofsmith
