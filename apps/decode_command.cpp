@@ -150,7 +150,8 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
       .add_option(
           "RAW", arguments.raw,
           "raw frames (.npy .npz .h5): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
-          "K files, one a measurement in their order, (H,W) or (F,H,W) each; or - for frames "
+          "K files, one per measurement in their order, (H,W) or (F,H,W) each, or grey images "
+          "(.png .tiff .pgm); or - for frames "
           "of --raw-format from standard input, with -o -")
       ->required();
   const FieldOptions request(command, arguments.request);

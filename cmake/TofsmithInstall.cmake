@@ -29,7 +29,7 @@ if(TOFSMITH_IS_STATIC)
     set(finds_gpu "find_dependency(OpenCL)")
   endif()
   set(finds_io "find_dependency(TBB)" "find_dependency(tomlplusplus)" "find_dependency(OpenEXR)"
-      "find_dependency(PNG)" "find_dependency(embree ${embree_VERSION})"
+      "find_dependency(PNG)" "find_dependency(ZLIB)" "find_dependency(embree ${embree_VERSION})"
       "find_dependency(PkgConfig)"
       "pkg_check_modules(LIBZIP REQUIRED QUIET IMPORTED_TARGET libzip)"
       "pkg_check_modules(YAML_CPP REQUIRED QUIET IMPORTED_TARGET yaml-cpp)"

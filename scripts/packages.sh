@@ -42,7 +42,7 @@ packages_demo=(
   libyaml-cpp-dev     # calibrations of lenses
   libembree-dev       # ray casting
   python3             # packs the viewer of reports
-  zlib1g-dev          # packs the pictures of reports
+  zlib1g-dev          # unpacks TIFF images, packs the pictures of reports
 )
 # All components and the command line.
 packages_build=(

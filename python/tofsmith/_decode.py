@@ -236,7 +236,8 @@ class Decoder:
         ----------
         raw : str or path, or a list of them
             .npy, .npz or .h5, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes. A list
-            has one file a measurement, in their order, (H, W) or (F, H, W) each.
+            has one file per measurement, in their order, (H, W) or (F, H, W) each, or grey images
+            (.png .tiff .pgm).
         output : str or path
             .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
             of each; .ply, .pcd (organized): points with planes as scalars. Files of several frames

@@ -4,9 +4,11 @@
 
 #include "io/documents/lens_calibration.hpp"
 #include "io/images/exr.hpp"
+#include "io/images/grey_image.hpp"
 #include "io/images/pfm.hpp"
 #include "io/images/raw_dump_reader.hpp"
 #include "reader.hpp"
+#include "tiff_writer.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -118,6 +120,21 @@ const char* const ply_square =
     "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
+std::vector<Bytes> tiff_seeds() {
+  const Bytes pixels(12, std::byte{7});
+  std::vector<Bytes> all;
+  for (const std::uint32_t scheme : {1U, 5U, 32773U}) {
+    const Bytes packed = scheme == 5   ? pack_lzw(pixels)
+                         : scheme == 1 ? pixels
+                                       : Bytes{std::byte{0xf5}, std::byte{7}};
+    const TiffWriter writer{
+        .tags = {{256, {3}}, {257, {2}}, {258, {16}}, {259, {scheme}}, {317, {2}}},
+        .blocks = {packed}};
+    all.push_back(writer.file());
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<Reader> text_readers() {
@@ -173,6 +190,9 @@ std::vector<Reader> image_readers() {
            seeds({serialize_png(png), serialize_png(colour)}), Repair::png},
           {"pfm", [](Input bytes) { parse_pfm(bytes, "a.pfm"); },
            seeds({bytes_of("Pf\n1 1\n-1\n\x01\x02\x03\x04")})},
+          {"pgm", [](Input bytes) { parse_pgm(bytes, "a.pgm"); },
+           seeds({bytes_of("P5 2 1 255 ab"), bytes_of("P2 2 1 4095 7 8")})},
+          {"tiff", [](Input bytes) { parse_tiff(bytes, "a.tiff"); }, &tiff_seeds},
           {"exr", [](Input bytes) { parse_exr(bytes, "a.exr"); },
            seeds({serialize_exr({{"Y", image}}), serialize_exr({{"R", image}, {"G", image}})})}};
 }

@@ -149,3 +149,29 @@ def test_ply_of_every_form_is_the_same_mesh(tmp_path):
     assert np.isfinite(seen[0]).any()
     for depth in seen[1:]:
         np.testing.assert_array_equal(depth, seen[0])
+
+
+@pytest.mark.parametrize("extension, options", [
+    (".tiff", {"compression": None}), (".tif", {"compression": "tiff_lzw"}),
+    (".tiff", {"compression": "tiff_adobe_deflate"}), (".tiff", {"compression": "packbits"}),
+    (".png", {})])
+def test_phase_images_of_pillow_decode_as_their_array(tmp_path, extension, options):
+    decode_phases(tmp_path, extension,
+                  lambda image, path: pillow.fromarray(image).save(path, **options))
+
+
+@pytest.mark.parametrize("extension", [".tiff", ".png", ".pgm"])
+def test_phase_images_of_opencv_decode_as_their_array(tmp_path, extension):
+    decode_phases(tmp_path, extension, lambda image, path: cv2.imwrite(str(path), image))
+
+
+def decode_phases(tmp_path, extension, write):
+    raw = RANDOM.poisson(3000, (31, 53, 4)).astype(np.uint16)
+    decoder = ts.Decoder("sinusoid-k4", ts.Camera("paper-10f0"))
+    files = [tmp_path / f"p{k}{extension}" for k in range(4)]
+    for k, path in enumerate(files):
+        write(np.ascontiguousarray(raw[..., k]), path)
+    decoder.decode_recording(files, tmp_path / "images.npy")
+    np.save(tmp_path / "raw.npy", raw)
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "array.npy")
+    assert (tmp_path / "images.npy").read_bytes() == (tmp_path / "array.npy").read_bytes()

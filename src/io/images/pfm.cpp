@@ -4,47 +4,18 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
 #include "io/byte_cursor.hpp"
 #include "io/image_limits.hpp"
+#include "io/images/netpbm_words.hpp"
 #include "io/shared/byte_order.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {
-
-bool is_space(std::byte byte) {
-  const char c = std::to_integer<char>(byte);
-  return c == ' ' || c == '\n' || c == '\r' || c == '\t';
-}
-
-/// The next word of the header and the one white space that ends it.
-std::string_view take_word(ByteCursor& cursor, std::string_view what) {
-  constexpr std::size_t longest = 64;
-  while (!cursor.at_end() && is_space(cursor.rest()[0])) cursor.take(1, what);
-  std::size_t length = 0;
-  while (length < cursor.rest().size() && length <= longest && !is_space(cursor.rest()[length]))
-    ++length;
-  if (length > longest) cursor.fail(fmt::format("expected {}", what));
-  const std::string_view word = cursor.take_text(length, what);
-  cursor.take(1, what);
-  return word;
-}
-
-template <typename Number>
-Number take_number(ByteCursor& cursor, std::string_view what) {
-  const std::string_view word = take_word(cursor, what);
-  Number number{};
-  const char* end = word.data() + word.size();
-  const auto result = std::from_chars(word.data(), end, number);
-  if (result.ec != std::errc() || result.ptr != end)
-    cursor.fail(fmt::format("the header is malformed before here; expected {}", what));
-  return number;
-}
 
 std::size_t row_bytes(const PfmImage& image) {
   return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels) *

@@ -15,6 +15,7 @@
 #include "io/arrays/stored_array.hpp"
 #include "io/image_limits.hpp"
 #include "io/images/array_image.hpp"
+#include "io/images/grey_image.hpp"
 #include "io/images/raw_dump_reader.hpp"
 #include "io/images/raw_sizes.hpp"
 #include "io/shared/file_kind.hpp"
@@ -125,13 +126,20 @@ RawFramesReader::RawFramesReader(RawFramesReader&&) noexcept = default;
 void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options,
                                  bool is_one_measurement) {
   const std::string extension = lower_extension(path);
-  if (extension != ".npy" && extension != ".npz" && extension != ".h5" && extension != ".hdf5")
+  const bool is_image = is_grey_image(path);
+  if (!is_image && extension != ".npy" && extension != ".npz" && extension != ".h5" &&
+      extension != ".hdf5")
     throw IoError(path.string(),
-                  fmt::format("found {}; expected .npy, .npz or .h5, or for a sensor's dump its "
+                  fmt::format("found {}; expected .npy, .npz or .h5, images (.png .tiff .pgm, one "
+                              "per measurement), or for a sensor's dump its "
                               "description (--raw-format, docs/raw_formats.md)",
                               extension.empty() ? "no extension"
                                                 : fmt::format("the extension '{}'", extension)));
-  if (extension == ".npz") {
+  if (is_image) {
+    refuse_dataset(path, options);
+    whole_ = read_grey_image(path);
+    check_memory(whole_.bytes().size(), options, path.string(), "an image");
+  } else if (extension == ".npz") {
     whole_ = read_npz_array(path, options);
   } else if (extension != ".npy") {
     file_ =

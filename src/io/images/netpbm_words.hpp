@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+
+#include "io/byte_cursor.hpp"
+
+namespace tofsmith {
+
+/// Returns true for the characters that separate words of PGM and PFM files.
+inline bool is_space(std::byte byte) {
+  const char c = std::to_integer<char>(byte);
+  return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
+
+/// Returns the next word and skips the one white space that ends it. Comments run from # to the end
+/// of the line.
+inline std::string_view take_word(ByteCursor& cursor, std::string_view what) {
+  constexpr std::size_t longest = 64;
+  while (!cursor.at_end()) {
+    if (cursor.rest()[0] == std::byte{'#'})
+      cursor.take_until('\n', "the end of a comment");
+    else if (is_space(cursor.rest()[0]))
+      cursor.take(1, what);
+    else
+      break;
+  }
+  std::size_t length = 0;
+  while (length < cursor.rest().size() && length <= longest && !is_space(cursor.rest()[length]))
+    ++length;
+  if (length > longest) cursor.fail(fmt::format("expected {}", what));
+  const std::string_view word = cursor.take_text(length, what);
+  if (!cursor.at_end()) cursor.take(1, what);
+  return word;
+}
+
+/// @throws IoError if the next word is not a number of this type
+template <typename Number>
+Number take_number(ByteCursor& cursor, std::string_view what) {
+  const std::string_view word = take_word(cursor, what);
+  Number number{};
+  const char* end = word.data() + word.size();
+  const auto result = std::from_chars(word.data(), end, number);
+  if (result.ec != std::errc() || result.ptr != end)
+    cursor.fail(fmt::format("the file is malformed before here; expected {}", what));
+  return number;
+}
+
+}  // namespace tofsmith

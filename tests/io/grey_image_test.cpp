@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/images/grey_image.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+#include "tiff_writer.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr auto overwrite = OutputPolicy::overwrite;
+constexpr std::size_t height = 40, width = 70;
+
+std::uint16_t number_at(std::size_t row, std::size_t column, int phase = 0) {
+  return static_cast<std::uint16_t>(900 * row + (column * column + 7919 * row * column) % 613 +
+                                    41 * static_cast<std::size_t>(phase));
+}
+
+std::vector<std::uint16_t> numbers_of(int phase = 0) {
+  std::vector<std::uint16_t> numbers;
+  for (std::size_t row = 0; row < height; ++row)
+    for (std::size_t column = 0; column < width; ++column)
+      numbers.push_back(number_at(row, column, phase));
+  return numbers;
+}
+
+void append(FileBytes& bytes, std::uint16_t number, bool big_endian) {
+  const auto low = static_cast<std::byte>(number), high = static_cast<std::byte>(number >> 8);
+  bytes.insert(bytes.end(), {big_endian ? high : low, big_endian ? low : high});
+}
+
+/// Numbers of a block as they are stored; those outside the image are 0.
+FileBytes block_bytes(std::size_t first_row, std::size_t rows, std::size_t first_column,
+                      std::size_t columns, bool big_endian, bool differences) {
+  FileBytes bytes;
+  for (std::size_t row = first_row; row < first_row + rows; ++row) {
+    std::uint16_t before = 0;
+    for (std::size_t column = first_column; column < first_column + columns; ++column) {
+      const auto number =
+          row < height && column < width ? number_at(row, column) : std::uint16_t{0};
+      append(bytes, static_cast<std::uint16_t>(differences ? number - before : number), big_endian);
+      before = number;
+    }
+  }
+  return bytes;
+}
+
+FileBytes pack_bits(const FileBytes& bytes) {
+  FileBytes packed;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t count = std::min<std::size_t>(100, bytes.size() - at);
+    packed.push_back(static_cast<std::byte>(count - 1));
+    packed.insert(packed.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(at + count));
+    at += count;
+    if (at + 3 < bytes.size() && bytes[at] == bytes[at + 1]) {
+      packed.insert(packed.end(), {std::byte{0xff}, bytes[at]});  // twice
+      at += 2;
+    }
+  }
+  return packed;
+}
+
+/// One stored block of Deflate.
+FileBytes pack_deflate(const FileBytes& bytes) {
+  FileBytes packed = {std::byte{0x78}, std::byte{0x01}, std::byte{0x01}};
+  const auto size = static_cast<std::uint16_t>(bytes.size());
+  append(packed, size, false);
+  append(packed, static_cast<std::uint16_t>(~size), false);
+  packed.insert(packed.end(), bytes.begin(), bytes.end());
+  std::uint32_t a = 1, b = 0;
+  for (const std::byte byte : bytes) {
+    a = (a + std::to_integer<std::uint32_t>(byte)) % 65521;
+    b = (b + a) % 65521;
+  }
+  append(packed, static_cast<std::uint16_t>(b), true);
+  append(packed, static_cast<std::uint16_t>(a), true);
+  return packed;
+}
+
+FileBytes packed_by(int scheme, const FileBytes& bytes) {
+  if (scheme == 5) return pack_lzw(bytes);
+  if (scheme == 8) return pack_deflate(bytes);
+  return scheme == 32773 ? pack_bits(bytes) : bytes;
+}
+
+TiffWriter tiff_of(int scheme, bool big_endian, int predictor) {
+  return {.big_endian = big_endian,
+          .tags = {{256, {width}},
+                   {257, {height}},
+                   {258, {16}},
+                   {259, {static_cast<std::uint32_t>(scheme)}},
+                   {262, {1}},
+                   {277, {1}},
+                   {317, {static_cast<std::uint32_t>(predictor)}}},
+          .blocks = {}};
+}
+
+TEST(Tiff, ReadsStripsAndTilesOfEveryCompression) {
+  for (const int scheme : {1, 5, 8, 32773})
+    for (const bool big_endian : {false, true})
+      for (const int predictor : {1, 2}) {
+        SCOPED_TRACE(testing::Message() << scheme << " " << big_endian << " " << predictor);
+        TiffWriter strips = tiff_of(scheme, big_endian, predictor), tiles = strips;
+        strips.tags.push_back({278, {32}});
+        for (const auto& [first, rows] : {std::pair{0, 32}, std::pair{32, 8}})
+          strips.blocks.push_back(
+              packed_by(scheme, block_bytes(first, rows, 0, width, big_endian, predictor == 2)));
+        const NpyArray image = parse_tiff(strips.file(), "a.tiff");
+        EXPECT_THAT(image.shape(), ElementsAre(height, width));
+        EXPECT_THAT(image.as<std::uint16_t>(), testing::ElementsAreArray(numbers_of()));
+
+        tiles.tags.push_back({322, {32}});
+        tiles.tags.push_back({323, {16}});
+        for (std::size_t row = 0; row < height; row += 16)
+          for (std::size_t column = 0; column < width; column += 32)
+            tiles.blocks.push_back(
+                packed_by(scheme, block_bytes(row, 16, column, 32, big_endian, predictor == 2)));
+        EXPECT_THAT(parse_tiff(tiles.file(324, 325), "a.tiff").as<std::uint16_t>(),
+                    testing::ElementsAreArray(numbers_of()));
+      }
+}
+
+TEST(Tiff, RefusesOtherImagesAndNamesTheReason) {
+  const auto refusal = [](TiffWriter writer, int tag, std::uint32_t value) {
+    for (auto& [number, values] : writer.tags)
+      if (number == tag) values = {value};
+    return io_error_of([&] { parse_tiff(writer.file(), "a.tiff"); });
+  };
+  TiffWriter good = tiff_of(1, false, 1);
+  good.blocks = {block_bytes(0, height, 0, width, false, false)};
+  EXPECT_THAT(refusal(good, 258, 12), HasSubstr("numbers of 12 bits"));
+  EXPECT_THAT(refusal(good, 277, 3), HasSubstr("3 numbers per pixel"));
+  EXPECT_THAT(refusal(good, 262, 0), HasSubstr("photometric interpretation 0"));
+  EXPECT_THAT(refusal(good, 259, 7), HasSubstr("compression 7; expected none, LZW"));
+  EXPECT_THAT(refusal(good, 317, 3), HasSubstr("predictor 3"));
+  EXPECT_THAT(refusal(good, 257, 41), HasSubstr("found 5600 bytes; expected 5740"));
+  EXPECT_THAT(refusal(good, 256, 70000), HasSubstr("70000"));
+  good.next_page = 8;
+  EXPECT_THAT(refusal(good, 0, 0), HasSubstr("several pages; expected one"));
+  EXPECT_THAT(io_error_of([] { parse_tiff(FileBytes(3), "a.tiff"); }), HasSubstr("a.tiff"));
+}
+
+FileBytes pgm(const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST(Pgm, ReadsBinaryAndTextOfBothSizes) {
+  const std::string wide("P5\n# made by hand\n2 1 4095\n\x0f\xff\x00\x01", 31);
+  EXPECT_THAT(parse_pgm(pgm(wide), "a.pgm").as<std::uint16_t>(), ElementsAre(4095, 1));
+  EXPECT_THAT(parse_pgm(pgm("P5 2 1 255 ab"), "a.pgm").as<std::uint8_t>(), ElementsAre('a', 'b'));
+  EXPECT_THAT(parse_pgm(pgm("P2 2 1 4095\n4095 # right\n 7"), "a.pgm").as<std::uint16_t>(),
+              ElementsAre(4095, 7));
+}
+
+TEST(Pgm, RefusesDamagedFilesAndNamesTheReason) {
+  const auto refusal = [](const std::string& text) {
+    return io_error_of([&] { parse_pgm(pgm(text), "a.pgm"); });
+  };
+  EXPECT_THAT(refusal("P6 1 1 255 abc"), HasSubstr("expected P5 (binary) or P2 (text)"));
+  EXPECT_THAT(refusal("P5 2 1 65535 abc"), HasSubstr("found 3 bytes of data; expected 4"));
+  EXPECT_THAT(refusal("P5 2 2 255 abcde"), HasSubstr("found 5 bytes of data; expected 4"));
+  EXPECT_THAT(refusal("P5 2 1 0 ab"), HasSubstr("expected 1 to 65535"));
+  EXPECT_THAT(refusal("P2 2 1 15 3 16"), HasSubstr("found 16; expected at most 15"));
+  EXPECT_THAT(refusal("P2 2 1 15 3 x"), AllOf(HasSubstr("a.pgm"), HasSubstr("number of a pixel")));
+}
+
+/// Four phases, one image each.
+std::vector<std::filesystem::path> write_phases(const TemporaryDirectory& directory,
+                                                const std::string& extension) {
+  std::vector<std::filesystem::path> files;
+  for (int phase = 0; phase < 4; ++phase) {
+    files.push_back(directory / ("p" + std::to_string(phase) + extension));
+    const std::vector<std::uint16_t> numbers = numbers_of(phase);
+    if (extension == ".png") {
+      write_png(files.back(), {height, width, 1, 16, numbers}, overwrite);
+      continue;
+    }
+    FileBytes pixels;
+    for (const std::uint16_t number : numbers) append(pixels, number, true);
+    TiffWriter tiff = tiff_of(1, true, 1);
+    tiff.blocks = {pixels};
+    FileBytes file = extension == ".tif" ? tiff.file() : pgm("P5 70 40 65535\n");
+    if (extension == ".pgm") file.insert(file.end(), pixels.begin(), pixels.end());
+    write_file_atomically(files.back(), file, overwrite);
+  }
+  return files;
+}
+
+TEST(PhaseImages, AreTheFrameOfTheirNumbers) {
+  const TemporaryDirectory directory;
+  for (const std::string extension : {".png", ".tif", ".pgm"}) {
+    const RawFrames frames =
+        read_raw_frames(write_phases(directory, extension), {.measurements = 4});
+    ASSERT_EQ(frames.frames, 1);
+    ASSERT_EQ(frames.measurements, 4);
+    for (int phase = 0; phase < 4; ++phase)
+      for (std::size_t i = 0; i < height * width; ++i)
+        ASSERT_EQ(frames.values[4 * i + static_cast<std::size_t>(phase)], numbers_of(phase)[i]);
+  }
+}
+
+TEST(PhaseImages, OfAnotherSizeNumberOrColourAreRefused) {
+  const TemporaryDirectory directory;
+  auto files = write_phases(directory, ".png");
+  const auto refusal = [&] {
+    return io_error_of([&] { read_raw_frames(files, {.measurements = 4}); });
+  };
+  write_png(files[2], {2, 3, 1, 16, std::vector<std::uint16_t>(6)}, overwrite);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("p2.png"), HasSubstr("1 frame of 2 x 3; expected 1 frame "
+                                                              "of 40 x 70 as in")));
+  write_png(files[2], {height, width, 3, 16, std::vector<std::uint16_t>(3 * height * width)},
+            overwrite);
+  EXPECT_THAT(refusal(), HasSubstr("found 3 channels; expected a grey image"));
+  write_png(files[2], {height, width, 1, 8, std::vector<std::uint16_t>(height * width)}, overwrite);
+  EXPECT_THAT(refusal(), HasSubstr("read as uint8 (whole); expected uint16 (whole) as in"));
+  files.pop_back();
+  EXPECT_THAT(refusal(), HasSubstr("found 3 files, one a measurement; expected 4"));
+  files.resize(1);
+  EXPECT_THAT(refusal(), HasSubstr("all files where each holds one measurement"));
+}
+
+}  // namespace
+}  // namespace tofsmith
