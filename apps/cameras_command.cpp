@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "session.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/io/raw_format.hpp"
 
 namespace tofsmith::apps {
 
@@ -90,10 +90,11 @@ std::string value_text(const nlohmann::ordered_json& key) {
   return text;
 }
 
-void list_keys(const Session& session) {
-  const auto keys = nlohmann::ordered_json::parse(camera_keys_json());
+/// @param json  list of keys @param title  of the list
+void list_keys(const Session& session, const std::string& json, const std::string& title) {
+  const auto keys = nlohmann::ordered_json::parse(json);
   session.print_json(keys);
-  std::string text = "Keys of a camera file:\n";
+  std::string text = title + ":\n";
   for (const auto& key : keys) {
     const auto help = key["help"].get<std::string>();
     if (key["type"] == "table")
@@ -108,7 +109,7 @@ void list_keys(const Session& session) {
 
 void show_raw_format(const Session& session, const std::string& name) {
   if (name.empty())
-    throw UsageError(fmt::format("--raw-format needs the NAME of a camera ({})",
+    throw UsageError(fmt::format("--raw-format needs the NAME of a camera ({}), or --keys",
                                  fmt::join(built_in_raw_format_names(), ", ")));
   std::string toml = built_in_raw_format_toml(name);
   session.print_json({{"name", name}, {"raw_format", toml}});
@@ -129,10 +130,15 @@ void add_cameras_command(CLI::App& app, Session& session) {
   add_settings_option(*command, *settings);
   command->add_flag("--raw-format", *raw_format,
                     "print how its raw frames run instead, as `decode --raw-format` takes it");
-  command->add_flag("--keys", *keys, "list all keys of a camera file with unit, range and default")
-      ->excludes("NAME", "--set", "--raw-format");
+  command
+      ->add_flag("--keys", *keys,
+                 "list all keys of a camera file, or with --raw-format of a raw format, with unit, "
+                 "range and default")
+      ->excludes("NAME", "--set");
   command->callback([name, settings, raw_format, keys, &session] {
-    if (*keys) return list_keys(session);
+    if (*keys && *raw_format)
+      return list_keys(session, raw_format_keys_json(), "Keys of a raw format (.raw.toml)");
+    if (*keys) return list_keys(session, camera_keys_json(), "Keys of a camera file");
     if (!settings->empty() && (*raw_format || name->empty()))
       throw UsageError("--set changes the keys of the camera NAME that is printed");
     if (*raw_format) return show_raw_format(session, *name);

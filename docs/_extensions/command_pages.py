@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 """Writes generated/commands, a page for every command of the tool, from its help texts, and
-generated/camera_keys.md, the keys of a camera file."""
+generated/camera_keys.md and generated/raw_format_keys.md, the keys of these files."""
 
 from __future__ import annotations
 
@@ -122,18 +122,20 @@ def camera_key_row(key: dict) -> str:
         words, key["range"], key["condition"] and f"only with `{key['condition']}`",
         key["example"] and f"required, such as `{key['example']}`"]))
     name = key["key"].rpartition(".")[2]
-    default = "" if key["default"] is None else f"`{json.dumps(key['default'])}`"
+    has_default = key["default"] is not None and not key["example"]
+    default = f"`{json.dumps(key['default'])}`" if has_default else ""
     help_text = plain(key["help"])
     return f"| `{name}` | {help_text} | {key['unit']} | {facts} | {default} |"
 
 
-def camera_keys_page(tool: str) -> str:
-    """The keys of a camera file, a table of Markdown for each of its tables."""
-    keys = json.loads(subprocess.run([tool, "cameras", "--keys", "--json"], check=True,
+def keys_page(tool: str, title: str, file: str, options: list[str]) -> str:
+    """The keys that `tofsmith cameras OPTIONS` lists, a table of Markdown for each table of the
+    file."""
+    keys = json.loads(subprocess.run([tool, "cameras", *options, "--json"], check=True,
                                      capture_output=True, text=True).stdout)
     head = "\n| key | meaning | unit | values | default |\n|---|---|---|---|---|"
-    lines = ["# Camera keys\n", "All keys of a [camera file](../cameras.md), as "
-             "`tofsmith cameras --keys` prints them.", head]
+    lines = [f"# {title}\n", f"All keys of a {file}, as `tofsmith cameras {' '.join(options)}` "
+             "prints them.", head]
     for table in [{"key": ""}] + [key for key in keys if key["type"] == "table"]:
         if table["key"]:
             lines += [f"\n## [{table['key']}]\n", plain(table["help"]) + ".", head]
@@ -144,7 +146,11 @@ def camera_keys_page(tool: str) -> str:
 
 def write_generated_pages(tool: str, folder: Path) -> None:
     write_pages(tool, folder / "commands")
-    (folder / "camera_keys.md").write_text(camera_keys_page(tool))
+    (folder / "camera_keys.md").write_text(
+        keys_page(tool, "Camera keys", "[camera file](../cameras.md)", ["--keys"]))
+    (folder / "raw_format_keys.md").write_text(
+        keys_page(tool, "Raw format keys", "[raw format](../raw_formats.md)",
+                  ["--raw-format", "--keys"]))
 
 
 def setup(app):

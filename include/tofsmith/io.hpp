@@ -19,6 +19,7 @@
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/point_cloud.hpp"
+#include "tofsmith/io/raw_format.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_toml.hpp"

@@ -69,6 +69,13 @@ class Commands(CommandLineTest):
             self.assertIn(key["help"], text)
         self.refuse(["cameras", "kinect-v2", "--keys"], "--keys", code=2)
 
+    def test_keys_of_raw_formats_are_listed(self):
+        keys = {key["key"]: key for key in self.do_json("cameras", "--raw-format", "--keys")}
+        self.assertEqual(keys["rotate_deg"]["default"], 0)
+        self.assertEqual(keys["negate_rows"]["words"], ["none", "even", "odd"])
+        self.assertEqual(keys["frame_trailer_bytes"]["range"], "in [0, 1073741823]")
+        self.assertIn("frame_trailer_bytes", self.do("cameras", "--raw-format", "--keys"))
+
     def test_a_simulated_frame_has_its_camera_beside_it(self):
         truth = self.small_scene()
         far = ("--set", "fundamental_frequency_hz=7.5e6")

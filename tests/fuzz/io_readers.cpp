@@ -49,7 +49,7 @@ void read_all(Input dump, const RawFormat& format) {
   std::vector<double> numbers(static_cast<std::size_t>(format.height) *
                               static_cast<std::size_t>(format.width) *
                               static_cast<std::size_t>(format.output_measurements()));
-  reader.read_rows(0, 0, format.height, numbers.data());
+  reader.read_rows(0, 0, format.output_height(), numbers.data());
 }
 
 /// A description of a dump up to a zero byte, and the dump.
@@ -58,7 +58,7 @@ void read_described_dump(Input bytes) {
   read_all(bytes, parse_raw_format(text_of(text)));
 }
 
-/// Twelve bytes that say how a dump is packed, and the dump, cut or filled to what they announce.
+/// Fourteen bytes that say how a dump is packed, and the dump, cut or filled to what they announce.
 void read_packed_dump(Input bytes) {
   std::size_t at = 0;
   const auto next = [&](int values) {
@@ -77,12 +77,14 @@ void read_packed_dump(Input bytes) {
   format.is_signed = next(2) == 1;
   format.layout = static_cast<RawOrder>(next(3));
   format.subtract_taps = next(2) == 1;
-  format.header_bytes = static_cast<std::uint64_t>(next(9));
-  format.row_bytes = static_cast<std::uint64_t>(next(2)) * 64;
+  format.header_bytes = next(9);
+  format.row_bytes = next(2) * 64;
+  format.rotate_deg = 90 * next(4);
+  format.negate_rows = static_cast<NegatedLines>(next(3));
   format.validate();
   const Input rest = bytes.subspan(std::min(at, bytes.size()));
   Bytes dump(rest.begin(), rest.end());
-  dump.resize(format.header_bytes + format.frame_bytes());
+  dump.resize(static_cast<std::size_t>(format.header_bytes) + format.frame_bytes());
   read_all(dump, format);
 }
 

@@ -102,6 +102,20 @@ TEST_F(DecodeStream, GivesTheBytesOfFilesFrameByFrame) {
   EXPECT_EQ(written_, of_files(depth)) << "depth, if nothing is asked for";
 }
 
+TEST_F(DecodeStream, GivesTheBytesOfFilesOfTurnedImagesWithATrailer) {
+  std::ofstream(path("s.raw.toml"), std::ios::app)
+      << "rotate_deg = 90\nnegate_rows = \"odd\"\ntrailer_bytes = 2\n";
+  stream_.resize(stream_.size() + 2);
+  std::ofstream(path("dump.bin"), std::ios::app | std::ios::binary) << "  ";
+  DecodeRequest request;
+  request.outputs = {DecodedPlane::depth, DecodedPlane::status};
+  const DecodedStream result = run(request, stream_.size());
+  EXPECT_EQ(result.frames, 3);
+  EXPECT_EQ(result.height, 5);
+  EXPECT_EQ(result.width, 6);
+  EXPECT_EQ(written_, of_files(request));
+}
+
 TEST_F(DecodeStream, KeepsWholeFramesOfOneThatBreaksOff) {
   const std::size_t frame = 6 * 5 * 4 * sizeof(float);
   EXPECT_THAT([&] { run({}, 3 + 2 * frame + 7); },

@@ -22,6 +22,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 RawFormat random_format(RandomStream& random) {
   const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
@@ -34,7 +35,7 @@ RawFormat random_format(RandomStream& random) {
   switch (below(6)) {
     case 0:
       f.numbers = RawNumbers::floats;
-      f.bits = below(2) == 0 ? 32 : 64;
+      f.bits = 16 << below(3);
       f.big_endian = below(2) == 0;
       break;
     case 1:
@@ -55,37 +56,65 @@ RawFormat random_format(RandomStream& random) {
       f.big_endian = below(2) == 0;
   }
   f.is_signed = f.numbers == RawNumbers::integers && below(2) == 0;
-  f.header_bytes = static_cast<std::uint64_t>(below(3) * 7);
-  f.frame_header_bytes = static_cast<std::uint64_t>(below(3) * 5);
-  if (f.layout == RawOrder::planar) f.image_header_bytes = static_cast<std::uint64_t>(below(3));
+  if (f.is_signed && below(2) == 0) f.sign_bit = below(static_cast<unsigned>(f.bits));
+  if (f.is_signed && below(2) == 0) f.sign_encoding = SignEncoding::sign_magnitude;
+  f.negate_rows = static_cast<NegatedLines>(below(3));
+  f.negate_columns = static_cast<NegatedLines>(below(3));
+  f.negate_from_row = below(static_cast<unsigned>(f.height));
+  f.negate_from_column = below(static_cast<unsigned>(f.width));
+  f.header_bytes = below(3) * 7;
+  f.trailer_bytes = below(3) * 3;
+  f.frame_header_bytes = below(3) * 5;
+  f.frame_trailer_bytes = below(3);
+  if (f.layout == RawOrder::planar) f.image_header_bytes = below(3);
+  if (f.layout == RawOrder::planar) f.image_trailer_bytes = below(3);
+  if (f.rows_start_bytes) f.row_header_bytes = below(3);
   if (f.rows_start_bytes && below(2) == 0)
-    f.row_bytes = f.tight_row_bytes() + static_cast<std::uint64_t>(below(4));
+    f.row_bytes = f.row_header_bytes + static_cast<int>(f.tight_row_bytes()) + below(4);
   if (below(2) == 0) {
-    f.order.resize(static_cast<std::size_t>(f.measurements));
-    std::iota(f.order.begin(), f.order.end(), 0);
+    f.order.resize(static_cast<std::size_t>(f.measurements), -1);
+    std::iota(f.order.begin(), f.order.begin() + 1 + below(static_cast<unsigned>(f.measurements)),
+              0);
     for (std::size_t i = f.order.size(); i > 1; --i)
       std::swap(f.order[i - 1], f.order[random() % i]);
+    if (f.order.back() == -1) f.order.pop_back();
   }
   f.flip_rows = below(2) == 0;
   f.flip_columns = below(2) == 0;
-  f.subtract_taps = f.measurements % 2 == 0 && below(2) == 0;
+  f.rotate_deg = 90 * below(4);
+  f.subtract_taps = f.kept_measurements() % 2 == 0 && below(2) == 0;
   if (!f.subtract_taps) f.black_level = below(3) * 16.0;
   f.validate();
   return f;
 }
 
 double random_number(const RawFormat& f, RandomStream& random) {
+  if (f.numbers == RawNumbers::floats && f.bits == 16)
+    return std::floor((random.uniform() - 0.5) * 2048.0) / 1024.0;
   if (f.numbers == RawNumbers::floats)
     return f.bits == 32 ? static_cast<float>(random.uniform() - 0.5) : random.uniform() - 0.5;
+  const int bits = f.sign_bit.value_or(f.bits - 1) + 1;  // that have a meaning
   const double word =
-      static_cast<double>((random() & 0xffffffffU) >> (32 - static_cast<unsigned>(f.bits)));
-  return f.is_signed ? word - std::exp2(f.bits - 1) : word;
+      static_cast<double>((random() & 0xffffffffU) >> (32 - static_cast<unsigned>(bits)));
+  if (!f.is_signed) return word;
+  const double number = word - std::exp2(bits - 1);
+  return f.sign_encoding == SignEncoding::sign_magnitude && number < 0.0 ? number + 1.0 : number;
+}
+
+/// Row and column in the file of the pixel at (row, column) of the scene.
+std::pair<int, int> row_and_column_in_file(const RawFormat& f, int row, int column) {
+  // Turns back by quarters: the scene's image before a quarter turn clockwise.
+  int height = f.output_height(), width = f.output_width();
+  for (int turned = 0; turned < f.rotate_deg; turned += 90) {
+    std::tie(row, column) = std::pair(width - 1 - column, row);
+    std::swap(height, width);
+  }
+  return {f.flip_rows ? height - 1 - row : row, f.flip_columns ? width - 1 - column : column};
 }
 
 /// Place of number j of the pixel at (row, column) of the scene in the order of the file.
 std::size_t place_in_file(const RawFormat& f, int frame, int row, int column, int j) {
-  const int r = f.flip_rows ? f.height - 1 - row : row;
-  const int c = f.flip_columns ? f.width - 1 - column : column;
+  const auto [r, c] = row_and_column_in_file(f, row, column);
   int place = 0;
   switch (f.layout) {
     case RawOrder::planar:
@@ -104,11 +133,24 @@ std::size_t place_in_file(const RawFormat& f, int frame, int row, int column, in
 /// Numbers of a pixel as they shall come out.
 std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>& numbers,
                                    int frame, int row, int column) {
-  std::vector<double> pixel(static_cast<std::size_t>(f.measurements));
+  const auto [r, c] = row_and_column_in_file(f, row, column);
+  const auto is_negated = [](NegatedLines lines, int line) {
+    return lines == (line % 2 == 0 ? NegatedLines::even : NegatedLines::odd);
+  };
+  double sign = 1.0;
+  for (const bool negated : {is_negated(f.negate_rows, r), is_negated(f.negate_columns, c),
+                             f.negate_from_row > 0 && r >= f.negate_from_row,
+                             f.negate_from_column > 0 && c >= f.negate_from_column})
+    if (negated) sign = -sign;
+  std::vector<double> pixel(static_cast<std::size_t>(f.kept_measurements()));
   for (int j = 0; j < f.measurements; ++j) {
-    const auto file_j = static_cast<std::size_t>(j);
-    pixel[f.order.empty() ? file_j : static_cast<std::size_t>(f.order[file_j])] =
-        numbers[place_in_file(f, frame, row, column, j)] - f.black_level;
+    int measurement = j;
+    if (!f.order.empty())
+      measurement =
+          j < static_cast<int>(f.order.size()) ? f.order[static_cast<std::size_t>(j)] : -1;
+    if (measurement >= 0)
+      pixel[static_cast<std::size_t>(measurement)] =
+          sign * (numbers[place_in_file(f, frame, row, column, j)] - f.black_level);
   }
   if (!f.subtract_taps) return pixel;
   std::vector<double> differences;
@@ -119,7 +161,7 @@ std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>
 TEST(RawFormat, UnpacksWhatWasPackedForAnyDescription) {
   const TemporaryDirectory directory;
   const auto path = directory / "dump.bin";
-  for (std::uint32_t item = 0; item < 150; ++item) {
+  for (std::uint32_t item = 0; item < 400; ++item) {
     SCOPED_TRACE(item);
     RandomStream random(71, item);
     RawFormat f = random_format(random);
@@ -135,11 +177,13 @@ TEST(RawFormat, UnpacksWhatWasPackedForAnyDescription) {
     ASSERT_EQ(reader.frames(), frames);
     ASSERT_EQ(reader.measurements(), f.output_measurements());
     EXPECT_EQ(reader.type(), f.needs_doubles() ? NpyType::float64 : NpyType::float32);
-    const int first = static_cast<int>(random() % static_cast<unsigned>(f.height));
+    ASSERT_EQ(reader.height(), f.rotate_deg % 180 == 0 ? f.height : f.width);
+    const int height = reader.height();
+    const int first = static_cast<int>(random() % static_cast<unsigned>(height));
     std::vector<std::byte> buffer;
-    const RawView view = reader.read_rows(frames - 1, first, f.height - first, buffer);
-    for (int row = first; row < f.height; ++row)
-      for (int column = 0; column < f.width; ++column) {
+    const RawView view = reader.read_rows(frames - 1, first, height - first, buffer);
+    for (int row = first; row < height; ++row)
+      for (int column = 0; column < reader.width(); ++column) {
         const auto pixel = expected_pixel(f, numbers, frames - 1, row, column);
         for (int k = 0; k < view.measurements; ++k) {
           const std::ptrdiff_t at = (row - first) * view.row_stride + column * view.column_stride +
@@ -202,16 +246,34 @@ TEST(RawFormatToml, SaysWhereAndWhatIsWrong) {
   };
   EXPECT_THAT(error("pakcing = \"mipi\""),
               AllOf(HasSubstr("s.raw.toml:5:1"), HasSubstr("did you mean packing?")));
+  EXPECT_THAT(error("frame_footer_bytes = 8"),
+              AllOf(HasSubstr("s.raw.toml:5:1: unknown key frame_footer_bytes"),
+                    HasSubstr("frame_header_bytes, frame_trailer_bytes"), Not(HasSubstr("mean"))));
   EXPECT_THAT(error("packing = \"raw10\""), HasSubstr("mipi"));
   EXPECT_THAT(error("packing = \"mipi\"\nbyte_order = \"big\""),
               HasSubstr("must be left out unless plain"));
   EXPECT_THAT(error("packing = \"mipi\"\ncontainer_bits = 16"), HasSubstr("s.raw.toml:6:18"));
   EXPECT_THAT(error("container_bits = 8"), HasSubstr("8, 16 or 32 and hold bits = 10"));
-  EXPECT_THAT(error("numbers = \"float\""), HasSubstr("bits = 10; must be 32 or 64"));
-  EXPECT_THAT(error("order = [0, 1, 2]"), HasSubstr("must list all 4 measurements"));
+  EXPECT_THAT(error("numbers = \"float\""), HasSubstr("bits = 10; must be 16, 32 or 64"));
+  EXPECT_THAT(error("order = [0, 1, 2, 3, -1]"), HasSubstr("must list at most the 4 measurements"));
   EXPECT_THAT(error("order = [0, 1, 2, 2]"), HasSubstr("must name each of 0 .. 3 once"));
-  EXPECT_THAT(error("order = [0, 1, 2, 2.5]"), HasSubstr("whole numbers"));
+  EXPECT_THAT(error("order = [1, 2, -1, 3]"), HasSubstr("must name each of 0 .. 2 once"));
+  EXPECT_THAT(error("order = [-1, -1, -1, -1]"), HasSubstr("must keep a measurement"));
+  EXPECT_THAT(error("order = [0, -2]"),
+              AllOf(HasSubstr("s.raw.toml:5:9"), HasSubstr("order[1] = -2")));
+  EXPECT_THAT(error("order = [0, 1, 2, 2.5]"), HasSubstr("an integer of"));
+  EXPECT_THAT(error("order = [0, 1, 2]\ntaps = \"subtract\""),
+              AllOf(HasSubstr("order = 3"), HasSubstr("even to subtract taps")));
+  EXPECT_THAT(error("sign_bit = 9"), HasSubstr("must be left out unless signed = true"));
+  EXPECT_THAT(error("sign_encoding = \"sign_magnitude\""), HasSubstr("unless signed = true"));
+  EXPECT_THAT(error("signed = true\nsign_bit = 10"), HasSubstr("must be below bits = 10"));
+  EXPECT_THAT(error("rotate_deg = 45"), HasSubstr("must be 0, 90, 180 or 270"));
+  EXPECT_THAT(error("negate_rows = \"all\""), HasSubstr("\"none\", \"even\", \"odd\""));
+  EXPECT_THAT(error("negate_from_row = 2"), HasSubstr("must be below height = 2"));
+  EXPECT_THAT(error("frame_trailer_bytes = -1"), HasSubstr("frame_trailer_bytes = -1; must be"));
+  EXPECT_THAT(error("layout = \"by_rows\"\nimage_trailer_bytes = 4"), HasSubstr("planar"));
   EXPECT_THAT(error("row_bytes = 15"), HasSubstr("at least the 16 bytes"));
+  EXPECT_THAT(error("row_header_bytes = 3\nrow_bytes = 18"), HasSubstr("at least the 19 bytes"));
   EXPECT_THAT(error("rows_start_bytes = false"), HasSubstr("lsb_first or msb_first"));
   EXPECT_THAT(error("layout = \"interleaved\"\nimage_header_bytes = 4"), HasSubstr("planar"));
   EXPECT_THAT(error("taps = \"subtract\"\nblack_level = 3.0"), HasSubstr("where it cancels"));
@@ -236,8 +298,9 @@ TEST(RawFormat, RefusesFilesThatAreNoWholeNumberOfFrames) {
   EXPECT_THAT(error(16 + 88 + 5),
               HasSubstr("found 109 bytes; expected 16 of header and a whole number of frames (1 or "
                         "more) of 2 x 8 pixels, 4 measurements of 11 bits, 88 bytes per frame; 5 "
-                        "bytes are left over after 1 frames"));
-  EXPECT_THAT(error(10), HasSubstr("found 10 bytes"));
+                        "bytes are left over after 1 frames; from standard input, `decode - -o -` "
+                        "decodes the 1 complete frame and reports the rest"));
+  EXPECT_THAT(error(10), AllOf(HasSubstr("found 10 bytes"), Not(HasSubstr("standard input"))));
   EXPECT_THAT(error(16), HasSubstr("found 16 bytes"));
   EXPECT_THAT(error(16 + 88, 3), HasSubstr("gives 2 measurements per pixel; expected 3"));
   options.format->frames = 2;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -29,27 +30,48 @@ class RawPacker {
         for (std::size_t row = 0; row < format_.rows_per_image(); ++row) {
           if (format_.rows_start_bytes) align();
           const std::size_t row_begin = bytes_.size();
+          if (format_.row_header_bytes > 0) gap(format_.row_header_bytes);
           const auto end = next + static_cast<std::ptrdiff_t>(format_.numbers_per_row());
           put_row({next, end});
           next = end;
-          if (format_.row_bytes > 0) gap(format_.row_bytes - (bytes_.size() - row_begin));
+          if (format_.row_bytes > 0)
+            gap(format_.row_bytes - static_cast<int>(bytes_.size() - row_begin));
         }
         align();
         EXPECT_EQ(bytes_.size() - begin, format_.image_bytes());
+        gap(format_.image_trailer_bytes);
       }
+      gap(format_.frame_trailer_bytes);
     }
+    gap(format_.trailer_bytes);
     return bytes_;
   }
 
  private:
-  void gap(std::uint64_t count) {
+  void gap(int count) {
     align();
-    bytes_.insert(bytes_.end(), count, std::byte{0xa5});
+    bytes_.insert(bytes_.end(), static_cast<std::size_t>(count), std::byte{0xa5});
   }
   void align() { bit_ = 0; }
   std::uint64_t word_of(double number) const {
-    const auto word = static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
-    return word & ((std::uint64_t{1} << format_.bits) - 1);
+    const auto integer = static_cast<std::int64_t>(number);
+    const auto word = static_cast<std::uint64_t>(integer);
+    const std::uint64_t all = (std::uint64_t{1} << format_.bits) - 1;
+    if (!format_.is_signed) return word & all;
+    // Bits above the sign bit have no meaning: some are set.
+    const std::uint64_t sign = std::uint64_t{1} << format_.sign_bit.value_or(format_.bits - 1),
+                        unused = all & ~(2 * sign - 1) & 0xaaaaaaaa;
+    if (format_.sign_encoding == SignEncoding::twos_complement)
+      return (word & (2 * sign - 1)) | unused;
+    return (integer < 0 ? sign | static_cast<std::uint64_t>(-integer) : word) | unused;
+  }
+  /// IEEE half precision of a number that it holds exactly, zero or at least 2^-14.
+  static std::uint64_t half_of(double number) {
+    if (number == 0.0) return 0;
+    const int exponent = std::ilogb(number);
+    const double mantissa = (std::ldexp(std::abs(number), -exponent) - 1.0) * 1024.0;
+    return (number < 0.0 ? 0x8000U : 0U) | static_cast<unsigned>(exponent + 15) << 10 |
+           static_cast<unsigned>(mantissa);
   }
   void put_bit(bool bit) {
     if (bit_ == 0) bytes_.push_back(std::byte{0});
@@ -66,6 +88,8 @@ class RawPacker {
       for (const double number : row)
         if (format_.bits == 64)
           put_container(std::bit_cast<std::uint64_t>(number), 8);
+        else if (format_.bits == 16)
+          put_container(half_of(number), 2);
         else
           put_container(std::bit_cast<std::uint32_t>(static_cast<float>(number)), 4);
     } else if (format_.packing == RawPacking::plain) {

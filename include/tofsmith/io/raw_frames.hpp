@@ -16,6 +16,7 @@
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/raw_format.hpp"
 
 namespace tofsmith {
 
@@ -98,7 +99,7 @@ class RawFramesReader {
   bool holds_integers() const { return holds_integers_; }
   /// Memory of one row of a frame in type() [bytes].
   std::size_t row_bytes() const;
-  /// Additional memory of one row that is marked [bytes]; 0 if no number is replaced.
+  /// Additional memory of one row that is marked or turned [bytes]; 0 if there is none.
   std::size_t marked_row_bytes() const;
   /// What the reader itself holds [bytes]: the values of a file that cannot be read in parts.
   std::size_t bytes_in_memory() const;

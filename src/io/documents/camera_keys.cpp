@@ -7,6 +7,7 @@
 
 #include "io/text/field_writer.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/raw_format.hpp"
 
 namespace tofsmith {
 
@@ -43,6 +44,17 @@ Json key_json(const KeyDescription& described, const Json& defaults) {
   return entry;
 }
 
+/// @param its  with the default of every key
+template <typename Struct>
+std::string keys_json(Struct its) {
+  KeyList list;
+  describe(list, its);  // creates all tables
+  const Json defaults = described_json(its);
+  Json keys = Json::array();
+  for (const KeyDescription& described : list.keys) keys.push_back(key_json(described, defaults));
+  return keys.dump(1);
+}
+
 }  // namespace
 
 std::vector<KeyDescription> describe_camera_keys(const Camera& camera) {
@@ -62,12 +74,9 @@ std::vector<std::string> camera_keys() {
 std::string camera_keys_json() {
   Camera complete;
   complete.operating = paper_operating_range();
-  KeyList list;
-  describe(list, complete);  // creates all tables
-  const Json defaults = described_json(complete);
-  Json keys = Json::array();
-  for (const KeyDescription& described : list.keys) keys.push_back(key_json(described, defaults));
-  return keys.dump(1);
+  return keys_json(complete);
 }
+
+std::string raw_format_keys_json() { return keys_json(RawFormat()); }
 
 }  // namespace tofsmith

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "io/input_file.hpp"
 #include "tofsmith/core/error.hpp"
@@ -15,35 +16,114 @@ namespace tofsmith {
 
 namespace {
 
-/// What is wrong with the length of a file, if something is.
+/// Describes a wrong length of a file.
 std::string length_problem(std::uint64_t found, const RawFormat& format) {
-  const std::uint64_t frame = format.frame_bytes(), header = format.header_bytes;
+  const auto around = static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
+  const std::uint64_t frame = format.frame_bytes(), data = found < around ? 0 : found - around,
+                      complete = data / frame;
   const std::string sizes =
       fmt::format("{} x {} pixels, {} measurements of {} bits, {} bytes per frame", format.height,
                   format.width, format.measurements, format.bits, frame);
+  const std::string before =
+      around > 0 ? fmt::format("{} of {} and ", around,
+                               format.trailer_bytes > 0 ? "header and trailer" : "header")
+                 : "";
+  const std::string next_step =
+      complete > 0 ? fmt::format(
+                         "; from standard input, `decode - -o -` decodes the {} complete "
+                         "frame{} and reports the rest",
+                         complete, complete == 1 ? "" : "s")
+                   : "";
   if (format.frames > 0)
-    return fmt::format("found {} bytes; expected {}: {}{} frames of {}", found,
-                       header + static_cast<std::uint64_t>(format.frames) * frame,
-                       header > 0 ? fmt::format("{} of header and ", header) : "", format.frames,
-                       sizes);
-  const std::uint64_t data = found < header ? 0 : found - header;
+    return fmt::format("found {} bytes; expected {}: {}{} frames of {}{}", found,
+                       around + static_cast<std::uint64_t>(format.frames) * frame, before,
+                       format.frames, sizes, next_step);
   return fmt::format(
       "found {} bytes; expected {}a whole number of frames (1 or more) of {}; {} "
-      "bytes are left over after {} frames",
-      found, header > 0 ? fmt::format("{} of header and ", header) : "", sizes, data % frame,
-      data / frame);
+      "bytes are left over after {} frames{}",
+      found, before, sizes, data % frame, complete, next_step);
 }
 
 int frames_in(std::uint64_t found, const RawFormat& format, const std::string& file) {
   const std::uint64_t frame = format.frame_bytes();
-  const std::uint64_t data = found < format.header_bytes ? 0 : found - format.header_bytes;
-  const std::uint64_t frames = data / frame;
-  const bool whole = found >= format.header_bytes && frames >= 1 && data % frame == 0;
+  const auto around = static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
+  const std::uint64_t data = found < around ? 0 : found - around, frames = data / frame;
+  const bool whole = found >= around && frames >= 1 && data % frame == 0;
   if (!whole || (format.frames > 0 && frames != static_cast<std::uint64_t>(format.frames)) ||
       frames > std::numeric_limits<int>::max())
     throw IoError(file, length_problem(found, format));
   return static_cast<int>(frames);
 }
+
+/// Flips and rotation together: a quarter turn exchanges rows and columns, and then either may run
+/// backwards.
+struct Orientation {
+  bool transposed, reversed_rows, reversed_columns;  ///< of the scene
+
+  explicit Orientation(const RawFormat& f)
+      : transposed(f.is_transposed()),
+        reversed_rows((transposed ? f.flip_columns : f.flip_rows) != (f.rotate_deg >= 180)),
+        reversed_columns((transposed ? f.flip_rows : f.flip_columns) !=
+                         (f.rotate_deg == 90 || f.rotate_deg == 180)) {}
+};
+
+/// Place of a pixel of the scene in an image of the file.
+struct FilePlace {
+  int row, column;
+
+  FilePlace(const RawFormat& f, const Orientation& o, int scene_row, int scene_column)
+      : row(o.reversed_rows ? f.output_height() - 1 - scene_row : scene_row),
+        column(o.reversed_columns ? f.output_width() - 1 - scene_column : scene_column) {
+    if (o.transposed) std::swap(row, column);
+  }
+};
+
+bool is_among(NegatedLines lines, int line) {
+  return lines != NegatedLines::none && (line % 2 == 1) == (lines == NegatedLines::odd);
+}
+
+bool negates_numbers(const RawFormat& f) {
+  return f.negate_rows != NegatedLines::none || f.negate_columns != NegatedLines::none ||
+         f.negate_from_row > 0 || f.negate_from_column > 0;
+}
+
+bool is_negated(const RawFormat& f, const FilePlace& place) {
+  return is_among(f.negate_rows, place.row) ^ is_among(f.negate_columns, place.column) ^
+         (f.negate_from_row > 0 && place.row >= f.negate_from_row) ^
+         (f.negate_from_column > 0 && place.column >= f.negate_from_column);
+}
+
+/// The measurement that number j of a pixel is; -1 if it is skipped.
+int measurement_of(const RawFormat& f, int j) {
+  if (f.order.empty()) return j;
+  return static_cast<std::size_t>(j) < f.order.size() ? f.order[static_cast<std::size_t>(j)] : -1;
+}
+
+/// Turns numbers of the file into measurements.
+class Measure {
+ public:
+  Measure(const RawFormat& f, const RawMarking& marking)
+      : marking_(marking),
+        is_unsigned_(f.numbers == RawNumbers::integers && !f.is_signed),
+        black_level_(f.black_level == 0.0 && is_unsigned_ ? marking.unsigned_black_level
+                                                          : f.black_level) {
+    // A sign and a magnitude have no number -2^n: the lowest one is -(2^n - 1).
+    if (f.sign_encoding == SignEncoding::sign_magnitude && marking.signed_max)
+      lowest_ = -*marking.signed_max;
+  }
+
+  double operator()(double number, bool negated) const {
+    if (const auto replaced = marking_.replacement(number, is_unsigned_)) return *replaced;
+    if (number == lowest_) return marking_.saturated_below;
+    return negated ? black_level_ - number : number - black_level_;
+  }
+
+ private:
+  const RawMarking& marking_;
+  bool is_unsigned_;
+  double black_level_;
+  double lowest_ = std::numeric_limits<double>::quiet_NaN();  ///< equal to no number
+};
 
 }  // namespace
 
@@ -72,17 +152,27 @@ RawDumpReader::RawDumpReader(std::span<const std::byte> bytes, RawFormat format,
   frames_ = frames_in(bytes.size(), format_, "bytes");
 }
 
+std::size_t RawDumpReader::block_row_bytes() const {
+  return format_.is_transposed()
+             ? sizeof(double) * static_cast<std::size_t>(format_.output_width()) *
+                   static_cast<std::size_t>(format_.kept_measurements())
+             : 0;
+}
+
 /// Row `row` of an image of the file.
 void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
                                   std::vector<std::byte>& bytes,
                                   std::vector<double>& numbers) const {
   const RawFormat& f = format_;
+  const auto bytes_of = [](int count) { return static_cast<std::uint64_t>(count); };
   const std::uint64_t image_at =
-      f.header_bytes + static_cast<std::uint64_t>(frame) * f.frame_bytes() + f.frame_header_bytes +
-      image * (f.image_header_bytes + f.image_bytes()) + f.image_header_bytes;
+      bytes_of(f.header_bytes) + bytes_of(frame) * f.frame_bytes() +
+      bytes_of(f.frame_header_bytes) +
+      image * (bytes_of(f.image_header_bytes + f.image_trailer_bytes) + f.image_bytes()) +
+      bytes_of(f.image_header_bytes);
   const std::size_t count = f.numbers_per_row();
   numbers.resize(count);
-  std::uint64_t at = image_at + row * (f.row_bytes > 0 ? f.row_bytes : f.tight_row_bytes());
+  std::uint64_t at = image_at + row * f.row_pitch_bytes() + bytes_of(f.row_header_bytes);
   std::uint64_t size = f.tight_row_bytes();
   int first_bit = 0;
   if (!f.rows_start_bytes) {
@@ -96,49 +186,67 @@ void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
   unpack_numbers(f, bytes, first_bit, numbers);
 }
 
+/// Rows of the scene, (rows, W, K) numbers as they are stored in the file. All rows of the file are
+/// read if a quarter turn makes them columns.
+void RawDumpReader::read_block(int frame, int first_row, int rows, Block& block) const {
+  const RawFormat& f = format_;
+  const Orientation o(f);
+  const int width = f.output_width(), kept = f.kept_measurements();
+  block.pixels.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) *
+                      static_cast<std::size_t>(kept));
+  const bool side_by_side = f.layout == RawOrder::interleaved;
+  // A line is the part of the scene that one row of the file holds.
+  const int lines = o.transposed ? width : rows, length = o.transposed ? rows : width;
+  for (int line = 0; line < lines; ++line) {
+    const FilePlace first =
+        o.transposed ? FilePlace(f, o, first_row, line) : FilePlace(f, o, first_row + line, 0);
+    const std::ptrdiff_t step = (o.transposed ? o.reversed_rows : o.reversed_columns) ? -1 : 1;
+    double* const start =
+        block.pixels.data() + std::ptrdiff_t{line} * (o.transposed ? 1 : width) * kept;
+    const std::ptrdiff_t stride = std::ptrdiff_t{o.transposed ? width : 1} * kept;
+    for (int j = 0; j < f.measurements; ++j) {
+      const int measurement = measurement_of(f, j);
+      if (side_by_side ? j == 0 : measurement >= 0) {
+        const bool planar = f.layout == RawOrder::planar;
+        const int row = f.layout == RawOrder::by_rows ? first.row * f.measurements + j : first.row;
+        read_file_row(frame, static_cast<std::size_t>(planar ? j : 0),
+                      static_cast<std::size_t>(row), block.bytes, block.numbers);
+      }
+      if (measurement < 0) continue;
+      const std::ptrdiff_t spacing = side_by_side ? f.measurements : 1;
+      const double* const from =
+          block.numbers.data() + first.column * spacing + (side_by_side ? j : 0);
+      double* const to = start + measurement;
+      for (int i = 0; i < length; ++i) to[i * stride] = from[i * step * spacing];
+    }
+  }
+}
+
 template <typename Number>
 void RawDumpReader::read_rows(int frame, int first_row, int rows, Number* numbers) const {
   const RawFormat& f = format_;
-  const auto width = static_cast<std::size_t>(f.width),
-             measurements = static_cast<std::size_t>(f.measurements),
-             outputs = static_cast<std::size_t>(f.output_measurements());
-  const bool is_unsigned = f.numbers == RawNumbers::integers && !f.is_signed;
-  const double black_level =
-      f.black_level == 0.0 && is_unsigned ? marking_.unsigned_black_level : f.black_level;
-  std::vector<std::byte> bytes;
-  std::vector<double> row_numbers, pixels(width * measurements);
-  for (int r = 0; r < rows; ++r) {
-    const int scene_row = first_row + r;
-    const auto file_row =
-        static_cast<std::size_t>(f.flip_rows ? f.height - 1 - scene_row : scene_row);
-    // Measurement k of the code at column c stands at pixels[c * measurements + k].
-    const auto measurement = [&](std::size_t j) {
-      return f.order.empty() ? j : static_cast<std::size_t>(f.order[j]);
-    };
-    const auto put = [&](std::size_t j, const double* from, std::size_t stride) {
-      double* const to = pixels.data() + measurement(j);
-      for (std::size_t i = 0; i < width; ++i)
-        to[(f.flip_columns ? width - 1 - i : i) * measurements] = from[i * stride];
-    };
-    if (f.layout == RawOrder::interleaved) {
-      read_file_row(frame, 0, file_row, bytes, row_numbers);
-      for (std::size_t j = 0; j < measurements; ++j) put(j, row_numbers.data() + j, measurements);
-    } else {
-      const bool planar = f.layout == RawOrder::planar;
-      for (std::size_t j = 0; j < measurements; ++j) {
-        read_file_row(frame, planar ? j : 0, planar ? file_row : file_row * measurements + j, bytes,
-                      row_numbers);
-        put(j, row_numbers.data(), 1);
-      }
+  const Orientation orientation(f);
+  const Measure measure(f, marking_);
+  const bool negates = negates_numbers(f);
+  const int width = f.output_width(), block_rows = f.is_transposed() ? rows : 1;
+  const int outputs = f.output_measurements();
+  Block block;
+  for (int r = 0; r < rows; r += block_rows) {
+    read_block(frame, first_row + r, block_rows, block);
+    if (!negates && !f.subtract_taps) {
+      for (const double number : block.pixels)
+        *numbers++ = static_cast<Number>(measure(number, false));
+      continue;
     }
-    Number* const out = numbers + static_cast<std::size_t>(r) * width * outputs;
-    if (f.subtract_taps)
-      for (std::size_t i = 0; i < width * outputs; ++i)
-        out[i] = static_cast<Number>(marking_.difference(pixels[2 * i], pixels[2 * i + 1]));
-    else
-      for (std::size_t i = 0; i < pixels.size(); ++i)
-        out[i] = static_cast<Number>(
-            marking_.replacement(pixels[i], is_unsigned).value_or(pixels[i] - black_level));
+    const double* number = block.pixels.data();
+    for (int row = first_row + r; row < first_row + r + block_rows; ++row)
+      for (int column = 0; column < width; ++column) {
+        const bool negated = negates && is_negated(f, FilePlace(f, orientation, row, column));
+        for (int k = 0; k < outputs; ++k, number += f.subtract_taps ? 2 : 1)
+          *numbers++ = static_cast<Number>(!f.subtract_taps ? measure(*number, negated)
+                                           : negated ? marking_.difference(number[1], number[0])
+                                                     : marking_.difference(number[0], number[1]));
+      }
   }
 }
 

@@ -26,13 +26,23 @@ class RawDumpReader {
   const RawFormat& format() const { return format_; }
   int frames() const { return frames_; }
 
-  /// Rows first_row .. first_row + rows - 1 as they stand in the scene, (rows, W, K) numbers, the
-  /// measurements of a pixel side by side and in order, black level and differences taken.
+  /// Reads rows first_row .. first_row + rows - 1 of the scene, (rows, W, K) numbers, the
+  /// measurements of a pixel side by side and in order, with rotation, signs, black level and
+  /// differences applied.
   /// @throws IoError if the file cannot be read or became shorter
   template <typename Number>
   void read_rows(int frame, int first_row, int rows, Number* numbers) const;
 
+  /// Additional memory per row of a read [bytes]; 0 if the rows are read one by one.
+  std::size_t block_row_bytes() const;
+
  private:
+  /// Rows of the scene, and memory for a row of the file.
+  struct Block {
+    std::vector<double> pixels, numbers;
+    std::vector<std::byte> bytes;
+  };
+  void read_block(int frame, int first_row, int rows, Block& block) const;
   void read_file_row(int frame, std::size_t image, std::size_t row, std::vector<std::byte>& bytes,
                      std::vector<double>& numbers) const;
 

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/io/raw_format.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -11,10 +12,6 @@
 namespace tofsmith {
 
 namespace {
-
-constexpr int max_pixels = 1 << 16;  // of a side, as of every image
-constexpr int max_raw_measurements = 256;
-constexpr std::uint64_t max_gap_bytes = std::uint64_t{1} << 30;
 
 int container_of(const RawFormat& format) {
   if (format.container_bits > 0) return format.container_bits;
@@ -36,7 +33,8 @@ int bits_per_number(const RawFormat& format) {
 
 void validate_numbers(const RawFormat& f) {
   if (f.numbers == RawNumbers::floats) {
-    require(f.bits == 32 || f.bits == 64, "bits", f.bits, "must be 32 or 64 for floats");
+    require(f.bits == 16 || f.bits == 32 || f.bits == 64, "bits", f.bits,
+            "must be 16, 32 or 64 for floats");
     require(f.packing == RawPacking::plain, "packing", "packed", "must be plain for floats");
     require(!f.is_signed, "signed", true, "must be left out for floats, which always are");
     require(f.container_bits == 0 || f.container_bits == f.bits, "container_bits", f.container_bits,
@@ -65,15 +63,49 @@ void validate_numbers(const RawFormat& f) {
   }
 }
 
+void validate_signs(const RawFormat& f) {
+  require(f.is_signed || f.sign_encoding == SignEncoding::twos_complement, "sign_encoding",
+          "sign_magnitude", "must be left out unless signed = true");
+  require(f.is_signed || !f.sign_bit, "sign_bit", f.sign_bit.value_or(0),
+          "must be left out unless signed = true");
+  require(f.sign_bit.value_or(0) < f.bits, "sign_bit", f.sign_bit.value_or(0),
+          fmt::format("must be below bits = {}", f.bits));
+  require(f.negate_from_row < f.height, "negate_from_row", f.negate_from_row,
+          fmt::format("must be below height = {}", f.height));
+  require(f.negate_from_column < f.width, "negate_from_column", f.negate_from_column,
+          fmt::format("must be below width = {}", f.width));
+}
+
 void validate_order(const RawFormat& f) {
-  if (f.order.empty()) return;
-  require(f.order.size() == static_cast<std::size_t>(f.measurements), "order", f.order.size(),
-          fmt::format("must list all {} measurements", f.measurements));
-  std::vector<int> sorted = f.order;
-  std::ranges::sort(sorted);
-  for (int i = 0; i < f.measurements; ++i)
-    require(sorted[static_cast<std::size_t>(i)] == i, "order", sorted[static_cast<std::size_t>(i)],
-            fmt::format("must name each of 0 .. {} once", f.measurements - 1));
+  require(f.order.size() <= static_cast<std::size_t>(f.measurements), "order", f.order.size(),
+          fmt::format("must list at most the {} measurements", f.measurements));
+  const int kept = f.kept_measurements();
+  require(kept > 0, "order", "-1 only", "must keep a measurement");
+  for (int i = 0; i < kept && !f.order.empty(); ++i)
+    require(std::ranges::count(f.order, i) == 1, "order",
+            fmt::format("[{}]", fmt::join(f.order, ", ")),
+            fmt::format("must name each of 0 .. {} once, and -1 for numbers to skip", kept - 1));
+  require(!f.subtract_taps || kept % 2 == 0, f.order.empty() ? "measurements" : "order", kept,
+          "must be even to subtract taps");
+}
+
+void validate_rows(const RawFormat& f) {
+  if (!f.rows_start_bytes) {
+    require(is_bit_stream(f.packing), "rows_start_bytes", false,
+            "must be left out unless packing is lsb_first or msb_first");
+    for (const auto& [field, value] :
+         {std::pair{"row_bytes", f.row_bytes}, std::pair{"row_header_bytes", f.row_header_bytes}})
+      require(value == 0, field, value, "must be left out with rows_start_bytes = false");
+  }
+  const std::uint64_t needed = static_cast<std::uint64_t>(f.row_header_bytes) + f.tight_row_bytes();
+  require(
+      f.row_bytes == 0 || static_cast<std::uint64_t>(f.row_bytes) >= needed, "row_bytes",
+      f.row_bytes,
+      fmt::format("must be at least the {} bytes that a row's header and numbers take", needed));
+  for (const auto& [field, value] : {std::pair{"image_header_bytes", f.image_header_bytes},
+                                     std::pair{"image_trailer_bytes", f.image_trailer_bytes}})
+    require(value == 0 || f.layout == RawOrder::planar, field, value,
+            "must be left out unless layout is planar");
 }
 
 }  // namespace
@@ -98,45 +130,37 @@ std::uint64_t RawFormat::tight_row_bytes() const {
          8;
 }
 
+std::uint64_t RawFormat::row_pitch_bytes() const {
+  return row_bytes > 0 ? static_cast<std::uint64_t>(row_bytes)
+                       : static_cast<std::uint64_t>(row_header_bytes) + tight_row_bytes();
+}
+
 std::uint64_t RawFormat::image_bytes() const {
-  if (rows_start_bytes) return (row_bytes > 0 ? row_bytes : tight_row_bytes()) * rows_per_image();
+  if (rows_start_bytes) return row_pitch_bytes() * rows_per_image();
   const std::uint64_t bits_of_image = std::uint64_t{numbers_per_row()} * rows_per_image() *
                                       static_cast<std::uint64_t>(bits_per_number(*this));
   return (bits_of_image + 7) / 8;
 }
 
 std::uint64_t RawFormat::frame_bytes() const {
-  return frame_header_bytes + images() * (image_header_bytes + image_bytes());
+  const auto around_frame = static_cast<std::uint64_t>(frame_header_bytes + frame_trailer_bytes),
+             around_image = static_cast<std::uint64_t>(image_header_bytes + image_trailer_bytes);
+  return around_frame + images() * (around_image + image_bytes());
+}
+
+int RawFormat::kept_measurements() const {
+  if (order.empty()) return measurements;
+  return static_cast<int>(std::ranges::count_if(order, [](int number) { return number >= 0; }));
 }
 
 void RawFormat::validate() const {
-  require(width >= 1 && width <= max_pixels, "width", width,
-          fmt::format("must be in [1, {}]", max_pixels));
-  require(height >= 1 && height <= max_pixels, "height", height,
-          fmt::format("must be in [1, {}]", max_pixels));
-  require(measurements >= 1 && measurements <= max_raw_measurements, "measurements", measurements,
-          fmt::format("must be in [1, {}]", max_raw_measurements));
-  require(frames >= 0, "frames", frames, "must be >= 0 (0: as many as the file holds)");
-  for (const auto& [field, value] :
-       {std::pair{"header_bytes", header_bytes},
-        std::pair{"frame_header_bytes", frame_header_bytes},
-        std::pair{"image_header_bytes", image_header_bytes}, std::pair{"row_bytes", row_bytes}})
-    require(value <= max_gap_bytes, field, value, fmt::format("must be <= {}", max_gap_bytes));
+  check_ranges(*this);
+  require(rotate_deg % 90 == 0 && rotate_deg >= 0 && rotate_deg < 360, "rotate_deg", rotate_deg,
+          "must be 0, 90, 180 or 270");
   validate_numbers(*this);
+  validate_signs(*this);
   validate_order(*this);
-  if (!rows_start_bytes) {
-    require(is_bit_stream(packing), "rows_start_bytes", false,
-            "must be left out unless packing is lsb_first or msb_first");
-    require(row_bytes == 0, "row_bytes", row_bytes,
-            "must be left out with rows_start_bytes = false");
-  }
-  require(
-      row_bytes == 0 || row_bytes >= tight_row_bytes(), "row_bytes", row_bytes,
-      fmt::format("must be at least the {} bytes that a row's numbers take", tight_row_bytes()));
-  require(image_header_bytes == 0 || layout == RawOrder::planar, "image_header_bytes",
-          image_header_bytes, "must be left out unless layout is planar");
-  require(!subtract_taps || measurements % 2 == 0, "measurements", measurements,
-          "must be even to subtract taps");
+  validate_rows(*this);
   require(!subtract_taps || black_level == 0.0, "black_level", black_level,
           "must be left out with taps = \"subtract\", where it cancels");
 }

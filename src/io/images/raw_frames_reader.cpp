@@ -213,16 +213,12 @@ void RawFramesReader::open_dump(const std::filesystem::path& path, const RawRead
   holds_integers_ = format.numbers == RawNumbers::integers;
   layout_ = RawLayout::interleaved;
   sizes_.frames = dump_->frames();
-  sizes_.height = format.height;
-  sizes_.width = format.width;
+  sizes_.height = format.output_height();
+  sizes_.width = format.output_width();
   sizes_.measurements = format.output_measurements();
   check_image_size(path.string(), static_cast<std::uint64_t>(format.height),
                    static_cast<std::uint64_t>(format.width));
-  if (options.measurements && *options.measurements != sizes_.measurements)
-    throw IoError(path.string(),
-                  fmt::format("the description gives {} measurements per pixel; expected {} as the "
-                              "code takes",
-                              sizes_.measurements, *options.measurements));
+  if (options.measurements) check_measurements(format, *options.measurements, path.string());
 }
 
 std::size_t RawFramesReader::row_bytes() const {
@@ -237,7 +233,8 @@ std::size_t RawFramesReader::bytes_in_memory() const {
 }
 
 std::size_t RawFramesReader::marked_row_bytes() const {
-  if (dump_ || !marking_.replaces_numbers()) return 0;
+  if (dump_) return dump_->block_row_bytes();
+  if (!marking_.replaces_numbers()) return 0;
   return static_cast<std::size_t>(width()) * static_cast<std::size_t>(measurements()) *
          (type_ == NpyType::float64 ? sizeof(double) : sizeof(float));
 }

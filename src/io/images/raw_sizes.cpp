@@ -68,7 +68,10 @@ std::optional<NumberRange> range_of(NpyType type) {
 
 std::optional<NumberRange> range_of(const RawFormat& format) {
   if (format.numbers == RawNumbers::floats) return std::nullopt;
-  return whole_numbers(format.bits, !format.is_signed);
+  if (!format.is_signed) return whole_numbers(format.bits, true);
+  NumberRange range = whole_numbers(format.sign_bit_index() + 1, false);
+  if (format.sign_encoding == SignEncoding::sign_magnitude) range.lowest = -range.highest;
+  return range;
 }
 
 [[noreturn]] void refuse_marker(std::string_view key, double marker, std::string_view numbers,
@@ -130,6 +133,18 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
   return sizes;
 }
 
+void check_measurements(const RawFormat& format, int expected, const std::string& file) {
+  const int found = format.output_measurements();
+  if (found == expected) return;
+  throw IoError(file,
+                fmt::format("the description gives {} measurements per pixel; expected {} as the "
+                            "code takes{}",
+                            found, expected,
+                            found > expected && !format.subtract_taps
+                                ? " (order = [0, 1, .., -1] skips images that are no measurement)"
+                                : ""));
+}
+
 bool is_unsigned(NpyType type) {
   return type == NpyType::uint8 || type == NpyType::uint16 || type == NpyType::uint32 ||
          type == NpyType::uint64;
@@ -141,7 +156,7 @@ void check_markers(const RawMarkers& markers, NpyType type, const std::string& f
 }
 
 void check_markers(const RawMarkers& markers, const RawFormat& format, const std::string& file) {
-  check_markers(markers, range_of(format), format.bits == 32 ? 24 : 53,
+  check_markers(markers, range_of(format), format.bits <= 32 ? 24 : 53,
                 fmt::format("{} numbers of {} bits",
                             format.numbers == RawNumbers::floats ? "float"
                             : format.is_signed                   ? "signed"

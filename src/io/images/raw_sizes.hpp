@@ -14,6 +14,9 @@ namespace tofsmith {
 RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
                             const std::string& file);
 
+/// @throws IoError if a dump does not have the measurements that the code takes
+void check_measurements(const RawFormat& format, int expected, const std::string& file);
+
 /// Returns true for types of whole numbers >= 0.
 bool is_unsigned(NpyType type);
 

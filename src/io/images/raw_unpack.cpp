@@ -5,19 +5,23 @@
 #include <array>
 
 #include "core/shared/bits.hpp"
+#include "io/half_precision.hpp"
 #include "io/shared/byte_order.hpp"
-#include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/io/raw_format.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-/// An unsigned number of `bits` bits as it counts.
+/// The number that a word of `bits` bits encodes.
 double counted(std::uint64_t word, const RawFormat& format) {
-  if (format.is_signed && word >> (format.bits - 1) != 0)
-    return static_cast<double>(static_cast<std::int64_t>(word) -
-                               static_cast<std::int64_t>(std::uint64_t{1} << format.bits));
-  return static_cast<double>(word);
+  if (!format.is_signed) return static_cast<double>(word);
+  const int sign = format.sign_bit_index();
+  const auto rest = static_cast<std::int64_t>(word & mask_of(sign));
+  if ((word >> sign & 1) == 0) return static_cast<double>(rest);
+  return static_cast<double>(format.sign_encoding == SignEncoding::sign_magnitude
+                                 ? -rest
+                                 : rest - (std::int64_t{1} << sign));
 }
 
 /// Little end first in memory, whatever the file's order.
@@ -46,6 +50,13 @@ void unpack_floats(const RawFormat& format, const std::byte* from, std::span<dou
   for (double& number : numbers) {
     number = static_cast<double>(load<Float>(from, format.big_endian));
     from += sizeof(Float);
+  }
+}
+
+void unpack_halves(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
+  for (double& number : numbers) {
+    number = static_cast<double>(float_of_half(load<std::uint16_t>(from, format.big_endian)));
+    from += sizeof(std::uint16_t);
   }
 }
 
@@ -97,6 +108,8 @@ void unpack_stream(const RawFormat& format, std::span<const std::byte> row, int 
 
 void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,
                     std::span<double> numbers) {
+  if (format.numbers == RawNumbers::floats && format.bits == 16)
+    return unpack_halves(format, row.data(), numbers);
   if (format.numbers == RawNumbers::floats)
     return format.bits == 32 ? unpack_floats<float>(format, row.data(), numbers)
                              : unpack_floats<double>(format, row.data(), numbers);

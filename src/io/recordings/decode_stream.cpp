@@ -25,8 +25,11 @@ constexpr const char* stream_name = "the stream";
 class StreamFrames {
  public:
   StreamFrames(const ReadStream& read, RawFormat format, const RawMarking& marking)
-      : read_(read), header_(format.header_bytes), bytes_(format.frame_bytes()) {
-    format.header_bytes = 0;
+      : read_(read),
+        header_(static_cast<std::size_t>(format.header_bytes)),
+        trailer_bytes_(static_cast<std::size_t>(format.trailer_bytes)),
+        bytes_(format.frame_bytes()) {
+    format.header_bytes = format.trailer_bytes = 0;
     format.frames = 1;
     frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format), marking);
   }
@@ -37,7 +40,7 @@ class StreamFrames {
     if (const std::size_t found = read_(header_); found < header_.size()) fail(found, header_);
     header_.clear();
     const std::size_t found = read_(bytes_);
-    if (found == 0 && frames_ > 0) return std::nullopt;
+    if (frames_ > 0 && (found == 0 || found == trailer_bytes_)) return std::nullopt;
     if (found < bytes_.size()) fail(found, bytes_);
     ++frames_;
     return frame_->format().needs_doubles() ? numbers(doubles_) : numbers(floats_);
@@ -47,15 +50,17 @@ class StreamFrames {
   template <typename Number>
   RawView numbers(std::vector<Number>& values) const {
     const RawFormat& f = frame_->format();
+    const int height = f.output_height(), width = f.output_width();
     const auto row =
-        static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.output_measurements());
-    values.resize(static_cast<std::size_t>(f.height) * row);
-    parallel_for_blocks(f.height, 16, [&](IndexRange rows) {
+        static_cast<std::size_t>(width) * static_cast<std::size_t>(f.output_measurements());
+    values.resize(static_cast<std::size_t>(height) * row);
+    // Every block of rows of a transposed image needs all rows of the file.
+    parallel_for_blocks(height, f.is_transposed() ? height : 16, [&](IndexRange rows) {
       const auto first = static_cast<int>(rows.begin);
       frame_->read_rows(0, first, static_cast<int>(rows.end) - first,
                         values.data() + static_cast<std::size_t>(first) * row);
     });
-    RawView view = RawView::interleaved(values.data(), f.height, f.width, f.output_measurements());
+    RawView view = RawView::interleaved(values.data(), height, width, f.output_measurements());
     view.is_marked = true;
     return view;
   }
@@ -69,7 +74,9 @@ class StreamFrames {
   }
 
   const ReadStream& read_;
-  std::vector<std::byte> header_, bytes_;
+  std::vector<std::byte> header_;
+  std::size_t trailer_bytes_;
+  std::vector<std::byte> bytes_;
   std::unique_ptr<RawDumpReader> frame_;
   std::vector<float> floats_;
   std::vector<double> doubles_;
@@ -99,15 +106,11 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
   const DecodeRequest request = checked(asked, decoder);
   const RawFormat format = read_raw_format(request.raw_format);
   const std::string source = request.raw_format.string();
-  const int height = format.height, width = format.width;
+  const int height = format.output_height(), width = format.output_width();
   result.height = height;
   result.width = width;
   check_image_size(source, static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(width));
-  const int expected = table.measurements();
-  if (format.output_measurements() != expected)
-    throw IoError(source, fmt::format("the description gives {} measurements per pixel; expected "
-                                      "{} as the code takes",
-                                      format.output_measurements(), expected));
+  check_measurements(format, table.measurements(), source);
   const PlaneCorrections corrections = corrections_of(request, table, source, height, width);
   const PinholeView view = view_of_frames(request, source, width, height);
   const DecodeTarget target{

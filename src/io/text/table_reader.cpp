@@ -334,8 +334,8 @@ void TableReader::value(std::string_view key, std::vector<int>& target) {
   target.clear();
   for (const toml::node& element : *node->as_array()) {
     const auto* number = element.as_integer();
-    if (!number || number->get() < 0 || number->get() > 65535)
-      mistyped(full(key), element, "an integer of 0 to 65535");
+    if (!number || number->get() < -65535 || number->get() > 65535)
+      mistyped(full(key), element, "an integer of -65535 to 65535");
     target.push_back(static_cast<int>(number->get()));
   }
 }
