@@ -61,10 +61,12 @@ void run(ResponseArguments& arguments, const Session& session) {
     arguments.record.time_unit_s = seconds_per_unit(arguments.time_unit);
   ResponseRecord record = read_response_record(arguments.file, arguments.record);
   if (record.time_step_s > 1.0 / base.fundamental_frequency_hz)
-    throw IoError(arguments.file,
-                  fmt::format("found steps of {:.4g} s, longer than the camera's period of {:.4g} "
-                              "s; expected --time-unit ns or --time-step to say what they are",
-                              record.time_step_s, 1.0 / base.fundamental_frequency_hz));
+    throw IoError(
+        arguments.file,
+        fmt::format("found steps of {:.4g} s, longer than the camera's period of {:.4g} "
+                    "s; expected --time-step, the time between two values [s], or --time-unit "
+                    "if the unit of the times is another",
+                    record.time_step_s, 1.0 / base.fundamental_frequency_hz));
   ResponseCalibrationOptions options{.fundamental_frequency_hz = base.fundamental_frequency_hz,
                                      .samples = base.samples};
   if (arguments.excitation != "auto") options.excitation = parse_excitation(arguments.excitation);

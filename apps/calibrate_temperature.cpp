@@ -56,12 +56,7 @@ void run(TemperatureArguments& arguments, const Session& session) {
   arguments.output.check(session);
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   const RawFrames frames = read_raw_frames(arguments.file);
-  const InstrumentTable table =
-      read_instrument_table(arguments.temperatures, DecimalMark::automatic);
-  if (table.values.cols() != 1)
-    throw IoError(
-        arguments.temperatures,
-        fmt::format("found {} columns; expected one, the temperatures", table.values.cols()));
+  const NumberTable table = read_number_column(arguments.temperatures, "the temperatures");
   TemperatureDrift found;
   try {
     found = calibrate_temperature(frames, {table.values.col(0).begin(), table.values.col(0).end()},
@@ -69,6 +64,7 @@ void run(TemperatureArguments& arguments, const Session& session) {
   } catch (const std::invalid_argument& error) {
     throw wrong_file(error, arguments.file, {{"temperatures", arguments.temperatures}});
   }
+  found.notes.insert(found.notes.begin(), table.notes.begin(), table.notes.end());
   session.print_json(document_of(found));
   session.say(lines_of(found));
   arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),

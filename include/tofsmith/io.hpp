@@ -18,6 +18,7 @@
 #include "tofsmith/io/measured_table_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/number_table.hpp"
 #include "tofsmith/io/point_cloud.hpp"
 #include "tofsmith/io/raw_format.hpp"
 #include "tofsmith/io/raw_frames.hpp"

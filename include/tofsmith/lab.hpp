@@ -10,7 +10,6 @@
 #include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
-#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
 #include "tofsmith/report.hpp"
 #include "tofsmith/waveforms/export_report.hpp"

@@ -114,7 +114,7 @@ def write_points(
 
 
 def read_correlation_functions(path: Path) -> FloatArray:
-    """Correlation functions (N, K) from .csv, .txt, .npy or .npz (corrfs), to design for."""
+    """Correlation functions (N, K) from a text, .npy or .npz (corrfs), to design for."""
     return _tofsmith.read_correlation_functions(_check.path(path))
 
 
@@ -126,8 +126,8 @@ def read_measured_table(
     table_axes: Optional[str] = None,
     keep_end_point: bool = False,
 ) -> tuple[FloatArray, list[str]]:
-    """A measured correlation table (N, K) from .csv, .txt, .npy or .npz, and notes on how it was
-    read. DecodingTable.of_measured() decodes with it.
+    """A measured correlation table (N, K) from a text, .npy or .npz, and notes on how it was read.
+    DecodingTable.of_measured() decodes with it.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def read_measured_table(
 def read_impulse_response(
     path: Path, time_step_s: Optional[float] = None
 ) -> tuple[FloatArray, float]:
-    """A measured impulse response from .csv, .txt or .npy: samples (T,) and their step [s].
+    """A measured impulse response from a text or .npy: samples (T,) and their step [s].
 
     Examples
     --------

@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "calibrate/delay_groups.hpp"
+#include "io/arrays/shared/sample_times.hpp"
+#include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/npy.hpp"
@@ -43,43 +45,46 @@ RawFrames frames_of(const Eigen::MatrixXd& values) {
   return frames;
 }
 
-std::vector<double> shifts_of(const std::filesystem::path& path, DecimalMark decimal) {
-  if (path.extension() == ".npy") {
+/// @param notes  receives how the file was interpreted
+std::vector<double> shifts_of(const std::filesystem::path& path, DecimalMark decimal,
+                              std::vector<std::string>& notes) {
+  if (lower_extension(path) == ".npy") {
     const NpyArray array = read_npy(path);
     if (array.axes() != 1)
       throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
                                                describe_shape(array.shape())));
     return array.to_doubles();
   }
-  const InstrumentTable table = read_instrument_table(path, decimal);
-  if (table.values.cols() != 1)
-    throw IoError(path.string(),
-                  fmt::format("found {} columns; expected one, the shifts", table.values.cols()));
+  const NumberTable table = read_number_column(path, "the shifts", decimal);
+  notes.insert(notes.end(), table.notes.begin(), table.notes.end());
   return {table.values.col(0).begin(), table.values.col(0).end()};
 }
 
 DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions options) {
-  const InstrumentTable table = read_instrument_table(path, options.decimal);
+  const NumberTable table = read_number_table(path, {.decimal = options.decimal, .min_columns = 2});
   if (table.values.cols() < 2)
     throw IoError(path.string(),
                   "found one column; expected the delay and a value for each "
                   "measurement");
+  // A counter of the rows may precede the delays.
+  const Eigen::Index delay = counts_samples(table, 0) && is_named_time(table, 1) ? 1 : 0;
   // The header's unit, unless one was given.
   if (options.unit == DelayUnit::second && options.unit_scale == 1.0 && !table.names.empty())
-    if (const double unit_s = seconds_per_unit(table.names[0]); unit_s > 0.0)
+    if (const double unit_s = seconds_per_unit(table.names[static_cast<std::size_t>(delay)]);
+        unit_s > 0.0)
       options.unit_scale = unit_s;
   DelaySweep sweep;
   sweep.notes = table.notes;
-  for (const double delay : table.values.col(0))
-    sweep.delay_periods.push_back(delay * periods_per_number(options));
-  sweep.frames = frames_of(table.values.rightCols(table.values.cols() - 1));
+  for (const double value : table.values.col(delay))
+    sweep.delay_periods.push_back(value * periods_per_number(options));
+  sweep.frames = frames_of(table.values.rightCols(table.values.cols() - 1 - delay));
   return sweep;
 }
 
 DelaySweep read_stack(const std::filesystem::path& path, const DelaySweepOptions& options) {
   DelaySweep sweep;
   sweep.frames = read_raw_frames(path);
-  const std::vector<double> shifts = shifts_of(options.shifts, options.decimal);
+  const std::vector<double> shifts = shifts_of(options.shifts, options.decimal, sweep.notes);
   if (std::ssize(shifts) != sweep.frames.frames)
     throw IoError(options.shifts.string(),
                   fmt::format("found {} shifts; expected {}, one per frame of {}", shifts.size(),
@@ -115,9 +120,8 @@ void DelaySweep::validate() const {
 }
 
 DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepOptions& options) {
-  const std::string extension = path.extension().string();
   DelaySweep sweep;
-  if (extension == ".csv" || extension == ".txt" || extension == ".tsv" || extension == ".dat") {
+  if (is_number_table(path)) {
     if (!options.shifts.empty())
       throw IoError(path.string(),
                     "is a table, whose first column is the delay; expected no "

@@ -3,12 +3,12 @@
 #include "tofsmith/calibrate/impulse_response.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "io/arrays/shared/sample_times.hpp"
+#include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/io/npy.hpp"
@@ -19,32 +19,6 @@ namespace {
 constexpr double equal_steps = 0.01;  // of a step: room for times written with few digits
 constexpr double longest_gap = 10.0;  // steps
 constexpr Eigen::Index min_values = 16;
-
-/// Column of the values, from 0; the times, if there are any, are the first column.
-Eigen::Index value_column(const InstrumentTable& table, const std::string& wanted,
-                          const std::string& file) {
-  const Eigen::Index columns = table.values.cols();
-  if (wanted.empty()) {
-    if (columns <= 2) return columns - 1;
-    throw IoError(file, fmt::format("found {} columns{}; expected --column to say which holds the "
-                                    "response",
-                                    columns,
-                                    table.names.empty()
-                                        ? std::string()
-                                        : fmt::format(" ({})", fmt::join(table.names, ", "))));
-  }
-  const auto named = std::ranges::find(table.names, wanted);
-  if (named != table.names.end()) return named - table.names.begin();
-  Eigen::Index number = 0;
-  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-  if (error == std::errc() && end == wanted.data() + wanted.size() && number >= 1 &&
-      number <= columns)
-    return number - 1;
-  throw IoError(file, fmt::format("found no column {}; expected 1 to {}{}", wanted, columns,
-                                  table.names.empty() ? std::string()
-                                                      : fmt::format(" or one of {}",
-                                                                    fmt::join(table.names, ", "))));
-}
 
 double median_step(const Eigen::VectorXd& time_s) {
   std::vector<double> steps;
@@ -114,24 +88,12 @@ void set_times(ResponseRecord& record, const Eigen::VectorXd& time_s,
 void read_text(const std::filesystem::path& path, const ResponseRecordOptions& options,
                ResponseRecord& record) {
   const std::string file = path.string();
-  const InstrumentTable table = read_instrument_table(path, options.decimal);
-  record.notes = table.notes;
-  const Eigen::Index column = value_column(table, options.column, file);
-  record.values = table.values.col(column);
-  if (options.time_step_s || table.values.cols() < 2 || column == 0) {
-    if (options.time_step_s && table.values.cols() >= 2 && column != 0)
-      record.notes.push_back(
-          fmt::format("{}: its first column was not read: --time-step counts", file));
-    return;
-  }
-  double unit_s = options.time_unit_s.value_or(0.0);
-  if (unit_s == 0.0 && !table.names.empty()) unit_s = seconds_per_unit(table.names[0]);
-  if (unit_s == 0.0) {
-    unit_s = 1.0;
-    record.notes.push_back(
-        fmt::format("{}: its times were taken as seconds (--time-unit says otherwise)", file));
-  }
-  set_times(record, unit_s * table.values.col(0), table.lines, file);
+  const NumberTable table = read_number_table(path, {.decimal = options.decimal});
+  TimedSamples samples =
+      timed_samples_of(table, file, {options.time_step_s, options.time_unit_s, options.column});
+  record.notes = std::move(samples.notes);
+  record.values = std::move(samples.values);
+  if (samples.time_s.size() > 1) set_times(record, samples.time_s, table.lines, file);
 }
 
 void read_array(const std::filesystem::path& path, ResponseRecord& record) {
@@ -141,9 +103,9 @@ void read_array(const std::filesystem::path& path, ResponseRecord& record) {
                                              describe_shape(array.shape())));
   const std::vector<double> values = array.to_doubles();
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!std::isfinite(values[i]))
+    if (!is_measured(values[i]))
       throw IoError(fmt::format("{}[{}]", path.string(), i),
-                    fmt::format("found {}; expected a finite number", values[i]));
+                    fmt::format("found {}; expected a finite, measured number", values[i]));
   record.values =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -161,7 +123,7 @@ ResponseRecord read_response_record(const std::filesystem::path& path,
     require(std::isfinite(*options.time_step_s) && *options.time_step_s > 0.0, "time_step_s",
             *options.time_step_s, "must be finite and > 0");
   ResponseRecord record;
-  if (path.extension() == ".npy")
+  if (lower_extension(path) == ".npy")
     read_array(path, record);
   else
     read_text(path, options, record);

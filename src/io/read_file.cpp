@@ -42,10 +42,38 @@ Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_b
   }
 }
 
+/// UTF-16 as UTF-8. Surrogates, which no table or setting needs, become question marks.
+/// @param low  offset of the low byte in each pair
+std::string utf8_of_utf16(std::string_view bytes, std::size_t low) {
+  std::string text;
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[i + at]); };
+    const unsigned unit = byte(1 - low) * 256u + byte(low);
+    const auto add = [&](unsigned value) { text += static_cast<char>(value); };
+    if (unit < 0x80) {
+      add(unit);
+    } else if (unit < 0x800) {
+      add(0xC0 | unit >> 6);
+      add(0x80 | (unit & 0x3F));
+    } else if (unit >= 0xD800 && unit < 0xE000) {
+      add('?');
+    } else {
+      add(0xE0 | unit >> 12);
+      add(0x80 | (unit >> 6 & 0x3F));
+      add(0x80 | (unit & 0x3F));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
-  return read_whole_file<std::string>(path, max_bytes);
+  std::string text = read_whole_file<std::string>(path, max_bytes);
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  if (text.starts_with("\xff\xfe")) return utf8_of_utf16(std::string_view(text).substr(2), 0);
+  if (text.starts_with("\xfe\xff")) return utf8_of_utf16(std::string_view(text).substr(2), 1);
+  return text;
 }
 
 std::vector<std::byte> read_binary_file(const std::filesystem::path& path,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -44,6 +45,22 @@ TEST_F(SweepFile, TextHoldsDelaysInTheUnitOfItsHeader) {
   in_metres.unit_scale = 299792458.0 / 2e7 / 100;  // a hundredth of the range
   EXPECT_NEAR(read_delay_sweep(write("s.csv", rows(21, "")), in_metres).delay_periods[1], 0.05,
               1e-12);
+}
+
+TEST_F(SweepFile, IsTheSameInEveryDialect) {
+  const DelaySweepOptions options{.fundamental_frequency_hz = 10e6};
+  const DelaySweep expected = read_delay_sweep(write("s.csv", rows(21, "delay_ns,a,b\n")), options);
+  std::string commas = "\xef\xbb\xbfn;delay;a;b\n;ns;DN;DN\n", beside;
+  for (int i = 0; i < 21; ++i) {
+    commas += fmt::format("{};{},0;{},5;1,25;\r\n", i, 5 * i, i % 3);
+    beside += fmt::format("{},,{}.0e-9,{}.5,1.25\n", i == 0 ? "Model,A" : ",", 5 * i, i % 3);
+  }
+  for (const auto& [name, text] : {std::pair("S.CSV", commas), std::pair("s.tsv", beside)}) {
+    const DelaySweep sweep = read_delay_sweep(write(name, text), options);
+    EXPECT_EQ(sweep.frames.values, expected.frames.values) << text;
+    for (std::size_t i = 0; i < 21; ++i)
+      EXPECT_NEAR(sweep.delay_periods[i], expected.delay_periods[i], 1e-12) << text;
+  }
 }
 
 TEST_F(SweepFile, SaysWhatOfThePeriodIsMissing) {

@@ -18,64 +18,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Eigen::MatrixXd two_rows() {
-  Eigen::MatrixXd expected(2, 2);
-  expected << 0.5, -1.25, 1.5, 3e-3;
-  return expected;
-}
-
-TEST(InstrumentTable, ReadsEveryDelimiterAndDecimalMark) {
-  for (const char* text :
-       {"0.5,-1.25\n1.5,3e-3\n", "0.5;-1.25\n1.5;3e-3\n", "0.5\t-1.25\r\n1.5\t3e-3\r\n",
-        "0.5   -1.25\n1.5 3e-3", "0,5;-1,25\n1,5;3e-3\n", "0,5\t-1,25\n1,5\t3e-3\n",
-        "0,5 -1,25\n1,5 3e-3\n", "\"0.5\",\"-1.25\"\n1.5,3e-3\n", "0.5,-1.25,,\n1.5,3e-3,,\n"})
-    EXPECT_EQ(parse_instrument_table(text, "t.csv").values, two_rows()) << text;
-}
-
-TEST(InstrumentTable, SkipsTextAndTakesTheLastLineOfItForNames) {
-  const InstrumentTable table = parse_instrument_table(
-      "\xef\xbb\xbfModel,DSO-X\nRecord Length,2\n# kept apart\nTime (ns),Ch "
-      "1\n0.5,-1.25\n1.5,3e-3\n",
-      "t.csv");
-  EXPECT_THAT(table.names, ElementsAre("Time (ns)", "Ch 1"));
-  EXPECT_EQ(table.values, two_rows());
-  EXPECT_THAT(table.lines, ElementsAre(5u, 6u));
-  EXPECT_THAT(table.notes, ElementsAre(HasSubstr("2 lines of text")));
-}
-
-TEST(InstrumentTable, CommasThatCouldBeEitherAreSettledOrRefused) {
-  EXPECT_EQ(parse_instrument_table("0,5\n1,7\n2,4\n", "t.csv").values.cols(), 2);  // bins rise
-  EXPECT_EQ(parse_instrument_table("a,b\n4,5\n1,7\n", "t.csv").values.cols(), 2);
-  EXPECT_EQ(parse_instrument_table("a\n4,5\n1,7\n", "t.csv").values(0, 0), 4.5);
-  const auto refusal = [](const char* text) {
-    return io_error_of([&] { parse_instrument_table(text, "t.csv"); });
-  };
-  EXPECT_THAT(refusal("4,5\n1,7\n"), HasSubstr("t.csv:1: found '4,5', which can be 2 columns"));
-  EXPECT_EQ(parse_instrument_table("4,5\n1,7\n", "t.csv", DecimalMark::comma).values(1, 0), 1.7);
-  EXPECT_EQ(parse_instrument_table("4,5\n1,7\n", "t.csv", DecimalMark::point).values(1, 1), 7);
-}
-
-TEST(InstrumentTable, NamesThePlaceOfWhatItCannotRead) {
-  const auto refusal = [](const char* text) {
-    return io_error_of([&] { parse_instrument_table(text, "t.csv"); });
-  };
-  EXPECT_EQ(refusal("t,v\n1.5,2\n2.5,nan\n"),
-            "t.csv:3: found 'nan' in column 2; expected a finite number");
-  EXPECT_EQ(refusal("1.5,2\n2.5,x\n"), "t.csv:2: found 'x' in column 2; expected a finite number");
-  EXPECT_EQ(refusal("1.5,2\n2.5\n"), "t.csv:2: found 1 columns; expected 2 as in line 1");
-  EXPECT_EQ(refusal("a,b\n"), "t.csv: found no row of numbers; expected at least one");
-  EXPECT_EQ(refusal(""), "t.csv: found no row of numbers; expected at least one");
-  EXPECT_THAT(refusal("1e999;2\n"), HasSubstr("found '1e999' in column 1"));
-}
-
-TEST(InstrumentTable, KnowsUnitsOfTime) {
-  EXPECT_EQ(seconds_per_unit("time_ns"), 1e-9);
-  EXPECT_EQ(seconds_per_unit("Time (us)"), 1e-6);
-  EXPECT_EQ(seconds_per_unit("delay [ps]"), 1e-12);
-  EXPECT_EQ(seconds_per_unit("Second"), 1.0);
-  EXPECT_EQ(seconds_per_unit("Volts"), 0.0);
-}
-
 class RecordFile : public testing::Test {
  protected:
   std::filesystem::path write(const std::string& text) const {
@@ -102,9 +44,75 @@ TEST_F(RecordFile, TakesTimesInTheUnitOfTheirName) {
   EXPECT_NEAR(record.time_step_s, 1e-9, 1e-18);
   EXPECT_EQ(record.values.size(), 20);
   EXPECT_TRUE(record.notes.empty());
-  const ResponseRecord seconds = read_response_record(write(rows(1.0, "")));
-  EXPECT_NEAR(seconds.time_step_s, 1.0, 1e-9);
+  std::string halves;
+  for (int i = 0; i < 20; ++i) halves += fmt::format("{},{}\n", 0.5 * i, i);
+  const ResponseRecord seconds = read_response_record(write(halves));
+  EXPECT_NEAR(seconds.time_step_s, 0.5, 1e-9);
   EXPECT_THAT(seconds.notes, ElementsAre(HasSubstr("taken as seconds")));
+}
+
+/// Multiples of 3 at steps of 0.1 ns with `row(number, time, value)` as text.
+std::string record_text(const std::string& header, auto&& row) {
+  std::string text = header;
+  for (int i = 0; i < 20; ++i) text += row(i, fmt::format("{:.4e}", 1e-10 * i), 3.0 * i);
+  return text;
+}
+
+TEST_F(RecordFile, IsTheSameFromEveryOscilloscope) {
+  const auto timed = [](int, const std::string& t, double v) {
+    return fmt::format("{},{}\n", t, v);
+  };
+  const auto counted = [](int i, const std::string&, double v) {
+    return fmt::format("{},{},\n", i, v);
+  };
+  const auto values = [](int, const std::string&, double v) { return fmt::format("{},\n", v); };
+  const auto after_empty = [](int, const std::string&, double v) {
+    return fmt::format(",{}\n", v);
+  };
+  const auto next_to_header = [](int i, const std::string& t, double v) {
+    return fmt::format("{},{},{},\n",
+                       i == 0   ? "Record Length,20,"
+                       : i == 1 ? "Sample Interval,1e-10,"
+                       : i == 5 ? "Source,CH1,"
+                                : ",,",
+                       t, v);
+  };
+  const auto numbered = [](int i, const std::string& t, double v) {
+    return fmt::format("{},{},{},7\n", i, t, v);
+  };
+  struct {
+    std::string text, column = {};
+  } const files[] = {
+      {record_text("", next_to_header)},
+      {record_text("", next_to_header), "5"},
+      {record_text("X,CH1,Start,Increment,\nSequence,Volt,-1e-9,1.0e-10\n", counted)},
+      {record_text("X,CH1,Start,Increment,\nSequence,Volt,-1e-9,1.0e-10\n", counted), "CH1"},
+      {record_text("Time interval :0.0001uS\nnr,CH1 (V)\n", counted), "CH1"},
+      {record_text("CH1V,t0 =-1e-09s, tInc = 1e-10,\n", values)},
+      {record_text("Sampling Period,1.0E-10\nWaveform Data,\n", values)},
+      {record_text("\"TraceName\",\"CH1\"\n\"HResolution\",1e-10\n\"HUnit\",\"s\"\n", after_empty)},
+      {record_text("Model,DPO\nSample Interval,1e-10,\nTIME,CH1\n", timed)},
+      {record_text("x-axis,1\nsecond,Volt\n", timed), "1"},
+      {record_text("in s,C1 in V\n", timed), "C1"},
+      {record_text("nr,time,ch1,ch1s\n", numbered), "ch1"}};
+  for (const auto& file : files) {
+    for (const std::optional<double> unit_s : {std::optional<double>(), std::optional(1e-9)}) {
+      const ResponseRecord record =
+          read_response_record(write(file.text), {.time_unit_s = unit_s, .column = file.column});
+      EXPECT_NEAR(record.time_step_s, 1e-10, 1e-16) << file.text;
+      ASSERT_EQ(record.values.size(), 20) << file.text;
+      EXPECT_EQ(record.values[7], 21.0) << file.text;
+    }
+  }
+}
+
+TEST_F(RecordFile, ASampleCounterIsNoTime) {
+  const std::string counted = rows(1.0, "");
+  EXPECT_THAT(refusal(counted), HasSubstr("found a sample counter in column 1"));
+  EXPECT_EQ(read_response_record(write(counted), {.time_step_s = 2e-10}).time_step_s, 2e-10);
+  const ResponseRecord record = read_response_record(write(counted), {.time_unit_s = 1e-9});
+  EXPECT_NEAR(record.time_step_s, 1e-9, 1e-15);
+  EXPECT_THAT(record.notes, ElementsAre(HasSubstr("looks like a sample counter")));
 }
 
 TEST_F(RecordFile, ResamplesUnequalTimesWithANote) {

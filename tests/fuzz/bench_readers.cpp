@@ -6,8 +6,8 @@
 #include "reader.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
-#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith::fuzz {
 
@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void read_instrument_table_text(Input bytes) {
+void read_number_table_text(Input bytes) {
   const auto mark = static_cast<DecimalMark>(take_choice(bytes, 3));
-  parse_instrument_table(text_of(bytes), "a.csv", mark);
+  parse_number_table(text_of(bytes), "a.csv", {.decimal = mark});
 }
 
 constexpr std::array record_names = {"r.csv", "r.npy", "r.npz"};
@@ -51,8 +51,10 @@ std::vector<Bytes> record_seeds() {
 }  // namespace
 
 std::vector<Reader> bench_readers() {
-  return {{"instrument-table", &read_instrument_table_text,
+  return {{"number-table", &read_number_table_text,
            seeds({with_choice(0, bytes_of("Scope\nTime (us);CH1\n0,5;1,25\n1,5;-3\n")),
+                  with_choice(0, bytes_of("Sample Interval,1e-9,,0,1,\n,,,1e-9,2,\n,,,2e-9,3,\n")),
+                  with_choice(0, bytes_of("\"1,5\",\"2\"\n\"9.91E+37\",3\n")),
                   with_choice(1, bytes_of("# a\nt\tv\n1\t2e-3\n2\t3\n"))})},
           {"response", &read_record, &record_seeds},
           {"delay-sweep", &read_sweep_of_delays, &record_seeds}};

@@ -12,7 +12,6 @@
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/io/csv.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
@@ -154,9 +153,7 @@ std::vector<Reader> text_readers() {
              return std::vector<Bytes>{bytes_of(code_to_json(small_code("hamiltonian-k3"))),
                                        bytes_of(code_to_json(small_code("sinusoid-k3")))};
            }},
-          {"atlas", [](Input bytes) { parse_atlas(text_of(bytes)); }, seeds({bytes_of(atlas)})},
-          {"csv", [](Input bytes) { parse_csv(text_of(bytes), "a.csv"); },
-           seeds({bytes_of("a,b\n1,2.5\n\"x, y\",-3e9\n")})}};
+          {"atlas", [](Input bytes) { parse_atlas(text_of(bytes)); }, seeds({bytes_of(atlas)})}};
 }
 
 std::vector<Reader> array_readers() {

@@ -161,7 +161,7 @@ TEST(CorrelationFile, RefusesWhatIsNoFunctionOfAPeriod) {
   EXPECT_THAT(refusal("a.npz", NpyArray(NpyType::float64, {8, 2})),
               HasSubstr("there is no array 'corrfs'; found chi"));
   EXPECT_THAT(io_error_of([&] { read_correlation_functions("a.exr"); }),
-              HasSubstr("expected one of .csv, .txt, .npy, .npz"));
+              HasSubstr("expected one of .csv, .txt, .tsv, .dat, .npy, .npz"));
 }
 
 TEST(PublishedCodes, AllLoadAndCorrelateAsTheirFilesSay) {

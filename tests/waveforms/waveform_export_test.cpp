@@ -11,7 +11,7 @@
 
 #include "camera/shared/actual_code.hpp"
 #include "pattern_reader.hpp"
-#include "tofsmith/io/csv.hpp"
+#include "tofsmith/io/number_table.hpp"
 #include "waveform_readers.hpp"
 #include "waveforms/keysight_arb.hpp"
 #include "waveforms/pattern_memory.hpp"
@@ -110,7 +110,7 @@ TEST(WaveformExport, WordsAndColumnsHoldAllWaveforms) {
     ASSERT_EQ(files.size(), 1u);
     EXPECT_EQ(files[0].waveforms.size(), 10u);
     if (format.name == "csv") {
-      const CsvTable table = parse_csv(text_of(files[0]), files[0].name);
+      const NumberTable table = parse_number_table(text_of(files[0]), files[0].name);
       ASSERT_EQ(table.values.cols(), 12);
       EXPECT_EQ(table.names[1], "trigger");
       EXPECT_EQ(table.values.rows(), 240);

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
@@ -18,6 +17,7 @@
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
 

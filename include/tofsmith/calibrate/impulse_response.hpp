@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
 
@@ -43,7 +43,7 @@ auto fields_of(ConstOrNot<ResponseRecordOptions> auto& o) {
       Field("decimal", o.decimal, Help{"decimal mark of a text"}));
 }
 
-/// Reads text (see instrument_table.hpp) with times and values, or values alone, or a NumPy array
+/// Reads text (see number_table.hpp) with times and values, or values alone, or a NumPy array
 /// of one axis. Times that are not equally spaced are resampled onto their median step along
 /// straight lines, with a note. Whole numbers from 0 on are taken as counts.
 /// @throws IoError naming file and line for times that do not rise, a gap of more than 10 steps, a

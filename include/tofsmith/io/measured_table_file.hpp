@@ -17,8 +17,8 @@
 
 namespace tofsmith {
 
-/// Reads a measured impulse response: text (.csv, .txt) with the columns time_s and value or with
-/// values alone, or a one-dimensional NumPy array (.npy). Times must be equally spaced; the first
+/// Reads a measured impulse response: a text (is_number_table()) of times and values or of values
+/// alone, or a one-dimensional NumPy array (.npy). Times must be equally spaced; the first
 /// one is when the response starts and is taken for 0.
 /// @param time_step_s  needed unless the file has times, with which it must agree
 /// @throws IoError naming the file and the place for whatever does not fit
@@ -52,13 +52,13 @@ struct MeasuredTableFile {
   std::vector<std::string> notes;
 };
 
-/// Whether a file can only be a measured table: .csv, .txt, .npy, or an .npz archive with `corrfs`
+/// Whether a file can only be a measured table: a text, .npy, or an .npz archive with `corrfs`
 /// but neither `modfs` nor `demodfs`, which make it a code. @throws IoError if it cannot be read
 bool is_measured_table(const std::filesystem::path& path);
 
-/// Reads correlation functions of any N from 8 to 65536 and K up to 64, from text (.csv, .txt), a
-/// NumPy array (.npy), or the array `corrfs` of an archive (.npz). An archive may also hold lists
-/// of one number per column:
+/// Reads correlation functions of any N from 8 to 65536 and K up to 64, from a text
+/// (is_number_table()), a NumPy array (.npy), or the array `corrfs` of an archive (.npz). An
+/// archive may also hold lists of one number per column:
 ///   ambient        kappa, what constant light adds, up to the same factor as corrfs
 ///   exposure_s     [s]
 ///   offset_dn      raw number without light
@@ -75,8 +75,8 @@ MeasuredTableFile read_measured_table(const std::filesystem::path& path,
                                       const MeasuredTableOptions& options = {});
 
 /// Reads correlation functions, sampled on one period with the end point left out, as (N, K):
-/// text (.csv, .txt) with K columns, a NumPy array (.npy) of shape (N, K) or (N,), or the array
-/// `corrfs` of an archive (.npz).
+/// text (is_number_table()) with K columns, a NumPy array (.npy) of shape (N, K) or (N,), or the
+/// array `corrfs` of an archive (.npz).
 /// @throws IoError naming the place for values that are not finite, or N < 8
 Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path);
 

@@ -6,12 +6,30 @@
 #include <cmath>
 #include <vector>
 
+#include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/csv.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
+namespace {
+
+/// The columns of a text except a first one that numbers the samples or holds their times.
+Eigen::MatrixXd correlation_columns_of(const std::filesystem::path& path,
+                                       std::vector<std::string>& notes) {
+  const NumberTable table = read_number_table(path, {.min_columns = 2});
+  notes = table.notes;
+  const Eigen::Index columns = table.values.cols();
+  if (columns < 2 || !(is_named_time(table, 0) || counts_samples(table, 0))) return table.values;
+  notes.push_back(
+      fmt::format("{}: its first column numbers the samples and was not read as a "
+                  "measurement",
+                  path.string()));
+  return table.values.rightCols(columns - 1);
+}
+
+}  // namespace
 
 Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
                        std::optional<TapOrder> order) {
@@ -31,11 +49,11 @@ int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view
   return static_cast<int>(columns) / layout.taps;
 }
 
-Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path) {
-  const std::string extension = known_extension(path, {".csv", ".txt", ".npy", ".npz"});
-  if (extension == ".npz")
+Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path,
+                                      std::vector<std::string>& notes) {
+  if (is_number_table(path)) return correlation_columns_of(path, notes);
+  if (known_extension(path, {".csv", ".txt", ".tsv", ".dat", ".npy", ".npz"}) == ".npz")
     return matrix_of(NpzReader(path).read("corrfs"), path.string() + ": corrfs");
-  if (extension != ".npy") return read_csv(path).values;
   return columns_of(read_npy(path), path.string());
 }
 

@@ -10,15 +10,15 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/shared/periodic.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
+#include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/csv.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
 namespace {
@@ -157,15 +157,13 @@ bool holds_code_columns(const std::filesystem::path& path) {
   std::string head(std::size_t{1} << 16, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
-  std::istringstream lines(head);
-  std::string line;
-  while (std::getline(lines, line) && (line.empty() || line.front() == '#')) {
-  }
-  return line.find("modulation_") != std::string::npos;
+  return std::ranges::any_of(content_lines(head), [](const TextLine& line) {
+    return line.text.find("modulation_") != std::string_view::npos;
+  });
 }
 
 CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_signed) {
-  const CsvTable table = parse_csv(text, file);
+  const NumberTable table = parse_number_table(text, file);
   std::vector<Eigen::Index> modulations, demodulations;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const std::string& name = table.names[i];

@@ -6,10 +6,11 @@
 
 #include <cmath>
 
+#include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/csv.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
 namespace {
@@ -33,20 +34,15 @@ double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
   return step_s;
 }
 
-void read_text(const std::filesystem::path& path, ImpulseResponse& response) {
-  const CsvTable table = read_csv(path);
-  const Eigen::Index columns = table.values.cols();
-  if (columns > 2)
-    throw IoError(path.string(),
-                  fmt::format("found {} columns; expected time_s and value, or value", columns));
-  if (columns == 2) {
-    if (!table.names.empty() && table.names[0] != "time_s")
-      throw IoError(path.string(),
-                    fmt::format("found a first column {}; expected time_s", table.names[0]));
-    response.time_step_s = time_step_of(table.values.col(0), path.string());
-  }
-  const auto values = table.values.col(columns - 1);
-  response.samples.assign(values.begin(), values.end());
+void read_text(const std::filesystem::path& path, std::optional<double> time_step_s,
+               ImpulseResponse& response) {
+  const NumberTable table = read_number_table(path);
+  // Times are compared with a given step; a counter of samples has none to compare.
+  const SampleTimeOptions counted{.time_step_s = time_step_s};
+  const TimedSamples samples = timed_samples_of(
+      table, path.string(), counts_samples(table, 0) ? counted : SampleTimeOptions{});
+  if (samples.time_s.size() > 0) response.time_step_s = time_step_of(samples.time_s, path.string());
+  response.samples.assign(samples.values.begin(), samples.values.end());
 }
 
 void read_array(const std::filesystem::path& path, ImpulseResponse& response) {
@@ -64,10 +60,10 @@ ImpulseResponse read_impulse_response(const std::filesystem::path& path,
   ImpulseResponse response;
   response.kind = ImpulseResponse::Kind::file;
   response.file = path.string();
-  if (known_extension(path, {".csv", ".txt", ".npy"}) == ".npy")
+  if (known_extension(path, {".csv", ".txt", ".tsv", ".dat", ".npy"}) == ".npy")
     read_array(path, response);
   else
-    read_text(path, response);
+    read_text(path, time_step_s, response);
   const double found_s = response.time_step_s;
   if (found_s == 0.0 && !time_step_s)
     throw IoError(path.string(), "found values without times; expected time_step_s beside `file`");

@@ -15,6 +15,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
 namespace {
@@ -171,7 +172,8 @@ constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "
 }  // namespace
 
 Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path) {
-  Eigen::MatrixXd functions = correlation_matrix_of(path);
+  std::vector<std::string> notes;
+  Eigen::MatrixXd functions = correlation_matrix_of(path, notes);
   if (functions.rows() < min_samples)
     throw IoError(path.string(), fmt::format("found {} samples of the period; expected at least {}",
                                              functions.rows(), min_samples));
@@ -179,8 +181,8 @@ Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path) {
 }
 
 bool is_correlation_table(const std::string& name_or_path) {
-  const std::string extension = std::filesystem::path(name_or_path).extension().string();
-  return extension == ".csv" || extension == ".txt" || extension == ".npy" || extension == ".npz";
+  const std::string extension = lower_extension(name_or_path);
+  return is_number_table(name_or_path) || extension == ".npy" || extension == ".npz";
 }
 
 TargetSet load_target(const std::string& name_or_path, const Camera& camera, bool normalize) {
@@ -198,7 +200,7 @@ TableAxes parse_table_axes(std::string_view word) { return axes_words.parse(word
 bool is_measured_table(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".csv" && holds_code_columns(path)) return false;
-  if (extension != ".npz") return extension == ".csv" || extension == ".txt" || extension == ".npy";
+  if (extension != ".npz") return is_number_table(path) || extension == ".npy";
   const NpzReader archive(path);
   return archive.contains("corrfs") && !archive.contains("modfs") && !archive.contains("demodfs");
 }
@@ -209,7 +211,7 @@ MeasuredTableFile read_measured_table(const std::filesystem::path& path,
   TapLayout layout = options.layout;
   MeasuredTable& table = file.table;
   const std::string name = path.string();
-  table.correlation = correlation_matrix_of(path);
+  table.correlation = correlation_matrix_of(path, file.notes);
   turn(table.correlation, name, options.axes, file.notes);
   if (!options.keep_end_point) drop_repeated_end(table.correlation, name, file.notes);
   if (lower_extension(path) == ".npz") {

@@ -31,6 +31,22 @@ void LineCursor::fail(std::string_view problem) const {
   throw IoError(fmt::format("{}:{}", file_, line_), problem);
 }
 
+std::vector<TextLine> content_lines(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark
+  const char line_end = text.find('\n') == std::string_view::npos ? '\r' : '\n';
+  std::vector<TextLine> lines;
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(line_end, begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    const std::string_view content = trimmed(line);
+    if (!content.empty() && !content.starts_with('#')) lines.push_back({number, line});
+  }
+  return lines;
+}
+
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
   const std::size_t begin = text.find_first_not_of(blanks);

@@ -34,10 +34,12 @@ CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_sig
 /// Fewest samples of a period, as of a camera.
 inline constexpr Eigen::Index min_samples = 8;
 
-/// The matrix of correlation functions in a file as it stands there: text (.csv, .txt), a NumPy
-/// array (.npy), or the array `corrfs` of an archive (.npz).
+/// The matrix of correlation functions in a file as it stands there: text (number_table.hpp), a
+/// NumPy array (.npy), or the array `corrfs` of an archive (.npz).
+/// @param notes  receives how a text was interpreted
 /// @throws IoError naming the place for another shape or a value that is not finite
-Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path);
+Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path,
+                                      std::vector<std::string>& notes);
 
 /// An array of shape (rows, columns) as a matrix.
 /// @param place  what errors call it, such as "code.npz: modfs"

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tofsmith {
 
@@ -32,6 +33,16 @@ class LineCursor {
   std::size_t position_ = 0;
   int line_ = 0;
 };
+
+/// A line of a text, without its end.
+struct TextLine {
+  std::size_t number;  ///< counted from 1
+  std::string_view text;
+};
+
+/// The lines of a text except empty ones and comments, which begin with '#'. Skips a byte order
+/// mark.
+std::vector<TextLine> content_lines(std::string_view text);
 
 /// Without blanks around it.
 std::string_view trimmed(std::string_view text);

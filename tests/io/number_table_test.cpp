@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/number_table.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Eigen::MatrixXd two_rows() {
+  Eigen::MatrixXd expected(2, 2);
+  expected << 0.5, -1.25, 1.5, 3e-3;
+  return expected;
+}
+
+std::string refusal(const std::string& text, const NumberTableOptions& options = {}) {
+  return io_error_of([&] { parse_number_table(text, "t.csv", options); });
+}
+
+TEST(NumberTable, IsTheSameInEveryDialect) {
+  for (const char* text : {"0.5,-1.25\n1.5,3e-3\n",
+                           "0.5;-1.25\n1.5;3e-3\n",
+                           "0.5\t-1.25\r\n1.5\t3e-3\r\n",
+                           "0.5   -1.25\n1.5 3e-3",
+                           " 0.5 , -1.25\n1.5, 3e-3\n",
+                           "+0.5,-1.25\r1.5,3e-3\r",
+                           "0,5;-1,25\n1,5;3e-3\n",
+                           "0,5\t-1,25\n1,5\t3e-3\n",
+                           "0,5 -1,25\n1,5 3e-3\n",
+                           "\"0.5\",\"-1.25\"\n1.5,3e-3\n",
+                           "\"0,5\",\"-1,25\"\n\"1,5\",\"3e-3\"\n",
+                           "\"0.5\" \"-1.25\"\n1.5 3e-3\n",
+                           "0.5,-1.25,,\n1.5,3e-3,\n",
+                           ",0.5,-1.25\n,1.5,3e-3\n",
+                           "\xef\xbb\xbf# of a bench\n0.5,-1.25\n\n1.5,3e-3\n",
+                           "a,b\n0.5,-1.25\n1.5,3e-3\n",
+                           "a,b,step\ns,V,1e-9\n0.5,-1.25,\n1.5,3e-3,\n",
+                           "a,b,,\n,,,\n0.5,-1.25,,\n1.5,3e-3,,\n,,,\n",
+                           "Model,DSO,,0.5,-1.25,\n,,,1.5,3e-3,\n",
+                           "Modell;DSO;;0,5;-1,25;\n;;;1,5;3e-3;\n"})
+    EXPECT_EQ(parse_number_table(text, "t.csv").values, two_rows()) << text;
+}
+
+TEST(NumberTable, IsTheSameInUtf16) {
+  const TemporaryDirectory directory;
+  for (const bool is_little : {true, false}) {
+    std::string bytes;
+    for (const char c : std::string("0,5;-1,25\n1,5;3e-3\n")) {
+      bytes += is_little ? std::string{c, '\0'} : std::string{'\0', c};
+    }
+    std::ofstream(directory / "t.csv", std::ios::binary)
+        << (is_little ? "\xff\xfe" : "\xfe\xff") << bytes;
+    EXPECT_EQ(read_number_table(directory / "t.csv").values, two_rows());
+  }
+}
+
+TEST(NumberTable, HasTheNamesOfTheLinesAboveTheNumbers) {
+  const NumberTable table = parse_number_table(
+      "Model,DSO-X\nRecord Length,2\n# kept apart\nTime (ns),Ch 1\n0.5,-1.25\n1.5,3e-3\n", "t.csv");
+  EXPECT_THAT(table.names, ElementsAre("Time (ns)", "Ch 1"));
+  EXPECT_EQ(table.values, two_rows());
+  EXPECT_THAT(table.lines, ElementsAre(5u, 6u));
+  EXPECT_THAT(table.notes, ElementsAre(HasSubstr("1 line of text")));
+  const NumberTable numbered = parse_number_table("x-axis,1\ns,V\n0.5,-1.25\n1.5,3e-3\n", "t.csv");
+  EXPECT_THAT(numbered.upper_names, ElementsAre("x-axis", "1"));
+  EXPECT_THAT(numbered.notes, IsEmpty());
+}
+
+TEST(NumberTable, FindsColumnsByNameUnitAndNumber) {
+  const NumberTable table =
+      parse_number_table("X,CH1 (V),CH2,CH20,s\ns,V,A,A,C\n1,2,3,4,5\n3,4,5,6,7\n", "t.csv");
+  const auto column = [&](const char* name) { return table.column_of(name, "t.csv"); };
+  EXPECT_EQ(column("CH1 (V)"), 1);
+  EXPECT_EQ(column("ch1"), 1);
+  EXPECT_EQ(column("CH2"), 2);
+  EXPECT_EQ(column("5"), 4);
+  EXPECT_THAT(io_error_of([&] { column("A"); }), HasSubstr("more than one column A"));
+  EXPECT_THAT(io_error_of([&] { column("6"); }), HasSubstr("no column 6 among 5 columns (X s,"));
+  const NumberTable shifted = parse_number_table("Model,DSO,,1,2\n,,,3,4\n,,,5,6\n", "t.csv");
+  EXPECT_EQ(shifted.column_of("5", "t.csv"), 1);  // columns are counted in the file
+}
+
+TEST(NumberTable, CommasThatCouldBeEitherAreSettledOrRefused) {
+  EXPECT_EQ(parse_number_table("0,5\n1,7\n2,4\n", "t.csv").values.cols(), 2);  // bins rise
+  EXPECT_EQ(parse_number_table("a,b\n4,5\n1,7\n", "t.csv").values.cols(), 2);
+  EXPECT_EQ(parse_number_table("a\n4,5\n1,7\n", "t.csv").values(0, 0), 4.5);
+  EXPECT_EQ(parse_number_table("4,5\n1,05\n", "t.csv").values(1, 0), 1.05);
+  EXPECT_THAT(refusal("4,5\n1,7\n"), HasSubstr("t.csv:1:1: found '4,5', which can be 2 columns"));
+  const auto value = [](const NumberTableOptions& options) {
+    return parse_number_table("4,5\n1,7\n", "t.csv", options).values(1, 0);
+  };
+  EXPECT_EQ(value({.decimal = DecimalMark::comma}), 1.7);
+  EXPECT_EQ(value({.decimal = DecimalMark::point}), 1.0);
+  EXPECT_EQ(value({.max_columns = 1}), 1.7);
+  EXPECT_EQ(value({.min_columns = 2}), 1.0);
+}
+
+TEST(NumberTable, NamesThePlaceOfAnythingElse) {
+  EXPECT_EQ(refusal("t,v\n1.5,2\n2.5,nan\n"),
+            "t.csv:3:5: found 'nan' in column 2; expected a finite number");
+  EXPECT_EQ(refusal("1.5,2\n2.5, x4\n"),
+            "t.csv:2:6: found 'x4' in column 2; expected a finite number");
+  EXPECT_EQ(refusal("1,x\n2.5,3\n4.5,3\n"),
+            "t.csv:1:3: found 'x' in column 2; expected a finite number");
+  EXPECT_EQ(refusal("1.5,2\n2.5\n"), "t.csv:2:1: found 1 columns; expected 2 as in line 1");
+  EXPECT_EQ(refusal("1.5\n2.5,3\n2.5,3\n"), "t.csv:1:1: found 1 columns; expected 2 as in line 2");
+  EXPECT_EQ(refusal("1.5,2,3\n2.5,,3\n"),
+            "t.csv:2:5: found '' in column 2; expected a finite number");
+  EXPECT_EQ(refusal("a,b\n"), "t.csv: found no row of numbers; expected at least one");
+  EXPECT_EQ(refusal(""), "t.csv: found no row of numbers; expected at least one");
+  EXPECT_THAT(refusal("1e999;2\n"), HasSubstr("t.csv:1:1: found '1e999' in column 1"));
+  EXPECT_THAT(refusal("5,1\nno data\n"), HasSubstr("t.csv:2:1: found 'no data' in column 1"));
+}
+
+TEST(NumberTable, RefusesTheNumbersOfScpiForInfinityAndNotANumber) {
+  for (const char* code : {"9.9E+37", "-9.9E+37", "9.91E+37", "9.90000e37", "9.8999995e+37"})
+    EXPECT_THAT(refusal(fmt::format("s,V\n1,2\n3,{}\n", code)),
+                HasSubstr(fmt::format("t.csv:3:3: found '{}' in column 2; expected a finite "
+                                      "number (SCPI",
+                                      code)));
+  EXPECT_EQ(parse_number_table("9.8e37\n", "t.csv").values(0, 0), 9.8e37);
+}
+
+TEST(NumberTable, OfOneColumnRefusesMore) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "c.txt") << "20,5\n21,5\n";
+  EXPECT_EQ(read_number_column(directory / "c.txt", "the temperatures").values(1, 0), 21.5);
+  std::ofstream(directory / "c.txt") << "frame;degrees\n1;20,5\n2;21,5\n";
+  EXPECT_EQ(read_number_column(directory / "c.txt", "the temperatures").values(1, 0), 21.5);
+  std::ofstream(directory / "c.txt") << "20.5,1\n21.5,2\n";
+  EXPECT_THAT(io_error_of([&] { read_number_column(directory / "c.txt", "the temperatures"); }),
+              HasSubstr("found 2 columns; expected one column, the temperatures"));
+}
+
+TEST(NumberTable, KnowsUnitsOfTime) {
+  EXPECT_EQ(seconds_per_unit("time_ns"), 1e-9);
+  EXPECT_EQ(seconds_per_unit("Time (us)"), 1e-6);
+  EXPECT_EQ(seconds_per_unit("Time (\xc2\xb5s)"), 1e-6);
+  EXPECT_EQ(seconds_per_unit("Time (\xb5s)"), 1e-6);  // Latin-1
+  EXPECT_EQ(seconds_per_unit("delay [ps]"), 1e-12);
+  EXPECT_EQ(seconds_per_unit("Second"), 1.0);
+  EXPECT_EQ(seconds_per_unit("Volts"), 0.0);
+  EXPECT_EQ(seconds_per_unit("ch1s"), 0.0);
+}
+
+}  // namespace
+}  // namespace tofsmith
