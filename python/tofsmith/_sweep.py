@@ -234,7 +234,7 @@ def _column(values: list[Any]) -> npt.NDArray[Any]:
 
 
 def _csv_columns(name: str) -> dict[str, npt.NDArray[Any]]:
-    with open(name, newline="", encoding="utf-8") as file:
+    with open(name, newline="", encoding="utf-8-sig") as file:
         rows = list(csv.reader(file))
     return {key: _column([row[i] for row in rows[1:]]) for i, key in enumerate(rows[0])}
 

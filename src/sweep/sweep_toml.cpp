@@ -5,14 +5,15 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <sstream>
 
 #include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
+#include "io/text/shared/line_cursor.hpp"
 #include "io/text/shared/table_reader.hpp"
 #include "sweep/axis_blocks.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/number_table.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
@@ -86,7 +87,29 @@ bool may_be_value(const std::string& line) {
   return line.size() <= 4096 && (in_brackets || std::ranges::all_of(line, is_of_a_word));
 }
 
-std::vector<SettingValue> file_values(const TableReader& table, const std::string& name) {
+/// The value on a line of a table of one column, in TOML's spelling of numbers.
+std::string value_on_line(std::string_view line) {
+  std::string_view text = trimmed(line);
+  while (!text.empty() && std::string_view(",;\t ").find(text.back()) != std::string_view::npos)
+    text.remove_suffix(1);
+  const bool is_quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  std::string number(is_quoted ? text.substr(1, text.size() - 2) : text);
+  if (std::ranges::count(number, ',') == 1) std::ranges::replace(number, ',', '.');
+  if (number.starts_with('+')) number.erase(0, 1);
+  return finite_number_in(number) ? number : std::string(text);
+}
+
+/// Returns whether a line is the header of a column of values of an axis: "light.peak_factor" or
+/// "peak_factor".
+bool is_name_of(const std::string& line, const std::vector<std::string>& keys) {
+  return std::ranges::any_of(keys, [&](const std::string& key) {
+    return line == key || (!line.empty() && key.ends_with("." + line));
+  });
+}
+
+/// @param keys  keys of the axis
+std::vector<SettingValue> file_values(const TableReader& table, const std::string& name,
+                                      const std::vector<std::string>& keys) {
   const std::filesystem::path path = table.resolve("file", name);
   std::string text;
   try {
@@ -95,20 +118,21 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
     table.fail("file", error.what());
   }
   std::vector<SettingValue> values;
-  std::istringstream lines(text);
-  std::int64_t number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string::npos || line[begin] == '#') continue;
-    const std::size_t end = line.find_last_not_of(" \t\r");
-    const std::string value = line.substr(begin, end + 1 - begin);
-    const std::string place = fmt::format("{}:{}:{}", path.string(), number, begin + 1);
+  const std::vector<TextLine> lines = content_lines(text);
+  for (const TextLine& line : lines) {
+    const std::string value = value_on_line(line.text);
+    const std::string place = fmt::format("{}:{}:{}", path.string(), line.number,
+                                          line.text.find_first_not_of(" \t\r") + 1);
+    if (&line == &lines.front() && is_name_of(value, keys)) continue;
     if (!may_be_value(value))  // nor shown: it may be of a file that nobody meant
       throw IoError(place,
                     "found a line that is no value; expected a number, a word, a path or a "
                     "text in quotes");
     values.push_back(toml_value_of_line(value, place));
+    if (const auto read = values.back().number; read && !is_measured(*read))
+      throw IoError(place, fmt::format("found {}, by which SCPI instruments report no number; "
+                                       "expected a measured one",
+                                       value));
   }
   if (values.empty())
     table.fail("file", fmt::format("{} holds no value; expected one a line", path.string()));
@@ -183,7 +207,9 @@ std::vector<SettingValue> values_of_keys(const SettingValue& entry,
 }
 
 /// Reads the entries of one [[axis]] of a key. @throws IoError naming file:line:column
-std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key) {
+/// @param keys  that the axis sets
+std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
+                                            const std::vector<std::string>& keys) {
   std::vector<SettingValue> entries;
   const bool has_values = table.contains("values"), has_file = table.contains("file");
   if (has_values || has_file) {
@@ -194,7 +220,7 @@ std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key)
       table.fail("values", "found an empty list; expected at least one value");
     std::string file;
     table.value("file", file);
-    if (has_file) entries = file_values(table, file);
+    if (has_file) entries = file_values(table, file, keys);
     return entries;
   }
   if (!table.contains("from"))
@@ -228,7 +254,7 @@ std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
                     .crossed = false,
                     .linked = !axes.empty(),
                     .group = group});
-  for (const SettingValue& entry : read_axis_entries(table, field)) {
+  for (const SettingValue& entry : read_axis_entries(table, field, keys)) {
     std::vector<SettingValue> values = values_of_keys(entry, keys);
     for (std::size_t k = 0; k < keys.size(); ++k) axes[k].values.push_back(std::move(values[k]));
   }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 #include "io/shared/read_file.hpp"
+#include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
@@ -39,11 +39,9 @@ void add_folder(std::vector<TrainingScene>& scenes, const fs::path& folder) {
 
 void add_list(std::vector<TrainingScene>& scenes, const fs::path& list) {
   const std::size_t before = scenes.size();
-  std::istringstream lines(read_text_file(list));
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string::npos || line[begin] == '#') continue;
-    const std::string name = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
+  const std::string text = read_text_file(list);
+  for (const TextLine& line : content_lines(text)) {
+    const std::string name(trimmed(line.text));
     scenes.push_back({name, list.parent_path() / name});
   }
   if (scenes.size() == before) throw IoError(list.string(), "names no scene; expected one a line");

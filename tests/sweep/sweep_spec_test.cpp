@@ -76,6 +76,24 @@ TEST(SweepSpec, AFileHoldsAValueALine) {
   EXPECT_EQ(spec.axes[0].values[1].place, (directory / "peaks.txt").string() + ":4:1");
 }
 
+TEST(SweepSpec, AFileOfNumbersHasTheSameValuesInEveryDialect) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "s.toml")
+      << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"peaks.txt\"\n";
+  for (const char* text : {"5.5\n7\n",
+                           "\xef\xbb\xbf"
+                           "5,5\r\n7\r\n",
+                           "5.5,\n7,\n", "\"5,5\";\n\"7\";\n", "peak_factor\n+5.5\n7\n",
+                           "light.peak_factor\n5.5\n7\n"}) {
+    std::ofstream(directory / "peaks.txt") << text;
+    const SweepSpec spec = read_sweep_toml(directory / "s.toml");
+    EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("5.5", "7")) << text;
+  }
+  std::ofstream(directory / "peaks.txt") << "5\n9.91E+37\n";
+  EXPECT_THAT(io_error_of([&] { read_sweep_toml(directory / "s.toml"); }),
+              testing::HasSubstr("peaks.txt:2:1: found 9.91E+37"));
+}
+
 TEST(SweepSpec, AFileThatIsNoneOfValuesIsNotShown) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "passwd") << "root:x:0:0:root:/root:/bin/bash\n";

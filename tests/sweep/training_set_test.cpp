@@ -149,7 +149,7 @@ TEST(TrainingScenes, AreThoseOfFoldersAndListsByTheirNamesThere) {
   const TemporaryDirectory directory;
   fs::create_directories(directory / "f/g");
   for (const char* name : {"f/b.npy", "f/g/a.png", "f/notes.md"}) std::ofstream(directory / name);
-  std::ofstream(directory / "list.txt") << "# remark\n  f/b.npy \n\nx.exr\n";
+  std::ofstream(directory / "list.txt") << "\xef\xbb\xbf# remark\n  f/b.npy \n\nx.exr\n";
   const auto names = [&](const std::vector<std::string>& inputs) {
     std::vector<std::string> found;
     for (const TrainingScene& scene : training_scenes(inputs)) found.push_back(scene.name);
