@@ -219,6 +219,31 @@ void fit_kinds(CalibratedResponse& result, const Eigen::VectorXd& values,
   std::ranges::stable_sort(result.fits, {}, &ParametricResponse::residual_rms);
 }
 
+/// Number of equal highest values of a pulse that was clipped; 0 if it was not. The top of a pulse
+/// that is only rounded to steps q falls by 4 q, a parabola, over half as many values again on
+/// either side. A clipped one falls faster.
+Index clipped_values(const Eigen::VectorXd& values) {
+  constexpr Index fewest = 3;
+  constexpr double steeper = 2.0;
+  Index first = 0;
+  const double top = values.maxCoeff(&first);
+  Index longest = 0;
+  for (Index begin = first; begin < values.size(); ++begin) {
+    Index end = begin;
+    while (end < values.size() && values[end] == top) ++end;
+    if (end - begin > longest) {
+      longest = end - begin;
+      first = begin;
+    }
+    begin = end;
+  }
+  const Index reach = (longest + 1) / 2;
+  if (longest < fewest || first < reach || first + longest + reach > values.size()) return 0;
+  const double step = top - (values.array() < top).select(values, values.minCoeff()).maxCoeff();
+  const double fall = top - std::max(values[first - reach], values[first + longest + reach - 1]);
+  return fall > steeper * 4.0 * step ? longest : 0;
+}
+
 constexpr EnumWords<Excitation, 2> excitation_words("Excitation", "excitation",
                                                     words_of(Excitation{}));
 
@@ -330,6 +355,12 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
         "{} peak of {:.2f} times the highest, {:+.4g} ns from it, was kept: an inner reflection "
         "or a second path gives one; cut it from the record if it is not the arm's",
         i == 1 ? "a second" : "another", result.peaks[i].height, 1e9 * result.peaks[i].time_s));
+  if (const Index clipped = is_step ? 0 : clipped_values(values); clipped > 0)
+    result.notes.push_back(
+        fmt::format("the top of the pulse is flat: {} values in a row equal {:.4g}. If the "
+                    "oscilloscope clipped it, the bandwidth is too low: measure again with more "
+                    "volts per division",
+                    clipped, sign * values.maxCoeff()));
   if (!result.fit_is_good())
     result.notes.push_back(fmt::format(
         "no parametric kind describes the record to its noise (best {}, residual {:.2g} % of the "

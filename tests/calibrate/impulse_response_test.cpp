@@ -149,6 +149,25 @@ TEST(CalibratedResponse, KeepsASecondPeakWithANote) {
   EXPECT_THAT(result.notes, testing::Contains(HasSubstr("second peak of 0.6")));
 }
 
+TEST(CalibratedResponse, NotesAPulseWithAFlatTop) {
+  const auto has_note = [](const ResponseRecord& record) {
+    for (const std::string& note : calibrate_impulse_response(record).notes)
+      if (note.find("the top of the pulse is flat") != std::string::npos) return true;
+    return false;
+  };
+  const ResponseRecord whole = record_of(response_of(Kind::gaussian), Excitation::pulse, 0.005, 4);
+  EXPECT_FALSE(has_note(whole));
+  ResponseRecord rounded = whole;  // to 100 levels
+  rounded.values = (50 * whole.values.array()).round() / 50;
+  EXPECT_FALSE(has_note(rounded));
+  for (ResponseRecord clipped : {whole, rounded}) {
+    clipped.values = clipped.values.cwiseMin(1.5).eval();
+    EXPECT_TRUE(has_note(clipped));
+    clipped.values *= -1.0;
+    EXPECT_TRUE(has_note(clipped));
+  }
+}
+
 TEST(CalibratedResponse, TurnsRoundAFallingOrRolledRecord) {
   const ResponseRecord clean = record_of(response_of(Kind::hann), Excitation::pulse, 0.002, 7);
   const double expected_hz = calibrate_impulse_response(clean).fits.front().bandwidth_hz.value;
