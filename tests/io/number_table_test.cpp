@@ -97,6 +97,9 @@ TEST(NumberTable, CommasThatCouldBeEitherAreSettledOrRefused) {
   EXPECT_EQ(parse_number_table("a\n4,5\n1,7\n", "t.csv").values(0, 0), 4.5);
   EXPECT_EQ(parse_number_table("4,5\n1,05\n", "t.csv").values(1, 0), 1.05);
   EXPECT_THAT(refusal("4,5\n1,7\n"), HasSubstr("t.csv:1:1: found '4,5', which can be 2 columns"));
+  EXPECT_THAT(refusal("4,50,1,25\n1,75,2,05\n"),
+              HasSubstr("t.csv:2:8: found '1,75,2,05', which has both decimal commas"));
+  EXPECT_EQ(parse_number_table("4,1e-05,001\n1.5,2,002\n", "t.csv").values(1, 2), 2.0);
   const auto value = [](const NumberTableOptions& options) {
     return parse_number_table("4,5\n1,7\n", "t.csv", options).values(1, 0);
   };

@@ -190,12 +190,17 @@ bool first_column_counts(const std::vector<TextLine>& lines, const Reading& read
   return reading.rows >= 3;
 }
 
+/// Returns whether a cell has digits after a zero, "05": the part after a decimal comma.
+bool is_fraction(std::string_view text) {
+  return text.size() > 1 && text[0] == '0' && std::ranges::all_of(text, is_digit);
+}
+
 /// Returns whether the second column has numbers such as "05", which are fractions.
 bool second_column_is_fraction(const std::vector<TextLine>& lines, const Reading& reading) {
   for (std::size_t r = 0; r < reading.rows && reading.columns.count() > 1; ++r) {
     const Cells cells = reading.cells(lines[reading.first + r]);
     const std::string_view text = cells[reading.columns.begin + 1].text;
-    if (text.size() > 1 && text[0] == '0' && is_digit(text[1])) return true;
+    if (is_fraction(text)) return true;
   }
   return false;
 }
@@ -285,6 +290,29 @@ void check_header(const std::vector<TextLine>& lines, const Reading& reading,
   }
 }
 
+/// Refuses several numbers with decimal commas between commas, "2900,0000,2000,0756".
+void refuse_split_fractions(const std::vector<TextLine>& lines, const Reading& reading,
+                            std::string_view file) {
+  if (reading.dialect.delimiter != ',' || reading.dialect.decimal != '.') return;
+  const TextLine* found = nullptr;
+  std::size_t column = 0;
+  for (std::size_t r = 0; r < reading.rows; ++r) {
+    const TextLine& line = lines[reading.first + r];
+    if (line.text.find('.') != std::string_view::npos) return;
+    const Cells cells = reading.cells(line);
+    for (std::size_t i = reading.columns.begin + 1; i < cells.size() && found == nullptr; ++i)
+      if (is_fraction(cells[i].text)) {
+        found = &line;
+        column = cells[i].column;
+      }
+  }
+  if (found != nullptr)
+    throw IoError(place_of(file, *found, column),
+                  fmt::format("found '{}', which has both decimal commas and commas between "
+                              "columns; expected semicolons or tabs between columns",
+                              trimmed(found->text)));
+}
+
 /// Names of the columns in a line: text, or nothing, or behind the first the numbers of channels.
 std::vector<std::string> names_in(const Cells& cells, const Reading& reading) {
   const Columns columns = reading.columns;
@@ -359,6 +387,7 @@ NumberTable parse_number_table(std::string_view text, std::string_view file,
   if (lines.empty()) throw IoError(file, no_rows);
   const Reading reading = chosen_reading(lines, text, file, options);
   check_header(lines, reading, file);
+  refuse_split_fractions(lines, reading, file);
   NumberTable table;
   table.first_column = reading.columns.begin + 1;
   table.values.resize(static_cast<Eigen::Index>(reading.rows),
@@ -451,34 +480,6 @@ Eigen::Index NumberTable::column_of(std::string_view name_or_number, std::string
                                   "to {}",
                                   found.empty() ? "no" : "more than one", name_or_number,
                                   describe_columns(), first_column, first_column + count - 1));
-}
-
-double seconds_per_unit(std::string_view column_name) {
-  std::string lower = lower_cased(column_name);
-  for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\xb5"})  // UTF-8 and Latin-1
-    if (const std::size_t at = lower.rfind(micro); at != std::string::npos)
-      lower.replace(at, micro.size(), "u");
-  // The last word: in brackets or after an underscore.
-  while (!lower.empty() && !is_letter(lower.back())) lower.pop_back();
-  std::size_t begin = lower.size();
-  while (begin > 0 && is_letter_or_digit(lower[begin - 1])) --begin;
-  const std::string unit = lower.substr(begin);
-  constexpr std::array<std::pair<std::string_view, double>, 13> units{{{"s", 1.0},
-                                                                       {"sec", 1.0},
-                                                                       {"second", 1.0},
-                                                                       {"seconds", 1.0},
-                                                                       {"ms", 1e-3},
-                                                                       {"milliseconds", 1e-3},
-                                                                       {"us", 1e-6},
-                                                                       {"microseconds", 1e-6},
-                                                                       {"ns", 1e-9},
-                                                                       {"nanoseconds", 1e-9},
-                                                                       {"ps", 1e-12},
-                                                                       {"picoseconds", 1e-12},
-                                                                       {"fs", 1e-15}}};
-  for (const auto& [name, seconds] : units)
-    if (unit == name) return seconds;
-  return 0.0;
 }
 
 }  // namespace tofsmith

@@ -140,6 +140,35 @@ Eigen::VectorXd times_in_seconds(const NumberTable& table, Index column, const s
 
 }  // namespace
 
+double seconds_per_unit(std::string_view column_name) {
+  std::string lower(column_name);
+  std::ranges::transform(lower, lower.begin(), lower_case);
+  for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\xb5"})  // UTF-8 and Latin-1
+    if (const std::size_t at = lower.rfind(micro); at != std::string::npos)
+      lower.replace(at, micro.size(), "u");
+  // The last word: in brackets or after an underscore.
+  while (!lower.empty() && !is_letter(lower.back())) lower.pop_back();
+  std::size_t begin = lower.size();
+  while (begin > 0 && is_letter_or_digit(lower[begin - 1])) --begin;
+  const std::string unit = lower.substr(begin);
+  constexpr std::array<std::pair<std::string_view, double>, 13> units{{{"s", 1.0},
+                                                                       {"sec", 1.0},
+                                                                       {"second", 1.0},
+                                                                       {"seconds", 1.0},
+                                                                       {"ms", 1e-3},
+                                                                       {"milliseconds", 1e-3},
+                                                                       {"us", 1e-6},
+                                                                       {"microseconds", 1e-6},
+                                                                       {"ns", 1e-9},
+                                                                       {"nanoseconds", 1e-9},
+                                                                       {"ps", 1e-12},
+                                                                       {"picoseconds", 1e-12},
+                                                                       {"fs", 1e-15}}};
+  for (const auto& [name, seconds] : units)
+    if (unit == name) return seconds;
+  return 0.0;
+}
+
 bool is_named_time(const NumberTable& table, Index column) {
   if (unit_of(table, column) > 0.0) return true;
   const auto is_time = [&](const std::vector<std::string>& names) {
