@@ -48,8 +48,8 @@ double held_out_rms_m(const std::vector<NormalSums>& sums, const TermChoice& cho
   return std::sqrt(left / std::max(1e-300, weight));
 }
 
-/// Whether the terms have a size that a depth error can have. Terms that the depths of the reference
-/// do not tell apart are far larger and cancel each other.
+/// Returns whether the terms are as small as depth errors are. If the depths of the reference
+/// cannot separate terms, the terms are far larger and cancel each other.
 bool is_plausible(const NormalSums& all, const TermChoice& choice, double range_m) {
   constexpr double largest_share = 0.1;
   return all.solve(choice.columns()).lpNorm<Eigen::Infinity>() < largest_share * range_m;

@@ -253,13 +253,14 @@ class HarmonicFit {
     return {deviation_[at], deviation_[at + 1]};
   }
   const Eigen::MatrixXd& covariance() const { return covariance_; }
-  /// Whether the frames say more of a deviation than the prior; of a fundamental: of its phase.
+  /// Returns whether the frames determine a deviation better than the prior does. Of a fundamental,
+  /// the phase counts.
   bool is_determined(std::size_t term) const {
     const auto at = 2 * static_cast<Eigen::Index>(term);
     const double real = terms_[term].harmonic == 1 ? 0.0 : posterior_[at];
     return std::max(real, posterior_[at + 1]) < 0.25 * prior_[at] * prior_[at];
   }
-  /// What the deviations add to the correlation functions at a depth (K).
+  /// Change of the correlation functions by the deviations at a depth (K).
   Eigen::VectorXd added(double depth_m) const { return functions(depth_m) * deviation_; }
 
  private:
@@ -267,10 +268,10 @@ class HarmonicFit {
     Eigen::MatrixXd gram;    // (columns, columns)
     Eigen::MatrixXd moment;  // (columns, tiles)
   };
-  /// What one pixel adds to the sums.
+  /// Terms of one pixel in the sums.
   struct PixelTerms {
     Eigen::MatrixXd design;    // (K, columns), weighted, without what signal and ambient explain
-    Eigen::VectorXd residual;  // (K), likewise
+    Eigen::VectorXd residual;  // (K), in the same way
     bool is_valid = false;
   };
 

@@ -28,7 +28,7 @@ struct FrequencyCalibration {
 ///      where c_i is the fundamental of measurement i and n its frequency in units of f0, minimise
 ///      the weighted squares of the measurements with signal and ambient light of each pixel
 ///      eliminated (variable projection). b_1 is the error of offset and contrast. A weak prior,
-///      the smaller the higher the harmonic, decides what the frames do not determine. Pixels that
+///      the smaller the higher the harmonic, decides where the frames do not. Pixels that
 ///      do not fit have no weight (Tukey's biweight).
 ///   3. Standard errors from tiles of pixels, whose errors may be correlated.
 /// @return  none if the code has a single frequency, or its phases do not agree with the reference
