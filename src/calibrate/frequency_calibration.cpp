@@ -10,30 +10,18 @@
 #include <complex>
 #include <set>
 
-#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/harmonic_fit.hpp"
 #include "calibrate/reference_samples.hpp"
 #include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr int max_harmonic = 20;
 constexpr std::size_t min_pixels = 100;
-
-/// Measurements with known depth.
-struct ReferencePixels {
-  Eigen::MatrixXd electrons;  // (K, P)
-  std::vector<double> depth_m;
-  std::vector<int> tile;
-  int tiles = 0;
-
-  Eigen::Index size() const { return electrons.cols(); }
-};
 
 ReferencePixels reference_pixels(const RawFrames& frames, const ReferenceDepth& reference,
                                  const DecodingTable& table) {
@@ -69,28 +57,6 @@ ReferencePixels reference_pixels(const RawFrames& frames, const ReferenceDepth& 
                                                  static_cast<Eigen::Index>(pixels.depth_m.size()));
   return pixels;
 }
-
-/// Correlation functions of a camera and the fundamental of each.
-struct Fundamentals {
-  DecodingTable table;                         // of many rows
-  std::vector<int> repetitions;                // of every frequency, in units of f0
-  std::vector<std::size_t> frequency;          // of every measurement
-  std::vector<std::complex<double>> harmonic;  // of every measurement
-
-  int measurements() const { return table.measurements(); }
-  /// Row of correlation functions at a depth (K), between two rows of the table.
-  Eigen::VectorXd at(double depth_m) const {
-    const auto rows = static_cast<double>(table.samples());
-    const double row = (depth_m / table.range_m - std::floor(depth_m / table.range_m)) * rows;
-    const auto low = static_cast<Eigen::Index>(row) % table.samples();
-    const double share = row - std::floor(row);
-    return (1.0 - share) * table.correlation.row(low) +
-           share * table.correlation.row((low + 1) % table.samples());
-  }
-  double phase_rad(std::size_t its_frequency, double depth_m) const {
-    return turn * repetitions[its_frequency] * depth_m / table.range_m;
-  }
-};
 
 Fundamentals fundamentals_of(const CodeSet& code, const Camera& camera,
                              const std::vector<int>& repetitions) {
@@ -211,202 +177,15 @@ void adjust(CalibratedCamera& calibrated, const std::vector<std::size_t>& freque
   calibrated.apply();
 }
 
-/// Deviations b of every frequency: columns of real and imaginary parts.
-class HarmonicFit {
- public:
-  HarmonicFit(const Fundamentals& model, const ReferencePixels& pixels, int rows)
-      : model_(model), pixels_(pixels) {
-    for (std::size_t f = 0; f < model.repetitions.size(); ++f)
-      for (int h = 1; h <= max_harmonic && h * model.repetitions[f] < rows / 2; ++h)
-        terms_.push_back({f, h});
-    prior_.resize(columns());
-    mean_contrast_ = Eigen::VectorXd::Zero(columns());
-    for (std::size_t t = 0; t < terms_.size(); ++t)
-      prior_.segment(2 * static_cast<Eigen::Index>(t), 2)
-          .setConstant(1.0 / (terms_[t].harmonic * terms_[t].harmonic));
-    for (std::size_t t = 0; t < terms_.size(); ++t)
-      if (terms_[t].harmonic == 1)
-        mean_contrast_[2 * static_cast<Eigen::Index>(t)] =
-            1.0 / static_cast<double>(model.repetitions.size());
-    deviation_ = Eigen::VectorXd::Zero(columns());
-    weight_.assign(static_cast<std::size_t>(pixels.size()), 1.0);
-  }
-
-  void solve() {
-    constexpr int rounds = 8;
-    for (int round = 0; round < rounds; ++round) {
-      weigh();
-      const Sums sums = all_sums();
-      const Eigen::VectorXd data = sums.moment.rowwise().sum() / misfit_;
-      deviation_ += solve_symmetric(information_of(sums), data - prior_information() * deviation_);
-    }
-    estimate_errors();
-  }
-
-  struct Term {
-    std::size_t frequency;
-    int harmonic;
-  };
-  const std::vector<Term>& terms() const { return terms_; }
-  std::complex<double> deviation(std::size_t term) const {
-    const auto at = 2 * static_cast<Eigen::Index>(term);
-    return {deviation_[at], deviation_[at + 1]};
-  }
-  const Eigen::MatrixXd& covariance() const { return covariance_; }
-  /// Returns whether the frames determine a deviation better than the prior does. Of a fundamental,
-  /// the phase counts.
-  bool is_determined(std::size_t term) const {
-    const auto at = 2 * static_cast<Eigen::Index>(term);
-    const double real = terms_[term].harmonic == 1 ? 0.0 : posterior_[at];
-    return std::max(real, posterior_[at + 1]) < 0.25 * prior_[at] * prior_[at];
-  }
-  /// Change of the correlation functions by the deviations at a depth (K).
-  Eigen::VectorXd added(double depth_m) const { return functions(depth_m) * deviation_; }
-
- private:
-  struct Sums {
-    Eigen::MatrixXd gram;    // (columns, columns)
-    Eigen::MatrixXd moment;  // (columns, tiles)
-  };
-  /// Terms of one pixel in the sums.
-  struct PixelTerms {
-    Eigen::MatrixXd design;    // (K, columns), weighted, without what signal and ambient explain
-    Eigen::VectorXd residual;  // (K), in the same way
-    bool is_valid = false;
-  };
-
-  Eigen::Index columns() const { return 2 * static_cast<Eigen::Index>(terms_.size()); }
-  /// The measurements do not determine the mean contrast, because the brightness of the scene is
-  /// not known: it stays.
-  Eigen::MatrixXd prior_information() const {
-    constexpr double known = 1e-3;
-    Eigen::MatrixXd information = mean_contrast_ * mean_contrast_.transpose() / (known * known);
-    information.diagonal() += prior_.cwiseAbs2().cwiseInverse();
-    return information;
-  }
-  Eigen::MatrixXd information_of(const Sums& sums) const {
-    return sums.gram / misfit_ + prior_information();
-  }
-
-  /// Derivatives of the correlation functions by the deviations at a depth (K, columns).
-  Eigen::MatrixXd functions(double depth_m) const {
-    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(model_.measurements(), columns());
-    for (std::size_t t = 0; t < terms_.size(); ++t)
-      for (int i = 0; i < model_.measurements(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (model_.frequency[k] != terms_[t].frequency) continue;
-        const double phase_rad =
-            std::arg(model_.harmonic[k]) + model_.phase_rad(terms_[t].frequency, depth_m);
-        const std::complex<double> value =
-            std::polar(2 * std::abs(model_.harmonic[k]), terms_[t].harmonic * phase_rad);
-        values(i, 2 * static_cast<Eigen::Index>(t)) = value.real();
-        values(i, 2 * static_cast<Eigen::Index>(t) + 1) = -value.imag();
-      }
-    return values;
-  }
-
-  PixelTerms terms_of(Eigen::Index pixel) const {
-    const DecodingTable& table = model_.table;
-    const double depth_m = pixels_.depth_m[static_cast<std::size_t>(pixel)];
-    Eigen::MatrixXd design = functions(depth_m);
-    Eigen::MatrixXd light(model_.measurements(), 2);
-    light.col(0) = table.exposure_s.cwiseProduct(model_.at(depth_m) + design * deviation_);
-    light.col(1) = table.exposure_s.cwiseProduct(table.ambient_gain);
-    const bool sees_ambient = light.col(1).norm() > 1e-9 * table.exposure_s.norm();
-    if (!sees_ambient) light.conservativeResize(Eigen::NoChange, 1);
-    const Eigen::VectorXd electrons = pixels_.electrons.col(pixel);
-    const double signal = least_squares(light, electrons)[0];
-    if (!(signal > 0.0)) return {};
-    const double mean_shot = table.shot().mean();
-    const Eigen::VectorXd variance_e2 =
-        (table.exposure_s * (signal * mean_shot) +
-         table.exposure_s.cwiseProduct(table.shot_ambient()) * table.hidden_ambient_e_per_s +
-         table.shot_dark() + table.constant_variance_e2)
-            .cwiseMax(1.0);
-    const Eigen::VectorXd scale = variance_e2.cwiseSqrt().cwiseInverse();
-    light = scale.asDiagonal() * light;
-    const Eigen::MatrixXd rest = complement_of(light);
-    design =
-        rest.transpose() * (scale.cwiseProduct(signal * table.exposure_s)).asDiagonal() * design;
-    return {std::move(design), rest.transpose() * scale.cwiseProduct(electrons), true};
-  }
-
-  template <typename Add>
-  void for_each_pixel(const Add& add) const {
-    parallel_for_blocks(pixels_.size(), block_size, [&](IndexRange range) {
-      for (Eigen::Index p = range.begin; p < range.end; ++p) add(p, range.begin / block_size);
-    });
-  }
-
-  Sums all_sums() const {
-    const auto blocks = static_cast<std::size_t>((pixels_.size() + block_size - 1) / block_size);
-    std::vector<Sums> parts(blocks, {Eigen::MatrixXd::Zero(columns(), columns()),
-                                     Eigen::MatrixXd::Zero(columns(), pixels_.tiles)});
-    for_each_pixel([&](Eigen::Index p, std::int64_t block) {
-      const auto at = static_cast<std::size_t>(p);
-      if (weight_[at] == 0.0) return;
-      const PixelTerms pixel = terms_of(p);
-      if (!pixel.is_valid) return;
-      Sums& sums = parts[static_cast<std::size_t>(block)];
-      sums.gram.noalias() += weight_[at] * pixel.design.transpose() * pixel.design;
-      sums.moment.col(pixels_.tile[at]).noalias() +=
-          weight_[at] * pixel.design.transpose() * pixel.residual;
-    });
-    for (std::size_t b = 1; b < parts.size(); ++b) {
-      parts[0].gram += parts[b].gram;
-      parts[0].moment += parts[b].moment;
-    }
-    return std::move(parts[0]);
-  }
-
-  /// Weights by the residuals, and their usual size.
-  void weigh() {
-    constexpr double reach = 4.0;
-    std::vector<double> size(static_cast<std::size_t>(pixels_.size()), INFINITY);
-    for_each_pixel([&](Eigen::Index p, std::int64_t) {
-      const PixelTerms pixel = terms_of(p);
-      if (pixel.is_valid && pixel.residual.size() > 0)
-        size[static_cast<std::size_t>(p)] =
-            pixel.residual.squaredNorm() / static_cast<double>(pixel.residual.size());
-    });
-    misfit_ = std::max(1.0, median_of(size));
-    for (std::size_t p = 0; p < size.size(); ++p) {
-      const double u = std::sqrt(size[p] / misfit_) / reach;
-      weight_[p] = u < 1.0 ? std::pow(1.0 - u * u, 2) : 0.0;
-    }
-  }
-
-  void estimate_errors() {
-    const Sums sums = all_sums();
-    const Eigen::MatrixXd inverse =
-        solve_symmetric(information_of(sums), Eigen::MatrixXd::Identity(columns(), columns()));
-    const Eigen::MatrixXd spread = inverse * sums.moment / misfit_;
-    const auto used =
-        static_cast<double>((sums.moment.colwise().squaredNorm().array() > 0).count());
-    const double freedom = std::max(1.0, used - static_cast<double>(columns()));
-    covariance_ = spread * spread.transpose() * (used / freedom);
-    posterior_ = inverse.diagonal();
-  }
-
-  static constexpr std::int64_t block_size = 512;
-  const Fundamentals& model_;
-  const ReferencePixels& pixels_;
-  std::vector<Term> terms_;
-  Eigen::VectorXd prior_;          // standard deviations
-  Eigen::VectorXd mean_contrast_;  // coefficients of the mean of Re b_1 over frequencies
-  Eigen::VectorXd deviation_;      // b
-  Eigen::MatrixXd covariance_;
-  Eigen::VectorXd posterior_;  // variances, with the prior
-  std::vector<double> weight_;
-  double misfit_ = 1.0;  // usual variance of a residual over that of its noise
-};
-
 /// Standard error of a linear combination of deviations.
 double error_of(const HarmonicFit& fit, const Eigen::VectorXd& combination) {
   return std::sqrt(combination.dot(fit.covariance() * combination));
 }
 
+/// "2 to 8" or "3, 5, 7".
 std::string list_of(const std::vector<int>& numbers) {
+  const bool is_run = numbers.back() - numbers.front() + 1 == static_cast<int>(numbers.size());
+  if (is_run && numbers.size() > 2) return fmt::format("{} to {}", numbers.front(), numbers.back());
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
@@ -415,6 +194,7 @@ void report_frequencies(const HarmonicFit& fit, const Fundamentals& model,
                         const CalibratedCamera& calibrated,
                         const std::vector<std::size_t>& frequency_of_exposure,
                         const std::vector<double>& initial_contrast, FrequencyCalibration& result) {
+  constexpr int noted_harmonic = 8;  // higher ones hardly matter
   const Eigen::Index columns = fit.covariance().cols();
   const std::size_t frequencies = model.repetitions.size();
   std::vector<std::size_t> first_term(frequencies, 0);
@@ -450,7 +230,7 @@ void report_frequencies(const HarmonicFit& fit, const Fundamentals& model,
       const auto [its, harmonic] = fit.terms()[t];
       if (its != f || harmonic == 1) continue;
       if (!fit.is_determined(t)) {
-        unknown.push_back(harmonic);
+        if (harmonic <= noted_harmonic) unknown.push_back(harmonic);
         continue;
       }
       const auto at = 2 * static_cast<Eigen::Index>(t);

@@ -250,6 +250,29 @@ def test_existing_files_stay(both, scope, sweep):
         ts.calibrate_correlation(means, base).write_maps(both[1] / "map.npy")
 
 
+def test_each_frequency_of_a_kinect_has_its_offset_and_contrast():
+    camera, code = ts.Camera("kinect-v2"), "multifrequency-2x3-10x3-15x3"
+    offset_rad, contrast = np.array([0.78, -2.16, 0.24]), np.array([0.6, 0.45, 0.37])
+    real = camera.replace(playback={"offset_rad": list(offset_rad)},
+                          sensor={"modulation_contrast": list(contrast)})
+    rows, columns = np.mgrid[0:30, 0:40]
+    depth = np.stack([0.8 + 0.7 * f + 0.5 * np.sin(rows / 9 + columns / 13) for f in range(5)])
+    raw = np.stack([ts.capture(one.astype(np.float32), code, real, signal_e_per_s=2e6,
+                               ambient_e_per_s=1e5, falloff=False, seed=f).reshape(30, 40, 9)
+                    for f, one in enumerate(depth)])
+    found = ts.calibrate_correlation(raw, camera, reference=depth, code=code)
+    period_m = camera.range_m / np.array([2, 10, 15])
+    assert [its.frequency_hz for its in found.frequencies] == [16e6, 80e6, 120e6]
+    for its, expected_m in zip(found.frequencies, offset_rad / (2 * np.pi) * period_m):
+        assert abs(its.offset_m.value - expected_m) < 5 * its.offset_m.standard_error < 0.03
+    ratios = np.array([its.contrast.value for its in found.frequencies])
+    assert np.allclose(ratios, contrast / np.exp(np.log(contrast).mean()), rtol=0.02)
+    for decoder in (ts.Decoder(found.decoding_table(camera)), ts.Decoder(code, found.camera(camera))):
+        image = decoder.decode(raw[2])
+        assert (image.status == 0).mean() > 0.98
+        assert np.abs(image.depth_m - depth[2])[image.status == 0].max() < 0.15
+
+
 def test_reference_depth_gives_the_commands_table(both, cli):
     camera = base.replace(fundamental_frequency_hz=60e6, sensor={
         "taps": 2, "readout": "difference", "drain": False})

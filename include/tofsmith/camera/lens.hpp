@@ -83,7 +83,8 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
           .only(is_pinhole, condition),
       lens.height_px);
   Key modes("frame_modes",
-            "Sensor whose frames are parts of its image, binned or not; the pinhole is that of the "
+            "Sensor with several frame sizes, each a part of the image or binned; the pinhole is "
+            "that of the "
             "whole sensor");
   modes.only(is_pinhole, condition);
   fields.part(modes, lens.frame_modes, [&](FieldVisitor& inner, FrameModes& sensor) {

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "calibrate/harmonic_basis.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+/// Measurements with known depth.
+struct ReferencePixels {
+  Eigen::MatrixXd electrons;  // (K, P)
+  std::vector<double> depth_m;
+  std::vector<int> tile;
+  int tiles = 0;
+
+  Eigen::Index size() const { return electrons.cols(); }
+};
+
+/// Correlation functions of a camera and the fundamental of each.
+struct Fundamentals {
+  DecodingTable table;                         // of many rows
+  std::vector<int> repetitions;                // of every frequency, in units of f0
+  std::vector<std::size_t> frequency;          // of every measurement
+  std::vector<std::complex<double>> harmonic;  // of every measurement
+
+  int measurements() const { return table.measurements(); }
+  /// Row of correlation functions at a depth (K), between two rows of the table.
+  Eigen::VectorXd at(double depth_m) const {
+    const auto rows = static_cast<double>(table.samples());
+    const double row = (depth_m / table.range_m - std::floor(depth_m / table.range_m)) * rows;
+    const auto low = static_cast<Eigen::Index>(row) % table.samples();
+    const double share = row - std::floor(row);
+    return (1.0 - share) * table.correlation.row(low) +
+           share * table.correlation.row((low + 1) % table.samples());
+  }
+  double phase_rad(std::size_t its_frequency, double depth_m) const {
+    return turn * repetitions[its_frequency] * depth_m / table.range_m;
+  }
+};
+
+/// Fit of deviations from correlation functions, b_h of every frequency: see
+/// calibrate_frequencies(). Columns are their real and imaginary parts.
+class HarmonicFit {
+ public:
+  /// @param rows  N, which limits the harmonics
+  HarmonicFit(const Fundamentals& model, const ReferencePixels& pixels, int rows);
+
+  void solve();
+
+  struct Term {
+    std::size_t frequency;
+    int harmonic;
+  };
+  const std::vector<Term>& terms() const { return terms_; }
+  std::complex<double> deviation(std::size_t term) const {
+    const auto at = 2 * static_cast<Eigen::Index>(term);
+    return {deviation_[at], deviation_[at + 1]};
+  }
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
+  /// Returns whether the frames determine a deviation better than the prior does. Of a fundamental,
+  /// the phase counts.
+  bool is_determined(std::size_t term) const;
+  /// Change of the correlation functions by the deviations at a depth (K).
+  Eigen::VectorXd added(double depth_m) const { return functions(depth_m) * deviation_; }
+
+ private:
+  struct Sums {
+    Eigen::MatrixXd gram;    // (columns, columns)
+    Eigen::MatrixXd moment;  // (columns, tiles)
+  };
+  /// Terms of one pixel in the sums.
+  struct PixelTerms {
+    Eigen::MatrixXd design;    // (K, columns), weighted, without what signal and ambient explain
+    Eigen::VectorXd residual;  // (K), in the same way
+    bool is_valid = false;
+  };
+
+  Eigen::Index columns() const { return 2 * static_cast<Eigen::Index>(terms_.size()); }
+  /// The measurements do not determine the mean contrast, because the brightness of the scene is
+  /// not known: it stays.
+  Eigen::MatrixXd prior_information() const;
+  Eigen::MatrixXd information_of(const Sums& sums) const;
+
+  /// Derivatives of the correlation functions by the deviations at a depth (K, columns).
+  Eigen::MatrixXd functions(double depth_m) const;
+
+  PixelTerms terms_of(Eigen::Index pixel) const;
+
+  /// Calls add(pixel, block) for each pixel; blocks run in parallel.
+  template <typename Add>
+  void for_each_pixel(const Add& add) const;
+  Sums all_sums() const;
+
+  /// Weights by the residuals, and their usual size.
+  void weigh();
+
+  void estimate_errors();
+
+  static constexpr std::int64_t block_size = 512;
+  const Fundamentals& model_;
+  const ReferencePixels& pixels_;
+  std::vector<Term> terms_;
+  Eigen::VectorXd prior_;          // standard deviations
+  Eigen::VectorXd mean_contrast_;  // coefficients of the mean of Re b_1 over frequencies
+  Eigen::VectorXd deviation_;      // b
+  Eigen::MatrixXd covariance_;
+  Eigen::VectorXd posterior_;  // variances, with the prior
+  std::vector<double> weight_;
+  double misfit_ = 1.0;  // usual variance of a residual over that of its noise
+};
+
+}  // namespace tofsmith
