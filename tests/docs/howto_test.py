@@ -73,7 +73,10 @@ class HowTo(BenchRecordsTest):
         code = "hamiltonian-k4" if "." in code else code
         settings = " ".join(re.findall(r"--(?:camera|set) \S+", command))
         self.shell(f"tofsmith simulate table-top {SMALL} --code {code} {settings} --signal 3e7 "
-                   "--ambient 1e5 -o raw.npy --force")
+                   "--ambient 1e5 -o raw.npy --truth reference.npy --force")
+
+    def make_reference_npy(self, _):
+        pass  # beside raw.npy
 
     def make_p0_npy(self, command):
         self.make_raw_npy(command)
@@ -166,7 +169,7 @@ class HowTo(BenchRecordsTest):
         self.shell("tofsmith design --method factorize --effort 0.05 --trials 1000 -o designed")
 
     def prepare(self, command):
-        written = set(re.findall(r"(?:-o|--truth|--store|--export|>) ([^\s-]\S*)", command))
+        written = set(re.findall(r"(?:-o|--truth|--table|--store|--export|>) ([^\s-]\S*)", command))
         named = dict.fromkeys(word.rstrip("/") for word in command.split())
         for word in [word for word in named if word not in written and "*" not in word]:
             make = getattr(self, "make_" + re.sub(r"\W", "_", word), None)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The tutorial and the page on a camera of one's own do what they say: their files are written and
-their commands run, in order, in an empty directory. PYTHONPATH has the Python package.
+"""Runs the tutorial and the pages that take cameras from raw frames to depth: writes their files
+and executes their commands, in order, in an empty directory. PYTHONPATH has the Python package.
 
     tutorial_test.py TOFSMITH DOCS
 """
@@ -17,12 +17,23 @@ TOOL = os.path.abspath(sys.argv.pop(1))
 DOCS = os.path.abspath(sys.argv.pop(1))
 MADE = ("designed/report.html", "raw.npy", "truth.npy", "depth.npz", "depth.png", "points.ply", "depth.pdf",
         "waveforms.pdf")
+OFFSET = re.compile(r"MHz: offset (\S+) ± (\S+) mm, contrast (\S+) ±")
+
+
+def text_of(page):
+    with open(os.path.join(DOCS, page), encoding="utf-8") as file:
+        return file.read()
 
 
 def blocks_of(page):
     """(language, text) of every fenced block; `sh` is for the reader alone."""
-    with open(os.path.join(DOCS, page), encoding="utf-8") as file:
-        return re.findall(r"^```(bash|toml|python)\n(.*?)^```$", file.read(), re.M | re.S)
+    return re.findall(r"^```(bash|toml|python)\n(.*?)^```$", text_of(page), re.M | re.S)
+
+
+def errors_mm(text):
+    """{file: (median error in mm, percent of the pixels within 50 mm)} of lines of compare.py."""
+    lines = re.findall(r"^(\S+): median error ([\d.]+) mm, (\d+) %", text, re.M)
+    return {name: (float(median), float(share)) for name, median, share in lines}
 
 
 class Tutorial(unittest.TestCase):
@@ -40,8 +51,9 @@ class Tutorial(unittest.TestCase):
         printed = ""
         with tempfile.TemporaryDirectory(prefix="tofsmith-tutorial-") as directory:
             for language, text in blocks:
-                if language == "toml":
-                    with open(os.path.join(directory, re.match(r"# (\S+)\n", text)[1]), "w") as file:
+                name = re.match(r"# (\S+\.(?:toml|py))\n", text)
+                if language == "toml" or name:
+                    with open(os.path.join(directory, name[1]), "w", encoding="utf-8") as file:
                         file.write(text)
                 else:
                     command = ["bash", "-e"] if language == "bash" else [sys.executable, "-B", "-"]
@@ -63,6 +75,30 @@ class Tutorial(unittest.TestCase):
         self.assertAlmostEqual(float(off_m), 0.31, delta=0.01)
         error_mm = float(re.search(r"median error ([\d.]+) mm", printed)[1])
         self.assertLess(3 * error_mm, float(rms_mm))
+
+    def test_three_cameras_have_the_errors_that_their_page_states(self):
+        printed = self.run_page("real_cameras.md",
+                                [camera + "-table.npz" for camera in ("kinect", "azure", "ti")])
+        stated = text_of("real_cameras.md")
+        error_mm = errors_mm(printed)
+        self.assertEqual(list(error_mm), list(errors_mm(stated)))
+        for name, (median, share) in errors_mm(stated).items():
+            self.assertAlmostEqual(error_mm[name][0], median, delta=0.05 * median, msg=name)
+            self.assertAlmostEqual(error_mm[name][1], share, delta=2, msg=name)
+        for camera in ("kinect", "azure", "ti"):
+            first, depth, exact = (error_mm[f"{camera}-{name}.npz"][0]
+                                   for name in ("first", "depth", "exact"))
+            self.assertLess(20 * depth, first)
+            self.assertLess(depth, 1.5 * exact)
+        # (offset [mm], its error, contrast) of each frequency, found and simulated
+        found = [[float(number) for number in row] for row in OFFSET.findall(printed)]
+        self.assertEqual(len(found), 8)
+        for row, said in zip(found, OFFSET.findall(stated), strict=True):
+            self.assertAlmostEqual(row[0], float(said[0]), delta=row[1], msg=said)
+            self.assertAlmostEqual(row[2], float(said[2]), delta=0.01, msg=said)
+        true_mm = (-178.9, 619.7, -548.9, 120, 350, -80, 1878.6, 1779.2)
+        for row, true in zip(found, true_mm, strict=True):
+            self.assertAlmostEqual(row[0], true, delta=2 * row[1])
 
 
 if __name__ == "__main__":
