@@ -324,6 +324,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   if (reference.is_z)
     return calibrate_depth(frames, along_rays(reference, camera, frames.height, frames.width), code,
                            camera, progress);
+  require_same_size(frames, reference);
   CalibratedDepth result;
   const ForwardModel model(code, camera);
   result.table = nominal_table(model, code, camera);

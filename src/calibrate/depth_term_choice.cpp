@@ -55,6 +55,19 @@ bool is_plausible(const NormalSums& all, const TermChoice& choice, double range_
   return all.solve(choice.columns()).lpNorm<Eigen::Infinity>() < largest_share * range_m;
 }
 
+/// Returns whether the signal varies apart from the other terms. On targets of one albedo it is a
+/// function of depth, whose terms would cancel those of the signal and mislead on other scenes.
+bool signal_varies(const NormalSums& all, int highest_harmonic, int degree) {
+  constexpr double least_share = 0.02;
+  const std::vector<int> others = TermChoice{(1u << highest_harmonic) - 1u, degree, 0}.columns();
+  const int signal = TermChoice{0, 0, 1}.columns().back();
+  const NormalSums of_signal{all.gram, all.gram.col(signal), all.gram(signal, signal), all.weight};
+  const auto left = [&](const std::vector<int>& columns) {
+    return of_signal.left(columns, of_signal.solve(columns));
+  };
+  return left(others) > least_share * left({0});
+}
+
 /// Sets of harmonics that errors of usual cameras have; of k equally spaced phases, k and 2 k.
 std::vector<unsigned> harmonic_sets(int highest) {
   const auto set = [](std::initializer_list<int> list) {
@@ -89,10 +102,11 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree) {
   };
   NormalSums all;
   for (const NormalSums& cell : sums) all.add(cell);
+  const int max_signal = signal_varies(all, highest_harmonic, max_degree) ? max_error_signal : 0;
   std::vector<Candidate> candidates;
   for (const unsigned harmonics : harmonic_sets(highest_harmonic))
     for (int degree = 0; degree <= max_degree; ++degree)
-      for (int signal = 0; signal <= max_error_signal; ++signal) {
+      for (int signal = 0; signal <= max_signal; ++signal) {
         const TermChoice choice{harmonics, degree, signal};
         if (choice.size() > 1 && !is_plausible(all, choice, fit.range_m)) continue;
         candidates.push_back(

@@ -24,17 +24,6 @@ namespace {
 constexpr std::size_t min_compared = 100;
 constexpr double max_compared = 2.5e5;
 
-void validate(const RawFrames& frames, const ReferenceDepth& reference) {
-  const auto images = static_cast<int>(reference.depth_m.size());
-  require(images == 1 || images == frames.frames, "reference", fmt::format("{} images", images),
-          fmt::format("must be one, or one for each of the {} frames", frames.frames));
-  for (const Image<float>& image : reference.depth_m)
-    require(
-        image.size() == 1 || (image.height == frames.height && image.width == frames.width),
-        "reference", fmt::format("{} x {}", image.height, image.width),
-        fmt::format("must be {} x {} as the frames, or one distance", frames.height, frames.width));
-}
-
 /// |mean of exp(i turn (depth -+ reference) / range)|: 1 where both agree but for an offset.
 template <typename Reference>
 double coherence(const std::vector<ReferenceSample>& samples, double range_m, double sign,
@@ -71,6 +60,17 @@ double scatter_of(const std::vector<ReferenceSample>& samples, double range_m, d
 
 }  // namespace
 
+void require_same_size(const RawFrames& frames, const ReferenceDepth& reference) {
+  const auto images = static_cast<int>(reference.depth_m.size());
+  require(images == 1 || images == frames.frames, "reference", fmt::format("{} images", images),
+          fmt::format("must be one, or one for each of the {} frames", frames.frames));
+  for (const Image<float>& image : reference.depth_m)
+    require(
+        image.size() == 1 || (image.height == frames.height && image.width == frames.width),
+        "reference", fmt::format("{} x {}", image.height, image.width),
+        fmt::format("must be {} x {} as the frames, or one distance", frames.height, frames.width));
+}
+
 double reference_at(const ReferenceDepth& reference, int frame, int row, int column) {
   const Image<float>& image =
       reference.depth_m[reference.depth_m.size() == 1 ? 0 : static_cast<std::size_t>(frame)];
@@ -87,7 +87,6 @@ double wrapped_difference_m(double difference_m, double range_m) {
 std::vector<ReferenceSample> decoded_samples(const RawFrames& frames,
                                              const ReferenceDepth& reference,
                                              const DecodingTable& table, const Progress& progress) {
-  validate(frames, reference);
   // Errors of the model, which calibration is to find, must not drop pixels.
   const Decoder decoder(table, {.false_alarm_rate = 0.0});
   const double all = static_cast<double>(frames.pixels_per_frame()) * frames.frames;

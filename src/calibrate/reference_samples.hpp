@@ -20,13 +20,16 @@ struct ReferenceSample {
   double deviation_m = 0.0;  ///< predicted, of depth_m
 };
 
+/// @throws std::invalid_argument unless the reference is one image or one per frame, of the frames'
+/// size or 1 x 1
+void require_same_size(const RawFrames& frames, const ReferenceDepth& reference);
+
 /// Pixels of all frames, every so many rows and columns so that they are not too many.
-/// @throws std::invalid_argument if sizes disagree
 std::vector<ReferenceSample> decoded_samples(const RawFrames& frames,
                                              const ReferenceDepth& reference,
                                              const DecodingTable& table, const Progress& progress);
 /// The same.
-/// @throws std::invalid_argument also if fewer than 100 pixels can be compared
+/// @throws std::invalid_argument if fewer than 100 pixels can be compared
 std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
                                                const ReferenceDepth& reference,
                                                const DecodingTable& table,

@@ -40,6 +40,7 @@ struct Bench {
   double wrong_share = 0.05;                   // of reference pixels
   double second_harmonic = 0.0;                // over the first; no depth explains it
   bool reversed = false;
+  bool one_albedo = false;  // signal falls with the distance squared, and with nothing else
   std::uint64_t seed = 1;
 
   DepthErrorTerms truth;
@@ -65,7 +66,8 @@ struct Bench {
               static_cast<float>(true_m - range_m * std::floor(true_m / range_m));
           if (random.uniform() < wrong_share)
             depth_m(row, column) = static_cast<float>(range_m * random.uniform());
-          const double amplitude = 2e5 * (1.2 + std::cos(0.3 * column));
+          const double amplitude = one_albedo ? 2e5 * std::pow(0.3 + nominal_m / range_m, -2)
+                                              : 2e5 * (1.2 + std::cos(0.3 * column));
           const double phase_rad = (reversed ? -1.0 : 1.0) * turn_rad * nominal_m / range_m;
           for (int k = 0; k < 4; ++k)
             raw.values.push_back(static_cast<float>(
@@ -262,6 +264,18 @@ TEST(DepthCalibration, TermsHaveTheSizeOfDepthErrorsOnAnyPartOfTheRange) {
     }
 }
 
+TEST(DepthCalibration, TargetsOfOneAlbedoDoNotDetermineTermsInTheSignal) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Bench bench{.last_share = 0.5, .one_albedo = true, .seed = seed, .truth = wiggle()};
+    bench.run();
+    const CalibratedDepth found = bench.calibrate();
+    EXPECT_FALSE(found.table.correction->needs_signal());
+    Bench other{.last_share = 0.5, .seed = seed + 10, .truth = wiggle()};
+    other.run();
+    EXPECT_LT(other.median_error_m(found.table), 3e-3);
+  }
+}
+
 TEST(DepthCalibration, DepthAlongTheAxisIsTurnedByTheLens) {
   Bench bench{.wrong_share = 0.0, .truth = wiggle()};
   bench.run();
@@ -311,6 +325,16 @@ TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
   Bench few = bench;
   few.reference.depth_m.resize(2);
   refuses(few, "one for each of the 6 frames");
+  // Also ahead of the calibration of several frequencies.
+  const Camera camera = phase_camera();
+  RawFrames two_frequencies{.frames = 32, .height = 8, .width = 8, .measurements = 8};
+  two_frequencies.values.assign(32 * 64 * 8, 1.0f);
+  EXPECT_THAT(
+      [&] {
+        calibrate_depth(two_frequencies, {{Image<float>(8, 8, 1.0f), Image<float>(8, 8, 1.0f)}},
+                        build_family("multifrequency-1x4-2x4", camera), camera);
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("one for each of the 32 frames")));
 }
 
 TEST(DepthCalibration, AFewDepthsDoNotPassForAnotherUnit) {
