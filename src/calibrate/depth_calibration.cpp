@@ -379,7 +379,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
 
   // Which terms, by what is held out; then those alone.
   report(parts[1], 0.5, "choosing terms");
-  const Chosen chosen = choose(fit, highest, all.degree);
+  const Chosen chosen = choose(fit, highest, all.degree, !result.frequencies.empty());
   const std::vector<int> far_columns = chosen.beyond.columns(), columns = chosen.known.columns();
   const Eigen::VectorXd far = solve_robustly(far_columns, 4, fit);
   const Eigen::VectorXd near = solve_robustly(columns, 6, fit);

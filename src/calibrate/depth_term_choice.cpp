@@ -93,7 +93,7 @@ double quantile_of(std::vector<double> values, double share) {
   return *at;
 }
 
-Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree) {
+Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool prefer_few) {
   const std::vector<NormalSums> sums =
       sums_of(fit.terms, fit.error_m, fit.weight, cells_of(fit), slabs * checkers);
   struct Candidate {
@@ -114,8 +114,8 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree) {
       }
   const auto& near = *std::ranges::min_element(candidates, {}, &Candidate::near_m);
   const auto& far = *std::ranges::min_element(candidates, {}, &Candidate::far_m);
-  // Terms in the signal only where they show; of the others the most that predict as well, since a
-  // term left out shifts those beside it.
+  // Terms in the signal only where they show; of the others usually the most that predict as well,
+  // since a term left out shifts those beside it.
   constexpr double shows = 1.01, as_well = 1.005;
   int signal = near.choice.signal;
   for (const Candidate& c : candidates)
@@ -126,7 +126,8 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree) {
   const Candidate* best = nullptr;
   for (const Candidate& c : candidates)
     if (c.choice.signal == signal && c.near_m <= as_well * least_m &&
-        (!best || c.choice.size() > best->choice.size()))
+        (!best || (prefer_few ? c.choice.size() < best->choice.size()
+                              : c.choice.size() > best->choice.size())))
       best = &c;
   return {best->choice, far.choice, best->near_m, far.far_m};
 }

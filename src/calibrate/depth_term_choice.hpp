@@ -47,6 +47,8 @@ struct Chosen {
 
 /// Chooses among sets of terms by samples held out: blocks of a checkerboard, and quarters of the
 /// reference's range.
-Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree);
+/// @param prefer_few  of sets that predict equally well, the smallest: for tables whose harmonics
+/// were calibrated, so that few terms are left; otherwise the largest
+Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool prefer_few);
 
 }  // namespace tofsmith
