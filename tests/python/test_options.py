@@ -110,7 +110,7 @@ def test_every_plane_is_an_attribute_and_can_be_decoded():
     assert names == set(plane_types) == set(image.planes()) == set(plane_words.values())
     for name, plane in image.planes().items():
         assert plane.dtype == plane_types[name]
-        assert f"    {name} : ndarray of {plane.dtype}" in ts.DepthImage.__doc__
+        assert f"{name} : ndarray of {plane.dtype}" in ts.DepthImage.__doc__
     assert set(decoder.decode(raw).planes()) == set(usual_planes + multipath_planes)
 
 
