@@ -329,13 +329,13 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   const ForwardModel model(code, camera);
   result.table = nominal_table(model, code, camera);
   const double range_m = camera.range_m();
-  const ProgressParts parts(progress, {3.0, 1.0, 1.0});
+  const ProgressParts parts(progress, {3.0, 1.0, 1.0}), decoding(parts[0], 2);
 
   // Each frequency of the code; how far the model's depths are off is found first.
   std::optional<DepthError> nominal;
   if (auto by_frequency = calibrate_frequencies(frames, reference, code, camera)) {
     auto samples =
-        decoded_samples(frames, reference, make_decoding_table(result.table, camera), parts[0]);
+        decoded_samples(frames, reference, make_decoding_table(result.table, camera), decoding[0]);
     if (!samples.empty()) {
       DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
       nominal = error_of(fit);
@@ -354,7 +354,8 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   const DecodingTable table = make_decoding_table(result.table, camera);
 
   // Pixels that can be compared, and the direction of delay.
-  std::vector<ReferenceSample> samples = reference_samples(frames, reference, table, parts[0]);
+  std::vector<ReferenceSample> samples = reference_samples(
+      frames, reference, table, result.frequencies.empty() ? parts[0] : decoding[1]);
   result.pixels = static_cast<std::int64_t>(samples.size());
   const bool turned = runs_backwards(samples, reference, frames.height, frames.width, range_m);
   if (turned) turn_backwards(result.table, samples, range_m);
@@ -418,18 +419,13 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
 
 Camera with_depth(Camera camera, const CalibratedDepth& found) {
   Playback playback = camera.playback.value_or(Playback());
-  // The mean, not the term: where part of the range is known, harmonics share the offset.
+  const double known_m = found.reversed ? -playback.offset_m : playback.offset_m;
   playback.reversed = playback.reversed != found.reversed;
-  playback.offsets_m = found.offsets_m;
-  if (found.offsets_m.empty())
-    playback.offset_m =
-        found.mean_error_m + (found.reversed ? -playback.offset_m : playback.offset_m);
-  else
-    playback.offset_m = 0.0;
-  playback.offset_rad.clear();
-  playback.offset_counts.clear();
-  const bool mixes_taps = camera.sensor.taps >= 2 || camera.sensor.is_signed();
-  if (!found.contrasts.empty() && mixes_taps) camera.sensor.modulation_contrasts = found.contrasts;
+  playback.set_offsets_m(found.offsets_m);
+  // The mean, not the term: where part of the range is known, harmonics share the offset.
+  if (found.offsets_m.empty()) playback.offset_m = found.mean_error_m + known_m;
+  if (!found.contrasts.empty() && camera.sensor.mixes_taps())
+    camera.sensor.modulation_contrasts = found.contrasts;
   camera.playback = playback;
   camera.validate();
   return camera;

@@ -56,7 +56,8 @@ bool is_plausible(const NormalSums& all, const TermChoice& choice, double range_
 }
 
 /// Returns whether the signal varies apart from the other terms. On targets of one albedo it is a
-/// function of depth, whose terms would cancel those of the signal and mislead on other scenes.
+/// function of depth, so that its terms and terms in the signal would cancel and mislead on other
+/// scenes.
 bool signal_varies(const NormalSums& all, int highest_harmonic, int degree) {
   constexpr double least_share = 0.02;
   const std::vector<int> others = TermChoice{(1u << highest_harmonic) - 1u, degree, 0}.columns();
@@ -115,7 +116,7 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool pr
   const auto& near = *std::ranges::min_element(candidates, {}, &Candidate::near_m);
   const auto& far = *std::ranges::min_element(candidates, {}, &Candidate::far_m);
   // Terms in the signal only where they show; of the others usually the most that predict as well,
-  // since a term left out shifts those beside it.
+  // since a term left out shifts its neighbours.
   constexpr double shows = 1.01, as_well = 1.005;
   int signal = near.choice.signal;
   for (const Candidate& c : candidates)

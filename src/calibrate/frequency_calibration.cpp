@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <set>
 
 #include "calibrate/harmonic_fit.hpp"
@@ -137,15 +138,11 @@ struct CalibratedCamera {
   Camera camera;
   std::vector<double> offset_m, contrast;  // of every exposure of the code
 
-  bool mixes_taps() const { return camera.sensor.taps >= 2 || camera.sensor.is_signed(); }
   void apply() {
     Playback playback = camera.playback.value_or(Playback());
-    playback.offset_m = 0.0;
-    playback.offset_rad.clear();
-    playback.offset_counts.clear();
-    playback.offsets_m = offset_m;
+    playback.set_offsets_m(offset_m);
     camera.playback = playback;
-    if (mixes_taps()) camera.sensor.modulation_contrasts = contrast;
+    if (camera.sensor.mixes_taps()) camera.sensor.modulation_contrasts = contrast;
   }
 };
 
@@ -169,17 +166,12 @@ void adjust(CalibratedCamera& calibrated, const std::vector<std::size_t>& freque
     const double period_m = range_m / repetitions[frequency[e]];
     calibrated.offset_m[e] = wrapped_difference_m(
         calibrated.offset_m[e] + offset_rad[frequency[e]] / turn * period_m, period_m);
-    if (calibrated.mixes_taps()) calibrated.contrast[e] *= contrast[frequency[e]];
+    if (calibrated.camera.sensor.mixes_taps()) calibrated.contrast[e] *= contrast[frequency[e]];
   }
   const double largest = std::ranges::max(calibrated.contrast);
   if (largest > 1.0)
     for (double& c : calibrated.contrast) c /= largest;
   calibrated.apply();
-}
-
-/// Standard error of a linear combination of deviations.
-double error_of(const HarmonicFit& fit, const Eigen::VectorXd& combination) {
-  return std::sqrt(combination.dot(fit.covariance() * combination));
 }
 
 /// "2 to 8" or "3, 5, 7".
@@ -189,68 +181,39 @@ std::string list_of(const std::vector<int>& numbers) {
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
-/// Offset, contrast and harmonics of every frequency.
-void report_frequencies(const HarmonicFit& fit, const Fundamentals& model,
-                        const CalibratedCamera& calibrated,
-                        const std::vector<std::size_t>& frequency_of_exposure,
-                        const std::vector<double>& initial_contrast, FrequencyCalibration& result) {
+/// Adds the standard errors and the harmonics of a frequency.
+/// @param found   with frequency, offset and contrast
+/// @param notes   receives a note on parameters that the frames do not determine
+void add_fit(const HarmonicFit& fit, std::size_t frequency, double period_m,
+             CalibratedFrequency& found, std::vector<std::string>& notes) {
   constexpr int noted_harmonic = 8;  // higher ones hardly matter
-  const Eigen::Index columns = fit.covariance().cols();
-  const std::size_t frequencies = model.repetitions.size();
-  std::vector<std::size_t> first_term(frequencies, 0);
-  for (std::size_t t = fit.terms().size(); t-- > 0;) first_term[fit.terms()[t].frequency] = t;
-  // b_1 relative to 1 + b_1: real part of the logarithm, the contrast, and imaginary part, the
-  // phase.
-  Eigen::MatrixXd log_contrast =
-      Eigen::MatrixXd::Zero(columns, static_cast<Eigen::Index>(frequencies));
-  for (std::size_t f = 0; f < frequencies; ++f)
-    log_contrast(2 * static_cast<Eigen::Index>(first_term[f]), static_cast<Eigen::Index>(f)) = 1.0;
-  const Eigen::VectorXd mean_contrast = log_contrast.rowwise().mean();
-  double mean_log = 0.0;
-  for (std::size_t f = 0; f < frequencies; ++f)
-    mean_log += std::log(initial_contrast[f] * std::abs(1.0 + fit.deviation(first_term[f]))) /
-                static_cast<double>(frequencies);
-  for (std::size_t f = 0; f < frequencies; ++f) {
-    CalibratedFrequency found{.frequency_hz = model.repetitions[f] *
-                                              calibrated.camera.fundamental_frequency_hz};
-    const std::complex<double> gain = 1.0 + fit.deviation(first_term[f]);
-    const auto exposure = static_cast<std::size_t>(std::ranges::find(frequency_of_exposure, f) -
-                                                   frequency_of_exposure.begin());
-    const double period_m = model.table.range_m / model.repetitions[f];
-    Eigen::VectorXd phase = Eigen::VectorXd::Zero(columns);
-    phase[2 * static_cast<Eigen::Index>(first_term[f]) + 1] = 1.0;
-    const double size = std::abs(gain);
-    found.offset_m = {calibrated.offset_m[exposure], error_of(fit, phase) / size / turn * period_m};
-    const double contrast = std::exp(std::log(initial_contrast[f] * size) - mean_log);
-    found.contrast = {
-        contrast,
-        contrast * error_of(fit, log_contrast.col(static_cast<Eigen::Index>(f)) - mean_contrast)};
-    std::vector<int> unknown;
-    for (std::size_t t = 0; t < fit.terms().size(); ++t) {
-      const auto [its, harmonic] = fit.terms()[t];
-      if (its != f || harmonic == 1) continue;
-      if (!fit.is_determined(t)) {
-        if (harmonic <= noted_harmonic) unknown.push_back(harmonic);
-        continue;
-      }
-      const auto at = 2 * static_cast<Eigen::Index>(t);
+  const std::size_t fundamental = fit.fundamental(frequency);
+  const std::complex<double> gain = fit.gain(frequency);
+  const double size = std::abs(gain);
+  found.offset_m.standard_error = fit.standard_errors(fundamental)[1] / size / turn * period_m;
+  found.contrast.standard_error = found.contrast.value * fit.contrast_error(frequency);
+  std::vector<int> unknown;
+  for (std::size_t t = 0; t < fit.terms().size(); ++t) {
+    const auto [its_frequency, harmonic] = fit.terms()[t];
+    if (its_frequency != frequency || harmonic == 1) continue;
+    if (fit.is_determined(t)) {
       const std::complex<double> share =
           fit.deviation(t) * std::polar(1.0 / size, -harmonic * std::arg(gain));
+      const auto [real_error, imaginary_error] = fit.standard_errors(t);
       found.harmonics.push_back(
-          {harmonic,
-           {share.real(), std::sqrt(fit.covariance()(at, at)) / size},
-           {share.imag(), std::sqrt(fit.covariance()(at + 1, at + 1)) / size}});
+          {harmonic, {share.real(), real_error / size}, {share.imag(), imaginary_error / size}});
+    } else if (harmonic <= noted_harmonic) {
+      unknown.push_back(harmonic);
     }
-    const std::string name = fmt::format("{:.6g} MHz", 1e-6 * found.frequency_hz);
-    if (!fit.is_determined(first_term[f]))
-      result.notes.push_back(fmt::format("{}: the offset is not determined by these frames", name));
-    if (!unknown.empty())
-      result.notes.push_back(fmt::format(
-          "{}: harmonics {} are not determined by these frames and stay as in the camera's model; "
-          "depths that cover its period, {:.3g} m, determine them",
-          name, list_of(unknown), period_m));
-    result.frequencies.push_back(std::move(found));
   }
+  const std::string name = fmt::format("{:.6g} MHz", 1e-6 * found.frequency_hz);
+  if (!fit.is_determined(fundamental))
+    notes.push_back(fmt::format("{}: the offset is not determined by these frames", name));
+  if (!unknown.empty())
+    notes.push_back(fmt::format(
+        "{}: harmonics {} are not determined by these frames and stay as in the camera's model; "
+        "depths that cover its period, {:.3g} m, determine them",
+        name, list_of(unknown), period_m));
 }
 
 /// Frequencies of a code in units of f0, in order.
@@ -276,7 +239,9 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
   CalibratedCamera calibrated{
       camera, camera.playback.value_or(Playback()).offsets_of(code, camera.range_m()),
       camera.sensor.contrasts_of(code)};
-  ReferencePixels pixels;
+  const ReferencePixels pixels =
+      reference_pixels(frames, reference, make_decoding_table(ForwardModel(code, camera), camera));
+  if (pixels.depth_m.size() < min_pixels) return std::nullopt;
   PhasorOffsets offsets;
   FrequencyCalibration result;
   for (const bool reversed : {false, true}) {
@@ -286,8 +251,6 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
       tried.playback->reversed = !tried.playback->reversed;
     }
     const Fundamentals model = fundamentals_of(code, tried, repetitions);
-    pixels = reference_pixels(frames, reference, model.table);
-    if (pixels.depth_m.size() < min_pixels) return std::nullopt;
     const Eigen::MatrixXcd phasors = phasors_of(model, pixels);
     if (phasors.size() == 0) return std::nullopt;
     const PhasorOffsets found = offsets_of(model, pixels, phasors);
@@ -307,20 +270,29 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
   for (Eigen::Index row = 0; row < result.correlation.rows(); ++row)
     result.correlation.row(row) +=
         fit.added(static_cast<double>(row) * model.table.range_m / code.samples()).transpose();
-  std::vector<double> offset_rad(repetitions.size()), contrast(repetitions.size());
-  for (std::size_t t = 0; t < fit.terms().size(); ++t) {
-    if (fit.terms()[t].harmonic != 1) continue;
-    offset_rad[fit.terms()[t].frequency] = std::arg(1.0 + fit.deviation(t));
-    contrast[fit.terms()[t].frequency] = std::abs(1.0 + fit.deviation(t));
+  std::vector<double> offset_rad, contrast;
+  for (std::size_t f = 0; f < repetitions.size(); ++f) {
+    offset_rad.push_back(std::arg(fit.gain(f)));
+    contrast.push_back(std::abs(fit.gain(f)));
   }
   adjust(calibrated, frequency, repetitions, offset_rad, contrast);
-  if (!calibrated.mixes_taps()) std::ranges::fill(offsets.contrast, 1.0);
-  report_frequencies(fit, model, calibrated, frequency, offsets.contrast, result);
+  if (camera.sensor.mixes_taps())  // the model has the contrasts of the phases
+    std::ranges::transform(contrast, offsets.contrast, contrast.begin(), std::multiplies());
+  double mean_log = 0.0;
+  for (const double c : contrast) mean_log += std::log(c) / static_cast<double>(contrast.size());
+  for (std::size_t f = 0; f < repetitions.size(); ++f) {
+    const auto exposure = std::ranges::find(frequency, f) - frequency.begin();
+    CalibratedFrequency found{
+        .frequency_hz = repetitions[f] * camera.fundamental_frequency_hz,
+        .offset_m = {calibrated.offset_m[static_cast<std::size_t>(exposure)], 0.0},
+        .contrast = {contrast[f] / std::exp(mean_log), 0.0}};
+    add_fit(fit, f, camera.range_m() / repetitions[f], found, result.notes);
+    result.frequencies.push_back(std::move(found));
+  }
   for (const int start : code.frequency_starts()) {
     result.offsets_m.push_back(calibrated.offset_m[static_cast<std::size_t>(start)]);
     result.contrasts.push_back(calibrated.contrast[static_cast<std::size_t>(start)]);
   }
-  result.camera = calibrated.camera;
   return result;
 }
 

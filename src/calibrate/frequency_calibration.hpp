@@ -12,7 +12,6 @@ namespace tofsmith {
 
 /// Offset, contrast and harmonics of every frequency of a code.
 struct FrequencyCalibration {
-  Camera camera;                                 ///< with direction of delay, offsets and contrasts
   Eigen::MatrixXd correlation;                   ///< (N, K), with the harmonics found
   std::vector<CalibratedFrequency> frequencies;  ///< by increasing frequency
   std::vector<double> offsets_m, contrasts;      ///< as CalibratedDepth

@@ -46,6 +46,23 @@ void HarmonicFit::solve() {
   estimate_errors();
 }
 
+std::size_t HarmonicFit::fundamental(std::size_t frequency) const {
+  std::size_t term = 0;
+  while (terms_[term].frequency != frequency) ++term;
+  return term;
+}
+
+std::array<double, 2> HarmonicFit::standard_errors(std::size_t term) const {
+  const auto at = 2 * static_cast<Eigen::Index>(term);
+  return {std::sqrt(covariance_(at, at)), std::sqrt(covariance_(at + 1, at + 1))};
+}
+
+double HarmonicFit::contrast_error(std::size_t frequency) const {
+  Eigen::VectorXd difference = -mean_contrast_;
+  difference[2 * static_cast<Eigen::Index>(fundamental(frequency))] += 1.0;
+  return std::sqrt(difference.dot(covariance_ * difference));
+}
+
 bool HarmonicFit::is_determined(std::size_t term) const {
   const auto at = 2 * static_cast<Eigen::Index>(term);
   const double real = terms_[term].harmonic == 1 ? 0.0 : posterior_[at];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstdint>
@@ -63,7 +64,16 @@ class HarmonicFit {
     const auto at = 2 * static_cast<Eigen::Index>(term);
     return {deviation_[at], deviation_[at + 1]};
   }
-  const Eigen::MatrixXd& covariance() const { return covariance_; }
+  /// Index of the term of the fundamental of a frequency.
+  std::size_t fundamental(std::size_t frequency) const;
+  /// Factor by which the fundamental of a frequency differs from that of the model, 1 + b_1.
+  std::complex<double> gain(std::size_t frequency) const {
+    return 1.0 + deviation(fundamental(frequency));
+  }
+  /// Standard errors of the real and the imaginary part of a deviation.
+  std::array<double, 2> standard_errors(std::size_t term) const;
+  /// Standard error of Re b_1 of a frequency relative to its mean over all frequencies.
+  double contrast_error(std::size_t frequency) const;
   /// Returns whether the frames determine a deviation better than the prior does. Of a fundamental,
   /// the phase counts.
   bool is_determined(std::size_t term) const;

@@ -71,10 +71,10 @@ void validate_sensor(const Sensor& sensor) {
   std::vector<double> contrasts = sensor.modulation_contrasts;
   if (contrasts.empty()) contrasts = {sensor.modulation_contrast};
   for (const double contrast : contrasts)
-    require(contrast == 1.0 || sensor.taps >= 2 || sensor.is_signed(), "sensor.modulation_contrast",
-            contrast, "must be 1 for one tap: contrast mixes taps");
+    require(contrast == 1.0 || sensor.mixes_taps(), "sensor.modulation_contrast", contrast,
+            "must be 1 for one tap: contrast mixes taps");
   validate_adc(sensor);
-  require(sensor.drain || sensor.taps >= 2 || sensor.is_signed(), "sensor.drain", "false",
+  require(sensor.drain || sensor.mixes_taps(), "sensor.drain", "false",
           "needs sensor.taps >= 2: one tap that is always open measures nothing");
   require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",
           "needs sensor.taps = 2");

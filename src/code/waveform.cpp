@@ -226,8 +226,9 @@ int Waveform::repetitions() const {
   constexpr double negligible = 1e-6;
   const Eigen::VectorXd amplitude = harmonics(highest).tail(highest).cwiseAbs();
   int divisor = 0;
+  const double least = negligible * amplitude.maxCoeff();
   for (int n = 1; n <= highest; ++n)
-    if (amplitude[n - 1] > negligible * amplitude.maxCoeff()) divisor = std::gcd(divisor, n);
+    if (amplitude[n - 1] > least) divisor = std::gcd(divisor, n);
   return std::max(1, divisor);
 }
 

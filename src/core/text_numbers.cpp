@@ -40,4 +40,11 @@ std::optional<double> number_in(std::string_view text) {
   return text.empty() ? number : std::nullopt;
 }
 
+std::string letters_and_digits(std::string_view text) {
+  std::string word;
+  for (const char c : text)
+    if (is_letter_or_digit(c)) word += lower_case(c);
+  return word;
+}
+
 }  // namespace tofsmith

@@ -325,7 +325,7 @@ TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
   Bench few = bench;
   few.reference.depth_m.resize(2);
   refuses(few, "one for each of the 6 frames");
-  // Also ahead of the calibration of several frequencies.
+  // Codes of several frequencies read the reference first.
   const Camera camera = phase_camera();
   RawFrames two_frequencies{.frames = 32, .height = 8, .width = 8, .measurements = 8};
   two_frequencies.values.assign(32 * 64 * 8, 1.0f);

@@ -171,7 +171,8 @@ struct CalibratedDepth {
   /// One per frequency of the code; the table contains these values. Empty: a single frequency.
   std::vector<CalibratedFrequency> frequencies;
   /// For with_depth(): offset [m] and contrast of each frequency of the code, as the keys
-  /// playback.offset_m and sensor.modulation_contrast; empty: a single frequency.
+  /// playback.offset_m and sensor.modulation_contrast. Empty: the mean error is the offset, and the
+  /// camera's contrast stays.
   std::vector<double> offsets_m, contrasts;
   std::vector<CalibratedTerm> terms;   ///< of the known part of the range
   std::vector<std::string> far_terms;  ///< names of those that count beyond it
@@ -192,10 +193,10 @@ struct CalibratedDepth {
 ///   1. Of codes of several frequencies: offset, contrast and harmonics of each frequency, which
 ///      become part of the table.
 ///   2. The code decodes the frames; delay that runs backwards is turned. Offset, harmonics 1 to 8
-///   of the phase, a field over rows and columns of degree 0 to 4 and
-///      terms in the logarithm of the signal, by least squares with Tukey's biweight (flying pixels
-///      and wrong references count for nothing), at the phase that the reference predicts, so that
-///      noise of the depth is not taken for an error that depends on it.
+///      of the phase, a field over rows and columns of degree 0 to 4 and terms in the logarithm of
+///      the signal, by least squares with Tukey's biweight (flying pixels and wrong references have
+///      no weight), at the phase that the reference predicts, so that noise of the depth is not
+///      taken for an error that depends on it.
 ///   3. Which terms: by blocks of a checkerboard held out in turn. Beyond the depths that the
 ///      reference had, those count that predict parts of the range held out.
 ///   4. Standard errors from tiles of pixels, whose errors may be alike.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tofsmith/camera/generator.hpp"
@@ -97,6 +98,8 @@ struct Sensor {
 
   std::vector<double> contrasts_of(const CodeSet& code) const;  ///< of every exposure, if it fits
   bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
+  /// Returns true if an exposure has several taps, which a contrast below 1 mixes.
+  bool mixes_taps() const { return taps >= 2 || is_signed(); }
   /// Returns true if measurements are differences of light: ambient light may cancel, its noise
   /// does not.
   bool subtracts() const { return is_signed() || readout == Readout::difference; }
@@ -187,8 +190,8 @@ struct Playback {
   bool reversed = false;  ///< chi(-z) is measured instead of chi(z)
   bool inverted = false;  ///< taps are swapped; a single tap is open where the code closes it
   double offset_m = 0.0;  ///< constant that the camera adds to depth
-  std::vector<double>
-      offsets_m;  ///< the same per exposure or frequency of the code; empty: offset_m
+  /// The same per exposure or frequency of the code; empty: offset_m.
+  std::vector<double> offsets_m;
   /// The same per exposure or frequency, as phase of the frequency [rad]; replaces offset_m.
   std::vector<double> offset_rad;
   /// The same in counts of the frequency's period; replaces offset_m.
@@ -197,6 +200,13 @@ struct Playback {
 
   bool has_list() const {
     return !offsets_m.empty() || !offset_rad.empty() || !offset_counts.empty();
+  }
+  /// Replaces all kinds of offset. @param list  as offsets_m
+  void set_offsets_m(std::vector<double> list) {
+    offset_m = 0.0;
+    offsets_m = std::move(list);
+    offset_rad.clear();
+    offset_counts.clear();
   }
   /// Returns the constant that the camera adds to the depth of each exposure of a code [m].
   /// @param range_m  depth of a period of the fundamental frequency

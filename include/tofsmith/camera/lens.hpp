@@ -84,8 +84,7 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
       lens.height_px);
   Key modes("frame_modes",
             "Sensor with several frame sizes, each a part of the image or binned; the pinhole is "
-            "that of the "
-            "whole sensor");
+            "that of the whole sensor");
   modes.only(is_pinhole, condition);
   fields.part(modes, lens.frame_modes, [&](FieldVisitor& inner, FrameModes& sensor) {
     inner.choice(modes, sensor, frame_modes_words);

@@ -16,7 +16,7 @@ namespace tofsmith {
 enum class DistortionModel {
   opencv,        ///< radial (rational), tangential and thin prism, of x/z and y/z
   fisheye,       ///< a polynomial of the angle off the axis
-  rational_6kt,  ///< Azure Kinect: radial (rational) and a tangential term of its own
+  rational_6kt,  ///< Azure Kinect: radial (rational) and another tangential term than OpenCV's
 };
 
 /// Words for the enumerators, in their order.
@@ -36,17 +36,16 @@ std::string_view name_of(DistortionModel model);
 ///
 /// A ray belongs to a place only as far as places move outwards with their rays: where the
 /// distortion folds back, several rays would meet one place.
-/// @see OpenCV 4, modules calib3d: projectPoints() and fisheye::projectPoints(); Azure Kinect
-/// Sensor
+/// @see OpenCV 4, module calib3d: projectPoints() and fisheye::projectPoints(); Azure Kinect Sensor
 ///      SDK, src/transformation/intrinsic_transformation.c
 struct LensDistortion {
   DistortionModel model = DistortionModel::opencv;
   /// opencv: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]; fisheye: k1 k2 k3 k4; rational-6kt:
-  /// k1 k2 p1 p2 k3 k4 k5 k6. Numbers left out are 0. The last two of opencv are the tilt of the
+  /// k1 k2 p1 p2 k3 k4 k5 k6. Missing numbers are 0. The last two of opencv are the tilt of the
   /// sensor.
   std::vector<double> coefficients;
   /// Distance from the axis at z = 1 up to which the formulas hold; pixels beyond it see nothing.
-  /// None: as far as the distortion does not fold back.
+  /// None: the formulas hold until the distortion folds back.
   std::optional<double> max_radius = {};
 
   /// Where the image of an ideal place falls.

@@ -52,8 +52,9 @@ struct MeasuredTableFile {
   std::vector<std::string> notes;
 };
 
-/// Whether a file can only be a measured table: a text, .npy, or an .npz archive with `corrfs`
-/// but neither `modfs` nor `demodfs`, which make it a code. @throws IoError if it cannot be read
+/// Returns whether a file can only be a measured table: a text, .npy, or an .npz archive with
+/// `corrfs` but neither `modfs` nor `demodfs`, which make it a code. @throws IoError if it cannot
+/// be read
 bool is_measured_table(const std::filesystem::path& path);
 
 /// Reads correlation functions of any N from 8 to 65536 and K up to 64, from a text

@@ -64,7 +64,7 @@ struct RawFormat {
   int frames = 0;        ///< 0: as many as the file holds
 
   RawNumbers numbers = RawNumbers::integers;
-  int bits = 16;           ///< of a number: integers 1 .. 32, floats 16, 32 or 64
+  int bits = 16;           ///< of a number: integers 1 to 32, floats 16, 32 or 64
   int container_bits = 0;  ///< plain: 8, 16 or 32; 0: as few as hold `bits`
   RawPacking packing = RawPacking::plain;
   RawAlignment align = RawAlignment::low;  ///< plain
@@ -256,8 +256,7 @@ std::string built_in_raw_format_toml(const std::string& camera);
 /// The cameras with such a description.
 std::vector<std::string> built_in_raw_format_names();
 
-/// Reads `count` numbers of a row, from number `first` on, as they are stored in the file: black
-/// level, order and differences come later.
+/// Reads numbers of a row without black level, order and differences.
 /// @param row        bytes from the first one that holds a bit of the row
 /// @param first_bit  of the row in its first byte, 0 except for rows that do not start a byte
 void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,

@@ -17,15 +17,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Letters and digits of a text in lower case: "Sample Interval" and "SAMPLE_INTERVAL" are equal.
-std::string bare_word(std::string_view text) {
-  std::string word;
-  for (const char c : text)
-    if (is_letter_or_digit(c)) word += lower_case(c);
-  return word;
-}
-
-/// Names of the sampling interval in the headers of oscilloscopes, as bare_word().
+/// Names of the sampling interval in the headers of oscilloscopes, as letters_and_digits().
 constexpr std::array<std::string_view, 18> interval_names = {
     "increment",   "xincrement",       "xincr",          "xinc",         "xin",
     "tinc",        "tincrement",       "timeincrement",  "deltat",       "dt",
@@ -33,7 +25,7 @@ constexpr std::array<std::string_view, 18> interval_names = {
     "hresolution", "samplinginterval", "horizinterval"};
 
 bool names_interval(std::string_view text) {
-  const std::string word = bare_word(text.substr(0, text.find('(')));
+  const std::string word = letters_and_digits(text.substr(0, text.find('(')));
   return std::ranges::find(interval_names, word) != interval_names.end();
 }
 
@@ -174,7 +166,7 @@ bool is_named_time(const NumberTable& table, Index column) {
   const auto is_time = [&](const std::vector<std::string>& names) {
     if (names.empty()) return false;
     const std::string& name = names[static_cast<std::size_t>(column)];
-    const std::string word = bare_word(name.substr(0, name.find_first_of("([")));
+    const std::string word = letters_and_digits(name.substr(0, name.find_first_of("([")));
     return word == "time" || word == "t" || word == "zeit";
   };
   return is_time(table.names) || is_time(table.upper_names);

@@ -50,13 +50,6 @@ std::string readable(std::string_view text) {
 
 }  // namespace
 
-std::string plain_key(std::string_view key) {
-  std::string plain;
-  for (const char c : key)
-    if (is_letter_or_digit(c)) plain += lower_case(c);
-  return plain;
-}
-
 CalibrationFile::CalibrationFile(std::string_view text, std::string_view name) : name_(name) {
   std::string yaml = readable(text);
   const std::size_t start = yaml.find_first_not_of(" \t\r\n");
@@ -86,7 +79,7 @@ YAML::Node CalibrationFile::find(std::initializer_list<std::string_view> keys) c
   for (const std::string& name : {name_in_keys_, std::string()})
     for (const std::string_view key : keys)
       for (const auto& entry : root_)
-        if (name_beside(plain_key(entry.first.Scalar()), key) == name) return entry.second;
+        if (name_beside(letters_and_digits(entry.first.Scalar()), key) == name) return entry.second;
   return YAML::Node(YAML::NodeType::Undefined);
 }
 
@@ -95,7 +88,7 @@ std::vector<std::string> CalibrationFile::names_in(
   std::vector<std::string> names;
   for (const auto& entry : root_)
     for (const std::string_view key : keys)
-      if (const auto name = name_beside(plain_key(entry.first.Scalar()), key);
+      if (const auto name = name_beside(letters_and_digits(entry.first.Scalar()), key);
           name && !entry.second.IsScalar() && !entry.second.IsNull() &&
           std::find(names.begin(), names.end(), *name) == names.end())
         names.push_back(*name);

@@ -49,7 +49,4 @@ class CalibrationFile {
   std::string name_in_keys_;
 };
 
-/// A key in lower case without underscores and other marks.
-std::string plain_key(std::string_view key);
-
 }  // namespace tofsmith

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/documents/calibration_file.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
@@ -17,7 +18,8 @@ namespace tofsmith {
 
 namespace {
 
-// Names of the same value in files of OpenCV and its users, of ROS and of Kalibr, as plain_key().
+// Names of the same value in files of OpenCV and its users, of ROS and of Kalibr, as
+// letters_and_digits().
 using Names = std::initializer_list<std::string_view>;
 const Names matrix_names = {"cameramatrix", "intrinsicmatrix", "intrinsics", "intrinsic", "k", "m",
                             "mtx"};
@@ -59,7 +61,8 @@ CalibrationFile select_camera(const CalibrationFile& file, std::vector<NamedCame
   std::vector<std::string> names;
   for (const NamedCamera& camera : cameras) {
     const bool is_only_one = name.empty() && cameras.size() == 1;
-    if (is_only_one || plain_key(camera.name) == plain_key(name)) return camera.file;
+    if (is_only_one || letters_and_digits(camera.name) == letters_and_digits(name))
+      return camera.file;
     names.push_back(camera.name);
   }
   if (!name.empty())
@@ -105,7 +108,7 @@ void read_matrix(const CalibrationFile& file, Lens& lens) {
 /// The model that the file states, if any. Kalibr's radtan is OpenCV's with four numbers.
 std::optional<DistortionModel> model_of(const CalibrationFile& file) {
   if (const YAML::Node node = file.find({"distortionmodel"})) {
-    const std::string word = plain_key(node.Scalar());
+    const std::string word = letters_and_digits(node.Scalar());
     for (const char* same : {"plumbbob", "rationalpolynomial", "opencv", "radtan", "none"})
       if (word == same) return DistortionModel::opencv;
     for (const char* same : {"equidistant", "fisheye", "equi"})
@@ -162,7 +165,8 @@ void read_size(const CalibrationFile& file, Lens& lens) {
 /// Pixels of calibrations are those of whole images.
 void check_whole_images(const CalibrationFile& file) {
   for (const char* key : {"binning_x", "binning_y"})
-    if (const YAML::Node node = file.find({plain_key(key)}); node && file.whole(node, key) > 1)
+    if (const YAML::Node node = file.find({letters_and_digits(key)});
+        node && file.whole(node, key) > 1)
       file.fail(node, fmt::format("{}: expected at most 1: images that are not binned", key));
   const YAML::Node part = file.find({"roi"});
   if (!part || !part.IsMap()) return;

@@ -16,11 +16,20 @@ namespace tofsmith {
 
 namespace {
 
+/// Bytes of a file outside of its frames.
+std::uint64_t bytes_around_frames(const RawFormat& format) {
+  return static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
+}
+
+/// Bytes of the frames of a file with this many bytes.
+std::uint64_t bytes_of_frames(std::uint64_t found, const RawFormat& format) {
+  return found - std::min(found, bytes_around_frames(format));
+}
+
 /// Describes a wrong length of a file.
 std::string length_problem(std::uint64_t found, const RawFormat& format) {
-  const auto around = static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
-  const std::uint64_t frame = format.frame_bytes(), data = found < around ? 0 : found - around,
-                      complete = data / frame;
+  const std::uint64_t around = bytes_around_frames(format), frame = format.frame_bytes(),
+                      data = bytes_of_frames(found, format), complete = data / frame;
   const std::string sizes =
       fmt::format("{} x {} pixels, {} measurements of {} bits, {} bytes per frame", format.height,
                   format.width, format.measurements, format.bits, frame);
@@ -45,10 +54,9 @@ std::string length_problem(std::uint64_t found, const RawFormat& format) {
 }
 
 int frames_in(std::uint64_t found, const RawFormat& format, const std::string& file) {
-  const std::uint64_t frame = format.frame_bytes();
-  const auto around = static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
-  const std::uint64_t data = found < around ? 0 : found - around, frames = data / frame;
-  const bool whole = found >= around && frames >= 1 && data % frame == 0;
+  const std::uint64_t frame = format.frame_bytes(), data = bytes_of_frames(found, format),
+                      frames = data / frame;
+  const bool whole = found >= bytes_around_frames(format) && frames >= 1 && data % frame == 0;
   if (!whole || (format.frames > 0 && frames != static_cast<std::uint64_t>(format.frames)) ||
       frames > std::numeric_limits<int>::max())
     throw IoError(file, length_problem(found, format));
