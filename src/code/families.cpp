@@ -23,6 +23,7 @@ namespace {
 struct Member {
   std::function<std::optional<BrokenRule>(const FamilyOptions&)> misfit;
   std::function<CodeSet(const FamilyOptions&)> build;
+  bool has_phase_steps = false;  ///< which three and more taps can share
 };
 
 std::optional<int> integer(std::string_view text) {
@@ -56,7 +57,7 @@ std::optional<std::vector<FrequencySteps>> frequency_list(std::string_view text)
 
 Member multi_frequency(const std::vector<FrequencySteps>& list) {
   return {[list](const FamilyOptions& o) { return multi_frequency_misfit(list, o); },
-          [list](const FamilyOptions& o) { return multi_frequency_code(list, o); }};
+          [list](const FamilyOptions& o) { return multi_frequency_code(list, o); }, true};
 }
 
 Member pulsed_multi_frequency(int low_steps, int high_frequency) {
@@ -76,9 +77,12 @@ std::optional<Member> member_named(std::string_view name) {
   };
   if (const auto k = number_after(name, "sinusoid-k"))
     return Member{multi_frequency({{1, *k}}).misfit,
-                  [k](const FamilyOptions& o) { return sinusoid_code(*k, o); }};
-  if (const auto k = number_after(name, "square-k"))
-    return numbered(square_misfit, square_code, *k);
+                  [k](const FamilyOptions& o) { return sinusoid_code(*k, o); }, true};
+  if (const auto k = number_after(name, "square-k")) {
+    Member member = numbered(square_misfit, square_code, *k);
+    member.has_phase_steps = true;
+    return member;
+  }
   if (const auto k = number_after(name, "hamiltonian-k"))
     return numbered(hamiltonian_misfit, hamiltonian_code, *k);
   if (const auto k = number_after(name, "fourier-k"))
@@ -127,6 +131,11 @@ BrokenRule unknown_family(std::string_view name) {
 /// name that was asked for.
 std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                                     const FamilyOptions& options) {
+  if (options.taps > 2 && !member.has_phase_steps)
+    return broken("code", name,
+                  fmt::format("is for one tap or two buckets; for {} taps there are "
+                              "sinusoid-k{} and square-k{}",
+                              options.taps, options.taps, options.taps));
   const std::optional<BrokenRule> misfit = member.misfit(options);
   if (!misfit) return std::nullopt;
   return broken("code", name,
@@ -134,25 +143,42 @@ std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                             nearest_word(name, examples())));
 }
 
+/// The brightest sinusoid within the peak: of mean 1, or with less light where that is better and
+/// taps share it.
+Waveform sinusoid_light(int frequency, const FamilyOptions& options) {
+  const double amplitude = options.taps > 2 ? std::min(1.0, options.peak_factor / 2)
+                                            : std::min(1.0, options.peak_factor - 1.0);
+  return Waveform::cosine(frequency, options.taps > 2 ? amplitude : 1.0, amplitude, 0.0);
+}
+
 }  // namespace
+
+std::vector<int> steps_by_tap(int steps, int taps) {
+  std::vector<int> order;
+  for (int exposure = 0; exposure < steps / taps; ++exposure)
+    for (int tap = 0; tap < taps; ++tap) order.push_back(exposure + tap * (steps / taps));
+  return order;
+}
 
 void FamilyOptions::validate() const { require(options_misfit(*this)); }
 
 CodeSet multi_frequency_code(const std::vector<FrequencySteps>& frequencies,
                              const FamilyOptions& options) {
   require(multi_frequency_misfit(frequencies, options));
-  const double depth_of_modulation = std::min(1.0, options.peak_factor - 1.0);
   std::vector<Waveform> modulation, demodulation;
   std::string name = "multifrequency";
   for (const auto& [frequency, steps] : frequencies) {
     name += fmt::format("-{}x{}", frequency, steps);
-    for (int step = 0; step < steps; ++step) {
+    for (const int step : steps_by_tap(steps, options.taps)) {
       const double phase = 2 * std::numbers::pi * step / (steps == 2 ? 4 : steps);
-      modulation.push_back(Waveform::cosine(frequency, 1.0, depth_of_modulation, 0.0));
-      demodulation.push_back(Waveform::cosine(frequency, 0.5, 0.5, phase));
+      const double gain = 1.0 / std::max(2, options.taps);
+      demodulation.push_back(Waveform::cosine(frequency, gain, gain, phase));
     }
+    modulation.insert(modulation.end(), static_cast<std::size_t>(steps / options.taps),
+                      sinusoid_light(frequency, options));
   }
-  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+  return CodeSet::create(name, options.samples, options.taps, std::move(modulation),
+                         std::move(demodulation));
 }
 
 CodeSet sinusoid_code(int phase_steps, const FamilyOptions& options) {

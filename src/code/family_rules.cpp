@@ -22,8 +22,21 @@ std::optional<BrokenRule> options_misfit(const FamilyOptions& options) {
   if (options.samples < 4) return broken("samples", options.samples, "must be >= 4");
   if (!(options.peak_factor >= 1.0))
     return broken("peak_factor", options.peak_factor, "must be >= 1");
+  if (options.taps != 1 && options.taps < 3)
+    return broken("taps", options.taps, "must be 1, or >= 3 for taps that share an exposure");
   return std::nullopt;
 }
+
+namespace {
+
+std::optional<BrokenRule> phase_steps_misfit(int steps, int taps) {
+  if (steps < 2) return broken("phase steps", steps, "must be >= 2");
+  if (steps % taps != 0)
+    return broken("phase steps", steps, fmt::format("must be a multiple of the {} taps", taps));
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::optional<BrokenRule> multi_frequency_misfit(const std::vector<FrequencySteps>& frequencies,
                                                  const FamilyOptions& options) {
@@ -32,15 +45,14 @@ std::optional<BrokenRule> multi_frequency_misfit(const std::vector<FrequencyStep
   for (const auto& [frequency, steps] : frequencies) {
     if (frequency < 1 || frequency > max_frequency)
       return broken("frequency", frequency, fmt::format("must be in [1, {}]", max_frequency));
-    if (steps < 2) return broken("phase steps", steps, "must be >= 2");
+    if (auto misfit = phase_steps_misfit(steps, options.taps)) return misfit;
   }
   return std::nullopt;
 }
 
 std::optional<BrokenRule> square_misfit(int phase_steps, const FamilyOptions& options) {
   if (auto misfit = options_misfit(options)) return misfit;
-  if (phase_steps < 2) return broken("phase steps", phase_steps, "must be >= 2");
-  return std::nullopt;
+  return phase_steps_misfit(phase_steps, options.taps);
 }
 
 std::optional<BrokenRule> pulsed_multi_frequency_misfit(int low_steps, int high_frequency,

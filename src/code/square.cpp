@@ -7,19 +7,27 @@
 #include <algorithm>
 
 #include "code/shared/family_rules.hpp"
+#include "code/shared/on_intervals.hpp"
 
 namespace tofsmith {
 
 CodeSet square_code(int phase_steps, const FamilyOptions& options) {
   require(square_misfit(phase_steps, options));
-  const double duty = std::max(0.5, 1.0 / options.peak_factor);
-  std::vector<Waveform> modulation, demodulation;
-  for (int step = 0; step < phase_steps; ++step) {
-    modulation.push_back(rectangular_pulse(duty));
-    demodulation.push_back(square_wave(1, static_cast<double>(step) / phase_steps));
+  // Taps that share an exposure split the period, and the light may be on for half of it even if it
+  // then has less than the mean power.
+  const bool shared = options.taps > 2;
+  const double open = shared ? 1.0 / options.taps : 0.5;
+  const Waveform light =
+      shared ? Waveform::binary({{0.0, 0.5}}, std::min(2.0, options.peak_factor))
+             : rectangular_pulse(std::max(0.5, 1.0 / options.peak_factor));
+  std::vector<Waveform> demodulation;
+  for (const int step : steps_by_tap(phase_steps, options.taps)) {
+    const double rise = static_cast<double>(step) / phase_steps;
+    demodulation.push_back(Waveform::binary(within_period({{rise, rise + open}})));
   }
-  return CodeSet::create(fmt::format("square-k{}", phase_steps), options.samples, 1,
-                         std::move(modulation), std::move(demodulation));
+  const auto exposures = static_cast<std::size_t>(phase_steps / options.taps);
+  return CodeSet::create(fmt::format("square-k{}", phase_steps), options.samples, options.taps,
+                         std::vector<Waveform>(exposures, light), std::move(demodulation));
 }
 
 CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,

@@ -249,6 +249,9 @@ std::vector<std::string> suggested_baselines(const Camera& camera, const DesignO
     }
     return names;
   }
+  if (camera.sensor.taps > 2)
+    return {fmt::format("sinusoid-k{}", camera.sensor.taps),
+            fmt::format("square-k{}", camera.sensor.taps)};
   if (options.method != DesignMethod::factorize)
     return {"sinusoid-k3",    "sinusoid-k4",    "square-k4",      "multifrequency-k5",
             "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "pulsed-multifrequency-k5"};
@@ -262,7 +265,7 @@ std::vector<std::string> suggested_baselines(const Camera& camera, const DesignO
 
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options) {
   constexpr int highest_without_limit = 15, highest_tried = 30;
-  if (camera.sensor.taps > 2) return {};  // families are codes of one tap or two buckets
+  if (camera.sensor.taps > 2) return {};  // all that have as many taps are suggested
   if (camera.sensor.readout == Readout::rows) return {};  // all that have rows are suggested
   const int harmonics = useful_harmonics(camera);
   const std::vector<std::string> shown = suggested_baselines(camera, options);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/code/families.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -107,6 +108,44 @@ TEST(Families, UnknownNameSuggestsTheNearest) {
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("hamiltonian-k4"), std::string::npos) << error.what();
   }
+}
+
+// Taps that share an exposure measure the phase steps of one tap, each with its part of the light.
+TEST(Families, PhaseStepsAreSharedByTaps) {
+  for (const int taps : {3, 4, 5})
+    for (const int steps : {taps, 2 * taps}) {
+      const std::string name = fmt::format("sinusoid-k{}", steps);
+      const CodeSet one = make_family(name, {.samples = 240});
+      const CodeSet shared = make_family(name, {.samples = 240, .taps = taps});
+      ASSERT_EQ(shared.taps(), taps);
+      ASSERT_EQ(shared.exposures(), steps / taps);
+      std::set<int> measured;
+      for (int i = 0; i < steps; ++i)
+        for (int step = 0; step < steps; ++step)
+          if (std::abs(shared.demodulation(i).harmonics(1)[1] * (taps / 2.0) -
+                       one.demodulation(step).harmonics(1)[1]) < 1e-12)
+            measured.insert(step);
+      EXPECT_EQ(static_cast<int>(measured.size()), steps) << name << ", " << taps << " taps";
+    }
+}
+
+TEST(Families, TapsOfAnExposureCollectEveryElectronOnce) {
+  for (const char* name : {"sinusoid-k6", "square-k6", "multifrequency-1x3-5x6"}) {
+    const CodeSet code = make_family(name, {.samples = 240, .peak_factor = 1.0, .taps = 3});
+    EXPECT_LE(code.peak(), 1.0 + 1e-12) << name;
+    const Eigen::MatrixXd gains = code.demodulation_samples();
+    for (int e = 0; e < code.exposures(); ++e)
+      EXPECT_LT((gains.middleCols(3 * e, 3).rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-12)
+          << name << ", exposure " << e;
+  }
+}
+
+TEST(Families, RejectTapsThatCannotShareTheirSteps) {
+  const FamilyOptions three_taps{.samples = 240, .taps = 3};
+  EXPECT_NE(why_no_family("sinusoid-k4", three_taps)->find("must be a multiple of the 3 taps"),
+            std::string::npos);
+  EXPECT_NE(why_no_family("hamiltonian-k4", three_taps)->find("sinusoid-k3 and square-k3"),
+            std::string::npos);
 }
 
 TEST(GrayCode, NeighbouringCellsDifferInOneBit) {

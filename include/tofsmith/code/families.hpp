@@ -17,6 +17,9 @@ struct FamilyOptions {
   int samples = 240;         ///< N
   double peak_factor = 1e9;  ///< p = P_max / P_ave >= 1; a huge value gives the ideal code
   bool exact_grid = true;    ///< of histogram-kK: reject N that would round its time gates
+  /// Taps that share each exposure; from 3 on, no two are open at the same time. Two buckets are 1:
+  /// CodeSet::with_two_buckets() adds the second one.
+  int taps = 1;
   void validate() const;
 };
 
@@ -31,7 +34,8 @@ struct FrequencySteps {
 };
 
 /// Multi-frequency sinusoids: for each entry a sinusoid with its phase steps.
-/// The paper's K = 5 code is {{1, 3}, {7, 2}}.
+/// The paper's K = 5 code is {{1, 3}, {7, 2}}. With n >= 3 taps, S steps (a multiple of n) take S / n
+/// exposures, and the gain of a tap is (1 + cos) / n, so that the gains add up to 1.
 CodeSet multi_frequency_code(const std::vector<FrequencySteps>& frequencies,
                              const FamilyOptions& options);
 

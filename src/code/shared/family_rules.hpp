@@ -22,6 +22,10 @@ std::optional<BrokenRule> pulsed_multi_frequency_misfit(int low_steps, int high_
 std::optional<BrokenRule> gray_misfit(int bits, const FamilyOptions& options);
 std::optional<BrokenRule> hamiltonian_misfit(int measurements, const FamilyOptions& options);
 
+/// The phase steps in the order of exposures and taps: tap t of exposure e measures step
+/// e + t steps / taps.
+std::vector<int> steps_by_tap(int steps, int taps);
+
 /// Of a walk alone.
 std::optional<BrokenRule> walk_misfit(int measurements);
 
