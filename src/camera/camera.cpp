@@ -368,7 +368,9 @@ void require_fits(const CodeSet& code, const Camera& camera) {
 namespace {
 
 FamilyOptions family_options(const Camera& camera) {
-  return {.samples = camera.samples, .peak_factor = camera.light.peak_factor};
+  return {.samples = camera.samples,
+          .peak_factor = camera.light.peak_factor,
+          .taps = camera.sensor.taps > 2 ? camera.sensor.taps : 1};
 }
 
 /// Rows where the camera reads rows, and only there.
@@ -378,12 +380,6 @@ std::optional<std::string> why_other_receiver(const CodeSet& code, const Camera&
   return what_does_not_fit(code, camera)->text();
 }
 
-std::optional<BrokenRule> taps_beyond_families(const Camera& camera) {
-  if (camera.sensor.taps <= 2) return std::nullopt;
-  return broken("sensor.taps", camera.sensor.taps,
-                "built-in families are for one tap or two buckets");
-}
-
 }  // namespace
 
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera) {
@@ -391,12 +387,11 @@ std::optional<std::string> why_no_family(std::string_view name, const Camera& ca
   const CodeSet code = make_family(name, family_options(camera));
   if (auto other = why_other_receiver(code, camera)) return other;
   if (camera.sensor.readout == Readout::rows) return why_not_playable(rows_of(code), camera);
-  return text_of(taps_beyond_families(camera));
+  return std::nullopt;
 }
 
 CodeSet build_family(std::string_view name, const Camera& camera) {
   CodeSet code = make_family(name, family_options(camera));
-  require(taps_beyond_families(camera));
   if (camera.sensor.readout == Readout::rows) code = rows_of(code);
   if (code.is_rows()) require_fits(code, camera);
   if (camera.sensor.is_signed()) code = code.with_signed_weights();
@@ -409,6 +404,13 @@ OperatingRange paper_operating_range() {
   OperatingRange range;
   range.signal_e_per_s = {1e3, 3162.2776601683795, 1e4, 31622.776601683792, 1e5};
   range.ambient_e_per_s = {1e2, 1e3, 1e4, 31622.776601683792, 1e5};
+  range.error = DepthErrorKind::linear;
+  return range;
+}
+
+OperatingRange default_operating_range() {
+  OperatingRange range = paper_operating_range();
+  range.error = DepthErrorKind::circular;
   return range;
 }
 

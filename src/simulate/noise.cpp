@@ -17,7 +17,7 @@ Sensor validated(const Sensor& sensor) {
   Camera camera;
   camera.sensor = sensor;
   camera.sensor.generator.reset();  // depends on the frequency, and makes no noise
-  camera.operating = paper_operating_range();
+  camera.operating = default_operating_range();
   camera.validate();
   return sensor;
 }

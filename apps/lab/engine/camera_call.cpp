@@ -90,7 +90,7 @@ Json field_json(const KeyDescription& described, const Json& document, const Jso
 Answer camera_answer(const Camera& camera) {
   const Json document = Json::parse(camera_to_json(camera));
   Camera blank;
-  blank.operating = paper_operating_range();
+  blank.operating = default_operating_range();
   const Json defaults = Json::parse(camera_to_json(blank));
   Answer answer;
   answer["name"] = camera.name;

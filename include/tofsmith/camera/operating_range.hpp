@@ -76,7 +76,7 @@ inline void describe(FieldVisitor& fields, OperatingMultipath& multipath) {
 struct OperatingRange {
   std::vector<double> signal_e_per_s;   ///< S [e/s]
   std::vector<double> ambient_e_per_s;  ///< A [e/s]
-  DepthErrorKind error = DepthErrorKind::linear;
+  DepthErrorKind error = DepthErrorKind::circular;
   double albedo = 1.0;          ///< scales the signal
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
   /// Number of pixels of one depth that a filter adds before decoding: codes are evaluated on such
@@ -112,8 +112,8 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                    .usually(1e2, 1e8),
                range.ambient_e_per_s);
   fields.choice(Key("error",
-                    "Definition of the depth error: linear as in the paper, or the shorter "
-                    "way around the range")
+                    "Definition of the depth error: the shorter way around the range, or linear "
+                    "as in the paper")
                     .basic(),
                 range.error, depth_error_kinds);
   fields.value(Key("albedo",
@@ -138,8 +138,12 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
   fields.table(Key("multipath", "Multipath that designs take into account"), range.multipath);
 }
 
-/// The 25 pairs of the paper: S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5}, A in {1e2, 1e3, 1e4, 10^4.5,
-/// 1e5}.
+/// Conditions of the paper: the linear error at 25 pairs, S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5} and
+/// A in {1e2, 1e3, 1e4, 10^4.5, 1e5}.
 OperatingRange paper_operating_range();
+
+/// Conditions of a camera file without [operating]: the light levels of the paper and the circular
+/// error.
+OperatingRange default_operating_range();
 
 }  // namespace tofsmith

@@ -73,7 +73,7 @@ std::vector<std::string> camera_keys() {
 
 std::string camera_keys_json() {
   Camera complete;
-  complete.operating = paper_operating_range();
+  complete.operating = default_operating_range();
   return keys_json(complete);
 }
 

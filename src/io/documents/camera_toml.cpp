@@ -61,7 +61,7 @@ Camera parse_camera_toml(std::string_view text, std::string_view source_name, Se
 
   Camera camera;
   camera.name = std::filesystem::path(source_name).stem().string();
-  camera.operating = paper_operating_range();
+  camera.operating = default_operating_range();
   TableReader::Places places;
   TableReader table(document, places);
   FieldReader reader(table);
