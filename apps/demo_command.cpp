@@ -39,9 +39,15 @@ struct DemoArguments {
   std::string output = "tofsmith-demo";
 };
 
-/// Light of the demo's captures: the middle ambient level of the paper's grid, three signals.
-const std::vector<NamedLight> lights = {
-    {"low", {3162.2776601683795, 1e4}}, {"medium", {1e4, 1e4}}, {"high", {1e5, 1e4}}};
+/// Light of the captures: the weakest, the middle and the strongest signal at which the camera is
+/// evaluated, with its middle ambient light.
+std::vector<NamedLight> lights_of(const Camera& camera) {
+  const OperatingPoint middle = camera.operating.middle();
+  const auto [weakest, strongest] = std::ranges::minmax(camera.operating.signal_e_per_s);
+  return {{"low", {weakest, middle.ambient_e_per_s}},
+          {"medium", middle},
+          {"high", {strongest, middle.ambient_e_per_s}}};
+}
 
 constexpr std::array depth_files = {"depth.npy", "depth.npz", "depth.exr", "depth.pfm",
                                     "depth.png"};
@@ -63,7 +69,7 @@ SceneResult capture_scene(LoadedScene loaded, std::uint64_t seed, const Camera& 
                           const DesignResult& result, const Progress& progress) {
   SceneResult scene{.name = loaded.name, .truth = std::move(loaded.image), .view = loaded.view};
   scene.reference_distance_m = median_depth_m(scene.truth);
-  capture_and_decode(scene, codes_for_scene(result), camera, lights, seed, FilterOptions{},
+  capture_and_decode(scene, codes_for_scene(result), camera, lights_of(camera), seed, FilterOptions{},
                      progress);
   return scene;
 }
@@ -72,7 +78,7 @@ SceneResult capture_scene(LoadedScene loaded, std::uint64_t seed, const Camera& 
 void write_products(const fs::path& directory, const SceneResult& scene, const Camera& camera,
                     const DesignResult& result, std::uint64_t seed, OutputPolicy policy) {
   const CodeSet& best = result.winner().code;
-  const NamedLight& light = lights.back();
+  const NamedLight light = lights_of(camera).back();
   const RawFrames raw = capture(scene.truth, best, camera,
                                 {.signal_e_per_s = light.point.signal_e_per_s,
                                  .ambient_e_per_s = light.point.ambient_e_per_s,

@@ -61,7 +61,7 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
 
 /// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.
 struct CameraArguments {
-  std::string name = "paper-10f0";
+  std::string name = std::string(default_camera_name);
   std::vector<std::string> settings;
   std::optional<double> temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it

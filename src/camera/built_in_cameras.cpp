@@ -40,6 +40,33 @@ Sources paper_sources() {
   return sources;
 }
 
+/// A camera of typical parts in a room: a laser diode of 1 W and two buckets, both with 100 MHz. The
+/// signals are those of white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from lamps to
+/// 5 klx of sunlight (`evaluate --distance D --klux L` computes both from the optics).
+Camera indoor_camera() {
+  Camera camera;
+  camera.fundamental_frequency_hz = 20e6;
+  camera.exposure_s.total_s = 10e-3;
+  camera.light.peak_factor = 4.0;
+  ImpulseResponse response;
+  response.kind = ImpulseResponse::Kind::lowpass;
+  response.cutoff_hz = 100e6;
+  camera.light.impulse_response = camera.sensor.impulse_response = response;
+  camera.sensor.taps = 2;
+  camera.sensor.full_well_e = 1e5;
+  camera.optics = Optics{.source_power_w = 1.0,
+                         .wavelength_m = 940e-9,
+                         .field_of_view_deg = {70.0, 55.0},
+                         .f_number = 1.2,
+                         .pixel_pitch_m = 10e-6,
+                         .quantum_efficiency = 0.3,
+                         .transmission = 0.85,
+                         .fill_factor = 0.9,
+                         .filter_width_m = 30e-9};
+  camera.operating = {.signal_e_per_s = {1e6, 3e6, 1e7}, .ambient_e_per_s = {1e5, 1e6, 1e7}};
+  return camera;
+}
+
 /// Three exclusive taps behind a clock of nine chips per period. Peak power is what is fixed: a
 /// source that may shine all the time (peak factor 1) makes S the rate at peak light.
 Camera three_tap_camera() {
@@ -52,8 +79,7 @@ Camera three_tap_camera() {
   camera.sensor.taps = 3;
   camera.sensor.shortest_pulse_s = chip_s;
   camera.operating = {.signal_e_per_s = {1.1e6, 1.7e7},
-                      .ambient_e_per_s = {0.0, 8e7},
-                      .error = DepthErrorKind::circular};
+                      .ambient_e_per_s = {0.0, 8e7}};
   return camera;
 }
 
@@ -70,8 +96,7 @@ Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   camera.sensor.readout = Readout::difference;
   camera.sensor.modulation_contrast = 0.7;
   camera.operating = {.signal_e_per_s = {1e5, 1e6, 1e7},
-                      .ambient_e_per_s = {1e5, 1e6},
-                      .error = DepthErrorKind::circular};
+                      .ambient_e_per_s = {1e5, 1e6}};
   return camera;
 }
 
@@ -86,6 +111,9 @@ std::vector<Entry> entries() {
       "Sell and O'Connor, IEEE Micro 34(2), 2014, by libfreenect2's issue 150: differential";
   constexpr const char* melexis = "Melexis MLX75027 datasheet, as in mlx75027_config's registers";
   return {
+      {{std::string(default_camera_name), "typical parts in a room: two buckets, 100 MHz",
+        "hamiltonian-k4", {}},
+       indoor_camera()},
       {{"paper-30x", "the paper's simulations, peak factor 30, no band limit", "hamiltonian-k4",
         paper_sources()},
        paper_camera(30.0, {})},

@@ -81,7 +81,7 @@ Answer command_answer(const Request& request) {
   std::string command;
   if (what == "camera") {
     const std::string name = camera_name(request);
-    command = "tofsmith cameras " + shell_word(name.empty() ? "paper-10f0" : name) +
+    command = "tofsmith cameras " + shell_word(name.empty() ? std::string(default_camera_name) : name) +
               settings_words(request);
   } else if (what == "codes") {
     command = "tofsmith codes " + first_code() + camera;

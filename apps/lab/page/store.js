@@ -4,7 +4,7 @@
 
 /** What a lab begins with. */
 export const firstState = () => ({
-  camera: {built_in: 'paper-10f0', changes: []},  // or {file: TOML text, file_name, changes}
+  camera: {built_in: 'indoor', changes: []},  // or {file: TOML text, file_name, changes}
   codes: [{name: 'hamiltonian-k4'}, {name: 'sinusoid-k4'}],  // or {file: JSON text, name}
   chosen: 0,
   trials: 20000,

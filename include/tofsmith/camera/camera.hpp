@@ -427,6 +427,9 @@ struct BuiltInCamera {
   std::string source_of(std::string_view key) const;
 };
 
+/// Built-in camera of commands that are given none.
+inline constexpr std::string_view default_camera_name = "indoor";
+
 /// All of them; built_in_camera() builds each. built_in_camera_toml() writes one with its sources.
 std::vector<BuiltInCamera> list_built_in_cameras();
 /// Their names.

@@ -82,7 +82,7 @@ enum class SweepCombination {
 struct SweepSpec {
   std::string source_name;          ///< what errors call it
   std::filesystem::path directory;  ///< where relative names of cameras and codes start
-  std::string camera = "paper-10f0";
+  std::string camera = std::string(default_camera_name);
   std::vector<std::string> settings;  ///< of the camera, as for load_camera()
   std::string code;                   ///< when there is no axis of that name
   EvaluateOptions options;
