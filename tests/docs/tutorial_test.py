@@ -15,8 +15,8 @@ import unittest
 
 TOOL = os.path.abspath(sys.argv.pop(1))
 DOCS = os.path.abspath(sys.argv.pop(1))
-MADE = ("designed/report.html", "raw.npy", "truth.npy", "depth.npz", "depth.png", "points.ply", "depth.pdf",
-        "waveforms.pdf")
+MADE = ("designed/report.html", "raw.npy", "truth.npy", "depth.npz", "depth.png", "points.ply",
+        "compared.png", "waveforms.pdf")
 OFFSET = re.compile(r"MHz: offset (\S+) ± (\S+) mm, contrast (\S+) ±")
 
 
@@ -26,8 +26,11 @@ def text_of(page):
 
 
 def blocks_of(page):
-    """(language, text) of every fenced block; `sh` is for the reader alone."""
-    return re.findall(r"^```(bash|toml|python)\n(.*?)^```$", text_of(page), re.M | re.S)
+    """(language, text) of every fenced block, without the results in `console`; `sh` is for the
+    reader alone."""
+    blocks = re.findall(r"^```(bash|console|toml|python)\n(.*?)^```$", text_of(page), re.M | re.S)
+    return [("bash", "".join(re.findall(r"^\$ ((?:.*\\\n)*.*\n)", text, re.M)))
+            if language == "console" else (language, text) for language, text in blocks]
 
 
 def errors_mm(text):
