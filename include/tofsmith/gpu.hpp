@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: averaging, filtering and decoding on OpenCL devices.
-/// Includes tofsmith/core.hpp.
+/// All of tofsmith::gpu: averaging, filtering and decoding on OpenCL devices. Includes
+/// tofsmith/core.hpp.
 
 #include <array>
 #include <cstdint>
@@ -18,42 +18,43 @@
 
 namespace tofsmith {
 
-/// What a device is.
 enum class DeviceKind { gpu, cpu, other };
 
-/// "gpu", "cpu", "other".
+/// Returns "gpu", "cpu" or "other".
 std::string_view name_of(DeviceKind kind);
 
-/// What OpenCL says of a device.
+/// Properties of a device, from OpenCL.
 struct DeviceInfo {
-  std::string name;      ///< as its driver gives it
-  std::string platform;  ///< whose driver that is
-  std::string version;   ///< of OpenCL, and of the driver
+  std::string name;      ///< from the driver
+  std::string platform;  ///< name of the OpenCL platform
+  std::string version;   ///< versions of OpenCL and of the driver
   DeviceKind kind = DeviceKind::other;
   std::uint64_t memory_bytes = 0;
-  bool has_doubles = false;           ///< arithmetic in double precision
-  bool divides_as_processor = false;  ///< quotients and roots rounded correctly
+  bool has_doubles = false;           ///< supports double precision
+  bool divides_as_processor = false;  ///< rounds quotients and square roots correctly
 };
 
-/// A processor that OpenCL knows, which may be this computer's own. Its drivers are loaded when
-/// devices are asked for, not before. Copies are the same device.
+/// An OpenCL device, which may be the CPU itself. Drivers are loaded on first use. Copies refer to
+/// the same device.
 class Device {
  public:
-  /// Of all platforms, in the order of their drivers; none where no driver is installed.
+  /// Returns the devices of all platforms in driver order; empty if no driver is installed.
   /// @throws IoError if this build has no OpenCL, or a driver fails
   static std::vector<Device> all();
-  /// Why all() may be empty, and what to do.
+  /// Explains why all() may be empty, and how to fix it.
   static std::string_view none_found();
-  /// @param name  "gpu": the first one of that kind; a number: of all(), from 0 on; else a part of
-  ///              the name of a device or its platform, in any case of letters
-  /// @throws IoError if this build has no OpenCL, or there is no such device, with those that are
+  /// Returns the device with a given name.
+  /// @param name  "gpu": the first GPU; a number: index in all(); else a part of the name of a
+  ///              device or platform, case-insensitive
+  /// @throws IoError if this build has no OpenCL, or no device matches (the message lists the
+  ///         devices)
   static Device named(std::string_view name);
-  /// The first GPU; none where there is none, or this build has no OpenCL.
+  /// Returns the first GPU, if there is one and this build has OpenCL.
   static std::optional<Device> first_gpu();
 
   const DeviceInfo& info() const;
 
-  struct State;  ///< of the backend
+  struct State;  ///< of the OpenCL implementation
   explicit Device(std::shared_ptr<State> state) : state_(std::move(state)) {}
   State& state() const { return *state_; }
 
@@ -61,14 +62,14 @@ class Device {
   std::shared_ptr<State> state_;
 };
 
-/// How a device is used.
+/// Options for computing on a device.
 struct DeviceOptions {
-  /// For the pixels under way and their planes [MB], > 0; larger frames go in parts. Where the
-  /// device has less, parts become smaller. Filters take as many rows as a result depends on, at
-  /// least.
+  /// Memory for pixels in flight and their planes [MB], > 0. Larger frames are processed in parts,
+  /// which shrink if the device has less memory. A filter needs at least the rows that one result
+  /// depends on.
   double memory_mb = 512.0;
-  /// Computes with doubles where the device has them: ambient light, from raw numbers with black
-  /// levels and gains, is then the same to the last bit.
+  /// Computes in double precision if the device supports it. Ambient light from raw numbers with
+  /// black levels and gains then has the same bits as on the CPU.
   bool use_doubles = true;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -80,20 +81,21 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
       Field("use_doubles", o.use_doubles, Help{"compute in double precision where possible"}));
 }
 
-/// Smallest frames with a spatial filter [pixels] that `auto` leaves to a GPU. Frames without one
-/// are decoded faster by the CPU than they are copied.
+/// Smallest frame with a spatial filter [pixels] that `auto` processes on a GPU. Without one,
+/// copying a frame takes longer than decoding it on the CPU.
 inline constexpr std::int64_t auto_min_pixels_to_filter = 75'000;
 
-/// Returns the backend for a device that a user names: "cpu"; "auto", the first GPU for frames with
-/// a spatial filter, but the CPU for small frames, for methods other than zncc, and where there is
-/// no GPU; else Device::named(). "auto" loads no driver before a frame needs the GPU. Averaged,
-/// filtered and decoded numbers are those of the CPU: the same bits where the device rounds
-/// quotients and roots correctly and has doubles.
+/// Returns the backend for a named device. Results equal the CPU's, bit for bit if the device
+/// rounds quotients and roots correctly and supports doubles.
 ///
-/// Devices average frames if they have doubles, and filter them in time unless the filter looks
-/// ahead; else the CPU does, and the device filters in space and decodes.
-/// @throws std::invalid_argument for options, or if a device is named and the method is not zncc;
-///         IoError if there is no such device, or it fails, with its compiler's messages
+/// A device averages frames only if it supports doubles, and filters them in time only without
+/// look-ahead. Otherwise the CPU does both, and the device runs the spatial filter and decodes.
+/// @param device  "cpu"; "auto": the first GPU for large frames with a spatial filter if the method
+///                is zncc, else the CPU (no driver is loaded before a frame needs the GPU); else a
+///                name for Device::named()
+/// @throws std::invalid_argument for invalid options, or if a device is named and the method is not
+///         zncc
+/// @throws IoError if there is no such device, or it fails (with its compiler's messages)
 std::unique_ptr<FrameBackend> frame_backend(std::string_view device,
                                             std::unique_ptr<const DepthDecoder> decoder,
                                             const DeviceOptions& options = {});

@@ -1,18 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Pixels to bins as src/decode/search does it, a work item each. Compiled behind decode_parameters.h
-// and numbers.cl and ahead of planes.cl, with what PixelStatus means and where the fields of records
-// stand.
-//
-// `match` finds the bins that single precision proves. Pixels that it leaves open go into a list,
-// and the host decodes them.
-#define NO_VALUE as_float(0x7fc00000)  // the not-a-number of the host
+// Finds the bins of pixels as src/decode/search, one work item each. Compiled after
+// decode_parameters.h and numbers.cl, before planes.cl. Pixels that single precision does not prove
+// are appended to a list and decoded on the host.
+#define NO_VALUE as_float(0x7fc00000)  // NaN with the same bits as on the host
 #define UNPROVEN (-2)
 #define BLOCK 16       // lanes of ArcTable
-#define HALF_BLOCK 8   // rows from one of its windows to the next
+#define HALF_BLOCK 8   // rows between the starts of consecutive windows
 #define TO_WHOLE 12582912.0f  // 1.5 * 2^23, as cell_place-inl.hpp
 
-// ---- The vector of a pixel, as tile_projection.cpp.
+// ---- Projection of a pixel, as tile_projection.cpp.
 
 float project(const struct ProjectionParameters* p, int number, Floats tables, const float* raw,
               float* q) {
@@ -31,7 +28,8 @@ float project(const struct ProjectionParameters* p, int number, Floats tables, c
   return error;
 }
 
-/// Reads the numbers of a pixel, and its vector. @return what that may be off by
+/// Reads and projects the numbers of a pixel.
+/// @return bound on the error of the projection
 float vector_of(const struct ProjectionParameters* p, const struct TileParameters* tile,
                 Floats tables, global const uchar* raw_numbers, int pixel, float* raw, float* q) {
   for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = raw_number(tile, raw_numbers, pixel, k);
@@ -44,7 +42,7 @@ float largest_of(const float* q) {
   return largest;
 }
 
-// ---- By arcs, as arc_search.cpp, but that all rows are looked at.
+// ---- Search by arcs, as arc_search.cpp, but over all rows.
 
 float score_of(const float* q, Floats block, int lane) {
   float score = block[lane];
@@ -58,7 +56,7 @@ int search_arcs(const struct MatchParameters* p, Floats tables, const float* q, 
   const float length = sqrt(square);
   if (!(error < 1e-5f * largest_of(q))) return UNPROVEN;
 
-  // The three best halves of blocks: a window has two, and the third bounds all others.
+  // Track the best three half blocks: a window consists of two, and the third bounds all others.
   float best[3] = {-INFINITY, -INFINITY, -INFINITY};
   int half_of[3] = {-1, -1, -1};
   int row = 0;
@@ -104,7 +102,7 @@ int search_arcs(const struct MatchParameters* p, Floats tables, const float* q, 
   return ints_at(tables, p->bins_of_rows)[window * HALF_BLOCK + found];
 }
 
-// ---- By angle, as circle_search.cpp.
+// ---- Search by angle, as circle_search.cpp.
 
 #if RANK == 2
 int search_circle(const struct MatchParameters* p, Floats tables, const float* q, float error) {
@@ -123,11 +121,11 @@ int search_circle(const struct MatchParameters* p, Floats tables, const float* q
 }
 #endif
 
-// ---- By cells, as cell_place-inl.hpp and cell_search.cpp.
+// ---- Search by cells, as cell_place-inl.hpp and cell_search.cpp.
 
 #if RANK == 3 || RANK == 4
 #define SIDES (RANK - 1)
-#define ROW 4  // floats of a step or a direction
+#define ROW 4  // floats per step or direction
 
 float low_number(int word) { return (float)(word << 16 >> 16); }
 float high_number(int word) { return (float)(word >> 16); }
@@ -138,7 +136,8 @@ float along(const float* q, Floats row) {
   return sum;
 }
 
-/// The winner of a run, all counted twice around, by the signs beside it.
+/// Returns the index of the best bin of a run, decided by the signs of neighbouring score
+/// differences; UNPROVEN if a sign is not certain. Indices run to 2 N to avoid wrap-around.
 int settle(const struct MatchParameters* p, Floats tables, const float* q, float margin, int first,
            int last, int at) {
   for (bool is_guess = true;; is_guess = false) {
@@ -165,7 +164,7 @@ int settle(const struct MatchParameters* p, Floats tables, const float* q, float
   }
 }
 
-/// The best of the runs of a list.
+/// Returns the best bin of all runs of a list.
 int search_list(const struct MatchParameters* p, Floats tables, const float* q, float margin,
                 Ints cell, const float* place) {
   Ints run = ints_at(tables, p->lists) + 4 * cell[1];
@@ -246,13 +245,13 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
     x = high_number(record[2]) * place[2] + x;
     const float slack = high_number(record[3]);
 #else
-    const float slack = high_number(record[2]);  // in place of the fourth fit
+    const float slack = high_number(record[2]);  // replaces the fourth fit
 #endif
     x *= p->fit_unit;
     const int length = record[0] >> 16, first = record[0] & 0xffff;
     const float after = clamp(rint(x), 0.0f, (float)length);
     at = first + (int)after;
-    // x must be further from the borders of its direction than it may be off.
+    // The distance of x from the borders of its direction must exceed its error bound.
     const float rounding = slack * p->slack_unit + p->steepest_fit * slip;
     const float beside = x - after;
     const float above = (int)after == length ? 1e30f : 0.5f - beside;
@@ -268,7 +267,7 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
 
 // ---- From pixels to bins, as BinMatcher and ChordMatcher.
 
-/// @param open    pixels that the host decodes, one after another, `opened` of them
+/// @param open    list of the `opened` pixels that the host decodes
 kernel void match(const struct MatchParameters p, const struct TileParameters tile, Floats tables,
                   global const uchar* raw_numbers, global int* bins, global int* opened,
                   global int* open) {

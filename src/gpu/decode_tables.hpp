@@ -12,20 +12,19 @@
 
 namespace tofsmith {
 
-/// decode_parameters.h, numbers.cl, bins.cl and planes.cl, one behind the other.
+/// Concatenation of decode_parameters.h, numbers.cl, bins.cl and planes.cl.
 extern const std::string_view decode_kernels;
 
-/// All that a decoder decides by, as a device reads it.
+/// Tables and parameters of a decoder for kernels.
 struct DecodeTables {
-  /// @param has_doubles  whether the device computes with them
   DecodeTables(const Decoder& decoder, bool has_doubles);
 
-  MatchParameters points;  ///< beside which the planes' best points on the chords lie
-  MatchParameters bins;    ///< of a coarse table; else as `points`
+  MatchParameters points;  ///< finds the bins next to the best points on the chords
+  MatchParameters bins;    ///< finds the best bins of a coarse table, else same as `points`
   bool is_coarse = false;
   OutputParameters outputs;
-  std::vector<std::uint32_t> words;  ///< where the tables stand
-  std::string options;               ///< that the kernels are compiled with
+  std::vector<std::uint32_t> words;  ///< contents of all tables
+  std::string options;               ///< compiler options of the kernels
 };
 
 }  // namespace tofsmith

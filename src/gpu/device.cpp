@@ -19,7 +19,7 @@ std::string in_small_letters(std::string_view text) {
   return small;
 }
 
-/// "0 NAME (cpu), 1 ..", or that there are none.
+/// Lists devices as "0 NAME (cpu), 1 ...", or explains why there are none.
 std::string list_of(const std::vector<Device>& devices) {
   if (devices.empty()) return std::string(Device::none_found());
   std::string list = "expected one of";
@@ -77,7 +77,7 @@ std::optional<Device> Device::first_gpu() {
       if (device.info().kind == DeviceKind::gpu) return device;
     return std::nullopt;
   } catch (const IoError&) {
-    return std::nullopt;  // no OpenCL, or drivers that fail
+    return std::nullopt;  // no OpenCL, or a driver failed
   }
 }
 

@@ -14,8 +14,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Averages and filters in time on the device if it can, else on the CPU; filters in space and
-/// decodes on the device.
+/// Averages and filters in time on the device if possible, else on the CPU. The spatial filter and
+/// the decoder run on the device.
 class DevicePipeline final : public FramePipeline {
  public:
   DevicePipeline(const DeviceDecoder& decoder, const DeviceOptions& options,
@@ -98,7 +98,7 @@ class DevicePipeline final : public FramePipeline {
 
   const DeviceDecoder& decoder_;
   std::optional<DeviceFilter> filter_;
-  std::optional<TimeFilter> time_filter_;  // whose options the device uses
+  std::optional<TimeFilter> time_filter_;  // provides the options
   std::optional<DeviceFrames> on_device_;  // averages and filters in time, unless on_cpu_ does
   std::optional<FrameAccumulator> on_cpu_;
   std::optional<RawView> ready_;  // from on_cpu_
@@ -123,7 +123,7 @@ class DeviceBackend final : public FrameBackend {
   }
 
  private:
-  std::unique_ptr<FrameBackend> cpu_;  // has the decoder
+  std::unique_ptr<FrameBackend> cpu_;  // owns the decoder
   DeviceOptions options_;
   DeviceDecoder on_device_;
 };
@@ -138,7 +138,6 @@ class AutomaticBackend final : public FrameBackend {
         options_(options) {}
 
   const DepthDecoder& decoder() const override { return cpu_->decoder(); }
-  /// "cpu" until a frame needs the device.
   std::string device() const override {
     const std::lock_guard lock(mutex_);
     return on_device_ ? on_device_->device().info().name : cpu_->device();
@@ -167,7 +166,7 @@ class AutomaticBackend final : public FrameBackend {
   DeviceOptions options_;
   mutable std::mutex mutex_;
   mutable bool has_looked_ = false;
-  mutable std::optional<DeviceDecoder> on_device_;  // is not changed once it is there
+  mutable std::optional<DeviceDecoder> on_device_;  // never changes once set
 };
 
 }  // namespace

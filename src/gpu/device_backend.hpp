@@ -10,12 +10,13 @@
 
 namespace tofsmith {
 
-/// Returns the device that `auto` uses; none: there is none.
+/// Returns the device that `auto` uses, or nothing.
 using DeviceFinder = std::function<std::optional<Device>()>;
 
-/// Returns the backend of the device `auto`: the CPU for frames without a spatial filter or below
-/// auto_min_pixels_to_filter, else the device, which is looked for when the first such frame comes.
-/// @param decoder  of DecodeMethod::zncc
+/// Returns the backend for `auto`: the CPU for frames without a spatial filter or below
+/// auto_min_pixels_to_filter, else the device, which is looked up when the first such frame
+/// arrives.
+/// @param decoder  must use DecodeMethod::zncc
 std::unique_ptr<FrameBackend> automatic_backend(DeviceFinder find_device,
                                                 std::unique_ptr<const DepthDecoder> decoder,
                                                 const DeviceOptions& options);

@@ -10,18 +10,15 @@ namespace tofsmith {
 
 struct FrameSource;
 
-/// A Decoder whose work a device does. Bins and statuses are those of the Decoder, everywhere: what
-/// single precision does not prove on the device, the Decoder decides here. Planes of floats are
-/// the same bits where the device rounds quotients and roots correctly and has doubles, else they
-/// differ in the last ones.
+/// A Decoder on a device. Pixels that single precision does not prove are decoded on the CPU, so
+/// bins and statuses always equal the CPU's; for float planes see frame_backend().
 ///
-/// Safe to use from many threads, which wait for one another.
+/// Thread-safe; concurrent calls are serialized.
 class DeviceDecoder {
  public:
-  /// Compiles kernels for the table and brings its tables to the device.
-  /// @param decoder  must outlive this one
-  /// @throws std::invalid_argument for options; IoError if the device fails, with what its compiler
-  ///         says of kernels
+  /// Compiles the kernels and uploads the tables.
+  /// @param decoder  must outlive this object
+  /// @throws std::invalid_argument for invalid options; IoError if the device fails
   DeviceDecoder(const Device& device, const Decoder& decoder, const DeviceOptions& options = {});
   DeviceDecoder(const Device& device, Decoder&& decoder,
                 const DeviceOptions& options = {}) = delete;
@@ -32,16 +29,15 @@ class DeviceDecoder {
   const Device& device() const;
 
   /// Decodes one frame into the caller's planes, as Decoder::decode.
-  /// @return how many pixels were left to the Decoder
-  /// @throws std::invalid_argument if the shape does not fit; IoError if the device fails, with
-  /// part
-  ///         of the planes written; Interrupted if progress says so
+  /// @return number of pixels that the CPU decoded
+  /// @throws std::invalid_argument if the shape does not fit; IoError if the device fails;
+  ///         Interrupted if `progress` cancels. The last two may leave planes partly written.
   std::int64_t decode(const RawView& raw, const DecodedView& decoded,
                       const Progress& progress = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K), into a new image.
+  /// As above for frame `frame` of `raw` (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  struct Plan;  ///< of the implementation
+  struct Plan;
 
  private:
   friend class DeviceFilter;

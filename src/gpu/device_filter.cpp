@@ -13,10 +13,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Rows of a frame that come out at a time, at least; with those that they depend on.
+/// Smallest number of output rows per band.
 constexpr int min_band_rows = 16;
 
-/// Numbers of rows that a device wrote, to where they belong in a filtered frame.
+/// Copies rows from the device into a filtered frame.
 class FilteredRows {
  public:
   FilteredRows(const Filter::Plan& plan, const RawView& raw, FilteredFrame& frame)
@@ -53,7 +53,7 @@ struct DeviceFilter::Plan {
         options(options_),
         frame(device, plan_of(filter), options.use_doubles) {}
 
-  /// Rows that come out at a time so that all fits into the memory there is to be.
+  /// Returns the number of output rows per band that fits into the memory budget.
   int rows_at_a_time(const RawView& raw) const;
   std::int64_t run(const FrameSource& source, DeviceDecoder::Plan* after,
                    const DecodedView& decoded, FilteredFrame* filtered, const Progress& progress,
@@ -65,7 +65,7 @@ struct DeviceFilter::Plan {
   Device device;
   const Filter& filter;
   DeviceOptions options;
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // guards the members below
   DeviceFrame frame;
   DeviceRaw result;
   double memory_share = 1.0;
@@ -80,7 +80,7 @@ int DeviceFilter::Plan::rows_at_a_time(const RawView& raw) const {
   return static_cast<int>(std::clamp(rows, double{min_band_rows}, double(raw.height)));
 }
 
-/// Filters the rows with those that they depend on, which have been filtered or will be.
+/// Filters rows together with the rows that they depend on.
 std::int64_t DeviceFilter::Plan::run_band(const FrameSource& source, IndexRange rows,
                                           DeviceDecoder::Plan* after, const DecodedView& decoded,
                                           FilteredRows* filtered, const Progress& progress,

@@ -8,18 +8,16 @@
 
 namespace tofsmith {
 
-/// A Filter whose work a device does, and a decoder's after it, with frames that stay there between
-/// the two. Numbers are those of the Filter: the same bits where the device rounds quotients and
-/// roots correctly and has doubles, else they differ in the last ones, and where a threshold lies
-/// between, by more.
+/// A Filter on a device, optionally followed by a decoder on the same device without a copy in
+/// between. For the equality of results see frame_backend(). Where rounding differs, values near a
+/// threshold may change by more than the last bits.
 ///
-/// Safe to use from many threads, which wait for one another.
+/// Thread-safe; concurrent calls are serialized.
 class DeviceFilter {
  public:
-  /// Compiles kernels for the table and brings its tables to the device.
-  /// @param filter  must outlive this one
-  /// @throws std::invalid_argument for options; IoError if the device fails, with what its compiler
-  ///         says of kernels
+  /// Compiles the kernels and uploads the tables.
+  /// @param filter  must outlive this object
+  /// @throws std::invalid_argument for invalid options; IoError if the device fails
   DeviceFilter(const Device& device, const Filter& filter, const DeviceOptions& options = {});
   DeviceFilter(const Device& device, Filter&& filter, const DeviceOptions& options = {}) = delete;
   ~DeviceFilter();
@@ -30,18 +28,17 @@ class DeviceFilter {
 
   /// Filters one frame, as Filter::apply.
   /// @throws std::invalid_argument if the measurements or sizes differ; IoError if the device
-  /// fails;
-  ///         Interrupted if progress says so
+  ///         fails; Interrupted if `progress` cancels
   void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
              const Image<std::uint8_t>& left_out = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K).
+  /// As above for frame `frame` of `raw` (F, H, W, K).
   FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  /// Filters one frame and has it decoded on the device, into the caller's planes.
+  /// Filters one frame and decodes it on the device, into the caller's planes.
   /// @param decoder   on the same device
-  /// @param filtered  brought back as well; null: not wanted
-  /// @return how many pixels were left to the Decoder
-  /// @throws as apply() and DeviceDecoder::decode, with part of the planes written
+  /// @param filtered  receives the filtered frame unless null
+  /// @return number of pixels that the CPU decoded
+  /// @throws as apply() and DeviceDecoder::decode; parts of the planes may have been written
   std::int64_t decode(const RawView& raw, const DeviceDecoder& decoder, const DecodedView& decoded,
                       FilteredFrame* filtered = nullptr, const Progress& progress = {},
                       const Image<std::uint8_t>& left_out = {}) const;

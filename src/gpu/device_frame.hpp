@@ -11,27 +11,26 @@
 
 namespace tofsmith {
 
-/// Rows of a frame on a device, and the steps of a Filter over them, as Filter::Plan has them. Its
-/// memory there grows with the largest.
+/// Rows of a frame on a device, and the steps of Filter::Plan for them.
 class DeviceFrame {
  public:
-  /// Called after each step, of as many as a Filter has.
+  /// Called after each of the steps of a Filter.
   using StepDone = std::function<void()>;
 
-  /// @param plan  must outlive this
+  /// @param plan  must outlive this object
   DeviceFrame(const Device& device, const Filter::Plan& plan, bool use_doubles);
 
-  /// Rows above and below one that its numbers depend on, at most.
+  /// Upper limit on the rows above and below that a result depends on.
   static int reach(const FilterOptions& options);
-  /// Of so many rows, at most, with those of a decoder that follows.
+  /// Upper limit on the device memory for some rows, including the following decoder.
   std::int64_t bytes(int rows, int width) const;
 
-  /// Filters rows of a frame as if there were no others. Step by step, it does not wait for the
-  /// device, except for depths that need double precision.
-  /// @param left_out  (H, W) of the whole frame, or null
+  /// Filters rows of a frame as if they were the whole frame. Waits for the device only where
+  /// depths need double precision.
+  /// @param left_out  mask of excluded pixels (H, W) of the whole frame, or null
   void filter(const FrameSource& frame, int first_row, int rows, const std::uint8_t* left_out,
               const StepDone& step_done);
-  /// Writes filtered numbers of some of the rows, counted from the first of them.
+  /// Writes the filtered numbers of some rows, counted from the first filtered row.
   void write(int first_row, int rows, const DeviceRaw& to) const;
   void release();
 
@@ -58,16 +57,16 @@ class DeviceFrame {
 
   const Filter::Plan& plan_;
   FilterTables tables_;
-  DeviceTile tile_;  // that depths are found in
+  DeviceTile tile_;  // decodes the depths that guide slopes
   DeviceKernel read_light_, find_hidden_noise_, find_energy_, weigh_similar_, add_similar_,
       write_raw_, take_depth_, find_slopes_, split_, add_along_slopes_, compare_sums_, keep_near_,
       keep_bright_, find_own_light_, leave_dark_, add_slope_noise_, write_filtered_;
   FilterParameters parameters_;
   DeviceMemory words_, planes_, weights_, left_out_;
   bool has_left_out_ = false;
-  bool has_margins_ = false;  // of the size of the parameters, all 0
+  bool has_margins_ = false;  // planes have the size in parameters_, with margins of 0
   DeviceRaw raw_;
-  int result_ = 0;  // the set of light that is filtered; the other has it as measured
+  int result_ = 0;  // index of the filtered light set; the other set holds the measured light
 };
 
 }  // namespace tofsmith

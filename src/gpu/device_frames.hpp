@@ -8,57 +8,54 @@
 
 namespace tofsmith {
 
-/// Means of frames, and frames added up in time as a TimeFilter does, on a device, where they stay
-/// for the filter in space and the decoder. Numbers are those of the processor: the same bits where
-/// the device rounds quotients and roots correctly, else they differ in the last ones, and where a
-/// threshold lies between, by more.
+/// Averages frames and filters them in time (as TimeFilter) on a device, where they stay for the
+/// spatial filter and the decoder. For the equality of results see DeviceFilter.
 ///
-/// Keeps what was added up whole, whatever DeviceOptions::memory_mb says.
-/// Not for several threads at once.
+/// The accumulated frame stays on the device in full, regardless of DeviceOptions::memory_mb. Not
+/// thread-safe.
 class DeviceFrames {
  public:
-  /// Compiles kernels for the table.
-  /// @param table        must outlive this one; says from where on raw numbers are clipped
-  /// @param time_filter  without look_ahead; must outlive this; null: means only
-  /// @throws std::invalid_argument for options, and a filter of other measurements or that looks
-  ///         ahead; IoError if the device fails
+  /// Compiles the kernels.
+  /// @param table        provides the saturation levels; must outlive this object
+  /// @param time_filter  without look_ahead; must outlive this object; null: means only
+  /// @throws std::invalid_argument for invalid options, or a filter that has look_ahead or a
+  ///         different number of measurements; IoError if the device fails
   DeviceFrames(const Device& device, const DecodingTable& table, const TimeFilter* time_filter,
                const DeviceOptions& options = {});
   ~DeviceFrames();
   DeviceFrames(DeviceFrames&&) noexcept;
   DeviceFrames& operator=(DeviceFrames&&) noexcept;
 
-  /// Adds a frame to those of which the next mean is. What is invalid or saturated in one is so in
-  /// the mean.
+  /// Adds a frame to the next mean. A number that is invalid or saturated in one frame is so in the
+  /// mean.
   /// @throws std::invalid_argument if the measurements or sizes differ, or the device has no
-  ///         doubles; IoError if the device fails, after which the next frame is the first
+  ///         doubles; IoError if the device fails, which also drops the accumulated frames
   void add(const RawView& raw);
-  /// Number of frames added to the next mean.
   int frames_of_mean() const;
-  /// The mean of those is the next frame.
-  /// @param averaged  of how many measurements the numbers of one are the mean
-  /// @throws as add(); std::invalid_argument if there are none
+  /// Makes the mean of the added frames the current frame.
+  /// @param averaged  number of measurements already averaged in each added frame
+  /// @throws as add(); std::invalid_argument if no frame was added
   void take_mean(double averaged = 1.0);
-  /// The next frame, without a mean, of a time filter. @throws as add()
+  /// Filters a frame in time and makes the result the current frame, without a mean.
+  /// @throws as add()
   void take(const RawView& raw);
-  /// The next frame is the first again, of any size.
+  /// Starts a new sequence; the next frame may have any size.
   void forget();
 
-  /// Whether there is a frame to decode.
   bool has_frame() const;
-  /// Brings the frame back, until the next one: what TimeFilter::add() gives, or the mean in
-  /// doubles.
-  /// @throws std::invalid_argument if there is none; IoError if the device fails
+  /// Downloads the current frame: the result of TimeFilter::add(), or the mean in doubles. Valid
+  /// until the next frame.
+  /// @throws std::invalid_argument if there is no frame; IoError if the device fails
   RawView numbers();
-  /// Decodes the frame, as DeviceDecoder::decode.
+  /// Decodes the current frame, as DeviceDecoder::decode.
   /// @param decoder  on the same device
-  /// @return how many pixels were left to the Decoder
+  /// @return number of pixels that the CPU decoded
   std::int64_t decode(const DeviceDecoder& decoder, const DecodedView& decoded,
                       const Progress& progress = {});
-  /// Filters the frame, as DeviceFilter::decode, and decodes it.
+  /// Filters the current frame as DeviceFilter::decode, and decodes it.
   /// @param filter   on the same device
-  /// @param decoder  likewise
-  /// @return how many pixels were left to the Decoder
+  /// @param decoder  on the same device
+  /// @return number of pixels that the CPU decoded
   std::int64_t decode(const DeviceFilter& filter, const DeviceDecoder& decoder,
                       const DecodedView& decoded, FilteredFrame* filtered = nullptr,
                       const Progress& progress = {}, const Image<std::uint8_t>& left_out = {});

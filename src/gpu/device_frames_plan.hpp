@@ -12,31 +12,29 @@
 
 namespace tofsmith {
 
-/// What DeviceFrames have.
 struct DeviceFrames::Plan {
   Plan(const Device& device_, const DecodingTable& table_, const TimeFilter* time_filter,
        const DeviceOptions& options_);
 
-  /// A frame comes, of the size of those before; the one that is there is no more.
+  /// Checks the size of a new frame and drops the current one.
   void begin_frame(const RawView& raw, bool is_first);
-  /// Does steps on the device. What fails half-way is forgotten.
+  /// Runs steps on the device; drops all accumulated frames if they fail half-way.
   template <typename Steps>
   auto on_device(const Steps& steps);
   void forget();
-  /// The frame that is there now.
   FrameSource source();
-  /// It brought back.
+  /// Downloads the current frame.
   RawView numbers_here();
 
   Device device;
   const DecodingTable& table;
   DeviceOptions options;
-  std::optional<DeviceMeans> means;  // once there are any
+  std::optional<DeviceMeans> means;  // created with the first mean
   std::optional<DeviceTimeFilter> filter;
-  RawView size;          // of the frames, no more
+  RawView size;          // only the shape of the frames
   int frames_added = 0;  // to the next mean
   bool has_frame = false;
-  std::vector<float> numbers, averaged;  // that were brought back
+  std::vector<float> numbers, averaged;  // downloaded
   std::vector<double> exact_numbers;
 };
 
@@ -45,9 +43,9 @@ auto DeviceFrames::Plan::on_device(const Steps& steps) {
   try {
     return steps();
   } catch (const InvalidArgument&) {
-    throw;  // nothing was begun
+    throw;  // nothing was started
   } catch (const Interrupted&) {
-    throw;  // what was added up is as it was
+    throw;  // accumulated frames are unchanged
   } catch (...) {
     forget();
     throw;

@@ -10,29 +10,28 @@
 
 namespace tofsmith {
 
-/// decode_parameters.h, numbers.cl and means.cl, one behind the other.
+/// Concatenation of decode_parameters.h, numbers.cl and means.cl.
 extern const std::string_view mean_kernels;
 
-/// Means of frames on a device that has doubles, to the last bit those of this computer. Its memory
-/// there grows with the largest frame.
+/// Means of frames on a device with doubles, with the same bits as on the CPU.
 class DeviceMeans {
  public:
   /// @param levels  numbers that are clipped in one frame are clipped in the mean
   DeviceMeans(const Device& device, const SaturationLevels& levels);
 
-  /// Adds a frame of the size of the others. It has been copied when this returns.
+  /// Adds a frame of the same size as the others; `raw` is not accessed after the call.
   void add(const RawView& raw);
-  /// Starts to make the mean of the frames added since the last one.
-  /// @param averaged  of how many measurements the numbers of one are the mean
+  /// Starts to compute the mean of the frames added since the last one.
+  /// @param averaged  number of measurements already averaged in each added frame
   void finish(double averaged);
-  /// The next frame is the first.
+  /// Drops the added frames.
   void forget() { frames_ = 0; }
 
-  /// The mean, rounded to floats.
+  /// Mean, rounded to floats.
   const DeviceRaw& result() const { return result_; }
-  /// The mean at some pixels, K each, not rounded. @param pixels  of the frame
+  /// Mean at some pixels of the frame (K numbers each), not rounded.
   std::vector<double> numbers_of(const std::vector<std::int32_t>& pixels);
-  /// The same of all, one measurement after another.
+  /// Mean at all pixels, measurement by measurement, not rounded.
   std::vector<double> numbers() const;
   const DeviceQueue& queue() const { return queue_; }
 
@@ -40,7 +39,6 @@ class DeviceMeans {
   DeviceQueue queue_;
   DeviceKernel add_to_sums_, write_means_, gather_means_;
   SaturationLevels levels_;
-  /// What a mean is made of.
   struct Sums {
     std::int32_t pixels = 0, frames = 0;
     DeviceMemory memory;

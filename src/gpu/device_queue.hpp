@@ -15,25 +15,24 @@
 
 namespace tofsmith {
 
-/// Less memory on a device than was asked for; smaller parts may do.
+/// The device has less memory than requested; smaller parts may fit.
 class OutOfDeviceMemory : public IoError {
  public:
   using IoError::IoError;
 };
 
-/// What a backend made, given back with this.
+/// An object of the OpenCL implementation, released by the destructor.
 using DeviceHandle = std::unique_ptr<void, void (*)(void*)>;
 inline DeviceHandle no_handle() {
   return {nullptr, [](void*) {}};
 }
 
-/// Memory of a device, freed with this; at first none.
+/// Device memory, freed by the destructor; initially none.
 struct DeviceMemory {
   DeviceHandle handle = no_handle();
   std::size_t bytes = 0;
 };
 
-/// A function that a device runs for many items.
 struct DeviceKernel {
   DeviceHandle handle = no_handle();
 };
@@ -43,47 +42,48 @@ struct DeviceMark {
   DeviceHandle handle = no_handle();
 };
 
-/// What a backend does: work of a device, one piece after another. Every call throws IoError if the
-/// device fails, OutOfDeviceMemory where it is for that.
+/// An in-order queue of work for a device. Every call throws IoError if the device fails,
+/// OutOfDeviceMemory if memory is the cause.
 class DeviceQueue {
  public:
-  /// Columns and rows of items.
+  /// Columns and rows of work items.
   using Extent = std::array<std::size_t, 2>;
-  /// Items of a kernel that run together; kernels are started for whole groups.
+  /// Work items per group; the number of items is rounded up to whole groups.
   static constexpr std::size_t group_items = 64;
 
   explicit DeviceQueue(const Device& device);
 
   DeviceMemory allocate(std::size_t bytes) const;
   void upload(const void* from, std::size_t bytes, const DeviceMemory& to) const;
-  /// @param bytes  of the first of `from`
+  /// @param bytes  number of bytes to copy from the start of `from`
   void download(const DeviceMemory& from, std::size_t bytes, void* to) const;
-  /// @param first  byte of `from`, which goes to `first_there`
+  /// @param first  offset in `from` [bytes]; `first_there`: offset in `to`
   void copy(const DeviceMemory& from, std::size_t first, const DeviceMemory& to,
             std::size_t first_there, std::size_t bytes) const;
-  /// Zeroes all of it.
+  /// Fills the memory with zeros.
   void clear(const DeviceMemory& memory) const;
-  /// Compiled once for a device and these options.
+  /// Returns a kernel; a program is compiled once per device and options.
   DeviceKernel kernel(std::string_view source, const std::string& options, const char* name) const;
-  /// Runs a kernel for items 0, 1, .. of whole groups.
-  /// @param arguments  numbers and structs by value; memory, or null where it may be, by pointer
+  /// Runs a kernel for `items` work items, rounded up to whole groups.
+  /// @param arguments  numbers and structs by value; memory by pointer, null if the kernel allows
+  ///                   it
   template <typename... Arguments>
   void run(const DeviceKernel& kernel, std::int64_t items, const Arguments&... arguments) const {
     set_all(kernel, arguments...);
     start(kernel, {static_cast<std::size_t>(items), 1}, {group_items, 1});
   }
-  /// The same for the pixels of a picture, column and row of each, in whole tiles of `group`.
+  /// As above for the columns and rows of an image, rounded up to whole tiles of `group`.
   template <typename... Arguments>
   void run(const DeviceKernel& kernel, const Extent& pixels, const Extent& group,
            const Arguments&... arguments) const {
     set_all(kernel, arguments...);
     start(kernel, pixels, group);
   }
-  /// The work given so far, which the device begins with.
+  /// Submits the enqueued work and returns a mark after it.
   DeviceMark mark() const;
-  /// What comes next begins once that work, of another queue, is done. Nobody waits here.
+  /// Makes later work wait for a mark of another queue. Does not block the host.
   void follow(const DeviceMark& mark) const;
-  /// Has the device begin with what it was given.
+  /// Submits the enqueued work to the device.
   void flush() const;
   /// Waits until all work is done.
   void finish() const;

@@ -11,7 +11,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Numbers of pixels first .. first + count - 1 side by side, doubles as floats unless exactly.
+/// Returns the numbers of pixels [first, first + count) without gaps; doubles become floats unless
+/// `exactly`.
 template <bool exactly, typename Number>
 auto packed(const RawView& raw, std::int64_t first, std::int64_t count) {
   using Packed = std::conditional_t<std::is_same_v<Number, double> && !exactly, float, Number>;
@@ -42,7 +43,7 @@ constexpr RawNumber raw_number_of() {
 
 DeviceMemory* reserve(const DeviceQueue& queue, DeviceMemory& memory, std::int64_t bytes) {
   if (memory.bytes < static_cast<std::size_t>(bytes)) {
-    memory = DeviceMemory();  // the smaller one goes first
+    memory = DeviceMemory();  // free the old memory first
     memory = queue.allocate(static_cast<std::size_t>(bytes));
   }
   return &memory;

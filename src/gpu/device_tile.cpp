@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// True if the kernel write_planes fills the plane; bins come from the kernel match.
+/// Returns true if the kernel write_planes fills the plane; bins come from the kernel match.
 constexpr bool is_written(const PlaneDescription& described) {
   return described.is_of_every_decoder() && described.plane != DecodedPlane::bin;
 }
@@ -60,7 +60,7 @@ DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_do
 }
 
 std::int64_t DeviceTile::bytes_per_pixel() const {
-  constexpr std::int64_t words = 4;  // averaged, bins, open ones
+  constexpr std::int64_t words = 4;  // averaged, bins, and two entries of the list of open pixels
   return 4 * (outputs_.records().layout.measurements + words + std::ssize(written_planes));
 }
 
@@ -102,7 +102,7 @@ void DeviceTile::decode(const DecodedView& wanted) {
       written_planes);
 }
 
-/// Null for a plane that is not wanted.
+/// Returns null for a plane that is not requested.
 const DeviceMemory* DeviceTile::room_for(DecodedPlane plane, const DecodedView& wanted) {
   const std::size_t bytes = with_plane(
       plane, [](const auto* values) { return values ? sizeof(*values) : 0; }, wanted);

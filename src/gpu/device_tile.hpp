@@ -12,11 +12,11 @@
 
 namespace tofsmith {
 
-/// Numbers of pixels that a device leaves open: K, and of how many measurements they are the mean.
+/// Raw numbers of the pixels that a device leaves open: K each, with the number averaged.
 class OpenNumbers {
  public:
   OpenNumbers(std::vector<float> numbers, int measurements, const NoiseRatios& noise);
-  /// A frame of one row.
+  /// As a frame of one row.
   RawView view() const;
 
  private:
@@ -25,36 +25,34 @@ class OpenNumbers {
   std::vector<float> numbers_, averaged_;
 };
 
-/// A tile of pixels on a device: brought there or made there, decoded there, and fetched. Its
-/// memory there grows with the largest tile.
+/// Pixels on a device: uploaded or written there, decoded, and downloaded.
 class DeviceTile {
  public:
-  /// @param decoder  must outlive this
+  /// @param decoder  must outlive this object
   DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles);
 
-  /// Of a pixel with all of its planes, at most.
+  /// Upper limit, with all planes.
   std::int64_t bytes_per_pixel() const;
 
-  /// Brings pixels first .. first + count - 1 of a frame, row by row.
+  /// Copies pixels [first, first + count) of a frame to the tile, row by row.
   void bring(const FrameSource& frame, std::int64_t first, std::int64_t count) {
     frame.bring(queue_, raw_, first, count);
   }
-  /// Makes room for so many pixels whose numbers, and of how many they are the mean, a kernel
-  /// writes: DeviceRaw::reserve_planes().
+  /// Reserves memory for pixels that a kernel writes, see DeviceRaw::reserve_planes().
   const DeviceRaw& reserve_planes(std::int64_t pixels, const NoiseRatios& noise = {});
-  /// Starts to decode them into planes of the device.
-  /// @param wanted  those that are not null
+  /// Starts to decode the pixels into planes on the device.
+  /// @param wanted  planes that are null are not computed
   void decode(const DecodedView& wanted);
-  /// Fetches the planes that `decode` was asked for.
-  /// @param to  where the tile's first pixel belongs
+  /// Downloads the decoded planes.
+  /// @param to  starts at the tile's first pixel
   void fetch(const DecodedView& to) const;
-  /// Frees its memory there, but for the decoder's tables.
+  /// Frees device memory except for the decoder's tables.
   void release();
-  /// Pixels of the tile that the decoder has to decode; one may be named twice.
+  /// Pixels of the tile that the CPU must decode; may contain duplicates.
   std::vector<std::int32_t> open_pixels() const;
-  /// What OpenNumbers takes of those.
+  /// Raw numbers of open pixels, for OpenNumbers.
   std::vector<float> numbers_of(const std::vector<std::int32_t>& open);
-  /// Puts what the decoder says of those into the planes of depth and deviation.
+  /// Writes depths and deviations decoded by the CPU into the planes on the device.
   void put_depth(const std::vector<std::int32_t>& open, const std::vector<float>& depth_m,
                  const std::vector<float>& deviation_m);
 
@@ -81,10 +79,10 @@ class DeviceTile {
   DecodeTables tables_;
   DeviceQueue queue_;
   DeviceKernel match_, write_, gather_, scatter_;
-  DeviceMemory words_;  // of the tables
+  DeviceMemory words_;  // contents of the tables
   DeviceRaw raw_;
   DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
-  std::array<DeviceMemory, plane_descriptions.size()> planes_;  // of written_planes
+  std::array<DeviceMemory, plane_descriptions.size()> planes_;  // those in written_planes
 };
 
 }  // namespace tofsmith

@@ -12,25 +12,24 @@
 
 namespace tofsmith {
 
-/// decode_parameters.h, numbers.cl, time_parameters.h and time.cl, one behind the other.
+/// Concatenation of decode_parameters.h, numbers.cl, time_parameters.h and time.cl.
 extern const std::string_view time_kernels;
 
-/// Frames added up in time on a device, as a TimeFilter without look_ahead adds them. The sums stay
-/// on the device, in memory that grows with the largest frame.
+/// A TimeFilter without look_ahead on a device, where the running means stay.
 class DeviceTimeFilter {
  public:
-  /// @param state  of the filter; must outlive this
+  /// @param state  state of the filter; must outlive this object
   DeviceTimeFilter(const Device& device, const TimeFilter::State& state);
 
-  /// Uploads and adds the next frame, of the size of the others.
+  /// Uploads and adds the next frame, which must have the size of the others.
   void add(const RawView& raw);
-  /// The same of means that are on the device, and are not changed until this was finished.
+  /// As above for a frame on the device, which must not change until the work is finished.
   void add(const DeviceRaw& raw, int height, int width);
-  /// The next frame is the first.
+  /// Starts a new sequence.
   void forget() { is_empty_ = true; }
   bool is_empty() const { return is_empty_; }
 
-  /// The frame that was added last, filtered; complete once the queue is.
+  /// Returns the filtered frame; complete once the queue's work is done.
   const DeviceRaw& result() const { return means_; }
   const DeviceQueue& queue() const { return queue_; }
 

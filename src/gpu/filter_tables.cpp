@@ -14,11 +14,11 @@ namespace tofsmith {
 
 namespace {
 
-/// Lines that kernels are compiled behind.
+/// Definitions placed before the kernels.
 class Constants {
  public:
   void add(const char* name, int value) { text_ += fmt::format("#define {} {}\n", name, value); }
-  /// Exactly this one, by digits in any locale.
+  /// Prints enough digits to restore the float exactly; independent of the locale.
   void add(const char* name, float value) {
     text_ += fmt::format("#define {} {:.9e}f\n", name, value);
   }

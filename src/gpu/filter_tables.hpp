@@ -13,22 +13,21 @@
 
 namespace tofsmith {
 
-/// decode_parameters.h, numbers.cl, filter_parameters.h, windows.cl and slopes.cl, one behind the
-/// other.
+/// Concatenation of decode_parameters.h, numbers.cl, filter_parameters.h, windows.cl and slopes.cl.
 extern const std::string_view filter_kernels;
 
-/// All that a filter knows, as a device reads it.
+/// Tables and parameters of a filter for kernels.
 struct FilterTables {
-  /// @param fuses  whether products are added in one step
+  /// @param fuses  use fused multiply-add instructions
   FilterTables(const Filter::Plan& plan, bool fuses);
 
-  FilterParameters parameters{};     ///< without sizes of frames
-  std::vector<std::uint32_t> words;  ///< where the tables stand
-  std::string source;                ///< of the kernels, with constants of theirs
+  FilterParameters parameters{};     ///< without the size of the frame
+  std::vector<std::uint32_t> words;  ///< contents of the tables
+  std::string source;                ///< of the kernels, with their constants
 };
 
-/// The first plane of a set of light, and one more than a FilterPlanes has: the variance that
-/// depths were found from.
+/// Return the first plane of a light set, and the plane of the variance that depths were decoded
+/// from, which FilterPlanes lacks.
 int light_plane(int set, int measurements);
 int before_plane(int measurements);
 

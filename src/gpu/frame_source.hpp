@@ -6,16 +6,16 @@
 
 namespace tofsmith {
 
-/// A frame to be filtered or decoded: numbers of this computer, or of the device.
+/// A frame to filter or decode, in host or device memory.
 struct FrameSource {
-  RawView raw;                           ///< of a frame on the device its size alone
-  const DeviceRaw* on_device = nullptr;  ///< all of it
-  const DeviceQueue* queue = nullptr;    ///< whose work writes it
-  DeviceMeans* means = nullptr;          ///< of which that has the numbers, rounded
+  RawView raw;                           ///< only the shape if the frame is on the device
+  const DeviceRaw* on_device = nullptr;  ///< the frame if it is on the device
+  const DeviceQueue* queue = nullptr;    ///< queue that writes it
+  DeviceMeans* means = nullptr;          ///< unrounded source of on_device, if it is a mean
 
   std::int64_t pixels() const { return raw.pixels(); }
-  /// Has pixels first .. first + count - 1 in `to`. What is on the device is copied there once its
-  /// work is done, and changes after that.
+  /// Copies pixels [first, first + count) to `to`. A frame on the device is copied once its work is
+  /// done, and is not overwritten before the copy is complete.
   void bring(const DeviceQueue& to_queue, DeviceRaw& to, std::int64_t first,
              std::int64_t count) const {
     if (!on_device) return to.upload(to_queue, raw, first, count);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Means of frames in doubles, as RowSums has them. Compiled behind numbers.cl.
+// Means of frames in doubles, as RowSums. Compiled after numbers.cl.
 
 double exact_number(const struct TileParameters* tile, global const uchar* raw, int pixel, int k) {
   if (tile->number != raw_double) return raw_number(tile, raw, pixel, k);
@@ -22,7 +22,7 @@ double added(double sum, double value, float lowest, float highest) {
                                    : sum + value;
 }
 
-/// Sums of every number. Those of the first frame are its own.
+/// Adds a frame to the sums, or initializes them.
 kernel void add_to_sums(const struct TileParameters tile, global const uchar* raw_numbers,
                         const int measurements, const float lowest, const float highest,
                         const int is_first, global double* sums) {
@@ -48,7 +48,7 @@ kernel void write_means(const int pixels, const int measurements, const int fram
   averaged[pixel] = averaged_now;
 }
 
-/// Means of some pixels, K each.
+/// Writes the means of some pixels.
 kernel void gather_means(const int pixels, const int measurements, const int frames,
                          const float lowest, const float highest, global const double* sums,
                          Ints wanted, const int count, global double* means) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What all kernels begin with. Compiled behind decode_parameters.h, with MEASUREMENTS (K) and RANK.
-// Products and sums are rounded one by one, as on the processor, so that numbers are the same; with
-// FUSES_PRODUCTS those of product_plus() in one step, where this computer's processor has one.
+// Common start of all kernel sources. Compiled after decode_parameters.h, with MEASUREMENTS (K) and
+// RANK defined. Products and sums are rounded separately, as on the CPU. With FUSES_PRODUCTS,
+// defined if the CPU has FMA, product_plus() rounds once.
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef HAS_DOUBLES
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -16,7 +16,7 @@ typedef global const double* Doubles;
 
 Ints ints_at(Floats tables, int at) { return (Ints)(tables + at); }
 
-/// a b + c, rounded as vectors of the processor do.
+/// a b + c, rounded as by the CPU's vector code.
 float product_plus(float a, float b, float c) {
 #ifdef FUSES_PRODUCTS
   return fma(a, b, c);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The backend of OpenCL: all that knows it.
+// The OpenCL backend; no other file calls OpenCL.
 #include <fmt/format.h>
 
 #include <map>
@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// What OpenCL made, to be given back by `release`.
+/// Wraps an OpenCL object that `release` frees.
 template <auto release, typename Object>
 DeviceHandle handle_of(Object object) {
   return {object, [](void* made) { release(static_cast<Object>(made)); }};
@@ -65,7 +65,7 @@ void check(cl_int error, const std::string& place, const char* what) {
   throw IoError(place, problem);
 }
 
-/// A text of a platform or device.
+/// Returns a text property of a platform or device.
 template <typename Get>
 std::string text_of(const Get& get) {
   std::size_t size = 0;
@@ -128,7 +128,7 @@ struct Device::State {
 
  private:
   std::mutex mutex;
-  DeviceHandle made = no_handle();  // the context
+  DeviceHandle made = no_handle();  // context, created on first use
   std::map<std::string, DeviceHandle> programs;
 };
 
@@ -168,7 +168,7 @@ std::vector<Device> Device::all() {
   check(clGetPlatformIDs(count, platforms.data(), nullptr), place, "asking for platforms");
   std::vector<Device> devices;
   for (const cl_platform_id platform : platforms) {
-    // A driver whose devices are gone does not hide those of others.
+    // Skip a driver that has lost its devices, so that other drivers remain usable.
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) continue;
     std::vector<cl_device_id> ids(count);
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, ids.data(), nullptr) != CL_SUCCESS)
@@ -191,7 +191,7 @@ DeviceQueue::DeviceQueue(const Device& device) : device_(device) {
 
 DeviceMemory DeviceQueue::allocate(std::size_t bytes) const {
   Device::State& state = device_.state();
-  // Some drivers find out when memory is used, and end the program.
+  // Some drivers detect this only when the memory is used, and abort the program.
   if (bytes > number_of<cl_ulong>(state.id, CL_DEVICE_MAX_MEM_ALLOC_SIZE))
     check(CL_INVALID_BUFFER_SIZE, place_of(state.info), "allocating memory");
   cl_int error = CL_SUCCESS;
@@ -267,7 +267,7 @@ DeviceMark DeviceQueue::mark() const {
   const cl_int error = clEnqueueMarkerWithWaitList(queue_of(handle_), 0, nullptr, &event);
   DeviceMark mark{handle_of<clReleaseEvent>(event)};
   check(error, place_of(device_.info()), "marking work");
-  flush();  // else what follows may wait for ever
+  flush();  // otherwise a queue that follows the mark may wait forever
   return mark;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// From bins to planes, as src/decode/output/output_position-inl.hpp, output_noise-inl.hpp and
+// Computes planes from bins, as src/decode/output/output_position-inl.hpp, output_noise-inl.hpp and
 // output_residual-inl.hpp.
 
-/// <q, vector> with a vector of the record.
+/// Returns <q, vector> for a vector of the record.
 float along_record(const float* q, Floats vector) {
   float sum = q[0] * vector[0];
   for (int j = 1; j < RANK; ++j) sum = q[j] * vector[j] + sum;
@@ -42,15 +42,15 @@ bool is_sure(const struct OutputParameters* p, const float* q, Floats record, fl
   return other < score && lead >= p->sure_lead * (variance * share);
 }
 
-/// Best point on the chords left and right of a bin.
+/// Best point on the chords to the left and right of a bin.
 struct ChordPoint {
   bool has_depth, is_left;
-  float t;       ///< share of the chord from the bin on
-  float inside;  ///< signal, if there is depth
+  float t;       ///< position on the chord, 0 at the bin
+  float inside;  ///< signal, if has_depth
 };
 
 #ifdef RECORD_SLOPE
-/// As refine_on_curve(), of a smooth curve.
+/// As refine_on_curve(), for a smooth curve.
 struct ChordPoint best_point(const float* q, Floats record, int bin) {
   const float at_row = along_record(q, record + RECORD_POINT);
   const float g = along_record(q, record + RECORD_SLOPE);
@@ -107,7 +107,8 @@ void normalize_in_plane(float* vector, float square) {
   for (int j = 0; j < RANK; ++j) vector[j] *= scale;
 }
 
-/// As find_tangent(), of a smooth curve. @return whether the pixel is on the side of the row before
+/// As find_tangent(), for a smooth curve. @return true if the pixel is on the side of the previous
+/// row
 bool find_tangent(const float* q, Floats record, float t, float* direction, float* slope) {
   float own = 0.0f, own_slope = 0.0f;
   for (int j = 0; j < RANK; ++j) {
@@ -123,7 +124,7 @@ bool find_tangent(const float* q, Floats record, float t, float* direction, floa
   return t < 0.0f;
 }
 #else
-/// As find_chord(). @return whether the chord is the left one
+/// As find_chord(). @return true for the left chord
 bool find_tangent(const float* q, Floats record, float t, float* direction, float* slope) {
   const float to_left = along_record(q, record + RECORD_LEFT),
               to_right = along_record(q, record + RECORD_RIGHT);
@@ -136,8 +137,9 @@ bool find_tangent(const float* q, Floats record, float t, float* direction, floa
 }
 #endif
 
-/// Components of a pixel's vector along the plane and off it that the light found leaves.
-/// @return the sum of their squares
+/// Computes the components of a pixel's vector, in the subspace of the code and outside it, that
+/// the fitted light does not explain.
+/// @return sum of their squares
 float unexplained(const struct OutputParameters* p, Floats tables, const float* raw, const float* q,
                   const float* direction, const float* slope, float* component) {
   float score = q[0] * direction[0], rise = q[0] * slope[0], square = 0.0f;
@@ -162,7 +164,7 @@ float unexplained(const struct OutputParameters* p, Floats tables, const float* 
   return square;
 }
 
-/// Chi-square of the weighted fit of ambient light, signal and depth.
+/// Returns chi-square of the weighted fit of ambient light, signal and depth.
 float weighted_squares(const struct OutputParameters* p, Floats tables, Floats record,
                        Floats beside, float t, float signal, float ambient, const float* component,
                        const float* direction, const float* slope) {
@@ -214,7 +216,8 @@ float weighted_squares(const struct OutputParameters* p, Floats tables, Floats r
   return fmax(less_square(rr, sr, ss), 0.0f);
 }
 
-/// Returns true for an inconsistent pixel. Writes chi-square per degree of freedom unless null.
+/// Returns true for an inconsistent pixel. Writes chi-square per degree of freedom unless
+/// `residual` is null.
 bool find_residual(const struct OutputParameters* p, Floats tables, const float* raw,
                    const float* q, Floats record, int bin, float offset, float signal,
                    float ambient, float share, float* residual) {
@@ -238,8 +241,8 @@ bool find_residual(const struct OutputParameters* p, Floats tables, const float*
   return is_open && sqrt(chi2 * bound) > limit[LIMIT_ROOT] * longest;
 }
 
-/// Planes that are null are not wanted. Pixels without a proven bin are left to the host, and so are
-/// those whose confidence is not proven to be 1.
+/// Planes that are null are not computed. Pixels without a proven bin are left to the host, as are
+/// pixels whose confidence is not proven to be 1.
 kernel void write_planes(const struct OutputParameters p, const struct TileParameters tile,
                          Floats tables, global const uchar* raw_numbers, Floats averaged,
                          global const int* bins, global int* opened, global int* open,
@@ -299,7 +302,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     is_inconsistent =
         find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient,
                       residual_share, residuals ? &residual : 0);
-    // Devices have other bits of NaN than processors, where no freedom is left.
+    // Without degrees of freedom this is a NaN whose bits depend on the device.
     if (residuals) residuals[pixel] = has_depth && !isnan(residual) ? residual : NO_VALUE;
   }
   if (status) {
@@ -314,7 +317,8 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   }
 }
 
-/// Raw numbers of some pixels and of how many measurements they are the mean: K + 1 numbers each.
+/// Gathers K + 1 numbers for each listed pixel: its raw numbers and the number of measurements
+/// averaged.
 kernel void gather_numbers(const struct TileParameters tile, global const uchar* raw_numbers,
                            Floats averaged, Ints pixels, const int count, global float* numbers) {
   const int i = (int)get_global_id(0);
@@ -325,7 +329,7 @@ kernel void gather_numbers(const struct TileParameters tile, global const uchar*
   numbers[i * (MEASUREMENTS + 1) + MEASUREMENTS] = averaged ? averaged[pixel] : 1.0f;
 }
 
-/// Puts values of some pixels where they belong in a plane.
+/// Writes values of the listed pixels into a plane.
 kernel void scatter_values(Ints pixels, const int count, Floats values, global float* plane) {
   const int i = (int)get_global_id(0);
   if (i < count) plane[pixels[i]] = values[i];

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A Filter's rounds along slopes, as slope_rounds.cpp and slope_kernel.cpp do them. Compiled behind
+// Rounds of a Filter along slopes, as slope_rounds.cpp and slope_kernel.cpp. Compiled after
 // windows.cl.
 
-/// Depths and deviations that were decoded, in bins; where there are none, pixels are not usable.
+/// Converts decoded depths and deviations to bins. Pixels without depth become unusable.
 kernel void take_depth(const struct FilterParameters p, Floats depth_m, Floats deviation_m,
                        global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -17,14 +17,14 @@ kernel void take_depth(const struct FilterParameters p, Floats depth_m, Floats d
   plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at] = is_known ? deviation * deviation : 1.0f;
 }
 
-/// A difference of depths, of a period's bins, as the nearest way round.
+/// Wraps a difference of depths [bins] to the nearest equivalent within the period.
 float nearest(float difference, float samples, float per_sample) {
   return product_plus(-rint(difference * per_sample), samples, difference);
 }
 
 // ---- Slopes.
 
-/// Sums of a plane's slopes, weighted: of x^2, x y, y^2, x d, y d.
+/// Weighted sums of x^2, x y, y^2, x d and y d for fitting a plane.
 struct SlopeSums {
   float xx, xy, yy, xd, yd;
 };
@@ -38,7 +38,8 @@ void add_slope(struct SlopeSums* s, float weight, float x, float y, float differ
   s->yd = product_plus(d, y, s->yd);
 }
 
-/// One direction alone tells nothing of the other.
+/// Solves for the slopes. The regularization is needed because neighbours along one direction do
+/// not determine the slope in the other.
 float2 slopes_of(const struct SlopeSums* s) {
   const float little = product_plus(s->xx + s->yy, 1e-4f, 1e-20f);
   const float a = s->xx + little, b = s->yy + little;
@@ -47,7 +48,7 @@ float2 slopes_of(const struct SlopeSums* s) {
                   product_plus(-s->xy, s->xd, a * s->yd) * inverse);
 }
 
-/// What a neighbour says of a pixel's slope: how much farther it is, and its variance.
+/// Depth difference to a neighbour, variance of its depth, and whether it is usable.
 struct Neighbour {
   float difference, noise, usable;
 };
@@ -71,7 +72,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
   const float variance = plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at];
   const float inverse_max = 1.0f / (4.0f * p.same_depth_sigma2);
   const float inverse_max_pair = 1.0f / (2.0f * p.same_depth_sigma2);
-  // Opposite neighbours that differ from the pixel by as much in opposite ways, ..
+  // First fit pairs of opposite neighbours whose depth differences nearly cancel,
   struct SlopeSums pairs = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int i = 0; i < HALF_RINGS; ++i) {
     const int away = half_ring_rows[i] * p.stride + half_ring_columns[i];
@@ -85,7 +86,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
               (ahead.difference - behind.difference) * 0.5f);
   }
   float2 slopes = slopes_of(&pairs);
-  // .. then every neighbour that the plane so found explains.
+  // then all neighbours consistent with the plane found so far.
   struct SlopeSums singles = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   float chi2 = 0.0f, count = 0.0f;
   for (int i = 0; i < 2 * HALF_RINGS; ++i) {
@@ -104,7 +105,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
     count += told;
   }
   slopes = slopes_of(&singles);
-  // How much more the depths of far pixels of the surface scatter about the plane.
+  // Ratio of the scatter of the far neighbours about the plane to its predicted variance.
   const float excess = chi2 / LARGER(count, 1e-6f);
   plane_of(&p, planes, PLANE_BEFORE)[at] *= LARGER(excess, 1.0f);
   const bool usable = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f;
@@ -114,7 +115,8 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
 
 // ---- Light along the curve.
 
-/// A place between two bins, as where their points stand in the curve.
+/// Position between two bins: offsets of their curve points in the tables, and the weight of the
+/// second.
 struct CurvePlace {
   int from, to;
   float share;
@@ -138,12 +140,13 @@ float on_curve(const struct CurvePlace* place, Floats tables, int k) {
   return product_plus(place->share, b - a, a);
 }
 
-/// How much farther the curve is a bin beyond.
+/// Returns the change of the curve per bin.
 float per_bin(const struct CurvePlace* place, Floats tables, int k) {
   return tables[place->to + k] - tables[place->from + k];
 }
 
-/// Light into signal along its depth and the rest; without a depth all is rest.
+/// Splits light into the signal at the pixel's depth and the remainder. Without a depth, everything
+/// is remainder.
 kernel void split(const struct FilterParameters p, const struct SlopeParameters w, Floats tables,
                   global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -166,7 +169,8 @@ kernel void split(const struct FilterParameters p, const struct SlopeParameters 
   }
 }
 
-/// How far a neighbour ahead lies beyond the slope, and the weight of both.
+/// Weight of a pair of pixels, and that weight times the neighbour's depth deviation from the
+/// slope.
 struct SlopePair {
   float weight, shifted;
 };
@@ -194,10 +198,10 @@ struct SlopePair pair_of(const struct FilterParameters* p, global float* planes,
   return pair;
 }
 
-/// Adds a pixel's signal to the rest of its light, where its depth is and `shift` / signal beyond.
+/// Adds a pixel's signal back to its remaining light, at its depth plus shift / signal.
 void join(const struct FilterParameters* p, Floats tables, global float* planes, int light, int at,
           float signal, float shift) {
-  // Where noise leaves next to no signal, there is nothing to be moved.
+  // Do not shift a signal that is close to 0; the quotient would be noise.
   const float beyond = signal > fabs(shift) * 0.25f ? shift / signal : 0.0f;
   const struct CurvePlace place = place_of(p, plane_of(p, planes, PLANE_DEPTH)[at] + beyond);
   const float added = plane_of(p, planes, PLANE_USABLE)[at] > 0.0f ? signal : 0.0f;
@@ -213,7 +217,7 @@ float share_of_light(float light, float opposite) {
   return SMALLER(share, 1.0f);
 }
 
-/// Of a pair, what of their weights stays where light is balanced.
+/// Fractions of a pair's weights that remain when the light on both sides is balanced.
 struct BalancedPair {
   float ahead, behind;
 };
@@ -226,7 +230,7 @@ struct BalancedPair balanced_pair(float light_ahead, float light_behind) {
   return shares;
 }
 
-/// By how much a pixel takes the balanced sum, as balance_row().
+/// Returns the fraction of the balanced sum to use, as balance_row().
 float balanced_part(const struct FilterParameters* p, const struct SlopeParameters* w,
                     Floats tables, global float* planes, int at) {
   const Plane variances = plane_of(p, planes, w->variance_in);
@@ -266,7 +270,7 @@ float balanced_part(const struct FilterParameters* p, const struct SlopeParamete
   const float step = (float)w->step;
   const float by = SLOPE_ERROR_SHARE * SLOPE_ERROR_SHARE * step * step;
   const float error2 = by * offset2 * slope2 * tables[p->squares + 2 * bin];
-  // Noise alone must not choose what is added.
+  // Balance only if the signal is well above noise.
   const bool is_seen = light2 * tables[p->squares + 2 * bin + 1] > BALANCED_ENERGY * noise;
   const float any_more = noise_balanced / balanced2 - noise / light2;
   const float either = error2 + LARGER(any_more, 0.0f);
@@ -277,8 +281,9 @@ float balanced_part(const struct FilterParameters* p, const struct SlopeParamete
   return is_lit ? of_balanced / LARGER(of_both, 1e-30f) : 0.0f;
 }
 
-/// One window along slopes: a pixel finds the weights of all 24 neighbours and adds them. After the
-/// last, `signal_next` says how far from the pixel the middle of what was added lies, squared.
+/// Averages one window along slopes; each pixel computes the weights of all 24 neighbours. After
+/// the last window, PLANE_SIGNAL_NEXT contains the squared distance from the pixel to the centroid
+/// of the added light.
 kernel void add_along_slopes(const struct FilterParameters p, const struct SlopeParameters w,
                              Floats tables, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -313,7 +318,7 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
     const float signal_ahead = signals[at + away], signal_behind = signals[at - away];
     signal = product_plus(ahead.weight, signal_ahead, signal);
     signal = product_plus(behind.weight, signal_behind, signal);
-    // Seen from the neighbour behind, the pixel lies as far on the other side.
+    // As seen from the neighbour behind, the deviation has the opposite sign.
     shift = product_plus(ahead.shifted, signal_ahead, shift);
     shift = product_plus(-behind.shifted, signal_behind, shift);
     const float of_ahead = ahead.weight * signal_ahead, of_behind = behind.weight * signal_behind;
@@ -340,8 +345,8 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
 
 // ---- Near sums that are kept.
 
-/// How much the depths of the sums before a window, whose light is made whole again, and after it
-/// differ, in standard deviations.
+/// Computes the difference of depth between the sums before and after a window, in standard
+/// deviations. First restores the light of the sum before the window, which `split` has divided.
 kernel void compare_sums(const struct FilterParameters p, const struct SlopeParameters w,
                          Floats tables, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -355,7 +360,7 @@ kernel void compare_sums(const struct FilterParameters p, const struct SlopePara
     far2 = product_plus(far, far, far2);
     dot_product = product_plus(per_bin(&place, tables, j), far, dot_product);
   }
-  // What of the near sum lies where the far one would go if its depth changed.
+  // Project the near sum onto the direction in which the far sum moves when its depth changes.
   const float along = dot_product / LARGER(far2, 1e-30f);
   float moved = 0.0f, move2 = 1e-30f;
   for (int j = 0; j < RANK; ++j) {
@@ -364,7 +369,8 @@ kernel void compare_sums(const struct FilterParameters p, const struct SlopePara
     moved = product_plus(move, plane_of(&p, planes, w.rest + j)[at], moved);
     move2 = product_plus(move, move, move2);
   }
-  // The far sum holds the near one, so their difference has less noise than that has.
+  // The far sum contains the near sum, so the variance of their difference is the difference of
+  // their variances.
   const float variance = plane_of(&p, planes, w.variance_in)[at];
   const float near_variance = LARGER(variance, 1e-12f);
   const float less = near_variance - plane_of(&p, planes, w.variance_out)[at];
@@ -391,10 +397,10 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
       count += usable[pixel];
     }
   const float around = squares / LARGER(count, 1.0f) - EXPLAINED_BY_NOISE;
-  // Where a surface bends alike all around, all differ a little, in the same way.
+  // On a surface of constant curvature all differences are small but have the same sign.
   const float per_pixel = 1.0f / LARGER(count, 1.0f), mean_around = sum_around * per_pixel;
   const float bent = product_plus(-per_pixel, EXPLAINED_IN_PATCH, mean_around * mean_around);
-  // At a silhouette or a crease the pixels of a thin line alone differ, all in the same way.
+  // At a silhouette or a crease only the pixels of a thin line differ, with the same sign.
   float best = 0.0f;
   for (int i = 0; i < LINE_DIRECTIONS; ++i) {
     const int away = LINE_STEP * (line_direction_rows[i] * p.stride + line_direction_columns[i]);
@@ -416,13 +422,13 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
   const float by_all = excess / (excess + HALF_KEPT), by_line = best / (best + HALF_KEPT_ALONG_LINES);
   const float kept = LARGER(by_all, by_line);
   plane_of(&p, planes, PLANE_SIGNAL)[at] = kept;
-  // Where noise alone has some of the near sum kept, it was so much larger than usual.
+  // A near sum that was kept because of noise has above-average noise, hence KEPT_NOISE.
   if (kept > 0.0f)
     keep_share(&p, planes, w.rest, w.to, w.variance_out, at, kept, kept * kept * KEPT_NOISE,
                near_variance);
 }
 
-/// What the noise of slopes adds to the variance of the sums of a round.
+/// Adds the noise of the estimated slopes to the variance of a round's sums.
 kernel void add_slope_noise(const struct FilterParameters p, const struct SlopeNoiseParameters n,
                             global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -435,7 +441,7 @@ kernel void add_slope_noise(const struct FilterParameters p, const struct SlopeN
   const float of_sum = n.sum + n.sum_offset * d2;
   const Plane variance = plane_of(&p, planes, n.variance);
   const float before = plane_of(&p, planes, PLANE_BEFORE)[at];
-  // Depths of near sums share less noise with those that tell the slope.
+  // Depths of near sums share less noise with the depths that the slopes were fitted to.
   const float any_of_near = before / plane_of(&p, planes, n.near_variance)[at];
   const float of_near = SLOPE_NOISE_OF_NEAR * (any_of_near < 1.0f ? any_of_near : 1.0f);
   const float of_before = n.is_last ? n.before * (1.0f - of_near) + n.before_offset * d2 : 0.0f;

@@ -12,12 +12,12 @@
 
 namespace tofsmith {
 
-/// Tables one behind the other, as devices read them.
+/// Concatenates tables in the layout that kernels read.
 class TableWords {
  public:
   explicit TableWords(std::vector<std::uint32_t>& words) : words_(words) {}
 
-  /// @return where the table begins
+  /// @return offset of the table [words]
   template <typename Value>
   int add(std::span<const Value> table) {
     static_assert(sizeof(Value) % sizeof(std::uint32_t) == 0);

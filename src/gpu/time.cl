@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A TimeFilter's steps without look_ahead, as time_kernel.cpp and time_filter_state.cpp do them.
-// Compiled behind numbers.cl and time_parameters.h, with RANK, PATCH_REACH, CELL_SIDE and CELL_REACH. A work item
-// each has a pixel, or a cell. No product is added in one step, as none is on the processor.
+// Steps of a TimeFilter without look_ahead, as time_kernel.cpp and time_filter_state.cpp; one work
+// item per pixel or cell. Compiled after numbers.cl and time_parameters.h. Products are not fused,
+// as on the CPU.
 
-// As std::max and std::min, also of what is no number.
+// As std::max and std::min, also for NaN.
 #define LARGER(a, b) ((a) < (b) ? (b) : (a))
 #define SMALLER(a, b) ((b) < (a) ? (b) : (a))
 #define PATCH_PIXELS ((2 * PATCH_REACH + 1) * (2 * PATCH_REACH + 1))
@@ -15,16 +15,17 @@ Plane time_plane(const struct TimeParameters* p, global float* planes, int index
   return planes + (size_t)index * (size_t)p->height * (size_t)p->width;
 }
 
-/// Measurement k of what was added to a pixel.
+/// Returns measurement k of the running mean of a pixel.
 float mean_of(const struct TimeParameters* p, Floats means, int pixel, int k) {
   return means[(size_t)k * (size_t)p->height * (size_t)p->width + (size_t)pixel];
 }
 
 float averaged_of(Floats averaged, int pixel) { return averaged ? averaged[pixel] : 1.0f; }
 
-// ---- A frame beside what was added up.
+// ---- Comparison of a frame with the running mean.
 
-/// Where light cancels in the measurements, their noise is that of the signal seen in both.
+/// Returns the signal estimated from both frames, which determines the shot noise of measurements
+/// in which light cancels.
 float signal_in_both(const struct TimeParameters* p, Floats tables, const float* both, float n) {
   float squares = 0.0f;
   for (int j = 0; j < RANK; ++j) {
@@ -74,9 +75,9 @@ kernel void compare_frames(const struct TimeParameters p, const struct TileParam
   time_plane(&p, planes, time_chi2)[pixel] = usable ? chi2 : (float)MEASUREMENTS;
 }
 
-// ---- What stays of it.
+// ---- Weight of the past.
 
-/// Sum over the patch around a pixel, first along columns, then along the row.
+/// Returns the sum over the patch around a pixel, columns first.
 float patch_sum(const struct TimeParameters* p, Plane plane, int x, int y, float outside) {
   float sum = 0.0f;
   for (int dx = -PATCH_REACH; dx <= PATCH_REACH; ++dx) {
@@ -125,7 +126,7 @@ kernel void weigh_side(const struct TimeParameters p, Floats averaged, Floats av
   const float of_patch = beyond_by(&p.patch, patch_chi2) / (float)PATCH_PIXELS;
   const float of_shared = beyond_by(&p.shared, shared_chi2) / (float)PATCH_PIXELS;
   const float of_both = LARGER(of_pixel, of_patch), beyond = LARGER(of_both, of_shared);
-  // Of one measurement, relative to its variance.
+  // Change of one measurement, relative to its variance.
   const float changed = (1.0f / past + 1.0f / n) / (float)MEASUREMENTS * beyond;
   const float stays = share * past / (1.0f + past * changed), most = p.max_weight * n;
   const float usable = time_plane(&p, planes, time_usable)[pixel];
@@ -135,7 +136,8 @@ kernel void weigh_side(const struct TimeParameters p, Floats averaged, Floats av
 
 // ---- Changes that many pixels share.
 
-/// Sums of differences where nothing has changed, and how many they are of: K + 1 of a cell.
+/// Sums the differences of the unchanged pixels of each cell, and counts these pixels: K + 1
+/// numbers per cell.
 kernel void add_to_cells(const struct TimeParameters p, global float* planes, global float* cells) {
   const int column = (int)get_global_id(0), row = (int)get_global_id(1);
   if (column >= p.cell_columns || row >= p.cell_rows) return;
@@ -178,14 +180,15 @@ kernel void weigh_by_cells(const struct TimeParameters p, Floats averaged, Float
   if (x >= p.width || y >= p.height) return;
   const int pixel = y * p.width + x;
   const float n = averaged_of(averaged, pixel);
-  // What so many pixels share is not less after they are added: their sum's noise counts.
+  // Averaging neighbouring pixels does not reduce a change that they share, so it is compared with
+  // the noise of their sum.
   const float changed = changes[y / CELL_SIDE * p.cell_columns + x / CELL_SIDE] *
                         (1.0f / averaged_before[pixel] + 1.0f / n);
   const float weight = weights[pixel];
   if (weight > 0.0f) weights[pixel] = weight / (1.0f + weight * changed);
 }
 
-/// The most that a pixel's past may weigh.
+/// Returns the maximum weight of a pixel's past.
 float most_weight(const struct TimeParameters* p, Floats averaged, Floats averaged_before,
                   int pixel) {
   const float past = averaged_before[pixel];
@@ -193,7 +196,7 @@ float most_weight(const struct TimeParameters* p, Floats averaged, Floats averag
   return SMALLER(past, most);
 }
 
-/// The least share of the past that stays in the pixels of the row around each.
+/// Finds the smallest remaining share of the past along the row around each pixel.
 kernel void find_shares(const struct TimeParameters p, Floats averaged, Floats averaged_before,
                         Floats weights, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -210,7 +213,8 @@ kernel void find_shares(const struct TimeParameters p, Floats averaged, Floats a
   time_plane(&p, planes, time_share)[y * p.width + x] = share;
 }
 
-/// The same of the rows around it: no pixel keeps much more than those beside it.
+/// Extends this minimum to the rows around each pixel and limits the weights by it, so that no
+/// pixel keeps much more of its past than its neighbours.
 kernel void weigh_by_shares(const struct TimeParameters p, Floats averaged, Floats averaged_before,
                             global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -226,7 +230,7 @@ kernel void weigh_by_shares(const struct TimeParameters p, Floats averaged, Floa
   weights[pixel] = LARGER(weight, 0.0f);
 }
 
-// ---- The next means.
+// ---- Update of the mean.
 
 kernel void add_frame(const struct TimeParameters p, const struct TileParameters tile,
                       global const uchar* raw_numbers, Floats averaged, Floats weights,

@@ -1,39 +1,39 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What the kernels of filters in time are told, in C++ and in OpenCL C alike, as
+// Parameters of the temporal filter's kernels, shared by C++ and OpenCL C as in
 // decode_parameters.h.
 #ifdef __cplusplus
 #pragma once
 namespace tofsmith {
 #endif
 
-/// Planes of a frame beside what was added up (H, W).
+/// Planes (H, W) that compare a frame with the running mean.
 enum TimePlane {
-  time_usable,      ///< 1 where both are measurements of light, else 0
+  time_usable,      ///< 1 if frame and mean are both usable, else 0
   time_chi2,        ///< of the pixel itself
-  time_unchanged,   ///< 1 where no test shows a change, else 0
-  time_share,       ///< of the past that stays around a pixel, in its row
-  time_difference,  ///< in standard deviations, one plane a measurement
+  time_unchanged,   ///< 1 if no test detects a change, else 0
+  time_share,       ///< smallest remaining share of the past along the row around a pixel
+  time_difference,  ///< in standard deviations, one plane per measurement
 };
 
-/// A test by chi^2, as ChangeTest.
+/// A chi^2 test, see ChangeTest.
 struct TimeTest {
   float certain, most;
 };
 
-/// As TimeFilter::State.
+/// See TimeFilter::State.
 struct TimeParameters {
   int height, width;
   int cell_rows, cell_columns;
 
-  int gain, dark_raw, floor_variance_e2, shot_per_signal;  ///< of every measurement
-  int to_plane;  ///< (RANK, K), times the gain
-  float lowest, highest;  ///< as SaturationLevels
+  int gain, dark_raw, floor_variance_e2, shot_per_signal;  ///< per measurement
+  int to_plane;  ///< (RANK, K), includes the gain
+  float lowest, highest;  ///< see SaturationLevels
   int has_own_shot_noise;
-  float hidden_floor_e2, hidden_shot_per_signal, mean_curve_square;  ///< as HiddenSignal
+  float hidden_floor_e2, hidden_shot_per_signal, mean_curve_square;  ///< see HiddenSignal
   struct TimeTest pixel, patch, shared;
-  float max_weight;  ///< of the past, of one measurement
-  float none;        ///< the weight of pixels that are not usable
+  float max_weight;  ///< of the past, relative to one measurement
+  float none;        ///< weight of unusable pixels
   float telling_share;
 };
 

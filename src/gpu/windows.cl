@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A Filter's windows over pixels whose vectors are parallel, what they read and what comes out, as
-// filter_plan.cpp and filter_kernel.cpp do it. Compiled behind numbers.cl and filter_parameters.h,
-// ahead of slopes.cl, with the filter's constants (filter_tables.cpp). A work item each has a pixel;
-// planes have a margin where no pixel is usable, so that none asks where a frame ends.
+// Windows of a Filter over pixels with parallel vectors, with input and output, as filter_plan.cpp
+// and filter_kernel.cpp; one work item per pixel. Compiled after numbers.cl and
+// filter_parameters.h, before slopes.cl. Planes have a margin of unusable pixels, so that kernels
+// need no bounds checks.
 
-// As vectors of the processor: the second where they are equal or the first is no number.
+// As the CPU's vector instructions: the second operand if both are equal or one is NaN.
 #define LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
 typedef global float* Plane;
 
-/// A plane's first pixel.
+/// Returns the first pixel of a plane.
 Plane plane_of(const struct FilterParameters* p, global float* planes, int index) {
   return planes + (size_t)index * (size_t)p->plane_floats + (size_t)p->origin;
 }
 
-/// 1 without a difference, 0 from the largest on, smooth between.
+/// Returns 1 for no difference, falling smoothly to 0 at the largest.
 float weight_of(float difference, float inverse_max) {
   const float left =
       LARGER(product_plus(-(LARGER(difference, 0.0f)), inverse_max, 1.0f), 0.0f);
@@ -24,9 +24,9 @@ float weight_of(float difference, float inverse_max) {
   return square * square;
 }
 
-// ---- Reading.
+// ---- Input.
 
-/// out_j = sum_k matrix[j, k] in_k.
+/// Computes out_j = sum_k matrix[j, k] in_k.
 void mix(Floats matrix, const float* in, float* out) {
   for (int j = 0; j < MEASUREMENTS; ++j) {
     out[j] = 0.0f;
@@ -42,7 +42,8 @@ float variance_of_coordinate(const struct FilterParameters* p, Floats tables,
   return variance;
 }
 
-/// Raw numbers into a set of light, with where they are usable and, if wanted, their variances.
+/// Converts raw numbers to a light set, with a plane of usable pixels and, optionally, their
+/// variances.
 kernel void read_light(const struct FilterParameters p, const struct TileParameters tile,
                        Floats tables, global const uchar* raw_numbers, Floats averaged,
                        global const uchar* left_out, global float* planes, const int light,
@@ -79,7 +80,7 @@ float hidden_signal(const struct FilterParameters* p, float squares, float avera
   return (sqrt(m * m + 4.0f * p->mean_curve_square * beyond) - m) / (2.0f * p->mean_curve_square);
 }
 
-/// Where light cancels in the measurements, its noise is that of the signal seen around a pixel.
+/// Computes the variance from the signal around a pixel, for measurements in which light cancels.
 kernel void find_hidden_noise(const struct FilterParameters p, Floats averaged,
                               global float* planes, const int light) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -103,7 +104,7 @@ kernel void find_hidden_noise(const struct FilterParameters p, Floats averaged,
 
 // ---- Windows.
 
-/// |u|^2 / v and 1 / sqrt(v) of a window's light.
+/// Computes |u|^2 / v and 1 / sqrt(v) of a window's light.
 kernel void find_energy(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -122,7 +123,7 @@ kernel void find_energy(const struct FilterParameters p, const struct SimilarPar
   plane_of(&p, planes, PLANE_INVERSE_SIGMA)[at] = sqrt(inverse);
 }
 
-/// lambda of two pixels; rank - 1 where one of both is not usable.
+/// Returns lambda of two pixels; rank - 1 if either is not usable.
 float lambda_of(const struct FilterParameters* p, global float* planes, int light, int at,
                 int other) {
   const Plane usable = plane_of(p, planes, PLANE_USABLE);
@@ -143,9 +144,9 @@ float lambda_of(const struct FilterParameters* p, global float* planes, int ligh
   return (product + product) / LARGER(both, 1e-30f);
 }
 
-/// Weights of the pairs of every pixel and its neighbours ahead, one plane for each of those. A
-/// group has the pixels of a tile: their lambda and that of the patches around stand in local
-/// memory and are summed there, along rows and then along columns.
+/// Computes the weights of all pairs of a pixel and its neighbours ahead, one plane per neighbour.
+/// Each work group stores lambda of a tile and its surrounding patches in local memory and sums it
+/// along rows, then along columns.
 kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void weigh_similar(
     const struct FilterParameters p, const struct SimilarParameters w, global float* planes,
     global float* weights) {
@@ -178,7 +179,8 @@ kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void we
     if (is_pixel) {
       float sum = sums[row * tile_columns + column];
       for (int k = 1; k < side; ++k) sum += sums[(row + k) * tile_columns + column];
-      // What noise the pair itself has must not choose it: it tells what noise cannot be.
+      // Remove the pair's own value up to noise_limit, so that its noise does not select the pair.
+      // The part above the limit cannot be noise.
       const float own = lambda[(row + reach) * columns + column + reach];
       sum -= SMALLER(own, w.noise_limit);
       const Plane usable = plane_of(&p, planes, PLANE_USABLE);
@@ -190,7 +192,7 @@ kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void we
   }
 }
 
-/// Weighted means of a window's light, and their variance.
+/// Computes the weighted means of a window's light and their variance.
 kernel void add_similar(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -217,9 +219,9 @@ kernel void add_similar(const struct FilterParameters p, const struct SimilarPar
   for (int k = 0; k < MEASUREMENTS; ++k) plane_of(&p, planes, w.to + k)[at] = sum[k] * inverse;
 }
 
-// ---- What comes out.
+// ---- Output.
 
-/// Raw numbers of a pixel of a set of light (K), and of how many measurements they are the mean.
+/// Converts a pixel of a light set to K raw numbers. @return number of measurements averaged
 float raw_of_light(const struct FilterParameters* p, const struct ResultParameters* r,
                    Floats tables, float averaged_before, global float* planes, int at,
                    float* numbers) {
@@ -237,7 +239,7 @@ float raw_of_light(const struct FilterParameters* p, const struct ResultParamete
   return n < 1e-3f ? 1e-3f : n;
 }
 
-/// Of a near sum's light, as near_square().
+/// Returns the squared light of a near sum, as near_square().
 float near_square(const struct FilterParameters* p, global float* planes, int near, int at) {
   float square = 0.0f;
   for (int j = 0; j < RANK; ++j) {
@@ -261,7 +263,7 @@ void keep_share(const struct FilterParameters* p, global float* planes, int near
   variance[at] = product_plus(share2, beyond, far);
 }
 
-/// Near sums that tell slopes well enough are kept, as keep_bright().
+/// Keeps the near sum where it is bright enough to estimate slopes, as keep_bright().
 kernel void keep_bright(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -276,7 +278,7 @@ kernel void keep_bright(const struct FilterParameters p, const struct SimilarPar
     keep_share(&p, planes, w.light, w.to, w.variance_out, at, kept, kept * kept, near_variance);
 }
 
-/// All of a set of light as raw numbers, and their variance to where later steps find it.
+/// Writes a light set as raw numbers and saves its variance for later steps.
 kernel void write_raw(const struct FilterParameters p, const struct ResultParameters r,
                       Floats tables, Floats averaged_before, global float* planes,
                       global float* raw, global float* averaged) {
@@ -290,7 +292,8 @@ kernel void write_raw(const struct FilterParameters p, const struct ResultParame
   plane_of(&p, planes, PLANE_BEFORE)[at] = plane_of(&p, planes, r.last_variance)[at];
 }
 
-/// Measured light of a pixel along what was added to another, times the length of that.
+/// Returns <u, v> for the filtered light u of pixel `added` and the measured light v of pixel
+/// `measured`.
 float along_added(const struct FilterParameters* p, const struct ResultParameters* r,
                   global float* planes, int added, int measured) {
   float sum = 0.0f;
@@ -300,7 +303,7 @@ float along_added(const struct FilterParameters* p, const struct ResultParameter
   return sum;
 }
 
-/// Whether what was added to a pixel can be its own light, as find_own_light().
+/// Returns true if the filtered light of a pixel can be its own, as find_own_light().
 bool is_own_light(const struct FilterParameters* p, const struct ResultParameters* r,
                   global float* planes, int at) {
   const float mean_noise = OWN_LIGHT_NOISE / (float)(2 * OWN_LIGHT_REACH + 1);
@@ -330,7 +333,7 @@ bool is_own_light(const struct FilterParameters* p, const struct ResultParameter
   return below <= OWN_LIGHT_SHARE * count;
 }
 
-/// Whether pixels have the light that was added to them, into a plane.
+/// Writes the result of is_own_light() into a plane.
 kernel void find_own_light(const struct FilterParameters p, const struct ResultParameters r,
                            global float* planes, const int to) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -339,7 +342,7 @@ kernel void find_own_light(const struct FilterParameters p, const struct ResultP
   plane_of(&p, planes, to)[at] = is_own_light(&p, &r, planes, at) ? 1.0f : 0.0f;
 }
 
-/// Pixels that have none are usable no more.
+/// Marks pixels that fail is_own_light() as unusable.
 kernel void leave_dark(const struct FilterParameters p, global float* planes, const int is_own) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
@@ -347,7 +350,8 @@ kernel void leave_dark(const struct FilterParameters p, global float* planes, co
   plane_of(&p, planes, PLANE_USABLE)[at] = plane_of(&p, planes, is_own)[at];
 }
 
-/// Filtered raw numbers of some rows; as measured where nothing was to be added.
+/// Writes filtered raw numbers of some rows; pixels that fail is_own_light() keep their measured
+/// numbers.
 kernel void write_filtered(const struct FilterParameters p, const struct ResultParameters r,
                            const struct TileParameters tile, Floats tables,
                            global const uchar* raw_numbers, Floats averaged_before,

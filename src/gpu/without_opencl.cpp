@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// In place of opencl.cpp where there is no OpenCL to build with.
+// Replaces opencl.cpp in builds without OpenCL.
 #include "gpu/device_queue.hpp"
 
 namespace tofsmith {
