@@ -72,7 +72,7 @@ struct DeviceOptions {
   /// black levels and gains then has the same bits as on the CPU.
   bool use_doubles = true;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate() const;
 };
 auto fields_of(ConstOrNot<DeviceOptions> auto& o) {

@@ -107,7 +107,7 @@ Json waveform_json(const QuantizedWaveform& waveform, const WaveformExport& expo
   return json;
 }
 
-/// Where each output stands in a word.
+/// Positions of the outputs in a word.
 Json fields_json(const WaveformExport& exported) {
   Json json = Json::array();
   for (const PatternField& field :

@@ -12,8 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// The two-channel models that take tables of this format, the one with the highest sample rate
-/// last.
+/// Returns the two-channel models that accept this format, by increasing sample rate.
 std::vector<GeneratorModel> models_of_format(const std::string& format) {
   std::vector<GeneratorModel> models;
   for (const GeneratorModel& model : generator_models())
@@ -22,7 +21,7 @@ std::vector<GeneratorModel> models_of_format(const std::string& format) {
   return models;
 }
 
-/// Models that accept the same messages.
+/// Models with the same messages.
 struct SharedScript {
   GeneratorModel first;
   std::vector<std::string> names;
@@ -51,7 +50,7 @@ ExportedScripts export_scripts(const WaveformExport& exported) {
       try {
         add(scripts, upload_script(model, request));
       } catch (const std::invalid_argument& error) {
-        // Of the last model, which plays most, for the first exposure.
+        // Keeps the message of the fastest model, which is the last one.
         if (exposure == 1) result.problem = error.what();
       }
     }

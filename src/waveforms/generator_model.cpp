@@ -114,7 +114,7 @@ const GeneratorModel* find_generator_model(std::string_view name) {
   const std::string wanted = upper(name);
   for (const GeneratorModel& model : generator_models()) {
     const bool same = wanted == model.name;
-    // The letter behind the number: 33522A and 33522B, AFG3022, AFG3022B, AFG3022C.
+    // Accept the letter of the generation: 33522A and 33522B; AFG3022, AFG3022B and AFG3022C.
     const bool generation =
         model.family != GeneratorFamily::siglent_x && wanted.size() == model.name.size() + 1 &&
         wanted.starts_with(model.name) && wanted.back() >= 'A' && wanted.back() <= 'C';

@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// The steps of each family, for a request that fits the model.
+/// Return the steps of each family for a request that fits the model.
 std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadRequest& request);
 std::vector<UploadStep> keysight_steps(const UploadRequest& request);
 std::vector<UploadStep> tektronix_steps(const UploadRequest& request);
@@ -20,16 +20,16 @@ std::vector<UploadStep> tektronix_steps(const UploadRequest& request);
 std::vector<std::string> siglent_outputs_off(const UploadRequest& request);
 std::vector<std::string> scpi_outputs_off(const UploadRequest& request);
 
-/// The first line of a script's text: the models that accept it.
+/// Returns the first line of a script, which lists the models.
 std::string script_heading(const GeneratorModel& model, const std::vector<std::string>& names);
-/// All other lines of a script's text.
+/// Returns the other lines of a script.
 std::string script_messages(const UploadScript& script);
 
-/// A message without answer.
+/// Returns a message without an answer.
 UploadStep message_step(std::string what, std::string message);
-/// A message that switches an output on.
+/// Returns a message that switches an output on.
 UploadStep output_on(std::string message);
-/// A question and the checks of its answer.
+/// Returns a query and the checks of its answer.
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks);
 
 AnswerCheck number_check(int channel, std::string quantity, std::string field, double wanted,
@@ -37,7 +37,7 @@ AnswerCheck number_check(int channel, std::string quantity, std::string field, d
 AnswerCheck word_check(int channel, std::string quantity, std::string field,
                        std::vector<std::string> texts, bool within = false);
 
-/// Steps that set and check one channel, added to a script.
+/// Appends steps that set and check one channel.
 class ChannelSteps {
  public:
   ChannelSteps(std::vector<UploadStep>& steps, int channel) : steps_(steps), channel_(channel) {}
@@ -49,21 +49,21 @@ class ChannelSteps {
   int channel_;
 };
 
-/// The first steps of scripts in standard SCPI (Keysight, Tektronix): outputs off, reset.
+/// Appends the first steps of standard SCPI scripts (Keysight, Tektronix): outputs off, reset.
 void begin_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
-/// The last steps: check that outputs are off; switch them on if requested.
+/// Appends the last steps: check that outputs are off; switch them on if requested.
 void end_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
-/// A load in SCPI [ohm]: infinity is 9.9e37.
+/// Load in SCPI [ohm]; infinity is 9.9e37.
 double scpi_load_ohm(double load_ohm);
 
 std::string text_of(std::span<const std::byte> bytes);
 
-/// Tolerance of a frequency that an instrument reads back [Hz].
+/// Tolerance of a frequency that was read back [Hz].
 double frequency_tolerance_hz(double frequency_hz, double relative);
 inline constexpr double scpi_frequency_tolerance = 1e-6;  ///< relative; Keysight and Tektronix
 inline constexpr double volt_tolerance_v = 1e-3;
 
-/// A name for the generator's memory that depends on the points: "M1_1F3A77C2".
+/// Returns a memory name that depends on the points: "M1_1F3A77C2".
 std::string memory_name(const QuantizedWaveform& waveform);
 
 }  // namespace tofsmith

@@ -9,7 +9,7 @@
 
 namespace tofsmith {
 
-/// Bytes as a definite-length block of IEEE 488.2: '#', the number of digits, the length, the data.
+/// Returns bytes as a definite-length block of IEEE 488.2: '#', number of digits, length, data.
 /// @throws std::invalid_argument beyond 999999999 bytes
 std::vector<std::byte> ieee488_block(std::span<const std::byte> data);
 

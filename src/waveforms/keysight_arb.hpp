@@ -13,20 +13,20 @@
 
 namespace tofsmith {
 
-/// What the DAC of a 33500 or 33600 takes: -32767 .. 32767.
+/// Levels of the DAC of a 33500 or 33600, -32767 to 32767.
 inline constexpr std::int32_t keysight_levels = 65535;
 
-/// A waveform of `keysight_levels` levels as the text that a 33500 or 33600 loads.
+/// Returns a waveform of `keysight_levels` levels as an .arb file for a 33500 or 33600.
 /// @param end_of_line  "\n" or "\r\n"
-/// @throws std::invalid_argument if the waveform is invalid or has other levels
+/// @throws std::invalid_argument if the waveform is invalid or has a different number of levels
 std::string keysight_arb_text(const QuantizedWaveform& waveform,
                               std::string_view end_of_line = "\n");
-/// The points of that text alone, one per line.
+/// Returns only the points of that file, one per line.
 /// @throws std::invalid_argument as keysight_arb_text()
 std::string keysight_points_text(const QuantizedWaveform& waveform,
                                  std::string_view end_of_line = "\n");
-/// The points as DATA:ARB:DAC takes them: big-endian 16-bit numbers (the default of FORM:BORD), for
-/// a block of ieee488_block.hpp.
+/// Returns the points for DATA:ARB:DAC: big-endian 16-bit numbers (the default of FORM:BORD), for
+/// ieee488_block().
 /// @throws std::invalid_argument as keysight_arb_text()
 std::vector<std::byte> keysight_dac_bytes(const QuantizedWaveform& waveform);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int max_bits = 64;
 
-/// Bits of one output; all waveforms have as many.
+/// Returns the bits per output, which all waveforms share.
 int bits_per_output(std::span<const QuantizedWaveform> waveforms) {
   const auto levels = static_cast<std::uint32_t>(waveforms.front().levels);
   require(std::has_single_bit(levels), "levels", levels, "must be a power of two in a memory");
@@ -29,7 +29,7 @@ int bits_per_output(std::span<const QuantizedWaveform> waveforms) {
   return std::countr_zero(levels);
 }
 
-/// Waveform e x taps + t of the sensor is tap t of exposure e.
+/// Waveform e x taps + t of the sensor belongs to tap t of exposure e.
 void put(PatternMemory& memory, const QuantizedWaveform& waveform, int exposure,
          const PatternField& field) {
   const std::size_t first =

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Writers of pattern memories.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +16,7 @@ namespace {
 
 int hex_digits(const PatternMemory& memory) { return (memory.word_bits + 3) / 4; }
 
-/// The comment and the meaning of the bits, line by line behind `mark`.
+/// Returns the comment and the meaning of the bits, each line after `mark`.
 std::string heading(const PatternMemory& memory, std::string_view mark) {
   memory.validate();
   std::string text;
@@ -26,7 +25,7 @@ std::string heading(const PatternMemory& memory, std::string_view mark) {
   };
   LineCursor lines(memory.comment, "comment");
   while (!lines.at_end()) {
-    // Nothing in a code's name may end a comment's line, as CR does in VHDL.
+    // Control characters in a code's name must not end the comment, as CR would in VHDL.
     std::string words(lines.next());
     std::ranges::replace_if(
         words, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -56,7 +55,7 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// Constants that say what the bits are: `constant(name, value)`.
+/// Writes constants that describe the bits: `constant(name, value)`.
 template <typename Constant>
 void each_constant(const PatternMemory& memory, Constant&& constant) {
   constant("WORD_BITS", memory.word_bits);

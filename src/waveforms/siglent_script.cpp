@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double siglent_frequency_tolerance = 1e-5;  // it prints six digits
+constexpr double siglent_frequency_tolerance = 1e-5;  // answers have six digits
 constexpr WvdtPoints x_points = WvdtPoints::bits16_little_endian;
 
 std::string wvdt_message(const WvdtCommand& command, WaveHeader header) {
@@ -26,7 +26,8 @@ std::string wvdt_message(const WvdtCommand& command, WaveHeader header) {
   return message;
 }
 
-/// A Siglent has no error queue: its answer shows that it has processed all earlier messages.
+/// Siglent generators have no error queue; the answer confirms that all earlier messages were
+/// processed.
 UploadStep siglent_settled(std::string what, double more_s) {
   UploadStep step = asked(std::move(what), "*OPC?", {word_check(0, "", "", {"1", "*OPC 1"})});
   step.more_s = more_s;
@@ -41,7 +42,7 @@ void add_siglent_waveform(std::vector<UploadStep>& steps, const UploadRequest& r
   const std::size_t data = message.find("WAVEDATA,") + 9;
   UploadStep load = message_step("load " + waveform.name, message.substr(0, data));
   load.data = message.substr(data);
-  load.line_end = false;  // would be read as a point
+  load.line_end = false;  // a line end would be read as a point
   load.pause_s = request.settle_s;
   steps.push_back(std::move(load));
   steps.push_back(siglent_settled("wait until it has " + waveform.name, request.patience_s));
@@ -137,7 +138,7 @@ std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadR
       add_siglent_waveform(steps, request, channel.channel, waveform);
   for (const UploadChannel& channel : request.channels)
     set_siglent_channel(steps, request, channel, has_rate);
-  if (request.channels.size() > 1)  // sources disagree; it ignores the spelling it does not know
+  if (request.channels.size() > 1)  // sources disagree; an unknown spelling is ignored
     for (const char* spelling : {"MODE PHASE-LOCKED", "MODE PHASELOCKED"})
       steps.push_back(message_step("lock the phases of the channels", spelling));
   for (const UploadChannel& channel : request.channels)

@@ -12,8 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// User memories 1 .. 4 take the waveforms of all channels, one after another; all of them pass
-/// through the one edit memory.
+/// Waveforms of all channels are stored in user memories 1 to 4, each via the single edit memory.
 struct UserMemory {
   int number;
   const QuantizedWaveform* waveform;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view tfw_magic = "TEKAFG3000";
 constexpr std::size_t tfw_header_bytes = 512, tfw_fields_at = 16, tfw_picture_at = 28;
 constexpr std::uint32_t tfw_version = 20050114;
-constexpr int tfw_picture_columns = 206;  // each a least and a largest value of 8 bits
+constexpr int tfw_picture_columns = 206;  // each has a minimum and a maximum of 8 bits
 
 constexpr std::size_t record_bytes = 5;
 
@@ -25,7 +25,7 @@ void put_u32_big(std::span<std::byte> into, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) into[i] = static_cast<std::byte>(value >> (24 - 8 * i));
 }
 
-/// Least and largest value of every column of the picture that the generator shows.
+/// Writes the minimum and maximum of each column of the preview.
 void draw(const std::vector<std::int32_t>& codes, std::span<std::byte> picture) {
   const std::size_t columns = std::min<std::size_t>(tfw_picture_columns, codes.size());
   for (std::size_t c = 0; c < columns; ++c) {
@@ -59,7 +59,7 @@ std::vector<std::byte> tektronix_tfw(const QuantizedWaveform& waveform) {
   const auto fields = std::span(file).subspan(tfw_fields_at);
   put_u32_big(fields, tfw_version);
   put_u32_big(fields.subspan(4), static_cast<std::uint32_t>(waveform.codes.size()));
-  put_u32_big(fields.subspan(8), 1);  // there is a picture
+  put_u32_big(fields.subspan(8), 1);  // the file has a preview
   draw(waveform.codes, std::span(file).subspan(tfw_picture_at));
   std::ranges::copy(points, file.begin() + tfw_header_bytes);
   return file;

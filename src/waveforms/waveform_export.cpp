@@ -43,7 +43,7 @@ void check_options(const ExportOptions& options, const WaveformFormat& format) {
           fmt::format("must be finite and above low_v = {}", options.low_v));
 }
 
-/// Points of the table of a period.
+/// Returns the number of points per period.
 int table_points(const ExportOptions& options, const WaveformFormat& format,
                  const std::optional<Generator>& own, const Camera& camera) {
   const double frequency_hz = camera.fundamental_frequency_hz;
@@ -98,7 +98,7 @@ std::int32_t levels_of(const WaveformFormat& format, int variant, int bits) {
   return format.levels > 0 ? format.levels : 1 << bits;
 }
 
-/// As few as make a table that the format takes.
+/// Returns the smallest number of periods that the format accepts.
 int fitting_periods(const WaveformFormat& format, int points, const std::optional<int>& asked) {
   const auto fits = [&](int periods) {
     const std::int64_t all = std::int64_t{points} * periods;
@@ -117,7 +117,7 @@ int fitting_periods(const WaveformFormat& format, int points, const std::optiona
          fmt::format("{}, and no number of periods gives that", rule));
 }
 
-/// What is the same for every waveform of an arm.
+/// Properties that all waveforms of an arm share.
 struct ArmTables {
   const Generator& generator;
   double frequency_hz;
@@ -148,7 +148,7 @@ void set_volts(WaveformExport& exported, const ExportOptions& options) {
     const double full = waveform.arm == Arm::light ? light_peak : 1.0;
     const double share = full > 0.0 ? waveform.full_scale / full : 0.0;
     waveform.low_v = options.low_v;
-    // A waveform that is never on keeps its range: nothing of it is played.
+    // A waveform that is never on keeps the whole range, because low_v < high_v must hold.
     waveform.high_v = options.low_v + (share > 0.0 ? share : 1.0) * range_v;
   }
 }
@@ -226,7 +226,7 @@ WaveformExport export_waveforms(const CodeSet& code, const Camera& actual,
         fitting_periods(exported.format, generator.points_in_table(frequency_hz), options.periods)};
   };
   const ArmTables light = arm(exported.light), sensor = arm(exported.sensor);
-  actual_code(code, actual);  // refuses pulses that vanish
+  actual_code(code, actual);  // rejects vanishing pulses
   for (int e = 0; e < code.exposures(); ++e) {
     exported.waveforms.push_back(light.of(code.modulation(e), true));
     exported.waveforms.back().name = fmt::format("modulation_{}", e + 1);

@@ -20,7 +20,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Where nobody said how fast the hardware is: files that no generator known here could play.
+/// Warns if the hardware's rate is unknown and the files exceed the rate of every known generator.
 std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera& camera,
                                     const ExportOptions& options) {
   const double max_hz = fastest_sample_rate_hz(exported.format.name);
@@ -33,19 +33,18 @@ std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera
       plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * max_hz, 4), max_hz)};
 }
 
-constexpr double max_duty_change = 0.01;  // of a duty; more is noted
-constexpr int max_points_away = 128;      // how far other tables are looked for
+constexpr double max_duty_change = 0.01;  // relative; larger changes are noted
+constexpr int max_points_away = 128;      // search range for alternative tables
 
 double duty_change(const GeneratorReport& played) {
   return played.duty_nominal > 0.0 ? std::abs(played.duty_actual / played.duty_nominal - 1.0) : 0.0;
 }
 
-/// The waveform whose duty the hardware changes most.
 const GeneratorReport& most_changed(const std::vector<GeneratorReport>& played) {
   return *std::ranges::max_element(played, {}, duty_change);
 }
 
-/// Whether tables of so many points a period can be played, and keep all duties.
+/// Returns true if tables with this number of points per period are valid and preserve all duties.
 bool keeps_duties(const CodeSet& code, const Camera& camera, ExportOptions options, int points) {
   options.samples = points;
   try {
@@ -57,7 +56,7 @@ bool keeps_duties(const CodeSet& code, const Camera& camera, ExportOptions optio
   }
 }
 
-/// Where the points of a table shorten or lengthen pulses: how much, and which tables would not.
+/// Warns if rounding to points changes the width of pulses, and suggests tables that avoid it.
 std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& camera,
                                     const ExportOptions& options) {
   if (exported.generators.empty()) return {};
@@ -79,14 +78,14 @@ std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& 
                      : fmt::format("{} would keep all duties", fmt::join(others, " or ")))};
 }
 
-/// A file, and what goes into it.
+/// A file and its contents.
 using Product = std::pair<std::filesystem::path, std::span<const std::byte>>;
 
 std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-/// Whether a file is there with just these bytes: a run that was stopped has written it.
+/// Returns true if the file exists with exactly these contents, written by an interrupted run.
 bool is_written(const Product& product) {
   const auto& [path, content] = product;
   std::error_code ignored;
@@ -94,7 +93,8 @@ bool is_written(const Product& product) {
   return std::ranges::equal(read_binary_file(path), content);
 }
 
-/// Goes on where a run was stopped; where all is there, that is refused as anything else.
+/// Completes an interrupted run. If all files exist already, `policy` applies as for any existing
+/// file.
 void write_all(std::vector<Product> products, OutputPolicy policy) {
   if (!std::ranges::all_of(products, is_written)) std::erase_if(products, is_written);
   for (const auto& [path, content] : products) const AtomicFile probe(path, policy);

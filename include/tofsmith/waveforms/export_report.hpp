@@ -11,16 +11,16 @@
 
 namespace tofsmith {
 
-/// The lines of a table of what generators make of each waveform, headings first.
+/// Returns the rows of a table of the waveforms that the generators output, headings first.
 std::vector<std::vector<std::string>> generator_report_rows(
     const std::vector<GeneratorReport>& reports);
 
-/// The lines of a table of what that costs in depth error, headings first.
+/// Returns the rows of a table of the resulting change in depth error, headings first.
 std::vector<std::vector<std::string>> generator_loss_rows(const GeneratorLoss& loss,
                                                           DepthErrorKind kind);
 
-/// A page of an export: nominal and actual waveforms, correlation functions, and the depth
-/// error that the limits cost.
+/// Returns the page of an export: nominal and actual waveforms, correlation functions, and the
+/// depth error caused by the limits of the hardware.
 Page export_page(const ExportedCode& exported, const std::string& command_line);
 
 }  // namespace tofsmith

@@ -15,16 +15,16 @@ namespace tofsmith {
 /// Waveforms for one channel of a generator.
 struct UploadChannel {
   int channel = 1;                        ///< 1, 2
-  std::vector<QuantizedWaveform> stored;  ///< tables for its memory, in this order
-  int selected = 0;                       ///< index of the table that the channel plays
+  std::vector<QuantizedWaveform> stored;  ///< tables to store, in this order
+  int selected = 0;                       ///< index of the table to output
 
   /// @throws std::out_of_range if no stored waveform is selected
   const QuantizedWaveform& selected_waveform() const;
 };
 
-/// Header of a waveform sent to a Siglent; sources disagree, see docs/instruments.md.
+/// Header of a waveform sent to a Siglent generator; sources disagree, see docs/instruments.md.
 enum class WaveHeader {
-  length,   ///< with LENGTH, so that the message defines its own end
+  length,   ///< with LENGTH, so that the message contains its own size
   plain,    ///< as in Siglent's application note
   minimal,  ///< name and data only
 };
@@ -32,7 +32,6 @@ constexpr std::array<std::string_view, 3> words_of(WaveHeader /*any*/) {
   return {"length", "plain", "minimal"};
 }
 
-/// Waveforms and settings for a generator.
 struct UploadRequest {
   std::vector<UploadChannel> channels;
   double load_ohm = 50.0;
@@ -69,14 +68,15 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
 struct AnswerCheck {
   int channel = 0;       ///< 0: none
   std::string quantity;  ///< "amplitude_vpp", ...
-  std::string field;     ///< key of answers such as "C1:BSWV FRQ,1000HZ,AMP,4V"; empty: all of it
-  double wanted = 0.0;   ///< for a number
+  std::string field;     ///< key in answers such as "C1:BSWV FRQ,1000HZ,AMP,4V"; empty: the whole
+                         ///< answer
+  double wanted = 0.0;   ///< expected number
   double tolerance = 0.0;
-  std::vector<std::string> texts;  ///< for a word: any of these, upper case
-  bool within = false;             ///< the word may be anywhere in the answer
+  std::vector<std::string> texts;  ///< expected word: any of these, upper case
+  bool within = false;             ///< the word may occur anywhere in the answer
 };
 
-/// A message to the instrument and the answer that it must get.
+/// A message to the instrument and the answer that it must return.
 struct UploadStep {
   enum class Answer {
     none,
@@ -85,11 +85,11 @@ struct UploadStep {
     arb_file,   ///< a block with an .arb file whose points are the numbers in `expected`
     wave_data,  ///< a header that passes `checks`, "WAVEDATA,", then the bytes `expected`
   };
-  std::string what;     ///< "select the waveform of channel 1"
-  std::string message;  ///< without line end
+  std::string what;     ///< description: "select the waveform of channel 1"
+  std::string message;  ///< without end of line
   std::string data;     ///< bytes after the message
   bool line_end = true;
-  bool switches_on = false;  ///< an output
+  bool switches_on = false;  ///< switches an output on
   Answer answer = Answer::none;
   std::vector<AnswerCheck> checks;
   std::string expected;
@@ -97,27 +97,28 @@ struct UploadStep {
   double pause_s = 0.0;  ///< after the message
 };
 
-/// All messages of one upload, in order.
 struct UploadScript {
   GeneratorModel model;
   std::vector<UploadChannel> channels;
   std::vector<UploadStep> steps;
-  std::vector<std::string> outputs_off;          ///< messages that make it safe
-  bool reads_back = true;                        ///< points of every waveform are compared
-  std::vector<std::string> cannot_be_read_back;  ///< what no answer confirms
+  std::vector<std::string> outputs_off;          ///< messages that bring the instrument into a safe
+                                                 ///< state
+  bool reads_back = true;                        ///< the points of every waveform are compared
+  std::vector<std::string> cannot_be_read_back;  ///< settings that no answer confirms
 };
 
+/// Returns the messages of an upload.
 /// @throws std::invalid_argument naming the channel, table, rate or voltage that does not fit the
 ///         model
 UploadScript upload_script(const GeneratorModel& model, const UploadRequest& request);
 
-/// The messages as text, one per line, with data as a number of bytes.
+/// Returns the messages as text, one per line; data is shown as a number of bytes.
 std::string script_text(const UploadScript& script);
 
-/// Voltage at a load for each volt into 50 ohm.
+/// Returns the voltage at a load per volt into 50 ohm.
 double load_gain(double load_ohm);
 
-/// The exposures of a code to load and the one to play.
+/// Exposures of a code to load, and the exposure to output.
 struct UploadSelection {
   int light_channel = 1;
   int sensor_channel = 2;
@@ -125,7 +126,7 @@ struct UploadSelection {
   int tap = 1;
   bool all = false;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate() const;
 };
 auto fields_of(ConstOrNot<UploadSelection> auto& s) {
@@ -139,23 +140,24 @@ auto fields_of(ConstOrNot<UploadSelection> auto& s) {
       Field("all", s.all, Help{"load all K pairs; the chosen exposure is played"}));
 }
 
-/// A code as tables for a model: in its format and, unless the options contain a sample rate, at
-/// its highest rate (with `true_arb`: the highest rate at which every point is played).
+/// Converts a code to tables for a model, in the model's format. The default sample rate is the
+/// model's highest, or the highest without skipped points if `true_arb`.
 /// @throws std::invalid_argument naming the option that breaks a rule of the format or the model
 WaveformExport export_for_model(const CodeSet& code, const Camera& camera,
                                 const GeneratorModel& model, ExportOptions options, bool true_arb);
 
-/// The channels of a selection, each with the tables that it stores and the one that it plays.
+/// Returns the channels of a selection, each with its stored tables and the selected one.
 /// @throws std::invalid_argument if the code has no such exposure or tap
 std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
                                              const UploadSelection& selection);
 
-/// "step", "normal" or "off" as in a Keysight's command. @throws std::invalid_argument
+/// Parses "step", "normal" or "off" into the filter name of a Keysight command.
+/// @throws std::invalid_argument
 std::string parse_output_filter(std::string_view word);
-/// "length", "plain" or "minimal". @throws std::invalid_argument for any other word
+/// Parses "length", "plain" or "minimal". @throws std::invalid_argument
 WaveHeader parse_wave_header(std::string_view word);
 
-/// A script as a text file, for one exposure and for the models that accept the same messages.
+/// A script as a text file, for one exposure and all models that accept the same messages.
 struct ExportedScript {
   std::string name;  ///< "SDG2042X_exposure_1.scpi.txt", named after the first model
   std::string text;
@@ -163,13 +165,12 @@ struct ExportedScript {
 
 struct ExportedScripts {
   std::vector<ExportedScript> files;
-  std::string
-      problem;  ///< the rule that the fastest model reports, if no model can play the tables
+  std::string problem;  ///< message of the fastest model, if no model can output the tables
 };
 
-/// The scripts that load and select each exposure of a code on the two-channel generators that use
-/// the format of the tables: light on channel 1, the sensor's first tap on channel 2, outputs off.
-/// Models with equal scripts share one. Empty if no model uses this format.
+/// Returns scripts that load and select each exposure of a code on two-channel generators with the
+/// format of the tables: light on channel 1, first tap on channel 2, outputs off. Models with equal
+/// scripts share one. Empty if no model uses this format.
 ExportedScripts export_scripts(const WaveformExport& exported);
 
 }  // namespace tofsmith

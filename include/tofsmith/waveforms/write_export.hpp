@@ -16,45 +16,45 @@
 
 namespace tofsmith {
 
-/// What became of a code on the hardware that it is exported for.
+/// Result of exporting a code.
 struct ExportedCode {
-  CodeSet code;                         ///< at the camera's samples
-  Camera actual;                        ///< with the generators that play the tables
-  WaveformExport waveforms;             ///< the tables
-  std::string manifest;                 ///< manifest.json
-  std::vector<ExportedScript> scripts;  ///< SCPI for the generators that can play the tables
+  CodeSet code;   ///< resampled to the camera's samples
+  Camera actual;  ///< the camera with the generators of the tables
+  WaveformExport waveforms;
+  std::string manifest;                 ///< contents of manifest.json
+  std::vector<ExportedScript> scripts;  ///< SCPI for the generators that support the tables
   std::vector<GeneratorReport> generators;
-  std::optional<GeneratorLoss> loss;  ///< if it was asked for
-  std::vector<std::string> notes;     ///< what a user should know
-  std::filesystem::path output;       ///< as asked for
-  /// Written files: tables first; in a directory then scripts, manifest.json and report.html.
+  std::optional<GeneratorLoss> loss;  ///< if requested
+  std::vector<std::string> notes;     ///< for the user
+  std::filesystem::path output;       ///< as requested
+  /// Written files: tables; in a directory also scripts, manifest.json and report.html.
   std::vector<std::filesystem::path> files;
 };
 
-/// A code to be written for hardware.
 struct ExportRequest {
   ExportOptions options;
-  /// A directory, made if it is missing, for all files; or one file, which must have the format's
-  /// extension, of a format that holds all waveforms in one.
+  /// A directory, created if missing, for all files; or one file with the format's extension, if
+  /// the format stores all waveforms in one file.
   std::filesystem::path output;
   OutputPolicy policy = OutputPolicy::refuse_existing;
-  std::optional<EvaluateOptions> loss;  ///< how to measure what the limits cost; none: it is not
-  /// report.html of a directory, such as export_page(); none: it is not written.
+  std::optional<EvaluateOptions> loss;  ///< how to evaluate the depth error under the hardware's
+                                        ///< limits; none: not evaluated
+  /// Contents of report.html, e.g. export_page(); none: not written. Only for directories.
   std::function<std::string(const ExportedCode&)> page;
 
-  /// Whether `output` is one file. @throws std::invalid_argument naming output, if it cannot be
-  /// one, or format
+  /// Returns true if `output` is one file.
+  /// @throws std::invalid_argument naming output, if it cannot be one file, or format
   bool is_one_file() const;
 };
 
-/// Writes all waveforms of a code as files; all of them can be written before the first is.
+/// Writes all waveforms of a code as files. No file is written unless all of them can be.
 /// @throws std::invalid_argument as exporting_camera(), export_waveforms(), generator_loss() and
 ///         ExportRequest::is_one_file(); IoError if a file exists or cannot be written; Interrupted
-///         if progress says so
+///         if `progress` cancels
 ExportedCode write_export(const CodeSet& code, const Camera& camera, const ExportRequest& request,
                           const Progress& progress = {});
 
-/// What `tofsmith export --json` prints: manifest, generators, depth error and notes.
+/// Returns the output of `tofsmith export --json`: manifest, generators, depth error and notes.
 std::string export_document(const ExportedCode& exported);
 
 }  // namespace tofsmith
