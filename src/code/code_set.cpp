@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 namespace {
-// Room for rounding in files and refinements; far below any effect on depth.
+// Tolerance for rounding in files and refinements; far below any effect on depth.
 constexpr double tolerance = 1e-9;
 
 void check_modulation(const Waveform& waveform, int exposure) {

@@ -33,7 +33,7 @@ std::optional<int> integer(std::string_view text) {
   return value;
 }
 
-/// The number behind `prefix`, when the name is the prefix and a number.
+/// Returns the number after `prefix` if the name consists of both.
 std::optional<int> number_after(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return std::nullopt;
   return integer(name.substr(prefix.size()));
@@ -70,7 +70,7 @@ Member pulsed_multi_frequency(int low_steps, int high_frequency) {
 }
 
 std::optional<Member> member_named(std::string_view name) {
-  // What says whether a code of `number` can be built, and what builds it.
+  // Combines the check and the builder of a numbered member.
   const auto numbered = [](auto misfit, auto build, int number) {
     return Member{[=](const FamilyOptions& o) { return misfit(number, o); },
                   [=](const FamilyOptions& o) { return build(number, o); }};
@@ -111,7 +111,7 @@ std::optional<Member> member_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// The name that is built of each family.
+/// Returns the example name of each family.
 std::vector<std::string> examples() {
   std::vector<std::string> names;
   for (const FamilyDescription& family : list_families()) names.push_back(family.example);
@@ -127,8 +127,8 @@ BrokenRule unknown_family(std::string_view name) {
                              : fmt::format("is not a built-in family; did you mean {}?", near));
 }
 
-/// What the family refuses, a number out of its range or a grid that it does not fit, under the
-/// name that was asked for.
+/// Returns the rule that a member violates (number out of range, unsuitable grid), reported under
+/// the requested name.
 std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                                     const FamilyOptions& options) {
   if (options.taps > 2 && !member.has_phase_steps)
@@ -217,7 +217,7 @@ std::vector<std::string> family_members(const FamilyOptions& options, int highes
     for (const int low_steps : {2, 3}) names.push_back(pulsed_multi_frequency_name(low_steps, q));
     for (int low_steps = 2; low_steps <= max_steps; ++low_steps)
       for (int steps = 2; steps <= max_steps; ++steps)
-        if (q != 7 || low_steps != 3 || steps != 2)  // that one has a name of its own
+        if (q != 7 || low_steps != 3 || steps != 2)  // this code has its own name
           names.push_back(fmt::format("multifrequency-1x{}-{}x{}", low_steps, q, steps));
   }
   std::erase_if(names,

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Harmonics that the forward model keeps of any camera.
+/// Number of harmonics that the forward model keeps.
 constexpr int max_frequency = 2048;
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace tofsmith {
 
 namespace {
-// A ramp locates a short pulse; one sixtieth of the period is short beside it.
+// A ramp requires a pulse that is short compared with the period.
 constexpr double shortest_duty = 1.0 / 60.0;
 
 Waveform rising_ramp(int samples) {

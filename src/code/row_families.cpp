@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// The first rule that a code breaks which is to become rows.
+/// Returns the first rule that prevents a conversion to rows.
 std::optional<BrokenRule> not_rows(const CodeSet& code) {
   const std::string what = "code " + code.name();
   if (code.is_rows()) return std::nullopt;

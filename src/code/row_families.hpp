@@ -8,13 +8,13 @@
 
 namespace tofsmith {
 
-/// Truncated Fourier series: the shortest pulse within the peak, and rows cos and sin at f0, 2 f0,
-/// ..; of an odd number the last is a cosine.
+/// Truncated Fourier series: the shortest pulse within the peak factor, and rows cos and sin at f0,
+/// 2 f0, ...; if the number is odd, the last row is a cosine.
 CodeSet fourier_rows(int rows, const FamilyOptions& options);
 std::optional<BrokenRule> fourier_rows_misfit(int rows, const FamilyOptions& options);
 
-/// A histogram of K time gates of equal length, behind one another, with a pulse as long as a gate
-/// or as the peak asks for.
+/// Histogram of K consecutive time gates of equal length; the pulse is as long as a gate, or longer
+/// if the peak factor requires it.
 CodeSet histogram_rows(int rows, const FamilyOptions& options);
 std::optional<BrokenRule> histogram_rows_misfit(int rows, const FamilyOptions& options);
 

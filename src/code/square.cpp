@@ -33,7 +33,7 @@ CodeSet square_code(int phase_steps, const FamilyOptions& options) {
 CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
                                     const FamilyOptions& options) {
   require(pulsed_multi_frequency_misfit(low_steps, high_frequency, options));
-  // Quadrature or thirds of a period, and pulses as short as the steps leave use for.
+  // Quadrature or thirds of a period, with the shortest pulses that the steps can use.
   const double low_step = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 3.0;
   const double low_pulse = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 6.0;
   const double low_duty = std::max(1.0 / options.peak_factor, low_pulse);

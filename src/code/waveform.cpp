@@ -19,7 +19,7 @@ namespace tofsmith {
 namespace {
 constexpr double pi = std::numbers::pi;
 
-/// Splits intervals at the end of the period so that all lie in [0, 1], sorted.
+/// Splits intervals at the end of the period; the result is sorted and within [0, 1].
 std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
   std::vector<OnInterval> pieces;
   for (const OnInterval& interval : on) {
@@ -35,7 +35,8 @@ std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
   return pieces;
 }
 
-/// Adds sign exp(-2 pi i n t) to sum n, in blocks: that of a block's first times those of 0, 1, ..
+/// Adds sign exp(-2 pi i n t) to sum n. Works in blocks: a block is its first factor times the
+/// first block.
 void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
   constexpr Eigen::Index block = 64;
   const auto turn = [&](Eigen::Index n) {
@@ -50,9 +51,9 @@ void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
   }
 }
 
-/// Values of a sum of cosines at t = (j + offset) / points, j = 0 .. points - 1.
+/// Returns a sum of cosines at t = (j + offset) / points, j = 0, ..., points - 1.
 Eigen::VectorXd values_of(const Eigen::VectorXcd& coefficients, int points, double offset) {
-  // Harmonics above points / 2 fold onto lower ones: exact at these times.
+  // Harmonics above points / 2 alias to lower ones, which is exact at these times.
   Eigen::VectorXcd folded = Eigen::VectorXcd::Zero(points);
   folded[0] = coefficients[0];
   for (Eigen::Index n = 1; n < coefficients.size(); ++n) {
@@ -195,7 +196,7 @@ Eigen::VectorXd Waveform::cell_averages(int samples) const {
   require(samples >= 1, "samples", samples, "must be >= 1");
   if (samples_.size() == samples) return samples_;
   if (coefficients_.size() > 0) {
-    // The mean over a cell: sin(x) / x times the value at its middle, x = pi n / samples.
+    // Averaging over a cell multiplies harmonic n by sin(x) / x with x = pi n / samples.
     Eigen::VectorXcd averaged = coefficients_;
     for (Eigen::Index n = 1; n < averaged.size(); ++n) {
       const double x = pi * static_cast<double>(n) / samples;
@@ -253,7 +254,7 @@ Eigen::VectorXcd Waveform::harmonics(int highest) const {
   const int size = static_cast<int>(samples_.size());
   Eigen::VectorXcd spectrum;
   PeriodicTransform(size).forward(samples_, spectrum);
-  // Each sample is held over its cell: sin(x) / x exp(-i x) with x = pi n / size.
+  // Each sample is constant over its cell: sin(x) / x exp(-i x) with x = pi n / size.
   Eigen::VectorXcd held(size);
   for (int k = 0; k < size; ++k) {
     const std::complex<double> dft = k <= size / 2 ? spectrum[k] : std::conj(spectrum[size - k]);
@@ -302,7 +303,7 @@ Eigen::VectorXd Waveform::values_at_middles(int points) const {
   require(points >= 1, "points", points, "must be >= 1");
   require(!is_binary(), "waveform", "binary", "must be sampled or a sum of cosines");
   if (!is_sampled()) return values_of(coefficients_, points, 0.5);
-  constexpr double rounding = 1e-9;  // of a middle that is the border of two samples
+  constexpr double rounding = 1e-9;  // for centres on the border of two samples
   Eigen::VectorXd values(points);
   for (int j = 0; j < points; ++j) {
     const double middle = (j + 0.5) / points * static_cast<double>(samples_.size());

@@ -10,8 +10,8 @@
 
 namespace tofsmith {
 
-// The first rule that a member of a family breaks; none: it can be built. A grid that does not
-// divide the samples comes with the nearest usable N, unless the caller asks for no exact grid.
+// Return the first rule that a family member violates; none: it can be built. If the grid does not
+// divide the samples, the rule suggests the nearest usable N, unless options.exact_grid is false.
 
 std::optional<BrokenRule> options_misfit(const FamilyOptions& options);
 std::optional<BrokenRule> multi_frequency_misfit(const std::vector<FrequencySteps>& frequencies,
@@ -22,18 +22,22 @@ std::optional<BrokenRule> pulsed_multi_frequency_misfit(int low_steps, int high_
 std::optional<BrokenRule> gray_misfit(int bits, const FamilyOptions& options);
 std::optional<BrokenRule> hamiltonian_misfit(int measurements, const FamilyOptions& options);
 
+<<<<<<< HEAD
 /// The phase steps in the order of exposures and taps: tap t of exposure e measures step
 /// e + t steps / taps.
 std::vector<int> steps_by_tap(int steps, int taps);
 
 /// Of a walk alone.
+=======
+/// For the walk alone.
+>>>>>>> e92d6383 (code: comments in plain English)
 std::optional<BrokenRule> walk_misfit(int measurements);
 
 std::string pulsed_multi_frequency_name(int low_steps, int high_frequency);
 
-/// Names of all members of the families that can be built with these options, each once: up to 10
-/// measurements, higher frequencies up to `highest_frequency`, and of lists of frequencies those of
-/// the fundamental and one more, 2 .. 4 steps each.
+/// Returns the names of all members that can be built with these options: up to 10 measurements,
+/// higher frequencies up to `highest_frequency`; lists of frequencies consist of the fundamental
+/// and one more with 2 to 4 steps each.
 std::vector<std::string> family_members(const FamilyOptions& options, int highest_frequency);
 
 }  // namespace tofsmith

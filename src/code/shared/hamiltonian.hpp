@@ -9,15 +9,15 @@
 
 namespace tofsmith {
 
-/// A closed walk along the edges of the K-cube: consecutive vertices (bit k = code k is on) differ
-/// in one bit, no vertex comes twice, all-zeros and all-ones are left out, and every bit is on in
-/// exactly half of the vertices. Its length is the longest possible: 2^K - 2 for odd K, and
-/// 2^K - 4 for even K, since the cube is bipartite.
-/// K = 3, 4, 5 are the published walks; beyond, a walk is constructed.
+/// Returns a closed walk along the edges of the K-cube: consecutive vertices (bit k: code k is on)
+/// differ in one bit, no vertex repeats, all-zeros and all-ones are excluded, and every bit is on
+/// in exactly half of the vertices. Its length is maximal: 2^K - 2 for odd K and 2^K - 4 for even
+/// K, because the cube is bipartite. Walks for K = 3, 4, 5 are published; longer ones are
+/// constructed.
 /// @throws std::invalid_argument unless 3 <= K <= 10
 std::vector<std::uint32_t> hamiltonian_walk(int measurements);
 
-/// Number of edges L of the walk: 6, 12, 30, 60, ..
+/// Number of edges L of the walk: 6, 12, 30, 60, ...
 int hamiltonian_length(int measurements);
 
 /// Hamiltonian coding functions: demodulation follows the walk, modulation is one pulse of duty

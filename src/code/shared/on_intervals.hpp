@@ -8,13 +8,13 @@
 
 namespace tofsmith {
 
-/// Moves intervals by whole periods so that each rises in [0, 1), and sorts them. Where rounding
-/// makes an interval overlap the next one, it ends there; intervals shorter than rounding vanish.
+/// Moves intervals by whole periods so that each rises in [0, 1), and sorts them. An interval that
+/// overlaps the next one by rounding is cut; intervals shorter than rounding are removed.
 std::vector<OnInterval> within_period(std::vector<OnInterval> on);
 
-/// Multiplies the length of every interval by `factor`, about its centre. Intervals that then
-/// overlap or touch are merged; intervals that cover the period become {[0, 1)}.
-/// @param on  not empty, as in a valid waveform
+/// Multiplies the length of every interval by `factor`, about its centre. Resulting overlaps are
+/// merged; intervals that cover the period become {[0, 1)}.
+/// @param on  not empty
 std::vector<OnInterval> stretched(const std::vector<OnInterval>& on, double factor);
 
 }  // namespace tofsmith

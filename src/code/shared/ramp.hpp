@@ -6,12 +6,12 @@
 
 namespace tofsmith {
 
-/// Gated ramp: the sensor's gain rises over the period; a second exposure with the gain fully
-/// open measures the signal, a third with the light off measures ambient. K = 3.
+/// Gated ramp: the gain rises over the period in the first exposure, is constant in the second to
+/// measure the signal, and the light is off in the third to measure ambient light. K = 3.
 CodeSet single_ramp_code(const FamilyOptions& options);
 
-/// A rising and a falling ramp, whose ratio gives depth, and one exposure with the light off that
-/// measures ambient. K = 3.
+/// A rising and a falling ramp, whose ratio determines depth, and an exposure with the light off to
+/// measure ambient light. K = 3.
 CodeSet double_ramp_code(const FamilyOptions& options);
 
 }  // namespace tofsmith
