@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::sweep: work lists and their store. Includes tofsmith/io.hpp.
+/// All of tofsmith::sweep: parameter sweeps and their stores. Includes tofsmith/io.hpp.
 
 #include "tofsmith/io.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"

@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// linux/magic.h and the file systems' own sources.
+/// From linux/magic.h and the sources of the file systems.
 constexpr std::array<std::pair<std::uint32_t, const char*>, 18> network_file_systems = {{
     {0x6969, "NFS"},
     {0x517b, "SMB"},

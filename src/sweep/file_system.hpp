@@ -8,12 +8,12 @@
 
 namespace tofsmith {
 
-/// The name of a file system that other machines may write to as well, such as "NFS", by the number
-/// that statfs() gives it; "" for those of this machine alone. Write-ahead logs need shared memory
-/// between their users and so break on these.
+/// Returns the name of a file system that other machines can write to, such as "NFS", from its
+/// number in statfs(); "" for local file systems. Write-ahead logs require shared memory between
+/// their users and therefore fail on network file systems.
 std::string network_file_system(std::uint32_t magic);
 
-/// The same of where `path` is or would be.
+/// As above, for the location of `path`, which need not exist.
 std::string network_file_system_at(const std::filesystem::path& path);
 
 }  // namespace tofsmith

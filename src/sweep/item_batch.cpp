@@ -16,11 +16,11 @@ namespace tofsmith {
 
 namespace {
 
-/// What is to be stored of an item.
+/// Returns the result to store for an item.
 std::string computed(const WorkItem& item, const Progress& progress) {
   if (!item.design)
     return item_result_json(evaluate(*item.code, item.camera, item.options, progress));
-  // Standard codes of three taps or more compete, too, with other numbers of exposures.
+  // Standard codes with three or more taps also compete, with other numbers of exposures.
   const DesignResult result = design(item.camera, *item.design, progress);
   const int exposures = item.design->exposures.front();
   for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.error))
@@ -98,7 +98,7 @@ void ItemBatch::compute(const ClaimedItem& claimed) {
     const std::lock_guard lock(mutex_);
     outcomes_.push_back(std::move(outcome));
     changed_.notify_all();
-  } catch (const Interrupted&) {  // by stop()
+  } catch (const Interrupted&) {  // from stop()
   }
 }
 

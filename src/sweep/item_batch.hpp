@@ -13,8 +13,8 @@
 
 namespace tofsmith {
 
-/// Computes items on all threads in the background, so that the thread that made it can store
-/// outcomes as they come. The destructor stops the work.
+/// Computes items on all threads in the background, so that the calling thread can store outcomes
+/// as they arrive. The destructor stops the work.
 class ItemBatch {
  public:
   ItemBatch(const WorkList& list, std::vector<ClaimedItem> items);
@@ -24,11 +24,11 @@ class ItemBatch {
 
   /// Waits up to `max_wait` for outcomes. @return the new ones
   std::vector<ItemOutcome> wait(std::chrono::milliseconds max_wait);
-  /// True after the end of the work. wait() may still return outcomes.
+  /// Returns true when the work has ended; wait() may still return outcomes.
   bool is_done() const { return done_; }
-  /// Ends the work. @return the outcomes that wait() did not return
+  /// Stops the work. @return outcomes that wait() has not returned
   std::vector<ItemOutcome> stop();
-  /// How much of a batch of one item is done, in [0, 1]; 0 of larger ones.
+  /// Progress of a batch of one item, in [0, 1]; 0 for larger batches.
   double fraction() const { return fraction_; }
 
  private:
@@ -42,7 +42,7 @@ class ItemBatch {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<ItemOutcome> outcomes_;
-  std::thread thread_;  // last: it uses all others
+  std::thread thread_;  // last, because it uses all other members
 };
 
 }  // namespace tofsmith

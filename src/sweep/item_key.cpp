@@ -22,7 +22,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Bit for bit: the last digit of a switching time counts.
+/// Appends the bits of the number, because every digit of a switching time matters.
 void append(std::string& text, double number) {
   fmt::format_to(std::back_inserter(text), "{:x} ", std::bit_cast<std::uint64_t>(number));
 }
@@ -42,13 +42,14 @@ void append(std::string& text, const Waveform& waveform) {
   text += '\n';
 }
 
-/// The camera without its name and light levels, its responses as samples wherever they came from.
+/// Returns the camera without name and light levels, with its responses as samples regardless of
+/// their source.
 std::string camera_text(const Camera& camera) {
   Camera plain = camera;
   plain.name = "camera";
   plain.operating = paper_operating_range();
   for (ImpulseResponse* response : {&plain.light.impulse_response, &plain.sensor.impulse_response})
-    if (!response->samples.empty()) response->file.clear();  // then its samples are written
+    if (!response->samples.empty()) response->file.clear();  // the samples are written instead
   return camera_to_json(plain);
 }
 
@@ -58,8 +59,8 @@ void append(std::string& text, std::string_view name, std::span<const double> nu
   text += '\n';
 }
 
-/// The fields of EvaluateOptions that differ from their defaults, except those that item_key()
-/// always contains.
+/// Returns the fields of EvaluateOptions that differ from their defaults, except those that
+/// item_key() always includes.
 std::string other_options(const EvaluateOptions& options) {
   static constexpr std::array<std::string_view, 7> always = {
       "trials",    "seed",           "outlier_threshold_m",
@@ -97,7 +98,7 @@ std::string setup_key(const Camera& camera, const DesignOptions& options, double
   fmt::format_to(std::back_inserter(text), "designed by {} with effort {}: {} exposures {}\n",
                  TOFSMITH_VERSION, effort, name_of(options.method),
                  fmt::join(options.exposures, ","));
-  // Nothing to evaluate(), and much to design().
+  // Irrelevant to evaluate(), but not to design().
   if (const auto& later = camera.operating.multipath) {
     append(text, "ratio ", later->ratio);
     append(text, "delay ", later->delay_m);

@@ -10,13 +10,13 @@
 
 namespace tofsmith {
 
-/// A hash of all of a camera and the code it plays, but for names and light levels.
+/// Returns a hash of a camera and a code, without names and light levels.
 std::string setup_key(const Camera& camera, const CodeSet& code);
-/// The same of a camera for which a code is designed.
-/// @param effort  that the options are of
+/// As above for a camera that a code is designed for.
+/// @param effort  of the options
 std::string setup_key(const Camera& camera, const DesignOptions& options, double effort);
 
-/// WorkItem::key of what evaluate() is called with.
+/// Returns WorkItem::key for the arguments of evaluate().
 /// @param setup  setup_key()
 std::string item_key(std::string_view setup, const OperatingRange& light,
                      const EvaluateOptions& options);

@@ -11,19 +11,19 @@
 
 namespace tofsmith {
 
-/// A depth error as a store holds it: one line of JSON, without the code's name, which does not
-/// determine it.
-/// @param designed  the code, where it was designed for the item
+/// Returns a depth error as stored: one line of JSON without the code's name, which does not affect
+/// it.
+/// @param designed  the code, if it was designed for the item
 std::string item_result_json(const DepthErrorReport& report, const CodeSet* designed = nullptr);
 
-/// What a store holds of a result.
+/// A stored result.
 struct ItemResult {
   DepthErrorReport error;
   std::optional<CodeSet> designed;
 };
 
-/// The same back.
-/// @param code  the name
+/// Parses a stored result.
+/// @param code  name of the code
 /// @param file  the store, for errors
 /// @throws IoError naming file and member
 ItemResult parse_item_result(const std::string& json, const std::string& code,

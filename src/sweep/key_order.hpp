@@ -10,11 +10,11 @@
 
 namespace tofsmith {
 
-/// The places of all different keys, in the order of the keys; of equal ones the first place.
-/// Whoever asks a store in this order reads it from its beginning to its end.
+/// Returns the positions of all distinct keys, sorted by key; the first position if a key is
+/// repeated. This is the order of the store, so that it is accessed sequentially.
 std::vector<std::int64_t> key_order(std::span<const std::string> keys);
 
-/// The first 16 hexadecimal digits of a key as a number.
+/// Returns the first 16 hexadecimal digits of a key as a number.
 std::uint64_t key_number(std::string_view key);
 
 }  // namespace tofsmith

@@ -9,13 +9,13 @@ namespace tofsmith {
 
 namespace {
 
-/// A status that nobody works on any more.
+/// Maps running items to pending.
 std::string_view settled(ItemStatus status) {
   if (status == ItemStatus::finished) return "finished";
   return status == ItemStatus::failed ? "failed" : "pending";
 }
 
-/// Takes over the items of one part.
+/// Copies the items of the parts.
 class Merger {
  public:
   explicit Merger(SqliteDatabase& into)
@@ -42,7 +42,7 @@ class Merger {
         throw IoError(path.string(),
                       fmt::format("item {} ({}) has another result than in the stores before it",
                                   key, item.settings));
-      // Of two that are finished, the one that took less time: whatever the order of the parts.
+      // If both are finished, keep the faster one, so that the order of the parts does not matter.
       is_better = is && (!was_finished || item.seconds < find_.number(2));
       find_.reset();
     }
@@ -74,7 +74,7 @@ void SweepStore::merge(const std::filesystem::path& path,
       throw IoError(part.string(), fmt::format("was computed on {}; the stores before it on {}",
                                                store.target(), target));
   }
-  // A rollback journal leaves one file, which may lie on a network file system.
+  // A rollback journal leaves a single file, which may be on a network file system.
   SqliteDatabase into = open_store_file(path, target, "any");
   SqliteTransaction transaction(into);
   Merger merger(into);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int patience_ms = 60'000;
 
-/// What a user can do about it.
+/// Advice for the user.
 std::string_view advice(int code) {
   switch (code) {
     case SQLITE_FULL:

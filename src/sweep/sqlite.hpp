@@ -14,24 +14,24 @@ namespace tofsmith {
 
 class SqliteStatement;
 
-/// A connection to an SQLite database; use it from one thread at a time. Every member throws
-/// IoError that names the file and what SQLite and the system say.
+/// A connection to an SQLite database; not thread-safe. Every member throws IoError with the file
+/// and the messages of SQLite and the system.
 class SqliteDatabase {
  public:
   enum class Access { read, write };
 
-  /// Opens a file, which Access::write creates if it is missing. Waits for other processes.
+  /// Opens a file; Access::write creates it if missing. Waits for other processes.
   SqliteDatabase(const std::filesystem::path& path, Access access);
 
-  /// Runs statements that give no rows, or whose rows do not matter.
+  /// Runs statements and ignores their rows.
   void execute(const std::string& statements);
-  /// Runs it and returns SQLite's code instead of throwing.
+  /// Runs statements and returns SQLite's code instead of throwing.
   int try_execute(const std::string& statements);
   SqliteStatement prepare(std::string_view statement);
-  /// The first column of the first row as text; "" when there is none.
+  /// First column of the first row as text; "" if there are no rows.
   std::string text_of(std::string_view query);
 
-  /// @throws IoError about SQLite's last error
+  /// @throws IoError with SQLite's last error
   [[noreturn]] void fail(std::string_view what) const;
 
  private:
@@ -42,18 +42,17 @@ class SqliteDatabase {
   std::unique_ptr<sqlite3, Close> connection_;
 };
 
-/// A statement to be run many times. Parameters and columns count from 1 and from 0, as SQLite
-/// does.
+/// A prepared statement. Parameters count from 1 and columns from 0, as in SQLite.
 class SqliteStatement {
  public:
   SqliteStatement& bind(int parameter, std::string_view text);
   SqliteStatement& bind(int parameter, std::int64_t number);
   SqliteStatement& bind(int parameter, double number);
-  /// Goes to the next row. @return false at the end, after which parameters can be bound again
+  /// Advances to the next row. @return false at the end, after which parameters can be bound again
   bool step();
-  /// Runs it to its end.
+  /// Runs the statement to its end.
   void run();
-  /// Ends it before its end.
+  /// Ends the statement early.
   void reset() { sqlite3_reset(statement_.get()); }
 
   std::string text(int column) const;
@@ -72,7 +71,7 @@ class SqliteStatement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-/// Changes that are made together or not at all; they are undone unless commit() is called.
+/// Changes that are applied together; rolled back unless commit() is called.
 class SqliteTransaction {
  public:
   explicit SqliteTransaction(SqliteDatabase& database) : database_(&database) {

@@ -18,13 +18,12 @@ namespace tofsmith {
 namespace {
 
 constexpr int application_id = 0x746f6673;  // "tofs"
-/// Version 1 had columns and a table of the processes that worked on the store. Stores of both
-/// versions are read and continued.
+/// Version 1 had more columns and a table of processes. Both versions can be read and continued.
 constexpr int schema_version = 2, oldest_schema_version = 1;
 constexpr std::size_t header_bytes = 100;
 constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
 
-/// The first bytes of a database; fewer, if the file is shorter.
+/// Returns the header of a database; shorter if the file is.
 std::string header_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string header(header_bytes, '\0');
@@ -33,7 +32,7 @@ std::string header_of(const std::filesystem::path& path) {
   return header;
 }
 
-/// Refuses what is there and no database, before SQLite touches it.
+/// Rejects existing files that are not databases before SQLite touches them.
 void require_database(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -73,7 +72,7 @@ void create_if_empty(SqliteDatabase& database, const std::string& target) {
   transaction.commit();
 }
 
-/// Whoever reads at this moment keeps SQLite from changing the mode, without waiting.
+/// SQLite cannot change the mode while another connection reads, and does not wait for it.
 void set_journal(SqliteDatabase& database, const std::string& mode) {
   for (int attempt = 0; database.try_execute("PRAGMA journal_mode = " + mode) == SQLITE_BUSY;
        ++attempt) {
@@ -84,7 +83,7 @@ void set_journal(SqliteDatabase& database, const std::string& mode) {
 
 using FileTime = std::filesystem::file_time_type;
 
-/// When a file was last written; any fixed time if it is not there.
+/// Returns the time of the last write; a fixed time if the file is missing.
 FileTime time_of(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::last_write_time(path, ignored);
@@ -92,7 +91,7 @@ FileTime time_of(const std::filesystem::path& path) {
 
 std::filesystem::path log_of(const std::filesystem::path& path) { return path.string() + "-wal"; }
 
-/// Copies database and log as they are at one moment.
+/// Copies a consistent state of database and log.
 void copy_store(const std::filesystem::path& from, const std::filesystem::path& to) {
   const auto replace = std::filesystem::copy_options::overwrite_existing;
   for (int attempt = 0; attempt < 10; ++attempt) {
@@ -112,7 +111,7 @@ std::filesystem::path make_directory() {
   return pattern;
 }
 
-/// In WAL mode even readers want to write a file beside it.
+/// In WAL mode even readers must create a file next to the database.
 bool asks_for_a_writable_place(SqliteDatabase& database) {
   const int code = database.try_execute("SELECT count(*) FROM sqlite_master");
   return code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
@@ -144,7 +143,7 @@ SqliteDatabase open_store_file(const std::filesystem::path& path, const std::str
   create_if_empty(database, target);
   require_ours(database, path);
   set_journal(database, network.empty() ? "WAL" : "DELETE");
-  // In WAL mode a commit need not reach the disk for the file to stay whole.
+  // In WAL mode the file stays consistent even if a commit has not reached the disk.
   database.execute(network.empty() ? "PRAGMA synchronous = NORMAL" : "PRAGMA synchronous = FULL");
   return database;
 }

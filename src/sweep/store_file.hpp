@@ -10,29 +10,29 @@
 
 namespace tofsmith {
 
-/// What a store says of itself.
+/// Header of a store.
 struct StoreHead {
-  std::string target;  ///< instruction set of the results
+  std::string target;  ///< instruction set that the results were computed with
 };
 
-/// Whether a database file says that it is in WAL mode.
+/// Returns true if the header of a database file indicates WAL mode.
 bool is_in_wal_mode(const std::filesystem::path& path);
 
-/// Opens a store's file to write to it; makes it if it is missing or empty.
+/// Opens a store's file for writing; creates it if it is missing or empty.
 /// @param target   recorded in a new store
-/// @param network  name of the network file system it is on, or "": then WAL mode
-/// @throws IoError if it is no store, or as SweepStore::open()
+/// @param network  name of its network file system, or "" to use WAL mode
+/// @throws IoError if it is not a store, or as SweepStore::open()
 SqliteDatabase open_store_file(const std::filesystem::path& path, const std::string& target,
                                const std::string& network);
 
-/// A store's file opened to read it: the file itself or, where logs of a killed process are beside
-/// it and nothing may be written there, a copy that goes with this object.
+/// A store's file opened for reading: the file itself or, if a killed process has left logs and the
+/// directory is read-only, a temporary copy.
 struct ReadableStore {
   struct Directory {
     std::filesystem::path path;
     ~Directory();
   };
-  std::unique_ptr<Directory> copy;  // outlives the database
+  std::unique_ptr<Directory> copy;  // must outlive the database
   SqliteDatabase database;
 };
 /// @throws IoError as SweepStore::read()

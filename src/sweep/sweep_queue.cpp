@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Upper limit on the number of items in one call of the store.
+/// Maximum number of items per call to the store.
 constexpr std::size_t max_items_per_call = 4096;
 
 }  // namespace
@@ -25,7 +25,8 @@ SweepQueue::SweepQueue(const WorkList& list, std::span<const std::string> keys, 
   std::erase_if(items_,
                 [&](std::int64_t i) { return !shard.holds(keys[static_cast<std::size_t>(i)]); });
   size_ = items_.size();
-  // Added in the order of the keys, which is the order of the store: it grows at its end.
+  // Add items in the order of their keys, which is the order of the store, so that it grows at its
+  // end.
   const std::span<const std::int64_t> items(items_);
   for (std::size_t begin = 0; begin < items.size(); begin += max_items_per_call) {
     report(progress, 0.0, fmt::format("adding items: {} of {}", begin, items.size()));
@@ -38,7 +39,7 @@ SweepQueue::SweepQueue(const WorkList& list, std::span<const std::string> keys, 
 SweepQueue::~SweepQueue() {
   try {
     store_.release(std::vector<std::string>(claimed_.begin(), claimed_.end()));
-  } catch (const std::exception&) {  // their marks stay: they are computed last
+  } catch (const std::exception&) {  // the marks remain; other processes compute these items last
   }
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is reported of every point.
+/// Values reported for every point.
 struct PointColumn {
   const char* name;
   double (*of)(const PointDepthError&);
@@ -49,8 +49,8 @@ constexpr std::array<PointColumn, 14> point_columns = {{
      [](const PointDepthError& p) { return bound_or_nan(p.direct_tof_bound_mae_m); }},
 }};
 
-/// Axes with a column of their own: not those that every point tells, nor the code, which is named
-/// in full.
+/// Returns the axes that have their own column: not the light levels, which every point contains,
+/// nor the code, which has a column with its full name.
 std::vector<std::size_t> reported_axes(const SweepSpec& spec) {
   std::vector<std::size_t> axes;
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
@@ -80,7 +80,7 @@ NpyArray integers(const std::vector<std::int64_t>& values) {
   return NpyArray::of<std::int64_t>({values.size()}, values);
 }
 
-/// Texts as rows of bytes.
+/// Returns texts as rows of bytes.
 NpyArray names(const std::vector<std::string>& texts) {
   std::size_t width = 1;
   for (const std::string& text : texts) width = std::max(width, text.size());
@@ -90,7 +90,7 @@ NpyArray names(const std::vector<std::string>& texts) {
   return NpyArray::of<std::uint8_t>({texts.size(), width}, bytes);
 }
 
-/// A column of texts as indices into those that differ, in order of appearance.
+/// Adds a text column as indices into its distinct values, in order of appearance.
 void add_texts(NpzArrays& arrays, const std::string& name, const std::vector<std::string>& texts) {
   std::vector<std::string> distinct;
   std::map<std::string, std::int64_t> index_of;

@@ -19,20 +19,20 @@
 namespace tofsmith {
 namespace {
 
-/// Most values that one axis may have.
+/// Maximum number of values of an axis.
 constexpr std::int64_t max_axis_values = 1'000'000;
 
-/// What can vary beside the keys of the camera.
+/// Axis keys that are not keys of the camera.
 constexpr std::array<std::string_view, 9> other_keys = {
     "camera", "code", "exposures",      "method",         "unwrap_weights",
     "trials", "seed", "signal_e_per_s", "ambient_e_per_s"};
 
-/// @param field  where it was written
+/// @param field  member that contains the key
 void check_key(const TableReader& table, const char* field, const std::string& key) {
   std::vector<std::string> known = camera_keys();
   known.insert(known.end(), other_keys.begin(), other_keys.end());
   if (std::ranges::find(known, key) != known.end()) return;
-  // The last word of a key, or else what is spelled nearly like it.
+  // Suggest the key that ends with this word, else the most similar one.
   const auto ends_so = [&](const std::string& word) { return word.ends_with("." + key); };
   const auto found = std::ranges::find_if(known, ends_so);
   const std::string near = found != known.end() ? *found : nearest_word(key, known);
@@ -43,7 +43,7 @@ void check_key(const TableReader& table, const char* field, const std::string& k
                                              : fmt::format("did you mean \"{}\"?", near)));
 }
 
-/// To twelve digits, so that 0.1 + 0.2 is the 0.3 that a list would say.
+/// Rounds to twelve digits, so that 0.1 + 0.2 gives the 0.3 of a written list.
 double rounded(double value) { return *number_in(fmt::format("{:.12g}", value)); }
 
 std::vector<SettingValue> range_values(const TableReader& table, double from, double to,
@@ -87,7 +87,7 @@ bool may_be_value(const std::string& line) {
   return line.size() <= 4096 && (in_brackets || std::ranges::all_of(line, is_of_a_word));
 }
 
-/// The value on a line of a table of one column, in TOML's spelling of numbers.
+/// Returns the value on a line of a one-column table, with numbers in TOML syntax.
 std::string value_on_line(std::string_view line) {
   std::string_view text = trimmed(line);
   while (!text.empty() && std::string_view(",;\t ").find(text.back()) != std::string_view::npos)
@@ -99,7 +99,7 @@ std::string value_on_line(std::string_view line) {
   return finite_number_in(number) ? number : std::string(text);
 }
 
-/// Returns whether a line is the header of a column of values of an axis: "light.peak_factor" or
+/// Returns true if a line is the header of a column of values of an axis: "light.peak_factor" or
 /// "peak_factor".
 bool is_name_of(const std::string& line, const std::vector<std::string>& keys) {
   return std::ranges::any_of(keys, [&](const std::string& key) {
@@ -124,7 +124,7 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
     const std::string place = fmt::format("{}:{}:{}", path.string(), line.number,
                                           line.text.find_first_not_of(" \t\r") + 1);
     if (&line == &lines.front() && is_name_of(value, keys)) continue;
-    if (!may_be_value(value))  // nor shown: it may be of a file that nobody meant
+    if (!may_be_value(value))  // do not print the line: the file may be the wrong one
       throw IoError(place,
                     "found a line that is no value; expected a number, a word, a path or a "
                     "text in quotes");
@@ -173,7 +173,7 @@ void check_value(const SweepAxis& axis, const SettingValue& value) {
   }
 }
 
-/// What one [[axis]] sets: its key, or its keys.
+/// Reads the key or keys of one [[axis]].
 std::vector<std::string> read_axis_keys(TableReader& table) {
   std::vector<std::string> keys;
   if (!table.contains("keys")) {
@@ -188,8 +188,9 @@ std::vector<std::string> read_axis_keys(TableReader& table) {
   return keys;
 }
 
-/// The values that an entry gives the keys of an axis: its elements if it is a list, or else itself
-/// to each. @throws IoError for a list of another length
+/// Returns the values that an entry gives to the keys of an axis: its elements if it is a list,
+/// else itself for each key.
+/// @throws IoError for a list of another length
 std::vector<SettingValue> values_of_keys(const SettingValue& entry,
                                          const std::vector<std::string>& keys) {
   if (keys.size() == 1 || !entry.text.starts_with('['))
@@ -206,8 +207,8 @@ std::vector<SettingValue> values_of_keys(const SettingValue& entry,
   return values;
 }
 
-/// Reads the entries of one [[axis]] of a key. @throws IoError naming file:line:column
-/// @param keys  that the axis sets
+/// Reads the entries of one [[axis]]. @throws IoError naming file:line:column
+/// @param keys  keys that the axis sets
 std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
                                             const std::vector<std::string>& keys) {
   std::vector<SettingValue> entries;
@@ -240,7 +241,7 @@ std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
   return range_values(table, from, to, step);
 }
 
-/// Reads one [[axis]]: an axis for each key, all but the first linked to it.
+/// Reads one [[axis]]: an axis per key, all but the first linked.
 std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
   const std::vector<std::string> keys = read_axis_keys(table);
   const char* const field = table.contains("keys") ? "keys" : "key";
@@ -261,7 +262,7 @@ std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
   return axes;
 }
 
-/// Refuses values that no item could use. @throws IoError naming file:line:column
+/// Rejects values that no item could use. @throws IoError naming file:line:column
 void check_axis_values(const SweepAxis& axis) {
   for (const SettingValue& value : axis.values) check_value(axis, value);
 }
@@ -297,7 +298,7 @@ void read_effort(TableReader& table, double& effort) {
     table.fail("effort", fmt::format("found {}; expected a number in [0.01, 100]", effort));
 }
 
-/// `codes = [..]` is an axis that is crossed with all others.
+/// Reads `codes = [...]`, an axis that is combined with every other axis.
 void read_codes(TableReader& table, SweepSpec& spec) {
   table.value("code", spec.code);
   std::vector<SettingValue> codes;
@@ -312,7 +313,6 @@ bool has_axis(const SweepSpec& spec, std::string_view key) {
   return std::ranges::any_of(spec.axes, [&](const SweepAxis& axis) { return axis.key == key; });
 }
 
-/// Reads one [[group]].
 void read_group(TableReader& table, SweepSpec& spec) {
   std::string name;
   SweepCombination combine = SweepCombination::zip;
@@ -331,7 +331,7 @@ void read_group(TableReader& table, SweepSpec& spec) {
     table.fail("name", fmt::format("found group \"{}\" a second time; expected one", name));
 }
 
-/// Axes and groups that advance together are of one length.
+/// Checks that axes and groups that advance together have equal lengths.
 void check_lengths(const SweepSpec& spec) {
   const auto refuse = [&](std::size_t axis, const std::string& name, std::int64_t size,
                           const std::string& first_name, std::int64_t first_size,
@@ -356,7 +356,7 @@ void check_lengths(const SweepSpec& spec) {
     }
 }
 
-/// Rules between axes and what stays.
+/// Checks rules between axes and fixed settings.
 void check(const SweepSpec& spec) {
   if (spec.code.empty() && !has_axis(spec, "code"))
     throw IoError(spec.source_name,

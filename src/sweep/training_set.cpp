@@ -33,16 +33,16 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Changes whenever the same inputs give other files.
+/// Increased whenever the files for the same inputs change.
 constexpr int training_set_version = 1;
-/// Scenes in work at a time: an interrupt waits for them, and memory holds them.
+/// Number of scenes processed at a time; limits memory and the delay of an interrupt.
 constexpr std::int64_t scenes_at_once = 16;
 
 std::string_view bytes_of(const Image<float>& plane) {
   return {reinterpret_cast<const char*>(plane.pixels.data()), plane.size() * sizeof(float)};
 }
 
-/// What a scene is, by which all that is random is drawn: the set's seed, its name and content.
+/// Returns a hash that seeds everything random of a scene: seed of the set, name and content.
 std::string identity_of(const TrainingScene& scene, const LoadedTrainingScene& loaded,
                         const CaptureOptions& capture) {
   const SceneImage& image = loaded.image;
@@ -61,7 +61,7 @@ double drawn(const LightRange& range, double uniform) {
   return std::clamp(level, range.low_e_per_s, range.high_e_per_s);
 }
 
-/// A scene with all that determines its files.
+/// A scene with everything that determines its files.
 struct Example {
   std::string key;
   CaptureOptions capture;
@@ -74,7 +74,7 @@ NpyArray plane_array(const Image<float>& plane) {
       plane.pixels);
 }
 
-/// What is measured and what is true of one scene.
+/// Returns the measured and the true arrays of a scene.
 NpzArrays arrays_of(const Example& example, const RawFrames& raw, const Decoder& decoder) {
   const auto frames = static_cast<std::size_t>(raw.frames);
   const auto height = static_cast<std::size_t>(raw.height);
@@ -123,9 +123,9 @@ struct TrainingSetWriter::State {
   std::string setup;
   Decoder decoder;
 
-  /// The scene with its key and the light that is drawn for it.
+  /// Returns the scene with its key and its random light levels.
   Example prepared(const TrainingScene& scene, const TrainingSceneLoader& load) const;
-  /// Content of the scene's JSON file and its entry in the index.
+  /// Returns the contents of the scene's JSON file and its entry in the index.
   Json parameters_of(const TrainingScene& scene, const Example& example,
                      const std::string& stem) const;
 };
@@ -201,7 +201,7 @@ TrainingSceneOutcome TrainingSetWriter::write(const TrainingScene& scene,
   make_output_directory(arrays.parent_path());
   const RawFrames raw = capture(example.scene.image, state_->code, state_->camera, example.capture);
   write_npz(arrays, arrays_of(example, raw, state_->decoder), OutputPolicy::overwrite);
-  // Last, because the file marks the scene as finished.
+  // Written last, because this file marks the scene as finished.
   write_file_atomically(parameters,
                         entry.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
                         OutputPolicy::overwrite);

@@ -27,13 +27,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the axes make of the settings that stay.
+/// The settings of an item: fixed settings combined with the values of its axes.
 struct Choice {
   std::string camera;
   std::vector<std::string> settings;
   std::string code;
   EvaluateOptions options;
-  /// Of an axis; NaN: those of the camera.
+  /// From an axis; NaN: use the camera's.
   double signal_e_per_s = std::numeric_limits<double>::quiet_NaN();
   double ambient_e_per_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -75,7 +75,7 @@ Choice choose(const SweepSpec& spec, std::int64_t item) {
   return choice;
 }
 
-/// A name of ours, or a file beside the sweep's.
+/// Returns a built-in name, or the path of a file relative to the sweep's.
 std::string resolved(const SweepSpec& spec, const std::string& name, bool is_ours) {
   return is_ours || name.empty() ? name : (spec.directory / name).string();
 }
@@ -86,7 +86,7 @@ Camera load_chosen_camera(const SweepSpec& spec, const Choice& choice) {
   return load_camera(resolved(spec, choice.camera, built_in), choice.settings);
 }
 
-/// The exposures of a code that is to be designed, "optimized-k4"; none: it is there.
+/// Returns the exposures of a code to design, "optimized-k4"; none for existing codes.
 std::optional<int> designed_exposures(std::string_view code) {
   constexpr std::string_view stem = "optimized-k";
   int exposures = 0;
@@ -97,7 +97,7 @@ std::optional<int> designed_exposures(std::string_view code) {
   return exposures;
 }
 
-/// How the code of an item is designed: for its own camera, from nothing but the item.
+/// Returns the options for designing the code of an item; they depend only on the item.
 DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& options, int exposures) {
   if (options.method != DecodeMethod::zncc)
     reject("method", name_of(options.method), "must be zncc where codes are designed");
@@ -108,7 +108,7 @@ DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& optio
   design.method = DesignMethod::optimize;
   design.exposures = {exposures};
   design.baselines.emplace();
-  design.atlas_cameras = 0;  // of another atlas the item would be another
+  design.atlas_cameras = 0;  // results must not depend on the atlas
   design.trials = static_cast<int>(options.trials);
   design.seed = options.seed;
   design.outlier_threshold_m = options.outlier_threshold_m;
@@ -117,7 +117,7 @@ DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& optio
 }
 
 CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Camera& camera) {
-  // What is no file is perhaps a family's name with a slip: load_camera_code() says so.
+  // A name that is not a file may be a misspelled family, which load_camera_code() reports.
   const std::string file = resolved(spec, choice.code, is_family(choice.code));
   const bool is_file = std::filesystem::exists(file);
   CodeSet code = load_camera_code(is_file ? file : choice.code, camera);
@@ -125,7 +125,8 @@ CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Came
   return code;
 }
 
-/// Where the axis value is that a setting, the place of an error, was made of; "" if of none.
+/// Returns where the axis value of a setting was written; "" if it is not from an axis.
+/// @param setting  place of an error, which begins with the setting
 std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::string_view setting) {
   const std::vector<std::size_t> indices = spec.value_indices(item);
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
@@ -138,14 +139,13 @@ std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::stri
   return "";
 }
 
-/// Keys of items by the camera and the code they share: those are read and built once, however
-/// many seeds and light levels they meet.
+/// Computes keys of items. A camera and a code that several items share are loaded and built once.
 class SetupCache {
  public:
   explicit SetupCache(const WorkList& list) : list_(list) {
     for (std::size_t a = 0; a < list.spec().axes.size(); ++a) {
       const std::string& key = list.spec().axes[a].key;
-      // Whichever of two axes sets the light levels last has the say.
+      // With two axes for the light levels, the last one takes effect.
       if (key.starts_with("operating")) sets_light_twice_ = true;
       if (std::ranges::find(light_keys, key) == light_keys.end()) setup_axes_.push_back(a);
     }
@@ -174,7 +174,7 @@ class SetupCache {
   static constexpr std::array<std::string_view, 6> light_keys = {
       "signal_e_per_s", "ambient_e_per_s", "seed", "trials", "method", "unwrap_weights"};
 
-  /// None if nothing more is kept: then it is built for each item.
+  /// Returns none if the cache is full; the setup is then built for each item.
   std::optional<Setup> setup_of(std::int64_t item) {
     const std::vector<std::size_t> indices = list_.spec().value_indices(item);
     std::vector<std::size_t> own;
