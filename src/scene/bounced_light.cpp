@@ -17,15 +17,15 @@ namespace tofsmith {
 
 namespace {
 
-/// Rays leave a surface this far above it, in units of its distance from the camera.
+/// Offset of ray origins from their surface, relative to the distance from the camera.
 constexpr double lift = 4e-5;
-/// What stands closer before a point, in units of the point's distance, does not shade it.
+/// Occluders that are closer to a point than this, relative to the point's distance, are ignored.
 constexpr double shadow_slack = 1e-5;
 constexpr double min_cosine = 1e-6;
 
-/// Light of one direction.
+/// Light from one direction.
 struct Bounce {
-  double delay_m = 0.0;  ///< behind the direct return
+  double delay_m = 0.0;  ///< relative to the direct return
   double ratio = 0.0;
 };
 
@@ -33,9 +33,9 @@ bool comes_before(const Bounce& a, const Bounce& b) {
   return a.delay_m < b.delay_m || (a.delay_m == b.delay_m && a.ratio < b.ratio);
 }
 
-/// What a pixel's surface needs to gather light.
+/// Data of a pixel's surface point.
 struct SeenPoint {
-  Eigen::Vector3d place, normal;  ///< the normal towards the camera
+  Eigen::Vector3d place, normal;  ///< the normal points to the camera
   double distance_m = 0.0;
   double per_bounce = 0.0;  ///< d1^2 / cos a1 / rays
 };
@@ -49,7 +49,6 @@ class BounceGatherer {
         caster_(scene.shapes, search_of),
         light_(scene.camera_to_world.translation()) {}
 
-  /// Multipath returns of a pixel, by increasing distance.
   std::vector<MultipathReturn> gather(int row, int column) const;
 
  private:
@@ -81,7 +80,7 @@ std::optional<Bounce> BounceGatherer::bounce(const SeenPoint& seen, const Ray& r
   const Eigen::Vector3d from_light = place - light_;
   const double distance_m = from_light.norm();
   const double along = hit.normal.dot(from_light) / distance_m;
-  // Lit on the side that sends light back.
+  // The lit side must be the side seen from x1.
   if (!(along * hit.normal.dot(ray.direction) > 0.0) || !std::isfinite(distance_m))
     return std::nullopt;
   const std::optional<Hit> first = caster_.nearest({light_, from_light / distance_m});
@@ -118,7 +117,7 @@ std::vector<MultipathReturn> BounceGatherer::merged(const std::vector<Bounce>& b
                                                     float direct_m) const {
   std::vector<MultipathReturn> returns;
   double bin = -1.0;
-  Bounce sum;  // of the bin; delays weighted by light
+  Bounce sum;  // of the current bin; delay_m is weighted by light
   const auto close_bin = [&] {
     if (sum.ratio > 0.0)
       returns.push_back(
@@ -145,7 +144,7 @@ std::vector<MultipathReturn> BounceGatherer::gather(int row, int column) const {
                                          static_cast<std::uint64_t>(column));
   std::vector<Bounce> found = bounces(*seen, random);
   if (std::isfinite(options_.range_m))
-    for (Bounce& b : found)  // a hair less than the range, so that distances rounded stay within
+    for (Bounce& b : found)  // slightly less, so that rounded distances stay below the range
       b.delay_m = std::min(std::fmod(b.delay_m, options_.range_m), options_.range_m * (1 - 1e-5));
   std::sort(found.begin(), found.end(), comes_before);
   return merged(found, static_cast<float>(seen->distance_m));

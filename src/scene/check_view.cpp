@@ -23,7 +23,7 @@ namespace {
 using Place = std::tuple<double, double, double>;
 using Edge = std::pair<Place, Place>;
 
-/// Readers of meshes may give neighbours vertices of their own: edges are identified by place.
+/// Identifies edges by position, because mesh files may duplicate vertices.
 bool is_closed(const TriangleMesh& mesh) {
   const auto place = [&](std::uint32_t index) {
     const Eigen::Vector3d& at = mesh.vertices[index];
@@ -78,7 +78,7 @@ bool holds(const Mesh& mesh, const Eigen::Vector3d& point) {
   for (const Eigen::Vector3d& vertex : mesh.triangles.vertices)
     bounds.extend(mesh.mesh_to_world * (mesh.scale_m * vertex));
   if (!bounds.contains(point) || !is_closed(mesh.triangles)) return false;
-  // Directions in no special place: one that meets an edge is outvoted.
+  // Three generic directions: if one of them hits an edge, it is outvoted.
   int votes = 0;
   for (const Eigen::Vector3d& direction :
        {Eigen::Vector3d(0.6131, 0.2417, 0.7520), Eigen::Vector3d(-0.3719, 0.8923, 0.2551),

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Its y axis goes up, the world's down; turned about x, it still shows its front.
+/// Mesh files have y up, the world has y down; a rotation about x keeps the front visible.
 const Eigen::Matrix3d turn = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
 
 Eigen::AlignedBox3d box_of(const TriangleMesh& triangles) {
@@ -42,8 +42,8 @@ StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int h
 
   const Eigen::AlignedBox3d box = box_of(triangles);
 
-  // Every vertex asks for a distance from which it is in the middle part of the image; none comes
-  // to stand at the camera or behind it.
+  // Use the largest distance that any vertex requires to be within the middle part of the image,
+  // and keep every vertex in front of the camera.
   const double half_width = 0.5 * filled * width / scene.view.fx_px;
   const double half_height = 0.5 * filled * height / scene.view.fy_px;
   const double half_diagonal_m = 0.5 * scale_m * box.diagonal().norm();

@@ -31,12 +31,12 @@ Image<float> scaled(const Image<float>& image, const PixelRays& rays, Scale&& sc
   return result;
 }
 
-/// Where a pixel is in the plane z = 1, distortion and all.
+/// Position of a pixel in the plane z = 1, including distortion.
 Eigen::Vector2d place_of(const PinholeView& view, int row, int column) {
   return {(column - view.cx_px) / view.fx_px, (row - view.cy_px) / view.fy_px};
 }
 
-/// The point of a pixel's ray at z = 1.
+/// Point of a pixel's ray at z = 1, without distortion.
 Eigen::Vector3d at_unit_z(const PinholeView& view, int row, int column) {
   Eigen::Vector2d place = place_of(view, row, column);
   if (view.distortion) {
@@ -46,7 +46,7 @@ Eigen::Vector3d at_unit_z(const PinholeView& view, int row, int column) {
   return {place.x(), place.y(), 1.0};
 }
 
-/// Every pixel lies on the way from the axis to one at the border: those are looked at.
+/// Checks the border pixels only, because every other pixel is between one of them and the axis.
 void check_no_fold(const PinholeView& view) {
   const auto check = [&](int row, int column) {
     const Eigen::Vector2d place = place_of(view, row, column);
@@ -84,7 +84,7 @@ PinholeView PinholeView::centred(int width, int height, double horizontal_angle_
 }
 
 PinholeView PinholeView::divided(int n) const {
-  // Part i of pixel u has its centre at u + (i + 1/2) / n - 1/2, and is pixel n u + i.
+  // Part i of pixel u is pixel n u + i, with its centre at u + (i + 1/2) / n - 1/2.
   const auto place = [n](double pixel) { return n * pixel + 0.5 * (n - 1); };
   return {n * fx_px, n * fy_px, place(cx_px), place(cy_px), n * width, n * height, distortion};
 }
@@ -109,7 +109,7 @@ std::optional<Eigen::Vector2d> PinholeView::pixel_of(const Eigen::Vector3d& poin
   Eigen::Vector2d place = ideal;
   if (distortion) {
     place = distortion->distort(ideal);
-    // Beyond the fold places come back, and belong to other rays.
+    // Beyond the fold, positions belong to other rays.
     const auto back = distortion->undistort(place);
     if (!back || !((*back - ideal).norm() <= 1e-6 * (1.0 + ideal.norm()))) return std::nullopt;
   }

@@ -29,7 +29,7 @@ SceneImage ray_cast(std::span<const Shape> shapes, const PinholeView& view,
 
 struct RayCaster::Prepared {
   std::vector<Shape> shapes;
-  /// One per shape; null: the shape is intersected in closed form.
+  /// One per shape; null: intersected in closed form.
   std::vector<std::unique_ptr<const MeshSearch>> searches;
 
   void trace(std::span<const Ray> rays, std::span<NearestHit> nearest) const {
@@ -99,7 +99,7 @@ SeenScene RayCaster::see(const PixelRays& pixel_rays,
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Hit& hit = nearest[lane].hit;
         const auto depth_m = static_cast<float>(hit.distance_m);
-        // A plane seen edge-on may be met beyond every number: nothing returns from there.
+        // The distance to a plane seen edge-on may overflow; treat it as no return.
         if (nearest[lane].shape < 0 || !std::isfinite(depth_m) || !(depth_m > 0.0f)) continue;
         const int column = begin + static_cast<int>(lane);
         seen.image.depth_m(row, column) = depth_m;

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// @throws std::invalid_argument unless the pose is finite and keeps lengths and handedness
+/// @throws std::invalid_argument unless the pose is finite and preserves lengths and handedness
 inline void require_rigid(const Eigen::Isometry3d& pose, std::string_view field) {
   const Eigen::Matrix3d turn = pose.linear();
   const Eigen::Vector3d shift = pose.translation();
@@ -18,7 +18,7 @@ inline void require_rigid(const Eigen::Isometry3d& pose, std::string_view field)
   require(shift.allFinite(), name + ".translation", shift.transpose(), "must be finite");
   const double skew = (turn.transpose() * turn - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require(skew < 1e-6, name + ".rotation", skew,
-          "must have orthonormal columns (deviation shown)");  // false for NaN, too
+          "must have orthonormal columns (deviation shown)");  // also fails for NaN
   require(turn.determinant() > 0.0, name + ".rotation", turn.determinant(),
           "must not mirror (determinant shown)");
 }

@@ -6,9 +6,9 @@
 
 namespace tofsmith {
 
-/// The demo scene, after the table-top scene and the ball of the paper: three upright books on a
-/// table, 20 cm apart in depth, the leftmost dark; a wall 2 m behind the first book; a ball of
-/// radius 20 cm in front, about 1.2 m away. Distances run from about 1 to 4 m.
+/// Returns the demo scene, after the table-top scene and the ball of the paper: three upright books
+/// on a table, 20 cm apart in depth, the leftmost dark; a wall 2 m behind the first book; a ball of
+/// radius 20 cm in front, about 1.2 m away. Distances are about 1 to 4 m.
 /// @param width, height  resolution of the pinhole camera, > 0; the view is 60 degrees wide
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 6
 StagedScene table_top_scene(int width = 320, int height = 240);

@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-/// How a surface reflects: one albedo, two that alternate, or a picture.
+/// Albedo of a surface: uniform, two alternating values, or an image.
 struct Texture {
   enum class Pattern { uniform, checker, stripes, image };
   Pattern pattern = Pattern::uniform;
@@ -22,28 +22,29 @@ struct Texture {
   double other_albedo = 0.5;  ///< of every second field, [0, 1]
   double period_m = 0.1;  ///< width of a field or of the image [m], > 0; on a sphere measured along
                           ///< its equator
-  /// Albedo, linear, each value in [0, 1]; repeats in both directions, rows run against the second
-  /// coordinate. Meshes with texture coordinates lay it over [0, 1] x [0, 1], whatever period_m.
+  /// Albedo, linear, in [0, 1]; repeats in both directions, with rows opposite to the second
+  /// coordinate. For meshes with texture coordinates it covers [0, 1] x [0, 1], regardless of
+  /// period_m.
   Image<float> image;
 
-  /// Albedo at surface coordinates [m]; stripes alternate along the first.
+  /// Albedo at surface coordinates [m]; stripes alternate along the first coordinate.
   double at(double first_m, double second_m) const;
-  /// Albedo of the image at texture coordinates, u to the right, v up; the nearest pixel.
+  /// Albedo of the nearest pixel of the image at texture coordinates, u to the right, v up.
   double image_at(double u, double v) const;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate() const;
 };
 
-/// Triangles that share vertices, in units of their own.
+/// Triangles with shared vertices, in units of the mesh.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices
-  /// (u, v) of every vertex, u to the right and v up over the texture's image; may be empty.
+  /// (u, v) of every vertex over the texture's image, u to the right and v up; may be empty.
   std::vector<Eigen::Vector2d> texture_coordinates;
 
   /// @throws std::invalid_argument for no triangles, an index out of range, a vertex that is not
-  ///         finite, or texture coordinates that are not one per vertex: naming which and its value
+  ///         finite, or texture coordinates that are not one per vertex, with index and value
   void validate() const;
 };
 
@@ -52,35 +53,35 @@ struct Mesh {
   TriangleMesh triangles;
   double scale_m = 1.0;  ///< metres per unit of the mesh, > 0
   Eigen::Isometry3d mesh_to_world = Eigen::Isometry3d::Identity();  ///< applied after scaling
-  /// Without texture coordinates: patterns run along the mesh's own x and y axes [m].
+  /// Without texture coordinates, patterns follow the mesh's own x and y axes [m].
   Texture texture;
 };
 
 /// A half-line from a camera.
 struct Ray {
   Eigen::Vector3d origin;
-  Eigen::Vector3d direction;  ///< unit length
+  Eigen::Vector3d direction;  ///< unit vector
 };
 
-/// Where a ray meets a surface.
+/// Intersection of a ray with a surface.
 struct Hit {
-  double distance_m = 0.0;  ///< from the ray's origin, > 0
-  Eigen::Vector3d normal;   ///< unit length, towards either side
+  double distance_m = 0.0;  ///< from the origin of the ray, > 0
+  Eigen::Vector3d normal;   ///< unit vector, towards either side
   double albedo = 0.0;
 };
 
 /// An unbounded plane.
 struct Plane {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< any length but 0
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< any length > 0
   Texture texture;
 };
 
-/// A box, turned about its centre.
+/// A box, rotated about its centre.
 struct Box {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();        ///< edge lengths, each > 0
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< columns are the box's axes
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< columns are the axes of the box
   Texture texture;
 };
 
@@ -90,7 +91,7 @@ struct Sphere {
   Texture texture;
 };
 
-/// All points within a radius of a line segment: a finger, a limb, a pole with round ends.
+/// All points within a radius of a line segment, e.g. a finger, a limb or a pole with round ends.
 struct Capsule {
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
   Eigen::Vector3d end = Eigen::Vector3d::UnitY();  ///< may equal start: a sphere
@@ -100,15 +101,15 @@ struct Capsule {
 
 using Shape = std::variant<Plane, Box, Sphere, Capsule, Mesh>;
 
-/// Nearest intersection in front of the ray's origin, in closed form.
+/// Return the nearest intersection in front of the ray's origin, in closed form.
 std::optional<Hit> intersect(const Plane& plane, const Ray& ray);
 std::optional<Hit> intersect(const Box& box, const Ray& ray);
 std::optional<Hit> intersect(const Sphere& sphere, const Ray& ray);
 std::optional<Hit> intersect(const Capsule& capsule, const Ray& ray);
-/// Triangle by triangle: a reference. RayCaster is the fast way.
+/// Tests every triangle; a reference for RayCaster, which is faster.
 std::optional<Hit> intersect(const Mesh& mesh, const Ray& ray);
 
-/// @throws std::invalid_argument naming field, value and rule
+/// @throws std::invalid_argument
 void validate(const Shape& shape);
 
 }  // namespace tofsmith

@@ -10,13 +10,13 @@
 
 namespace tofsmith {
 
-/// The corners of a triangle [m], where the mesh stands.
+/// Returns the corners of a triangle in the world [m].
 std::array<Eigen::Vector3d, 3> corners_in_world(const Mesh& mesh, std::size_t triangle);
 
-/// Where a ray meets one triangle, from either side.
+/// Returns the intersection of a ray with a triangle, from either side.
 std::optional<Hit> hit_triangle(const Mesh& mesh, std::size_t triangle, const Ray& ray);
 
-/// Albedo at a point of a triangle, given by the weights of its corners.
+/// Returns the albedo at barycentric coordinates of a triangle.
 double mesh_albedo(const Mesh& mesh, std::size_t triangle, const Eigen::Vector3d& weights);
 
 }  // namespace tofsmith
