@@ -16,9 +16,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int curve_points = 240;  // of a drawn period
+constexpr int curve_points = 240;  // per plotted period
 
-/// A waveform by its steps, not on a grid.
+/// Returns the steps of a waveform, independent of a grid.
 Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
                const LineStyle& style) {
   const StepFunction steps = waveform.steps();
@@ -30,16 +30,16 @@ Series stepped(const std::string& name, const Waveform& waveform, double period_
   return series;
 }
 
-/// `points` equal steps over [0, end), without the end point: the x of a drawn period.
+/// Returns `points` equidistant values in [0, end), e.g. the x values of a period.
 std::vector<double> axis_values(int points, double end) {
   std::vector<double> values(static_cast<std::size_t>(points));
   for (int j = 0; j < points; ++j) values[static_cast<std::size_t>(j)] = end * j / points;
   return values;
 }
 
-/// A waveform over one period [ns], by its switching times and not on a grid: "as designed"
-/// (dotted, only where a generator changes it), "waveform" as generated (thin if there is an
-/// impulse response), and the same "after the impulse response".
+/// Returns a waveform over one period [ns], from its switching times: "as designed" (dotted, only
+/// if a generator changes it), "waveform" as generated (thin if there is an impulse response), and
+/// "after the impulse response".
 std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style) {
@@ -63,14 +63,14 @@ std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
   return series;
 }
 
-/// The same of a mixer by its drives x: the weights 2 x - 1.
+/// Converts the drives x of a mixer to weights 2 x - 1.
 std::vector<Series> weight_series(std::vector<Series> drive) {
   for (Series& series : drive)
     for (auto& value : series.y) value = 2 * value - 1;
   return drive;
 }
 
-/// A period of a correlation function over depth.
+/// One period of a correlation function versus depth.
 Series correlation_series(std::string name, const Eigen::VectorXd& values, double range_m,
                           const LineStyle& style) {
   return {.name = std::move(name),
@@ -80,7 +80,7 @@ Series correlation_series(std::string name, const Eigen::VectorXd& values, doubl
           .style = style};
 }
 
-/// The columns of a grid of pairs: modulation, demodulation, correlation function.
+/// Columns of the grid: modulation, demodulation, correlation function.
 std::vector<PanelColumn> waveform_columns(bool is_signed) {
   return {{.title = "Modulation",
            .x = {.label = "time", .unit = "ns"},

@@ -19,7 +19,8 @@ namespace {
 
 constexpr double max_outlier_rate = 0.1;
 
-/// Places of the light levels at which the code has few outliers; all if it has none such.
+/// Indices of the light levels at which the code has few outliers, or of all levels if there are
+/// none.
 std::vector<std::size_t> usable_levels(const DepthErrorReport& error) {
   std::vector<std::size_t> usable, all;
   for (std::size_t i = 0; i < error.points.size(); ++i) {
@@ -40,7 +41,7 @@ double error_mm(const DepthErrorReport& error, const std::vector<std::size_t>& l
   return 1e3 * std::exp(sum / static_cast<double>(levels.size()));
 }
 
-/// The best code, the best standard code of every family, and sinusoid-k4; best first.
+/// The best code, the best standard code of every family, and sinusoid-k4, by increasing error.
 std::vector<const Candidate*> compared(const DesignResult& result, DepthErrorKind kind) {
   std::vector<const Candidate*> codes{&result.winner()};
   std::set<std::string> families;
@@ -109,7 +110,7 @@ std::vector<DepthErrorRow> rows_of(const std::vector<const Candidate*>& codes) {
   return rows;
 }
 
-/// A file of a design directory and its content, in the order of use.
+/// A file of a design directory with a note, in the order of use.
 struct KnownFile {
   const char* name;
   const char* note;

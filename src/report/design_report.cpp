@@ -25,7 +25,7 @@ std::string ratio(const Estimate& error, const Estimate& other) {
   return fmt::format("{:.4f}", error.value / other.value);
 }
 
-/// The errors of the candidates with single and with second returns, by their weighed error.
+/// Errors of the candidates with single and with second returns, by increasing weighted error.
 Section operating_multipath_section(const OperatingMultipath& returns, const DesignResult& result,
                                     DepthErrorKind kind) {
   using Weighed = std::pair<double, const Candidate*>;
@@ -90,9 +90,9 @@ Table residual_table(const DesignResult& result) {
   return table;
 }
 
-constexpr std::size_t fewest_steps = 4;  // a curve through fewer shows nothing
+constexpr std::size_t fewest_steps = 4;  // fewer points give no meaningful curve
 
-/// Residuals against iterations of every measurement that was designed.
+/// Residuals versus iterations of every designed measurement.
 void add_convergence(const DesignResult& result, Section& section) {
   for (const Candidate& c : result.candidates) {
     ColourAssignment colours;
@@ -120,7 +120,7 @@ void add_convergence(const DesignResult& result, Section& section) {
   }
 }
 
-/// The smallest error of every search by step.
+/// Smallest error of every search versus work.
 void add_search_progress(const DesignResult& result, Section& section) {
   ColourAssignment colours;
   for (const Candidate& c : result.candidates) {
@@ -140,7 +140,7 @@ void add_search_progress(const DesignResult& result, Section& section) {
   }
 }
 
-/// How the codes were found: every measurement, the searches, and curves of both.
+/// Results of the searches for every measurement and code, with convergence plots.
 Section search_section(const DesignResult& result) {
   Section section{.title = "Designed codes"};
   Table found = residual_table(result);
@@ -155,7 +155,7 @@ Section search_section(const DesignResult& result) {
   return section;
 }
 
-/// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
+/// Explains why the best code won. A table, because cells show user-defined names verbatim.
 Table explanation(const DesignResult& result, DepthErrorKind kind) {
   std::vector<const char*> questions{"What does it beat?"};
   if (!result.winner().code.is_rows()) questions.push_back("Why so many exposures?");
@@ -186,7 +186,7 @@ Section candidates_section(const Camera& camera, const DesignResult& result) {
   return depth_error_section(camera, rows, result.best, false);
 }
 
-/// Waveforms of the designed codes except the best, which the first screen shows.
+/// Waveforms of the designed codes except the best, which is on the first screen.
 Section waveform_section(const Camera& camera, const DesignResult& result) {
   Section section{.title = "Waveforms of the other designed codes"};
   for (const Candidate& c : result.candidates) {
@@ -307,7 +307,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   }
   page.sections.push_back(depth_error_section(camera, compared, best, true));
   Section waveforms{.title = "Waveforms"};
-  for (const CodeSet& code : codes)  // of any names, even the same
+  for (const CodeSet& code : codes)  // names may be equal or invalid as ids
     waveforms.blocks.push_back(
         waveform_figure({.id = fmt::format("waveforms-{}", waveforms.blocks.size() + 1),
                          .title = fmt::format("Waveforms of {}", code.name()),

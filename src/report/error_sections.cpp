@@ -39,7 +39,7 @@ std::string mean_times_bound(const DepthErrorReport& error, Bound bound) {
   return count > 0 ? fmt::format("{:.2f}", std::exp(log_sum / count)) : "no bound";
 }
 
-/// At most `most` codes in this order; of more codes the best of every family and method.
+/// At most `most` codes in this order; if there are more, only the best of every family and method.
 std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
                                        const std::vector<std::size_t>& order, std::size_t most) {
   std::vector<DepthErrorRow> shown;
@@ -138,7 +138,7 @@ Figure error_maps(const OperatingRange& range, const std::vector<DepthErrorRow>&
   for (const DepthErrorRow& code : codes) {
     HeatMap map{.title = code.error->code, .values = {}};
     map.values.resize(std::ssize(y.ticks), std::ssize(x.ticks));
-    auto point = code.error->points.begin();  // signal by signal
+    auto point = code.error->points.begin();  // ordered by signal
     for (Eigen::Index s = 0; s < map.values.rows(); ++s)
       for (Eigen::Index a = 0; a < map.values.cols(); ++a, ++point)
         map.values(s, a) =
@@ -203,7 +203,7 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
 
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best, bool with_curves) {
-  constexpr std::size_t most_maps = 6, most_curves = 7;  // more hide each other
+  constexpr std::size_t most_maps = 6, most_curves = 7;  // more would be unreadable
   const std::vector<std::size_t> order = by_error(codes, camera.operating.error);
   Section section{.title = "Depth error"};
   section.blocks.push_back(comparison_table(camera, codes, order, best));

@@ -16,17 +16,16 @@ namespace tofsmith {
 struct DepthErrorRow {
   const DepthErrorReport* error = nullptr;
   std::string method;
-  std::optional<Estimate> ratio = {};  ///< of its error to that of the best code
+  std::optional<Estimate> ratio = {};  ///< error relative to the best code
 };
 
-/// Tables and maps of the depth errors of some codes with their bounds.
+/// Tables and maps of depth errors and bounds.
 /// @param best  index of the best code
-/// @param with_curves  also draws error_by_signal()
+/// @param with_curves  include error_by_signal()
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best, bool with_curves);
 
-/// The circular error of codes over signal at the middle ambient level, with the bounds of the
-/// first code.
+/// Circular error versus signal at the middle ambient level, with the bounds of the first code.
 Figure error_by_signal(const std::string& id, const Camera& camera,
                        std::span<const DepthErrorRow> codes);
 

@@ -32,7 +32,7 @@ const char* name_of(Mark mark) {
   return names[static_cast<std::size_t>(mark)];
 }
 
-/// Numbers; if there are many at equal distances: {count, from, to}.
+/// Returns the numbers, or {count, from, to} for many equidistant ones.
 Json places_json(const std::vector<double>& x, const std::optional<double>& period) {
   constexpr std::size_t many = 32;
   const double step = x.size() > 1 ? x[1] - x[0] : 0.0;
@@ -82,14 +82,9 @@ Json category_axis(const CategoryAxis& axis) {
 }  // namespace
 
 LineStyle ColourAssignment::style(const std::string& name) {
+  // Blue, vermillion, bluish green, reddish purple, orange, sky blue, black.
   static constexpr std::array palette = {
-      "#0072b2",  // blue
-      "#d55e00",  // vermillion
-      "#009e73",  // bluish green
-      "#cc79a7",  // reddish purple
-      "#e69f00",  // orange
-      "#56b4e9",  // sky blue
-      "#000000",  // black
+      "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
   };
   static constexpr std::array dashes = {Dash::solid, Dash::dash, Dash::dot, Dash::dash_dot};
   const int place = order_.try_emplace(name, static_cast<int>(order_.size())).first->second;

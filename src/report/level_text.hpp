@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// A light level in few characters: 100, 3.16k, 100k, 17M.
+/// Short text of a light level: 100, 3.16k, 100k, 17M.
 inline std::string level_text(double electrons_per_s) {
   if (electrons_per_s >= 1e6) return fmt::format("{:.3g}M", electrons_per_s / 1e6);
   if (electrons_per_s >= 1e3) return fmt::format("{:.3g}k", electrons_per_s / 1e3);

@@ -72,7 +72,7 @@ std::string id_of(const Block& block) {
   return "";
 }
 
-/// JSON that may be part of a script element, and text that may be part of an HTML element.
+/// Escapes JSON for a script element, or text for an HTML element.
 std::string escaped(std::string_view text, std::string_view less_than) {
   std::string result;
   for (const char c : text) {

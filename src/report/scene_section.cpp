@@ -42,7 +42,7 @@ Figure albedo_figure(const SceneResult& scene) {
                       {{.pixels = scene.truth.albedo}}, colours);
 }
 
-/// "hamiltonian-k4: 12.1 mm", or with the filter "hamiltonian-k4: 12.1, filtered 4.0 mm".
+/// "hamiltonian-k4: 12.1 mm", or with a filter "hamiltonian-k4: 12.1, filtered 4.0 mm".
 std::string title_of(const SceneDecoding& decoding) {
   std::string title = fmt::format("{}: {:.1f}", decoding.code, 1e3 * decoding.error.mean_m);
   if (decoding.filtered)
@@ -50,8 +50,8 @@ std::string title_of(const SceneDecoding& decoding) {
   return title + " mm";
 }
 
-/// Depth with every code at one light level, filtered to the right of a slider, each pixel alone
-/// to its left; and its error.
+/// Depth and error of every code at one light level. With a filter, a slider separates unfiltered
+/// depth (left) from filtered depth (right).
 Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
   std::vector<ValueImage> images;
   double scale_m = 0.0;
@@ -78,7 +78,7 @@ const SceneDecoding* decoding_of(const SceneCapture& capture, const std::string&
   return found == capture.decodings.end() ? nullptr : &*found;
 }
 
-/// Number of averaged measurements at every light; none without filtering.
+/// Number of averaged measurements at every light level; none without a filter.
 std::optional<Figure> averaged_figure(const SceneResult& scene, const std::string& best_code) {
   std::vector<ValueImage> images;
   for (const SceneCapture& capture : scene.captures)
@@ -92,10 +92,9 @@ std::optional<Figure> averaged_figure(const SceneResult& scene, const std::strin
                        .alt_text = "Maps of the number of averaged measurements"},
                       images,
                       {.label = "measurements", .map = ColourMap::cividis, .logarithmic = true},
-                      {.max_side = 160});  // they change slowly
+                      {.max_side = 160});  // smooth images
 }
 
-/// The row of an error.
 std::vector<std::string> error_row(const std::string& light, const std::string& code,
                                    const SceneError& error) {
   return {light,

@@ -17,9 +17,9 @@ namespace {
 
 using figure_json::Json;
 
-constexpr double point_resolution_m = 1e-3;  // a screen shows no less
+constexpr double point_resolution_m = 1e-3;  // finer details are not visible
 
-/// `wanted` of the indices 0 .. count - 1, in order and each with the same chance.
+/// Returns `wanted` of the indices 0 to count - 1, in order and with equal probability.
 /// @see Knuth, The Art of Computer Programming, vol. 2, 3.4.2, algorithm S
 std::vector<Eigen::Index> selection_sample(std::int64_t count, std::int64_t wanted) {
   RandomStream random(0, 0);
@@ -33,7 +33,7 @@ std::vector<Eigen::Index> selection_sample(std::int64_t count, std::int64_t want
   return chosen;
 }
 
-/// Indices of the points to draw: finite ones, thinned to `max_points`.
+/// Indices of the points to draw: finite points, thinned to `max_points`.
 std::vector<Eigen::Index> shown_points(const ColouredPoints& cloud, int max_points,
                                        std::int64_t& finite_points) {
   std::vector<Eigen::Index> finite;

@@ -13,12 +13,12 @@
 
 namespace tofsmith {
 
-/// What a figure says about itself.
+/// Texts of a figure.
 struct FigureText {
   std::string id = {};        ///< unique on a page; letters, digits and dashes, e.g. "coding-curve"
-  std::string title = {};     ///< a few words; stands in bold before the caption
-  std::string caption = {};   ///< what is drawn and what to see in it
-  std::string alt_text = {};  ///< for readers who cannot see it; the title when empty
+  std::string title = {};     ///< a few words, in bold before the caption
+  std::string caption = {};   ///< describes the contents
+  std::string alt_text = {};  ///< for screen readers; default: the title
 };
 
 /// Ends of an axis or of a colour scale, in the unit of the values.
@@ -31,21 +31,21 @@ struct ValueRange {
 struct Axis {
   std::string label = {};
   std::string unit = {};
-  bool logarithmic = false;              ///< values that are not positive are left out
-  bool from_zero = false;                ///< the axis always shows zero (linear axes)
-  std::optional<ValueRange> range = {};  ///< chosen from the values when absent
+  bool logarithmic = false;              ///< values <= 0 are omitted
+  bool from_zero = false;                ///< always include zero (linear axes)
+  std::optional<ValueRange> range = {};  ///< default: from the values
 };
 
-/// "label (unit)", or "label" when there is no unit.
+/// Returns "label (unit)", or "label" if the unit is empty.
 std::string axis_title(const std::string& label, const std::string& unit);
 
-/// A figure as data: values, axes and units. The viewer of the page draws it.
+/// A figure as data: values, axes and units. The page's viewer draws it.
 class Figure {
  public:
   /// @param kind  "lines", "map", "image", "curves" or "cloud"
-  /// @param json  members of the figure in the page's document; the functions below write it
-  /// @throws std::invalid_argument if the id is not made of letters, digits and dashes, or the
-  ///         title is empty
+  /// @param json  members of the figure in the document, as written by the functions below
+  /// @throws std::invalid_argument if the id contains other characters than letters, digits and
+  ///         dashes, or the title is empty
   Figure(FigureText text, std::string kind, std::string json);
 
   const FigureText& text() const { return text_; }
@@ -58,22 +58,22 @@ class Figure {
   std::string json_;
 };
 
-/// The values of a vector expression, in the type the builders take.
+/// Converts a vector expression to the type that the functions below accept.
 std::vector<double> to_values(const Eigen::Ref<const Eigen::VectorXd>& vector);
 
 enum class Dash { solid, dash, dot, dash_dot };
 
-/// How a line is drawn. Colours are "#rrggbb"; the palette becomes lighter on a dark page.
+/// Style of a line. Colours are "#rrggbb"; palette colours are lightened on a dark page.
 struct LineStyle {
   std::string colour = "#0072b2";
   Dash dash = Dash::solid;
   double width_px = 1.8;
 };
 
-/// Gives every name its own colour and dash, and the same one whenever it is asked again: one
-/// object per report makes a code look the same in every figure. Names get the colours of the
-/// palette in the order of their first use; when they run out, the next dash starts over.
-/// @see Okabe and Ito, "Color Universal Design", 2008; yellow is left out (too pale on white)
+/// Assigns each name a fixed colour and dash. One object per report gives a code the same look in
+/// every figure. Colours are assigned in the order of first use; when the palette is exhausted, it
+/// is repeated with the next dash.
+/// @see Okabe and Ito, "Color Universal Design", 2008; without yellow, which is too pale on white
 class ColourAssignment {
  public:
   LineStyle style(const std::string& name);
@@ -82,28 +82,28 @@ class ColourAssignment {
   std::map<std::string, int> order_;
 };
 
-/// Grey, dotted: targets, limits and bounds that belong to no code.
+/// Grey and dotted, for targets, limits and bounds that do not belong to a code.
 LineStyle reference_style();
 
-/// Colours of maps. The sequential ones read in grey and with any colour vision; diverging runs
-/// from blue over white to red and is symmetric about zero.
+/// Colour maps. Sequential maps also work in grey and with any colour vision; diverging is blue,
+/// white and red, symmetric about zero.
 enum class ColourMap { viridis, cividis, diverging };
 
-/// How values become colours.
+/// Mapping of values to colours.
 struct ColourScale {
   std::string label = {};  ///< title of the colour bar
   std::string unit = {};
   ColourMap map = ColourMap::viridis;
-  bool logarithmic = false;              ///< not for diverging maps
-  std::optional<ValueRange> range = {};  ///< chosen from the values when absent
-  double clip_fraction = 0;              ///< share of values that may lie beyond a chosen range
+  bool logarithmic = false;              ///< not supported for diverging maps
+  std::optional<ValueRange> range = {};  ///< default: from the values
+  double clip_fraction = 0;              ///< maximum share of values outside a default range
 };
 
 enum class Mark {
   line,              ///< points joined by straight lines
-  steps,             ///< a value holds until the next point: binary waveforms, patterns
+  steps,             ///< constant until the next point: binary waveforms, patterns
   line_and_markers,  ///< lines with a dot at every point
-  markers            ///< dots alone
+  markers            ///< dots only
 };
 
 /// One curve. Values that are not finite leave a gap.
@@ -111,18 +111,18 @@ struct Series {
   std::string name = {};
   std::vector<double> x = {};
   std::vector<double> y = {};
-  std::vector<double> y_error = {};   ///< half lengths of error bars; empty for none
-  std::optional<double> period = {};  ///< x repeats after this: one more point closes the period
+  std::vector<double> y_error = {};   ///< half lengths of error bars; may be empty
+  std::optional<double> period = {};  ///< of x; the curve is closed by one more point
   Mark mark = Mark::line;
   LineStyle style = {};
 };
 
-/// Curves in one pair of axes. A log y axis makes it a convergence plot.
+/// Curves on common axes; use a logarithmic y axis for convergence plots.
 /// @throws std::invalid_argument if there is no series, or x, y and y_error differ in length
 Figure line_figure(FigureText text, const std::vector<Series>& series, const Axis& x,
                    const Axis& y);
 
-/// An axis of named places.
+/// An axis of named categories.
 struct CategoryAxis {
   std::string label = {};
   std::string unit = {};
@@ -136,8 +136,8 @@ struct HeatMap {
 };
 
 struct HeatMapOptions {
-  int columns = 3;          ///< panels side by side
-  bool show_values = true;  ///< writes every value into its cell, two significant digits
+  int columns = 3;          ///< panels per row
+  bool show_values = true;  ///< write every value into its cell, with two significant digits
 };
 
 /// Heat maps on the same axes with one colour scale, e.g. depth error by operating point, one
@@ -148,32 +148,33 @@ Figure heat_map_figure(FigureText text, const std::vector<HeatMap>& maps, const 
                        const CategoryAxis& y, const ColourScale& colours,
                        const HeatMapOptions& options = {});
 
-/// A picture of values, first row at the top; NaN is transparent.
+/// An image of values, first row at the top; NaN is transparent.
 struct ValueImage {
   std::string title = {};
   Image<float> pixels = {};
-  Image<float> before = {};  ///< of the same size: a slider shows it to its left; empty: none
+  Image<float> before = {};  ///< same size; shown to the left of a slider; may be empty
 };
 
-/// Values to compare pictures with: the figure can also show their differences to these.
+/// Reference values; the figure can also show the differences from them.
 struct ImageReference {
-  std::string name = {};     ///< of the differences, e.g. "error"
-  Image<float> values = {};  ///< of the size of the pictures
-  double period = 0;         ///< differences go the shorter way around; 0: no period
-  double factor = 1;         ///< from differences to the unit of `colours`
-  ColourScale colours = {};  ///< of the differences
+  std::string name = {};     ///< name of the differences, e.g. "error"
+  Image<float> values = {};  ///< same size as the images
+  double period = 0;         ///< differences are wrapped to this period; 0: none
+  double factor = 1;         ///< converts differences to the unit of `colours`
+  ColourScale colours = {};  ///< for the differences
 };
 
 struct ImageFigureOptions {
-  int columns = 3;     ///< pictures side by side
-  int max_side = 320;  ///< longer pictures are shown at every n-th pixel; the caption says so
-  std::string before_name = "before";  ///< what the slider's ends are called
+  int columns = 3;                     ///< images per row
+  int max_side = 320;                  ///< larger images are subsampled; stated in the caption
+  std::string before_name = "before";  ///< labels of the ends of the slider
   std::string after_name = "after";
   std::optional<ImageReference> reference = {};
 };
 
-/// Pictures (H x W) side by side with one colour scale: depth maps, error maps.
-/// @throws std::invalid_argument unless all pictures have one shape and the colour scale suits them
+/// Images (H, W) side by side with a common colour scale, e.g. depth maps and error maps.
+/// @throws std::invalid_argument unless all images have the same shape and the colour scale is
+///         suitable
 Figure image_figure(FigureText text, const std::vector<ValueImage>& images,
                     const ColourScale& colours, const ImageFigureOptions& options = {});
 
@@ -181,17 +182,17 @@ Figure image_figure(FigureText text, const std::vector<ValueImage>& images,
 struct Curve3d {
   std::string title = {};
   Eigen::MatrixX3d points = {};  ///< (N, 3)
-  Eigen::VectorXd values = {};   ///< (N): what colours the curve, e.g. depth
+  Eigen::VectorXd values = {};   ///< (N): colour the curve, e.g. depth
 };
 
-/// Closed curves, each in its own box and all with one colour scale: coding curves.
-/// A browser shows about 16 boxes per page.
+/// Closed curves, each in its own box, with a common colour scale, e.g. coding curves. A browser
+/// can show about 16 boxes per page.
 /// @throws std::invalid_argument if there is no curve or points and values differ in number
 Figure curve_3d_figure(FigureText text, const std::vector<Curve3d>& curves,
                        const std::array<Axis, 3>& axes, const ColourScale& colours);
 
 struct PointCloudOptions {
-  int max_points = 40000;      ///< a larger cloud is thinned at random; the caption says so
+  int max_points = 40000;      ///< larger clouds are thinned randomly; stated in the caption
   double point_size_px = 2.2;  ///< diameter
 };
 
@@ -199,15 +200,15 @@ struct PointCloudOptions {
 struct ColouredPoints {
   std::string title = {};
   Eigen::MatrixX3f points = {};  ///< (P, 3)
-  Eigen::VectorXf values = {};   ///< (P): what colours them
+  Eigen::VectorXf values = {};   ///< (P): colour the points
 };
 
-/// Clouds, each in its own box and all with one colour scale. Points with a coordinate or value
-/// that is not finite are left out. The same cloud is always thinned to the same points.
+/// Point clouds, each in its own box, with a common colour scale. Points with a coordinate or value
+/// that is not finite are omitted. Thinning is reproducible.
 /// @throws std::invalid_argument if there is no cloud or points and values differ in number
 Figure point_cloud_figure(FigureText text, const std::vector<ColouredPoints>& clouds,
                           const ColourScale& colours, const PointCloudOptions& options = {});
-/// The same of one cloud.
+/// As above for one cloud.
 Figure point_cloud_figure(FigureText text, const Eigen::MatrixX3f& points,
                           const Eigen::VectorXf& values, const ColourScale& colours,
                           const PointCloudOptions& options = {});
@@ -226,8 +227,8 @@ struct PanelRow {
 };
 
 /// A grid of panels, e.g. measurements (rows) by modulation, demodulation and correlation
-/// (columns). Series of one name share one legend entry.
-/// @throws std::invalid_argument if a row has not one panel per column
+/// (columns). Series with the same name share a legend entry.
+/// @throws std::invalid_argument unless every row has one panel per column
 Figure small_multiples(FigureText text, const std::vector<PanelColumn>& columns,
                        const std::vector<PanelRow>& rows);
 

@@ -13,7 +13,8 @@
 
 namespace tofsmith {
 
-/// A table of rows of texts, headings first. Columns are numeric unless listed in `text_columns`.
+/// Converts rows of texts, headings first, to a table. Columns are numeric unless listed in
+/// `text_columns`.
 inline Table table_of_rows(std::string id, std::string caption,
                            const std::vector<std::vector<std::string>>& rows,
                            std::initializer_list<std::size_t> text_columns) {
