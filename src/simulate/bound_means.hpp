@@ -11,14 +11,14 @@
 
 namespace tofsmith {
 
-/// Mean absolute value of a normal deviation over its standard deviation.
+/// Ratio of mean absolute value to standard deviation of a normal deviation.
 inline double mae_per_sigma() { return std::sqrt(2.0 / std::numbers::pi); }
 
-/// A transfer function without the harmonics that are rounding in the response's second derivative,
-/// but with enough of them to sample what is made of it.
+/// Removes high harmonics of a transfer function that are rounding errors in the response's second
+/// derivative, but keeps enough harmonics to sample results.
 inline Eigen::VectorXcd without_rounding(const Eigen::VectorXcd& transfer) {
   constexpr Eigen::Index least_kept = 256;
-  constexpr double rounding = 1e-7;  // of the largest
+  constexpr double rounding = 1e-7;  // relative to the largest
   const Eigen::ArrayXd curvature =
       Eigen::ArrayXd::LinSpaced(transfer.size(), 0.0, static_cast<double>(transfer.size() - 1))
           .square() *
@@ -29,7 +29,7 @@ inline Eigen::VectorXcd without_rounding(const Eigen::VectorXcd& transfer) {
   return transfer.head(kept);
 }
 
-/// Mean over albedo uniform in (0, 1) of min(mae(albedo), largest). Nodes crowd towards albedo 0,
+/// Mean over albedo uniform in (0, 1) of min(mae(albedo), largest). Nodes are denser near albedo 0,
 /// where the error grows.
 template <typename Mae>
 double mean_over_albedo(double largest, Mae&& mae) {
@@ -39,7 +39,7 @@ double mean_over_albedo(double largest, Mae&& mae) {
     const double x = (i + 0.5) / nodes;  // albedo = x^2, d albedo = 2 x dx
     sum += 2.0 * x * std::min(largest, mae(x * x));
   }
-  // The midpoint rule integrates 2 x exactly: a constant error stays what it is.
+  // The midpoint rule integrates 2 x exactly, so that a constant error is preserved.
   return sum / nodes;
 }
 

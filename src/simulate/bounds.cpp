@@ -72,7 +72,7 @@ double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
 
 namespace {
 
-/// Cells of a period over which depth is averaged.
+/// Returns the number of cells per period over which depth is averaged.
 int cells_of(const ForwardModel& model, std::optional<int> per_bin) {
   if (!per_bin)
     per_bin = model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
@@ -108,7 +108,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
   const Eigen::VectorXd tap_ambient = model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain());
   ambient_ = model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
   shot_ambient_ = sums * tap_ambient;
-  // What differences of buckets leave of ambient light is rounding, not a direction to take out.
+  // In differences of buckets, ambient light cancels up to rounding; set the remainder to 0.
   ambient_ = (ambient_.array().abs() > 1e-9 * shot_ambient_.array()).select(ambient_, 0.0);
   constant_variance_e2_ += sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
 }
@@ -119,7 +119,7 @@ HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)
   const Eigen::VectorXd bin = model.time_bin_table(step * samples) * model.tap_exposure_s()[0];
   Eigen::MatrixXd middle, slope;
   middles_and_slopes(bin, middle, slope);
-  // Bin n sees of a depth what bin 0 sees n bins nearer: all bins together are bin 0 at all depths.
+  // Bin n sees a depth as bin 0 sees it n bins nearer, so bin 0 at all depths represents all bins.
   light_.resize(samples, cells_per_bin);
   slope_.resize(samples, cells_per_bin);
   for (int j = 0; j < samples * cells_per_bin; ++j) {
@@ -133,7 +133,7 @@ HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)
 }
 
 double HistogramBound::mae_m(const OperatingPoint& point) const {
-  constexpr double min_e = 1e-9;  // a bin without any light tells nothing
+  constexpr double min_e = 1e-9;  // a bin without light carries no information
   Eigen::VectorXd sigma_m(light_.cols());
   for (Eigen::Index j = 0; j < light_.cols(); ++j) {
     const Eigen::ArrayXd weight = (point.signal_e_per_s * light_.col(j).array() +
@@ -152,12 +152,12 @@ double HistogramBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
                           [&](double albedo) { return mae_m(dimmed(point, albedo)); });
 }
 
-/// The same of rows, with L^-1 of their covariance L L^T.
+/// For rows, using L^-1 of their covariance L L^T.
 Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian_of_rows(
     Eigen::Index depth, const OperatingPoint& point) const {
   const Eigen::Index K = ambient_.size();
   Eigen::MatrixXd covariance = covariance_->at(depth, point.signal_e_per_s, point.ambient_e_per_s);
-  // Rows may depend on each other: what then has no noise has no mean either.
+  // Rows may be linearly dependent; directions without noise then also have mean 0.
   constexpr double rounding = 1e-12;
   covariance.diagonal().array() += std::max(min_e2, rounding * covariance.diagonal().maxCoeff());
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
@@ -183,7 +183,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian_of_ro
   return by;
 }
 
-/// Columns for depth, signal and ambient light; the Fisher matrix is their Gram matrix.
+/// Returns columns for depth, signal and ambient light; the Fisher matrix is their Gram matrix.
 Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian(
     Eigen::Index depth, const OperatingPoint& point) const {
   if (covariance_) return whitened_jacobian_of_rows(depth, point);

@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// A bound at an operating point of the camera, its albedo counted in.
+/// Returns a bound at an operating point of the camera, including its albedo.
 template <typename Bound>
 double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoint& point) {
   if (camera.operating.uniform_albedo) return bound.mae_uniform_albedo_m(point);
@@ -36,7 +36,7 @@ const std::vector<CameraBounds::Level>& CameraBounds::of(int exposures) {
   const Camera camera = judged_camera(camera_);
   const ReceiverBound receiver(camera, exposures);
   const DirectTofBound direct_tof(camera);
-  const bool has_rows = camera.sensor.readout == Readout::rows;  // bounded by their own light
+  const bool has_rows = camera.sensor.readout == Readout::rows;  // HistogramBound applies instead
   for (const OperatingPoint& point : camera.operating.points())
     found->second.push_back({has_rows ? 0.0 : bound_mae_m(receiver, camera, point),
                              bound_mae_m(direct_tof, camera, point)});

@@ -14,8 +14,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Where the words of albedo stand: apart from those of normals, blocks 0, 1, .., and of Poisson
-/// counts, from 2^30 on.
+/// First block of random words for albedo, apart from normals (blocks from 0) and Poisson counts
+/// (from 2^30).
 constexpr std::uint32_t albedo_block = 1u << 29;
 
 EvaluateOptions with_even_trials(EvaluateOptions options) {
@@ -25,7 +25,7 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
   return options;
 }
 
-/// Moves depths, drawn alike over the range, to where a prior has as many below.
+/// Maps uniformly drawn depths to the quantiles of a prior.
 void move_depths(const TrialModel& model, const DepthPrior& prior, bool on_bins, int trials,
                  TrialTile& tile) {
   const double samples = model.samples();
@@ -39,7 +39,7 @@ void move_depths(const TrialModel& model, const DepthPrior& prior, bool on_bins,
   }
 }
 
-/// About, where they go on until a target is met.
+/// Total number of trials; an estimate if trials continue until a target is met.
 std::int64_t all_trials(const EvaluateOptions& options, std::size_t points) {
   return static_cast<std::int64_t>(points) *
          (options.target_standard_error > 0.0 ? options.max_trials : options.trials);
@@ -102,13 +102,13 @@ std::vector<TrialRound> DepthTrials::first_rounds() const {
 
 TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTile& tile) const {
   const auto count = static_cast<int>(trials.end - trials.begin);
-  const int drawn = whole_vectors(count);  // those past the last in vain
+  const int drawn = whole_vectors(count);  // surplus trials are ignored
   const TrialStreams streams{options_.seed, round.point,
                              static_cast<std::uint32_t>(round.first + trials.begin)};
   tile.pixels.pixels = count;
 
   const bool on_bins = options_.depth == DepthSampling::bins;
-  // 1. A depth in the trial's slice, and light.
+  // 1. Draw a depth in the trial's slice, and light.
   draw_words(streams, 0, drawn, tile.words);
   place_depths(model_,
                {.first = trials.begin,
@@ -116,7 +116,7 @@ TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTil
                 .on_bins = on_bins && depths_.is_uniform()},
                drawn, tile);
   if (!depths_.is_uniform()) move_depths(model_, depths_, on_bins, drawn, tile);
-  // 2. Noise of that depth and light where the decoder looks, or of every measurement; 3. decode.
+  // 2. Draw noise in the decoder's plane or of every measurement; 3. decode.
   if (draws_in_plane()) {
     const PlaneNoise& noise = plane_noise_[round.point];
     draw_normals(streams, noise.rank, drawn, tile);
@@ -133,7 +133,7 @@ TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTil
   return {{tile.true_bin, size}, {tile.decoded_bin, size}};
 }
 
-/// Rows of normals, from the words of block 0 on.
+/// Draws rows of normals from the words of block 0 on.
 void DepthTrials::draw_normals(const TrialStreams& streams, int count, int trials,
                                TrialTile& tile) const {
   for (int pair = 0; 2 * pair < count; ++pair) {
@@ -157,7 +157,7 @@ void DepthTrials::draw_signal(const TrialStreams& streams, std::size_t point, in
     tile.signal[i] = static_cast<float>((tile.words[i] + 0.5) * 0x1p-32 * signal_e_per_s);
 }
 
-/// Electrons of both signs of every number of a mixer.
+/// Draws electrons of both signs for every number of a mixer.
 void DepthTrials::draw_signed(const TrialStreams& streams, int trials, TrialTile& tile) const {
   const int numbers = model_.taps();
   for (int k = 0; k < numbers; ++k) {

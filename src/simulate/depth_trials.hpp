@@ -17,51 +17,51 @@
 
 namespace tofsmith {
 
-/// True and decoded positions of an even number of trials that follow one another, [bin] in [0, N).
+/// True and decoded positions [bin], in [0, N), of an even number of consecutive trials.
 struct TrialBlock {
   std::span<const double> true_bin;
   std::span<const double> decoded_bin;
 };
 
-/// Trials first .. first + trials - 1 of an operating point, one in each of as many slices of the
-/// range, in each of which depths are equally likely.
+/// Trials first to first + trials - 1 of an operating point, one in each of `trials` slices of the
+/// range with equal probability.
 struct TrialRound {
   std::size_t point = 0;
   std::int64_t first = 0;
   std::int64_t trials = 0;  ///< even
 };
 
-/// The Monte Carlo loop behind every depth error: draw depth and noise, decode. What a trial draws
-/// depends on the seed, its point and its number alone. A tile of trials stays in the innermost
-/// caches from its random numbers to its errors.
+/// The Monte Carlo loop of all depth errors: draws depth and noise, and decodes. Random numbers of
+/// a trial depend only on the seed, its point and its number. A tile of trials fits into the
+/// innermost caches.
 class DepthTrials {
  public:
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
-  /// Decoded by what a decoder believes of the camera, of as many measurements and samples.
+  /// Decodes with the table that a decoder assumes, with the same measurements and samples.
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options,
               DecodingTable believed);
-  /// Of a table that is taken for the truth, at one light level.
+  /// Simulates a table at one light level.
   DepthTrials(const DecodingTable& table, const OperatingPoint& light,
               const EvaluateOptions& options);
 
   int samples() const { return model_.samples(); }
   int measurements() const { return model_.measurements(); }
   const std::vector<OperatingPoint>& points() const { return points_; }
-  /// Whether noise is drawn in the plane in which the decoder looks, not by measurement.
+  /// Returns true if noise is drawn in the decoder's plane, not per measurement.
   bool draws_in_plane() const { return !plane_noise_.empty(); }
 
-  /// The trials that the options ask for at first, of every point.
+  /// Returns the first round of trials for every point.
   std::vector<TrialRound> first_rounds() const;
 
-  /// What `add(sums, block)` makes of all trials of each round, on all threads. Blocks are added
-  /// within runs of trials, and runs merged by `merge(other)`, in their order whatever the threads.
-  /// @param runs_at_once  that many sums are kept
+  /// Accumulates all trials of each round by `add(sums, block)` on all threads. Blocks are added
+  /// within runs of trials, and runs are merged in order by `merge(other)`, independent of the
+  /// threads.
+  /// @param runs_at_once  number of sums in memory
   template <typename Sums, typename Add>
   std::vector<Sums> sum(std::span<const TrialRound> rounds, const Sums& none, const Add& add,
                         const Progress& progress, std::int64_t runs_at_once = 512) const;
 
-  /// Runs trials [begin, end) of a round, at most trials_per_tile and an even number, in a
-  /// workspace.
+  /// Runs trials [begin, end) of a round: an even number, at most trials_per_tile.
   TrialBlock run(const TrialRound& round, IndexRange trials, TrialTile& tile) const;
 
  private:
@@ -80,11 +80,11 @@ class DepthTrials {
   DepthPrior depths_;
   std::vector<OperatingPoint> points_;
   TrialModel model_;
-  std::optional<RowTrials> rows_;  // where they are read out
+  std::optional<RowTrials> rows_;  // if the sensor outputs rows
   DecodingTable believed_;
   TrialDecoder decoder_;
-  std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
-  std::vector<std::vector<float>> mean_floor_e_, shot_floor_e2_, max_e_;  // of every point: (taps)
+  std::vector<PlaneNoise> plane_noise_;  // per point; empty if not exact
+  std::vector<std::vector<float>> mean_floor_e_, shot_floor_e2_, max_e_;  // per point: (taps)
 };
 
 template <typename Sums, typename Add>

@@ -8,32 +8,32 @@
 
 namespace tofsmith {
 
-/// chi of all tap values, tabulated much finer than bins and read by linear interpolation: what a
-/// simulation needs once per pixel or trial.
+/// chi of all tap values, tabulated much finer than bins with linear interpolation; evaluated once
+/// per pixel or trial in simulations.
 ///
-/// Interpolation is off by at most max|chi''| / (8 points^2), and by |slope change| / (4 points)
-/// in a cell in which chi has a corner (none where corners fall on the table, as those of the ideal
-/// codes do). At 10 f0 and N = 240 that is below 2e-5: under 0.02 mm of depth on a range of 10 m,
-/// and 1/256 of what a decoder's own chords between bins leave.
+/// The interpolation error is at most max|chi''| / (8 points^2), and |slope change| / (4 points) in
+/// a cell with a corner of chi (no error if corners are at table points, as for ideal codes). At 10
+/// f0 and N = 240 it is below 2e-5: less than 0.02 mm at a range of 10 m, and 1/256 of the error of
+/// a decoder's chords between bins.
 class FineCorrelation {
  public:
   static constexpr int least_points_per_bin = 16;
 
-  /// As many points as ForwardModel::straight_points_per_bin() gives.
+  /// Uses the number of points from ForwardModel::straight_points_per_bin().
   explicit FineCorrelation(const ForwardModel& model);
   /// @param points_per_bin  table points per bin, >= 1
   FineCorrelation(const ForwardModel& model, int points_per_bin);
-  /// The same of any table of tap values, (points, tap values).
+  /// As above for any table of tap values, (points, tap values).
   FineCorrelation(const Eigen::MatrixXd& table, int points_per_bin);
 
   int tap_values() const { return tap_values_; }
   /// Rows of the table in one period.
   int points() const { return points_; }
   double points_per_bin() const { return points_per_bin_; }
-  /// The rows of the table and the first once more, (points + 1, tap values); of rows of an
-  /// exposure one column, of time bin 0: bin n sees what is n bins nearer.
+  /// Rows of the table, with the first repeated at the end, (points + 1, tap values). For rows of
+  /// an exposure there is one column, of time bin 0; bin n equals bin 0 at a depth n bins nearer.
   const std::vector<double>& table() const { return table_; }
-  /// chi at a depth in [0, N], written to `chi` (tap values).
+  /// Computes chi at a depth in [0, N]. @param chi  (tap values)
   void at(double depth_bin, double* chi) const;
 
  private:

@@ -14,12 +14,12 @@ namespace tofsmith {
 namespace {
 
 constexpr int min_points = 4096;
-/// Of the largest value: what the harmonics left out may make of a response that is 0.
+/// Relative size of values that omitted harmonics may cause where the response is 0.
 constexpr double rounding = 1e-7;
 constexpr int cells = 64;
 
-/// x and the largest integral of d times a derivative of the light at it: the corners of a concave
-/// polygon from (0, 0) to (all light, 0), nowhere below.
+/// x and the largest integral of d times a derivative of the light at x, as corners of a concave
+/// polygon from (0, 0) to (all light, 0) that is nowhere too low.
 struct Profile {
   std::vector<double> passed{0.0}, largest{0.0};
 
@@ -29,13 +29,14 @@ struct Profile {
   }
 };
 
-/// Gates open where derivative / light is largest. Nothing is sorted by it: points go into bins of
-/// it. What a gate holds that is open down to the edge of a bin is exact, and in between the curve
-/// bends from the ratio of one edge to that of the other, below both tangents.
+/// Gates open where derivative / light is largest. Points are binned by this ratio instead of
+/// sorted. Gates that are open down to the edge of a bin are exact; in between, the curve bends
+/// from the ratio of one edge to that of the next, below both tangents.
 Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative) {
-  constexpr int half = 512;  // bins of either sign
+  constexpr int half = 512;  // bins per sign
   const double width = 1.0 / static_cast<double>(light.size());
-  const double scale = derivative.abs().sum() / light.sum();  // of ratios: half of the bins below
+  const double scale =
+      derivative.abs().sum() / light.sum();  // of ratios: half of the bins are below
   Profile profile;
   if (!(scale > 0.0)) {
     profile.go_on(light.sum() * width, 0.0);
@@ -72,8 +73,8 @@ Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative
   return profile;
 }
 
-/// At each x, which rise, for gates and for those that are open where others are shut: their
-/// derivatives are the same but for the sign.
+/// Returns the largest value at increasing x, for gates and their complements, whose derivatives
+/// differ only in sign.
 std::vector<double> largest_at(const Profile& profile, const std::vector<double>& x) {
   const auto at = [&](double passed) {
     const auto right = std::upper_bound(profile.passed.begin(), profile.passed.end(), passed);
@@ -117,7 +118,7 @@ double GateInformation::at_any_depth(double signal_e, double ambient_e, double o
   double largest = 0.0;
   for (std::size_t i = 1; i < profile.passed.size(); ++i) {
     const double slope = profile.largest[i], passed = profile.passed[i];
-    // A gate that is shut where this one is open has the same slope.
+    // The complementary gate has the same slope.
     for (const double x : {passed, profile.passed.back() - passed})
       if (x + other_e2 > 0.0) largest = std::max(largest, slope * slope / (x + other_e2));
   }
@@ -129,7 +130,7 @@ double GateInformation::mean_over_depths(double signal_e, double ambient_e, doub
   const Eigen::ArrayXd light = signal_e * response_ + ambient_e;
   const Profile slopes = profile_of(light, signal_e * slope_);
   const Profile curvatures = profile_of(light, signal_e * curvature_);
-  // Cells of x, narrow where few electrons make little noise.
+  // Cells of x, narrow at few electrons, where noise is small.
   const double all = slopes.passed.back();
   std::vector<double> middle, width, weight;
   for (int j = 0; j < cells; ++j) {
@@ -141,7 +142,7 @@ double GateInformation::mean_over_depths(double signal_e, double ambient_e, doub
   }
   std::vector<double> steepest = largest_at(slopes, middle);
   for (double& z : steepest) z *= z;
-  std::vector<double> risen{0.0};  // of z from x = 0 on
+  std::vector<double> risen{0.0};  // upper limit of z, starting at x = 0
   const std::vector<double> curvature = largest_at(curvatures, middle);
   for (std::size_t j = 0; j < cells; ++j)
     risen.push_back(risen.back() + 2.0 * curvature[j] * width[j]);
@@ -156,7 +157,7 @@ double GateInformation::mean_over_depths(double signal_e, double ambient_e, doub
     }
     return gained / taken;
   };
-  // The mean changes little from cell to cell: every few of them, then all around the largest.
+  // The mean changes little between cells: search every `step`-th one, then all around the largest.
   constexpr std::size_t step = 4;
   double largest = 0.0;
   std::size_t best_a = 0, best_b = cells;

@@ -18,9 +18,9 @@ namespace tofsmith {
 namespace {
 
 constexpr double smallest_radius_px = 0.01, largest_radius_px = 64.0;
-constexpr double step = 0.02;  // of radii, relative
+constexpr double step = 0.02;  // relative, between radii
 
-/// Integral of the normal distribution function of deviation sigma.
+/// Integral of the normal distribution function with standard deviation sigma.
 double distribution_integral(double x, double sigma) {
   const double u = x / sigma;
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -32,7 +32,7 @@ void scale_to_sum_1(std::vector<double>& weights) {
   for (double& weight : weights) weight /= sum;
 }
 
-/// Area of the disc with x <= a and y <= b.
+/// Area of the part of the disc with x <= a and y <= b.
 double area_below(double radius, double a, double b) {
   a = std::clamp(a, -radius, radius);
   b = std::clamp(b, -radius, radius);
@@ -114,7 +114,7 @@ DiscKernels::DiscKernels(const LensBlur& blur, int samples, std::span<const floa
         steps_[static_cast<std::size_t>(its - first_step_)].push_back(
             disc_kernel(radius_px, (row + 0.5) / samples - 0.5, (column + 0.5) / samples - 0.5));
   });
-  // A disc reaches at most half a pixel farther than its radius from its own pixel's centre.
+  // Measured from its own pixel's centre, a disc extends at most half a pixel beyond its radius.
   for (const auto& kernels : steps_)
     if (!kernels.empty()) reach_ = std::max(reach_, kernels.front().reach);
 }

@@ -9,23 +9,23 @@
 
 namespace tofsmith {
 
-/// Share of its light that a ray brings to a pixel, along one axis. Rays stand evenly, `samples` to
-/// a pixel, and each stands for the light of its part of the pixel, spread by a Gaussian:
+/// Weights of rays in a pixel along one axis. There are `samples` equidistant rays per pixel, and
+/// each represents the light of its part of the pixel, spread by a Gaussian:
 ///   w_j = integral over part j of [Phi((1/2 - s) / sigma) - Phi((-1/2 - s) / sigma)] ds,
-/// s from the pixel's centre [px]. So a scene that is constant over each part is blurred exactly.
+/// with s from the pixel's centre [px]. A scene that is constant over each part is blurred exactly.
 struct AxisKernel {
-  int reach = 0;                ///< rays beyond either side of the pixel that matter
-  std::vector<double> weights;  ///< of rays -reach .. samples - 1 + reach; sum 1
+  int reach = 0;                ///< number of relevant rays beyond each side of the pixel
+  std::vector<double> weights;  ///< of rays -reach to samples - 1 + reach; sum 1
 
-  /// @param sigma_px  0: the rays of the pixel alone
+  /// @param sigma_px  0: only the rays of the pixel
   AxisKernel(double sigma_px, int samples);
 };
 
-/// Where the light of a disc falls: share of each pixel about the one its ray is in.
+/// Distribution of the light of a disc over the pixels around that of its ray.
 struct DiscKernel {
   int reach = 0;                ///< pixels to either side
   std::vector<double> weights;  ///< (2 reach + 1)^2, row by row; sum 1
-  double largest = 0.0;         ///< of the weights
+  double largest = 0.0;
 
   double at(int row, int column) const {
     const std::ptrdiff_t side = 2 * std::ptrdiff_t{reach} + 1;
@@ -33,18 +33,19 @@ struct DiscKernel {
   }
 };
 
-/// Area of the disc about the origin within [x0, x1] x [y0, y1].
+/// Area of the part of a disc about the origin within [x0, x1] x [y0, y1].
 double disc_area(double radius, double x0, double x1, double y0, double y1);
 
-/// Discs of confusion of all distances of a scene, with radii rounded to steps of 2 %.
+/// Discs of confusion for all distances in a scene, with radii rounded to steps of 2 %.
 class DiscKernels {
  public:
-  /// @throws std::invalid_argument if a disc is larger than is simulated
+  /// @throws std::invalid_argument if a disc exceeds the largest supported radius
   DiscKernels(const LensBlur& blur, int samples, std::span<const float> distances_m);
 
-  /// Of a ray, by its distance [m] (NaN: infinite) and its place among the rays of its pixel.
+  /// Returns the kernel of a ray, by its distance [m] (NaN: infinite) and its position among the
+  /// rays of its pixel.
   const DiscKernel& of(float distance_m, int row, int column) const;
-  int reach() const { return reach_; }  ///< the largest [px]
+  int reach() const { return reach_; }  ///< maximum [px]
 
  private:
   static constexpr int sharp = -1;
@@ -55,7 +56,7 @@ class DiscKernels {
   int reach_ = 0;
   DiscKernel point_;
   int first_step_ = 0;
-  std::vector<std::vector<DiscKernel>> steps_;  // (steps, samples^2); empty: no such distance
+  std::vector<std::vector<DiscKernel>> steps_;  // (steps, samples^2); empty: unused step
 };
 
 }  // namespace tofsmith

@@ -6,28 +6,27 @@
 
 namespace tofsmith {
 
-/// Tap values first .. first + count - 1, those of one exposure or of all.
+/// Tap values first to first + count - 1, of one exposure or of all.
 struct TapRange {
   int first = 0, count = 0;
 };
 
-/// Adds what rays bring, blurred by the lens: every pixel's light is a weighted sum of that of rays
-/// about it. Beyond the border the image goes on as its mirror image, so that no light is lost
-/// and what is uniform stays so. Ambient light is added with tap value 0, depths with every one.
-/// @param rays  `samples` x `samples` for each pixel
-/// @throws std::invalid_argument if their image is not of that size, or as DiscKernels
-/// @note the same bits for any number of threads
+/// Adds the light of rays, blurred by the lens: every pixel is a weighted sum of the rays around
+/// it. The image is continued by reflection, so that no light is lost and uniform light remains
+/// uniform. Ambient light is added with tap value 0, distances with every tap value.
+/// @param rays  `samples` x `samples` per pixel
+/// @throws std::invalid_argument if the size of their image does not match, or as DiscKernels
+/// @note same bits for any number of threads
 void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRange range,
                CollectedLight& light);
 
-/// Lets the lens scatter all light over the image: StrayLight::scatter() of each tap value and of
-/// ambient light.
-/// @param kernel             of StrayLight; empty: nothing changes
-/// @param ambient_e_per_s  where `light` has none of its own
+/// Applies StrayLight::scatter() to each tap value and to ambient light.
+/// @param kernel             of StrayLight; empty: no change
+/// @param ambient_e_per_s  used if `light` has no ambient light
 /// @throws std::invalid_argument as StrayLight
 void scatter_light(const Image<float>& kernel, double ambient_e_per_s, CollectedLight& light);
 
-/// Raw frames of that size, all 0.
+/// Returns raw frames of this size, all 0.
 RawFrames empty_frames(int frames, int height, int width, int measurements);
 
 }  // namespace tofsmith

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int points_per_bin = 8;
 
-/// Length of the first column's part across all others.
+/// Length of the part of the first column that is orthogonal to all others.
 double length_across(Eigen::MatrixXd columns) {
   const double whole = columns.col(0).norm();
   if (!(whole > 0.0)) return 0.0;

@@ -47,7 +47,7 @@ class CellTrials {
   int measurements() const { return pixel_.measurements(); }
   const DecodingTable& table() const { return table_; }
 
-  /// @param decoder  of two returns or a tail; null: none
+  /// @param decoder  for two returns or a tail; null: none
   template <typename AnyDecoder>
   MultipathCell cell(const CellLight& light, std::uint64_t number, const AnyDecoder* decoder,
                      const Progress& progress) const;
@@ -111,7 +111,7 @@ void CellTrials::add_errors(const Image<float>& depth_m, const std::vector<doubl
   RunningStatistics bias, error;
   const double range_m = camera_.range_m();
   for (std::size_t t = 0; t < true_m.size(); ++t) {
-    // Nothing decoded costs what a guess does.
+    // A pixel without decoded depth has the mean error of a guess.
     const double decoded = depth_m.pixels[t];
     const double off =
         std::isnan(decoded) ? 0.25 * range_m : circular_difference(decoded, true_m[t], range_m);

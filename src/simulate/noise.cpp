@@ -13,10 +13,10 @@ namespace tofsmith {
 namespace {
 
 Sensor validated(const Sensor& sensor) {
-  // The camera's checks are the sensor's; every other setting of a default camera is valid.
+  // Reuse the camera's checks; all other settings of a default camera are valid.
   Camera camera;
   camera.sensor = sensor;
-  camera.sensor.generator.reset();  // depends on the frequency, and makes no noise
+  camera.sensor.generator.reset();  // depends on the frequency and causes no noise
   camera.operating = default_operating_range();
   camera.validate();
   return sensor;

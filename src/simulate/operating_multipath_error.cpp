@@ -71,7 +71,7 @@ OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera
     const Image<float> depth_m = depth_of(frame.raw, parts[p]);
     RunningStatistics linear, circular;
     for (std::size_t t = 0; t < frame.true_m.size(); ++t) {
-      // Nothing decoded is as good as any depth.
+      // For a pixel without decoded depth any value is equally good.
       const double decoded_m = std::isnan(depth_m.pixels[t]) ? 0.0 : depth_m.pixels[t];
       linear.add(std::abs(decoded_m - frame.true_m[t]));
       circular.add(std::abs(circular_difference(decoded_m, frame.true_m[t], range_m)));
@@ -83,7 +83,7 @@ OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera
   return {geometric_mean_of(linear_m), geometric_mean_of(circular_m)};
 }
 
-/// What every decoding of a code's trials shares.
+/// Common inputs of all decoders.
 struct OperatingMultipathTrials {
   OperatingMultipathTrials(const CodeSet& code, const Camera& on, const OperatingMultipath& met,
                            const EvaluateOptions& how)

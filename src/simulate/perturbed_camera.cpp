@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Every frequency of the response multiplied by `factor`.
+/// Multiplies every frequency of the response by `factor`.
 ImpulseResponse with_bandwidth(ImpulseResponse response, double factor) {
   response.f_max_hz *= factor;
   response.cutoff_hz *= factor;
@@ -72,10 +72,10 @@ PerturbedCamera with_droop(const Camera& camera, double droop) {
   return perturbed;
 }
 
-/// Whether values may differ in sensitivity: rows see all the same.
+/// Returns true if measurements may differ in sensitivity; rows do not.
 bool has_taps(const Camera& camera) { return camera.sensor.readout != Readout::rows; }
 
-/// All at once.
+/// Applies all perturbations at once.
 PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& options) {
   PerturbedCamera perturbed{"all together", camera};
   if (options.bandwidth > 0.0)
@@ -93,13 +93,13 @@ PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& o
   return perturbed;
 }
 
-/// Samples, also of a sum of cosines, which stops being one where it is clipped.
+/// Returns samples, also for a sum of cosines, which clipping turns into another waveform.
 Eigen::VectorXd sampled_values(const Waveform& waveform) {
   if (waveform.is_sampled()) return waveform.samples();
   return waveform.cell_averages(static_cast<int>(waveform.steps().values.size()));
 }
 
-/// Deviations from the mean scaled so that the peak is `factor` times what it was.
+/// Scales deviations from the mean so that the peak changes by `factor`.
 Waveform with_depth_of_modulation(const Waveform& modulation, double factor) {
   const double mean = modulation.mean(), peak = modulation.peak();
   if (mean <= 0.0 || peak <= mean) return modulation;
@@ -120,7 +120,7 @@ Waveform with_peak(const Waveform& modulation, double peak) {
                           modulation.level() * peak);
 }
 
-/// On the points of a clock; light within its average power.
+/// Rounds switching times to a clock; preserves the average power of light.
 Waveform on_clock(const Waveform& waveform, double clock_s, const Camera& camera) {
   if (clock_s == 0.0) return waveform;
   return generated(waveform, {.sample_rate_hz = 1.0 / clock_s, .amplitude_bits = 24},
@@ -129,20 +129,20 @@ Waveform on_clock(const Waveform& waveform, double clock_s, const Camera& camera
 
 Waveform within_power(const Waveform& modulation) {
   const double mean = modulation.mean();
-  if (mean <= 1.0 + 1e-9) return modulation;  // as exactly as a code is checked
+  if (mean <= 1.0 + 1e-9) return modulation;  // tolerance of the check of a code
   return modulation.is_binary() && !modulation.on_intervals().empty()
              ? Waveform::binary(modulation.on_intervals(), modulation.level() / mean)
          : modulation.is_binary() ? Waveform::constant(1.0)
                                   : modulation.scaled(0.0, 1.0 / mean);
 }
 
-/// Sampled waveforms as a code of that many samples holds them.
+/// Converts sampled waveforms to the code's number of samples.
 Waveform on_samples(const Waveform& waveform, int samples) {
   if (!waveform.is_sampled() || waveform.samples().size() == samples) return waveform;
   return Waveform::sampled(waveform.cell_averages(samples));
 }
 
-/// Falling off as exp(-t / s) from every rise on: means over `samples` cells.
+/// Decays as exp(-t / s) from every rise; returns means over `samples` cells.
 Waveform with_droop(const Waveform& modulation, double droop, int samples) {
   if (droop == 0.0 || !modulation.is_binary() || modulation.on_intervals().empty())
     return modulation;
@@ -195,7 +195,7 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
     modulation.push_back(
         on_samples(with_droop(m, perturbed.droop, code.samples()), code.samples()));
   }
-  if (code.is_rows())  // sums of counts, on no clock of the light's
+  if (code.is_rows())  // rows are sums of counts, which the light's clock does not affect
     return CodeSet::create_rows(code.name(), std::move(modulation.front()),
                                 code.demodulation_samples());
   for (int i = 0; i < code.measurements(); ++i)

@@ -13,7 +13,7 @@
 namespace tofsmith {
 
 namespace {
-// Of the largest value: what the harmonics left out may make of a response that is 0.
+// Relative size of values that omitted harmonics may cause where the response is 0.
 constexpr double rounding = 1e-7;
 }  // namespace
 
@@ -62,7 +62,7 @@ double PhotonInformation::of_impulses(double signal_e, double other_e) const {
 double PhotonInformation::of_ripple(double signal_e, double other_e, double peak_factor) const {
   const double min_e = other_e - signal_e * undershoot(peak_factor);
   if (min_e <= 0.0) return infinity;
-  // Mean square less squared mean of what lies in [0, p] with mean mu <= 1: at most mu (p - mu).
+  // The variance of values in [0, p] with mean mu <= 1 is at most mu (p - mu).
   const double mean = std::min(1.0, 0.5 * peak_factor);
   return signal_e * signal_e * largest_slope_power_ * mean * (peak_factor - mean) / min_e;
 }
@@ -74,7 +74,8 @@ double PhotonInformation::largest(double signal_e, double other_e, double peak_f
 double PhotonInformation::undershoot(double peak_factor) const {
   const double least = response_.minCoeff();
   if (!may_ring_ || least >= -rounding * response_.maxCoeff()) return 0.0;
-  // Impulses alone reach the minimum; a light within its peak, at most p times what lies below 0.
+  // Only impulses reach the minimum; light within its peak reaches at most p times the negative
+  // part.
   return std::min(-least, -peak_factor * response_.cwiseMin(0.0).mean());
 }
 

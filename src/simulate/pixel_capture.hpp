@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Expected electrons, noise and read-out of one pixel at a time.
+/// Simulates one pixel at a time: expected electrons, noise and read-out.
 class PixelCapture {
  public:
   PixelCapture(const ForwardModel& model, const Camera& camera);
@@ -22,14 +22,14 @@ class PixelCapture {
   }
   int tap_values() const { return correlation_.tap_values(); }
 
-  /// @param depth_m  wraps at the range; NaN = nothing returns, and signal_e_per_s is 0
+  /// @param depth_m  wraps at the range; NaN: no return, requires signal_e_per_s = 0
   /// @param work  (tap values), overwritten
   /// @param raw   (measurements), overwritten
   void operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
                   RandomStream& random, std::vector<double>& work, float* raw) const;
 
-  /// The same in two steps, for light that comes back in several ways: adds S chi of one way to
-  /// `light` (tap values), and exposes the sensor to the sum.
+  /// As above in two steps, for several returns: add_light() adds S chi of one return to `light`
+  /// (tap values), and expose() exposes the sensor to the sum.
   void add_light(const FineCorrelation& correlation, double depth_m, double signal_e_per_s,
                  std::vector<double>& work, std::vector<double>& light) const;
   void add_light(double depth_m, double signal_e_per_s, std::vector<double>& work,
@@ -46,8 +46,8 @@ class PixelCapture {
   bool is_signed_;
   FineCorrelation correlation_;
   PixelNoise noise_;
-  Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
-  std::optional<Eigen::MatrixXd> rows_;        // (K, N), where they are read out
+  Eigen::VectorXd exposure_s_, ambient_gain_;  // per tap value
+  std::optional<Eigen::MatrixXd> rows_;        // (K, N), if the sensor outputs rows
 };
 
 }  // namespace tofsmith

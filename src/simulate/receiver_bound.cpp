@@ -14,17 +14,17 @@
 namespace tofsmith {
 namespace {
 
-/// Largest kappa (1 - kappa) / (b kappa + c) a tap can reach. The duties of an exposure's taps add
-/// to at most 1, or to exactly 1 if charge cannot be thrown away; the expression is concave in
-/// kappa, so equal duties are best.
+/// Largest kappa (1 - kappa) / (b kappa + c) of a tap. The duties of an exposure's taps add to at
+/// most 1, or to exactly 1 without a drain; the expression is concave in kappa, so equal duties are
+/// best.
 double largest_gated(double b, double c, int taps, bool may_be_shorter) {
-  if (may_be_shorter && c == 0.0) return 1.0 / b;  // the limit of ever shorter gates
+  if (may_be_shorter && c == 0.0) return 1.0 / b;  // limit of gates of vanishing length
   const double best = c / (std::sqrt(c * c + b * c) + c);
   const double kappa = may_be_shorter ? std::min(best, 1.0 / taps) : 1.0 / taps;
   return kappa * (1.0 - kappa) / (b * kappa + c);
 }
 
-/// Sum of what each exposure brings; those of the same length are asked for once.
+/// Sums a quantity over exposures, computing it once for consecutive exposures of equal length.
 template <typename OfExposure>
 double sum_over(const std::vector<double>& exposure_s, OfExposure&& of_exposure) {
   double sum = 0.0, last_s = 0.0, last = 0.0;
@@ -62,14 +62,14 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
   const Eigen::VectorXcd transfer =
       without_rounding(camera.transfer(harmonics_kept(camera.samples)));
   photons_.emplace(transfer, may_ring);
-  // Weights of a mixer that need not switch can weigh photons by when they come.
+  // Analog weights of a mixer can weight photons by arrival time, which no gate can.
   const bool weighs = camera.sensor.is_signed() && !camera.sensor.binary;
   if (!has_rows_ && !may_ring && !weighs) gates_.emplace(transfer);
   transfer_power_ = transfer.tail(transfer.size() - 1).cwiseAbs2();
 }
 
-/// Sum over exposures and taps of T_e^2 S^2 |M|^2 (mean of d^2 - kappa^2) / variance at its
-/// largest: what the taps' share of one harmonic can be, times |H|^2 of it.
+/// Largest sum over exposures and taps of T_e^2 S^2 |M|^2 (mean of d^2 - kappa^2) / variance: the
+/// taps' maximum for one harmonic, to be multiplied by its |H|^2.
 double ReceiverBound::gathered(const OperatingPoint& point) const {
   const double p = peak_factor_;
   const double largest_harmonic =
@@ -79,7 +79,7 @@ double ReceiverBound::gathered(const OperatingPoint& point) const {
       sensitivity_ * point.ambient_e_per_s - signal * photons_->undershoot(peak_factor_);
   double sum = 0.0;
   for (const double time_s : exposure_s_) {
-    // A response that rings may take ambient light away: at most at a duty of 1.
+    // A response that rings may reduce ambient light, at most at a duty of 1.
     const double b = time_s * std::max(ambient, 0.0);
     const double c = constant_variance_e2_ + time_s * (dark_e_per_s_ + std::min(ambient, 0.0));
     if (c < 0.0 || b + c == 0.0) return infinity;
@@ -91,7 +91,7 @@ double ReceiverBound::gathered(const OperatingPoint& point) const {
 
 double ReceiverBound::tap_information(const OperatingPoint& point) const {
   if (!photons_ || has_rows_) return infinity;
-  // That bounds the mean over all depths; what photons contribute holds at each.
+  // This limits the mean over all depths; the limits from photons hold at each depth.
   return max_density_ * photons_->largest_slope_power() * gathered(point);
 }
 
@@ -121,7 +121,7 @@ double ReceiverBound::gate_information(const OperatingPoint& point) const {
 }
 
 double ReceiverBound::information(const OperatingPoint& point) const {
-  // Where depths are all alike, the mean over them is never above the largest of them.
+  // For uniform depths, the mean over depths never exceeds the largest.
   return std::min({tap_information(point), recorded_information(point, max_density_ > 1.0),
                    gate_information(point)});
 }

@@ -13,17 +13,18 @@
 
 namespace tofsmith {
 
-/// A scene in front of a camera, captured row by row. The scene must outlive it.
+/// Captures a scene row by row. The scene must outlive this object.
 class RowCapture {
  public:
   /// @throws std::invalid_argument if scene or options are invalid
   RowCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
              const CaptureOptions& options);
-  /// @param light  validated; must outlive the capture
+  /// @param light  validated; must outlive this object
   RowCapture(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
              const Camera& camera, const CaptureOptions& options);
 
-  /// From now on, another scene of the same camera. @param light  validated; both must outlive it
+  /// Changes to another scene with the same camera.
+  /// @param light  validated; both must outlive this object
   void see(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
            const Camera& camera);
 
@@ -33,15 +34,17 @@ class RowCapture {
   /// Raw measurements of one row of one frame, (W, K).
   void row(int frame, int row, float* raw) const;
 
-  // The same in two steps, for what falls on pixels in other ways than one ray on each.
+  // The same in two steps, for pixels that receive the light of several rays.
 
-  /// S chi of every tap value, of all ways by which light comes back to a place of the scene.
+  /// Computes S chi of every tap value, for all returns at a position in the scene.
   /// @param work, light  (tap values), overwritten
   void light_at(int row, int column, std::vector<double>& work, std::vector<double>& light) const;
   double ambient_e_per_s(int row, int column) const;
-  /// Where ambient light is the same everywhere.
+  /// Ambient light if it is uniform.
   double ambient_e_per_s() const { return options_.ambient_e_per_s; }
-  /// Raw measurements of a pixel, the i-th of its frame. @param light  overwritten
+  /// Computes the raw measurements of a pixel.
+  /// @param pixel  index in the frame
+  /// @param light  overwritten
   void expose(int frame, std::uint64_t pixel, double ambient_e_per_s, std::vector<double>& light,
               float* raw) const;
 
@@ -50,20 +53,20 @@ class RowCapture {
                      std::vector<double>& light) const;
 
   const SceneImage* scene_;
-  const SceneLight* light_ = nullptr;  // none: direct light alone
+  const SceneLight* light_ = nullptr;  // null: direct light only
   double bin_m_;
   CaptureOptions options_;
   PixelCapture pixel_;
-  std::optional<FineCorrelation> tail_, transient_;  // of what is the same for all pixels
+  std::optional<FineCorrelation> tail_, transient_;  // if common to all pixels
 };
 
-/// Light on the pixels of one frame before noise [e/s], and the depths it comes from.
+/// Light on the pixels of a frame before noise [e/s], and the distances of its sources.
 struct CollectedLight {
   int height = 0, width = 0;
   int tap_values = 0;
   std::vector<double> taps;     ///< (H, W, tap values): S chi
-  std::vector<double> ambient;  ///< (H, W); empty: the same everywhere
-  Image<float> near_m, far_m;   ///< of what brings a pixel light; NaN: nothing does
+  std::vector<double> ambient;  ///< (H, W); empty: uniform
+  Image<float> near_m, far_m;   ///< range of the contributing distances; NaN: none
 
   CollectedLight(int height_, int width_, int tap_values_);
 };
@@ -76,7 +79,7 @@ void expose_frame(const RowCapture& source, const CollectedLight* light, int fra
                   SharedProgress& shared);
 
 /// Exposes the first `frames` frames under the same light, each with independent noise.
-/// @throws Interrupted if progress says so
+/// @throws Interrupted if `progress` cancels
 RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int frames,
                           const Progress& progress);
 

@@ -11,8 +11,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Adds noise of a covariance to values, by its Cholesky factor. With pivots: rows may depend on
-/// each other.
+/// Adds noise with a given covariance, by its Cholesky factor. Pivoting is needed because rows may
+/// be linearly dependent.
 void add_row_noise(Eigen::MatrixXd& covariance, const double* normals, double* value) {
   const Eigen::Index count = covariance.rows();
   std::array<Eigen::Index, max_measurements> order;

@@ -9,12 +9,12 @@
 
 namespace tofsmith {
 
-/// What trials of rows of one exposure measure. Poisson noise is drawn for every time bin and
-/// weighted by the rows; normal noise has the covariance of that depth and light, by its Cholesky
-/// factor. Light and covariance are linear between 16 points per bin.
+/// Measurements in trials of rows of one exposure. Poisson noise is drawn for every time bin and
+/// weighted by the rows; normal noise has the covariance at that depth and light. Light and
+/// covariance are interpolated linearly between 16 points per bin.
 class RowTrials {
  public:
-  static constexpr int points_per_bin = 16;  // as TrialModel's
+  static constexpr int points_per_bin = 16;  // same as in TrialModel
 
   RowTrials(const ForwardModel& model, const Camera& camera);
 
@@ -24,7 +24,8 @@ class RowTrials {
   void draw(const TrialStreams& streams, double ambient_e_per_s, int trials, TrialTile& tile) const;
 
  private:
-  /// Electrons and variances from ambient and dark current, in the layout of of_signal_.
+  /// Returns electrons and variances of ambient light and dark current, in the layout of
+  /// of_signal_.
   std::vector<double> beside_signal(double ambient_e_per_s) const;
   void draw_poisson_rows(const TrialStreams& streams, double ambient_e_per_s, int trials,
                          TrialTile& tile) const;
@@ -34,7 +35,7 @@ class RowTrials {
   bool is_poisson_;
   double read_noise_e_;
   std::vector<double> of_signal_;
-  std::vector<double> of_ambient_, of_dark_;  // per unit of A, and without light
+  std::vector<double> of_ambient_, of_dark_;  // per unit of A; without light
   std::vector<float> weights_;
 };
 

@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Every pixel n x n times.
+/// Repeats every pixel n x n times.
 Image<float> repeated(const Image<float>& image, int n) {
   Image<float> result(n * image.height, n * image.width);
   for (int row = 0; row < result.height; ++row)
@@ -23,7 +23,7 @@ Image<float> repeated(const Image<float>& image, int n) {
   return result;
 }
 
-/// What rays meet. @param pixel_rays  of the scene's view, each pixel divided samples x samples
+/// Casts rays. @param pixel_rays  of the scene's view, with each pixel divided samples x samples
 SceneImage rays_of(const RayCaster& caster, const PixelRays& pixel_rays, const StagedScene& scene,
                    const StagedSetup& setup, int samples) {
   SceneImage rays = caster.see(pixel_rays, scene.camera_to_world).image;
@@ -39,11 +39,11 @@ SceneLight light_of(const StagedScene& scene, const SceneImage& rays, const Stag
   return setup.light(divided, rays);
 }
 
-/// Casts rays at a scene as it is at any time; a search of meshes that stand still is made once,
-/// and so are the rays of pixels.
+/// Casts rays at a scene at any time. The rays of pixels and the search structures of static meshes
+/// are computed once.
 class MovingView {
  public:
-  /// @param samples  as often as pixels are divided in each direction
+  /// @param samples  number of rays per pixel along each axis
   MovingView(const StagedScene& scene, const StagedSetup& setup, int samples)
       : scene_(scene),
         setup_(setup),
@@ -53,11 +53,11 @@ class MovingView {
     if (scene.shapes_are_still()) still_.emplace(scene.shapes, setup.search_of);
   }
 
-  /// Of all parts of pixels.
+  /// Casts rays through all parts of pixels.
   SceneImage rays_at(const StagedScene& now) const {
     return samples_ == 1 ? centres_at(now) : see(parts_, now, samples_);
   }
-  /// Of the centres of pixels.
+  /// Casts rays through the centres of pixels.
   SceneImage centres_at(const StagedScene& now) const { return see(centres_, now, 1); }
   StagedScene at(double time_s) const { return scene_.at(time_s); }
 
@@ -74,7 +74,7 @@ class MovingView {
   std::optional<RayCaster> still_;
 };
 
-/// Every exposure sees the scene as it is in the exposure's middle, with all of its taps.
+/// Captures each exposure, with all its taps, from the scene at the middle of the exposure.
 StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, const Camera& camera,
                              const CaptureOptions& options, const StagedSetup& setup,
                              const Progress& progress) {

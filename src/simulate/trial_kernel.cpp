@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulate/trial_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own headers after foreach_target, and for this one first.
+// Highway requires its own headers after foreach_target, and this file's header first.
 #include <hwy/highway.h>
 
 #include "decode/output/shared/output_vectors-inl.hpp"
@@ -62,15 +62,15 @@ struct RecordChunk {
     for (int i = 0; i < trials; i += lanes)
       gather(model.records().data(), start + i, 0, count, fields + i);
   }
-  /// Value f + share times change f + taps.
+  /// Value f plus share times change f + taps.
   HWY_INLINE Vector between(int f, int taps, Vector share, int i) const {
     return hn::MulAdd(share, load(fields + (f + taps) * pixels_per_chunk, i),
                       load(fields + f * pixels_per_chunk, i));
   }
 };
 
-/// L times normals, for the covariance c with rows one after the other; a direction without
-/// variance gets none.
+/// Adds L times normals, with the covariance c = L L^T stored row by row; directions without
+/// variance are skipped.
 template <int Rank>
 HWY_INLINE void add_noise(int rank, Vector* c, const float* normals, Vector* q) {
   const Floats d;
@@ -94,7 +94,7 @@ HWY_INLINE void add_noise(int rank, Vector* c, const float* normals, Vector* q) 
   }
 }
 
-/// `Rank` 0 stands for any rank, known only when running.
+/// `Rank` 0: the rank is known only at run time.
 template <int Rank>
 void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile) {
   constexpr int max_rank = Rank > 0 ? Rank : max_measurements;
@@ -150,7 +150,7 @@ void plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTi
   }
 }
 
-/// Of a mixer its numbers' means, and behind them all their shot noise.
+/// For a mixer: means of its numbers, followed by their shot noise.
 void expect(const TrialModel& model, const float* mean_floor_e, const float* shot_floor_e2,
             int trials, TrialTile& tile) {
   const Floats d;
@@ -183,7 +183,7 @@ void read_out(const TapConversion& sensor, const float* max_e, int taps, int tri
               TrialTile& tile) {
   const Floats d;
   const Vector sigma = all(sensor.read_noise_e), min_dn = all(sensor.min_dn);
-  const Vector sign = all(sensor.is_signed ? -1.0f : 0.0f);  // of the lower limits
+  const Vector sign = all(sensor.is_signed ? -1.0f : 0.0f);  // for the lower limits
   for (int i = 0; i < trials; i += lanes_of(d))
     for (int k = 0; k < taps; ++k) {
       float* const value = tile.taps + k * trials_per_tile + i;
@@ -213,7 +213,7 @@ void read_out(const TapConversion& sensor, const float* max_e, int taps, int tri
     }
 }
 
-/// PairSums, a pair in every lane.
+/// PairSums with one pair per lane.
 struct PairVectors {
   DoubleVector sum, squared_difference, squared_sum, squared_product;
 

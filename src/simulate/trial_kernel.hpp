@@ -14,28 +14,28 @@ namespace tofsmith {
 
 static_assert(trials_per_tile == pixels_per_tile);
 
-/// Where the depths of neighbouring trials lie: trial number n of its round in the n-th of equal
-/// slices of the range.
+/// Positions of the depths of consecutive trials: trial n of a round is in the n-th of equal slices
+/// of the range.
 struct DepthSlices {
-  std::int64_t first = 0;     ///< number within the round of a tile's first trial
+  std::int64_t first = 0;     ///< number of a tile's first trial within the round
   double rows_per_trial = 0;  ///< length of a slice, in rows of the records
-  bool on_bins = false;       ///< moved down to the bin
+  bool on_bins = false;       ///< rounded down to a bin
 };
 
-/// Work space of a tile of trials, trial next to trial in rows of trials_per_tile.
+/// Workspace for a tile of trials, in rows of trials_per_tile.
 struct TrialTile {
   alignas(64) std::uint32_t words[4 * trials_per_tile];
   alignas(64) float normals[max_measurements * trials_per_tile];
-  alignas(64) std::int32_t row[trials_per_tile];  ///< of the records, just below the depth
-  alignas(64) float share[trials_per_tile];       ///< of the way to the next row
+  alignas(64) std::int32_t row[trials_per_tile];  ///< of the records, at or below the depth
+  alignas(64) float share[trials_per_tile];       ///< fraction of the distance to the next row
   alignas(64) float signal[trials_per_tile];      ///< S times albedo [e/s]
   alignas(64) double true_bin[trials_per_tile];   ///< in [0, N)
   alignas(64) double decoded_bin[trials_per_tile];
-  alignas(64) float taps[max_measurements * trials_per_tile];  ///< electrons; then raw numbers
+  alignas(64) float taps[max_measurements * trials_per_tile];  ///< electrons, then raw numbers
   PixelTile pixels;
 };
 
-/// What noise in the plane of ZNCC needs at one ambient light, in single precision: the vector is
+/// Noise in the plane of ZNCC at one ambient light, in single precision. The vector is
 ///   q = offset + sum_k weight_k mean_k + L normals,   L L^T = floor + sum_k products_k shot_k
 struct PlaneNoise {
   PlaneNoise(const TrialModel& model, const PlaneMap& map, double ambient_e_per_s);
@@ -45,28 +45,29 @@ struct PlaneNoise {
   std::vector<float> weight;                       // [taps][rank]
   std::vector<float> products;                     // [taps][rank (rank + 1) / 2], w_j w_l, l <= j
   std::vector<float> offset;                       // (rank)
-  std::vector<float> floor;                        // as products
+  std::vector<float> floor;                        // same layout as products
 };
 
-/// Fills row, share and true_bin from the words of block 0: 16 bits of where in the slice, the
-/// lowest bytes of words 1 and 3.
+/// Fills row, share and true_bin from the words of block 0: the lowest bytes of words 1 and 3 give
+/// a 16-bit position in the slice.
 void place_depths(const TrialModel& model, const DepthSlices& slices, int trials, TrialTile& tile);
 
 /// Fills pixels.plane from row, share, signal and `rank` rows of normals.
 void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile);
 
-/// Fills taps with expected electrons; of a mixer then with as many rows of their shot noise
+/// Fills taps with expected electrons; for a mixer followed by as many rows of their shot noise
 /// [e^2].
 void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e,
                       const std::vector<float>& shot_floor_e2, int trials, TrialTile& tile);
 
-/// Adds normal noise to expected electrons, or read noise to Poisson counts; clips and converts.
-/// @param max_e  electrons beyond [0, max_e], of a mixer [-max_e, max_e], are clipped first (taps);
-///               empty: none are
+/// Adds normal noise to expected electrons, or read noise to Poisson counts; then clips and
+/// converts.
+/// @param max_e  limits of electrons before read-out, to [0, max_e], for a mixer [-max_e, max_e]
+///               (taps); empty: no limit
 void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,
                    TrialTile& tile);
 
-/// Sums over pairs of neighbours a, b = 2 i, 2 i + 1 in trials whose order follows depth.
+/// Sums over pairs a, b of neighbours 2 i, 2 i + 1 in trials sorted by depth slice.
 struct PairSums {
   double sum = 0.0;                 ///< of a + b
   double squared_difference = 0.0;  ///< of (a - b)^2
@@ -74,11 +75,11 @@ struct PairSums {
   double squared_product = 0.0;     ///< of (a^2 - b^2)^2
 
   void merge(const PairSums& other);
-  /// Of a^2 + b^2.
+  /// Sum of a^2 + b^2.
   double of_squares() const { return 0.5 * (squared_difference + squared_sum); }
 };
 
-/// Sums of errors and, of no more than a mean, of outliers.
+/// Sums of errors, and of outliers (mean only).
 struct TileSums {
   PairSums linear, circular;
   double outliers = 0.0, outlier_squared_difference = 0.0;
@@ -86,7 +87,7 @@ struct TileSums {
   void merge(const TileSums& other);
 };
 
-/// Errors [bin] of an even number of trials.
+/// Sums the errors [bin] of an even number of trials.
 TileSums sum_errors(const double* true_bin, const double* decoded_bin, int trials, double samples,
                     double threshold_bin);
 

@@ -42,7 +42,8 @@ TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
                      ? model.readout()
                      : Eigen::MatrixXd::Identity(model.tap_values(), model.tap_values())) {}
 
-/// @param sums  of tap values that are drawn as one: each by itself, or the number of a mixer
+/// @param sums  combines the tap values that are drawn together: identity, or the numbers of a
+///              mixer
 TrialModel::TrialModel(const ForwardModel& model, const Camera& camera, const Eigen::MatrixXd& sums)
     : taps_(static_cast<int>(sums.rows())),
       samples_(model.samples()),

@@ -11,33 +11,33 @@
 
 namespace tofsmith {
 
-/// What happens to the electrons of a tap before they leave the sensor, as PixelNoise says.
+/// Conversion of a tap's electrons to a raw number, see PixelNoise.
 struct TapConversion {
   bool is_poisson = false;
   bool has_adc = false;
-  bool is_difference = false;  ///< neighbours leave as A - B
-  bool is_signed = false;      ///< of a mixer: both signs are clipped
+  bool is_difference = false;  ///< neighbouring taps are output as A - B
+  bool is_signed = false;      ///< mixer: clipped at both signs
   float read_noise_e = 0.0f;
-  float full_well_e = 0.0f;  ///< infinite: none
+  float full_well_e = 0.0f;  ///< infinite: no limit
   float dn_per_e = 0.0f;
   float black_level_dn = 0.0f;
   float min_dn = 0.0f;
   float max_dn = 0.0f;
 };
 
-/// Electrons of the taps of a pixel at any depth, laid out for trials: of every tap j
+/// Electrons of a pixel's taps at any depth, in a layout for trials. Tap j has
 ///   mean     S x_j(z) + A a_j + d_j     [e]
 ///   variance S x'_j(z) + A a'_j + d'_j + c_j  [e^2]
-/// with x = T chi in records of many rows per bin, linear between rows. A code's shot noise is that
-/// of its means, and both are held to be >= 0; a table of differences has its own, and so has a
-/// mixer, each of whose numbers counts as a tap here.
+/// with x = T chi in records of many rows per bin, interpolated linearly. For a code, shot noise
+/// equals the mean, and both are limited to >= 0. A table of differences and a mixer have separate
+/// shot noise; each number of a mixer counts as a tap here.
 class TrialModel {
  public:
-  /// Of a code on a camera, 16 rows per bin or more.
+  /// From a code on a camera, with at least 16 rows per bin.
   TrialModel(const ForwardModel& model, const Camera& camera);
-  /// Of rows: where depths lie. RowTrials draws what they measure.
+  /// From rows, for the depths only; RowTrials draws the measurements.
   explicit TrialModel(const ForwardModel& model);
-  /// Of a table, which is taken for the truth: normal noise, chords between its rows.
+  /// Simulates a table: normal noise, chords between its rows.
   explicit TrialModel(const DecodingTable& table);
 
   int taps() const { return taps_; }
@@ -46,14 +46,15 @@ class TrialModel {
   int rows_per_bin() const { return rows_per_bin_; }
   int rows() const { return samples_ * rows_per_bin_; }
   bool has_own_shot_noise() const { return has_own_shot_noise_; }
-  /// x (taps), its change up to the next row (taps), and the same of x' if it is not x.
+  /// x (taps), its change to the next row (taps), and the same for x' if it differs from x.
   const RecordTable& records() const { return records_; }
   const TapConversion& conversion() const { return conversion_; }
-  /// Whether raw numbers are affine in normal electrons: the noise of any projection is then normal
-  /// too.
+  /// Returns true if raw numbers are affine in normal electrons, so that the noise of any
+  /// projection is normal.
   bool is_linear() const;
 
-  /// Raw numbers of electrons where is_linear(): raw_per_e (K, taps) and raw_at_zero (K).
+  /// Raw numbers as a function of electrons if is_linear(): raw_per_e (K, taps) and raw_at_zero
+  /// (K).
   const Eigen::MatrixXd& raw_per_e() const { return raw_per_e_; }
   const Eigen::VectorXd& raw_at_zero() const { return raw_at_zero_; }
   /// A a + d (taps).
@@ -62,7 +63,7 @@ class TrialModel {
   Eigen::VectorXd shot_floor_e2(double ambient_e_per_s) const;
   /// c (taps).
   const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
-  /// T of every tap [s].
+  /// T per tap [s].
   const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
 
  private:

@@ -12,16 +12,16 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Shifts h in (0, 1/2): the middles of cells and their widths.
+/// Shifts h in (0, 1/2): centres and widths of cells.
 struct Shifts {
   Eigen::ArrayXd middle, width;
 };
 
-/// Fine where delays of slope power `slope` are hardly told apart, and everywhere finer than the
-/// highest harmonic turns.
+/// Fine where delays with slope power `slope` are hard to distinguish, and everywhere finer than
+/// the highest harmonic.
 Shifts shifts_for(double slope, Eigen::Index highest) {
   constexpr Eigen::Index near_cells = 48;
-  constexpr double told_apart = 8.0;  // standard deviations
+  constexpr double told_apart = 8.0;  // in standard deviations
   const double near = std::min(0.5, told_apart / slope);
   const auto far_cells = static_cast<Eigen::Index>(
       near < 0.5
@@ -39,29 +39,29 @@ Shifts shifts_for(double slope, Eigen::Index highest) {
   return shifts;
 }
 
-/// Q(root(x) / 2), the chance that a normal deviation is that large.
+/// Q(root(x) / 2), the probability that a normal deviation exceeds half the distance.
 double confusion(double squared_distance) {
   return 0.5 * std::erfc(std::sqrt(squared_distance / 8.0));
 }
 
-/// Its slope by x.
+/// Derivative of confusion().
 double confusion_slope(double squared_distance) {
-  constexpr double least = 1e-12;  // at 0 it falls without limit
+  constexpr double least = 1e-12;  // avoids the singularity at 0
   const double x = std::max(squared_distance, least);
   return -std::exp(-x / 8.0) / (4.0 * std::sqrt(2.0 * pi * x));
 }
 
-/// Its integral over 0 < h < 1/2 for squared distances h^2 information.
+/// Integral of confusion() over 0 < h < 1/2 for squared distances h^2 information.
 double confused_by_information(double information) {
-  const double root = std::sqrt(information), end = root / 4.0;  // of the distance / 2
+  const double root = std::sqrt(information), end = root / 4.0;  // of half the distance
   const double density_fall = -std::expm1(-0.5 * end * end) / std::sqrt(2.0 * pi);
   return 2.0 / root * (end * confusion(4.0 * end * end) + density_fall);
 }
 
-/// How many harmonics come before the rest that brings next to nothing.
+/// Number of harmonics before the negligible remainder.
 Eigen::Index last_that_matters(const Eigen::VectorXd& power) {
   constexpr Eigen::Index most = 96;
-  constexpr double share = 1e-4;  // of the largest
+  constexpr double share = 1e-4;  // relative to the largest
   Eigen::Index kept = power.size();
   while (kept > 0 && (kept > most || power[kept - 1] <= share * power.maxCoeff())) --kept;
   return kept;
@@ -70,7 +70,7 @@ Eigen::Index last_that_matters(const Eigen::VectorXd& power) {
 }  // namespace
 
 double ziv_zakai_mae(const Eigen::VectorXd& power, double information) {
-  // Harmonics beyond `kept` share one column, which is never below any of them.
+  // Harmonics beyond `kept` share one column that is an upper limit for each of them.
   const Eigen::Index kept = last_that_matters(power), more = power.size() - kept;
   const Eigen::ArrayXd harmonic = Eigen::ArrayXd::LinSpaced(kept, 1.0, static_cast<double>(kept));
   double slope_power = power.size() > 0 && kept == 0 ? 0.0 : information;
@@ -88,8 +88,8 @@ double ziv_zakai_mae(const Eigen::VectorXd& power, double information) {
     distance.col(n) = 4.0 * power[n] * (pi * harmonic[n] * shifts.middle).sin().square();
   if (more > 0) distance.col(kept).setConstant(4.0 * power.tail(more).maxCoeff());
 
-  // Descent by exponentiated gradients. The sum is convex in the shares, so its tangent plane at
-  // any of them bounds it from below at all of them; the highest such bound counts.
+  // Exponentiated gradient descent. The sum is convex in the shares, so its tangent plane at any of
+  // them is a lower bound everywhere; the highest such bound is used.
   constexpr int max_steps = 200;
   constexpr double tolerance = 2e-3;
   const Eigen::Index columns = distance.cols();

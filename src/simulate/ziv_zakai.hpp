@@ -9,26 +9,26 @@
 
 namespace tofsmith {
 
-/// Ziv-Zakai bound on the mean circular error, in periods, of a delay that is uniform over the
-/// period and seen through normal noise, whatever the estimator:
+/// Ziv-Zakai bound on the mean circular error, in periods, of any estimator of a delay that is
+/// uniform over the period and observed with normal noise:
 ///   mean |error| >= integral over 0 < h < 1/2 of the mean over u of P(u, u + h),
-/// P the least probability of taking one of two delays for the other, each as likely. It is 1/4
-/// without signal, and sqrt(2 / pi) sigma where only close delays are confused.
+/// with P the smallest probability of confusing two equally likely delays. It is 1/4 without
+/// signal, and sqrt(2 / pi) sigma if only close delays are confused.
 ///
-/// P >= Q(root of the mean squared distance / 2) by convexity, and the mean squared distance of
-/// delays h apart, in standard deviations, is at most the smaller of
+/// By convexity P >= Q(root of the mean squared distance / 2). The mean squared distance of delays
+/// h apart, in standard deviations, is at most the smaller of
 ///   sum over n of w_n power_n 4 sin^2(pi n h), with any shares w_n >= 0 that add to at most 1,
 ///   h^2 information.
-/// The bound is the least over all shares, from below.
-/// @param power  at harmonics 1 .. size: what all of the shares there would bring, >= 0; empty:
-///               the information alone counts
+/// The result is a lower limit for the minimum over all shares.
+/// @param power  value at harmonics 1 to size if they had all of the shares, >= 0; empty: only the
+///               information is used
 /// @param information  mean over delays [1 / period^2], >= 0 or infinity
 /// @see docs/bounds.md; J. Ziv, M. Zakai, IEEE Trans. Inf. Theory 15 (1969) 386
 double ziv_zakai_mae(const Eigen::VectorXd& power, double information);
 
-/// The error [m] of that information: the Ziv-Zakai bound of it where depths are all alike, else
-/// range sqrt(2 / pi) / sqrt(information).
-/// @param max_density  of depths, over that of uniform ones
+/// Error [m] for a given information: the Ziv-Zakai bound if depths are uniform, else range sqrt(2
+/// / pi) / sqrt(information).
+/// @param max_density  of depths, relative to uniform
 inline double mae_of_information_m(double information, double range_m, double max_density) {
   return range_m * (max_density > 1.0 ? mae_per_sigma() / std::sqrt(information)
                                       : ziv_zakai_mae(Eigen::VectorXd(), information));

@@ -11,31 +11,31 @@
 
 namespace tofsmith {
 
-/// Information on the delay of a light of given shape behind arms of one transfer function, where
-/// photons are recorded one by one.
+/// Information on the delay of light that is blurred by arms with a given transfer function, if
+/// photons are recorded individually.
 /// @see docs/bounds.md
 class PhotonInformation {
  public:
-  /// @param transfer  harmonics 0 .. highest of what blurs the light
-  /// @param may_ring  whether the response itself may fall below 0, as a measured one may; else
-  ///                  values below 0 come from the harmonics left out
+  /// @param transfer  harmonics 0, 1, ... of the blur
+  /// @param may_ring  the response itself may be negative, e.g. if measured; otherwise negative
+  ///                  values are attributed to missing harmonics
   PhotonInformation(const Eigen::VectorXcd& transfer, bool may_ring);
 
-  /// Integral over the period of (s x')^2 / (s x + other) for x the arms' response itself: what no
-  /// light of mean at most 1 exceeds. Infinite where s x + other is not above 0.
+  /// Returns the integral over the period of (s x')^2 / (s x + other), with x the response of the
+  /// arms: an upper limit for any light of mean at most 1. Infinite unless s x + other > 0.
   /// @param signal_e  s, electrons of the light
-  /// @param other_e   variance of everything else, were it all collected with the light
+  /// @param other_e   variance of everything else if it is collected together with the light
   double of_impulses(double signal_e, double other_e) const;
-  /// s^2 / other times the largest mean of x'^2 of a light within [0, peak_factor] and of mean at
-  /// most 1.
+  /// Returns s^2 / other times the largest mean of x'^2 for light within [0, peak_factor] with mean
+  /// at most 1.
   double of_ripple(double signal_e, double other_e, double peak_factor) const;
-  /// The smaller of both.
+  /// Returns the smaller of the two.
   double largest(double signal_e, double other_e, double peak_factor) const;
 
   /// max (2 pi n |H_n|)^2.
   double largest_slope_power() const { return largest_slope_power_; }
-  /// How far below 0 a light within [0, peak_factor] and of mean at most 1 can come: 0 unless the
-  /// response itself does.
+  /// Returns how far light within [0, peak_factor] with mean at most 1 can fall below 0 behind the
+  /// arms; 0 unless the response itself is negative.
   double undershoot(double peak_factor) const;
 
  private:
@@ -44,79 +44,84 @@ class PhotonInformation {
   double largest_slope_power_ = 0.0;
 };
 
-/// How much one tap can learn of a delay from how many electrons a gate passes in an exposure,
-/// whatever the gate (0 <= d <= 1) and the light (mean at most 1). A gate that passes x electrons
-/// of l(t) = s g + a, g the arms' response, has
-///   |slope of x| <= Phi(x) = max of integral d l',  |curvature of x| <= Psi(x) = .. d l''
-/// over all gates with integral d l = x: those that open where l'/l is largest (Neyman-Pearson).
+/// Upper limit on the information of one tap on a delay, given the number of electrons x that its
+/// gate passes in an exposure, for any gate (0 <= d <= 1) and light (mean at most 1). For a gate
+/// that passes x electrons of l(t) = s g + a, with g the response of the arms,
+///   |slope of x| <= Phi(x) = max of integral d l',
+///   |curvature of x| <= Psi(x) = max of integral d l''
+/// over all gates with integral d l = x. The maximum is attained by gates that open where l'/l is
+/// largest (Neyman-Pearson).
 /// @see docs/bounds.md
 class GateInformation {
  public:
-  /// @param transfer  harmonics 0 .. highest of what blurs the light; its response must not ring
+  /// @param transfer  harmonics 0, 1, ... of the blur; its response must not ring
   explicit GateInformation(const Eigen::VectorXcd& transfer);
 
-  /// max Phi^2 / (x + other): no depth has more information [1 / period^2].
+  /// Returns max Phi^2 / (x + other), an upper limit on the information [1 / period^2] at any
+  /// depth.
   /// @param signal_e  s, electrons of the light if the gate were always open
-  /// @param ambient_e  a, the same of ambient light
+  /// @param ambient_e  a, the same for ambient light
   /// @param other_e2  variance without light
   double at_any_depth(double signal_e, double ambient_e, double other_e2) const;
 
-  /// The mean over all depths cannot be as large: x comes and goes. Between two depths where it
-  /// turns, a and b, its squared slope z(x) is at most Phi^2 and starts and ends at 0 with a slope
-  /// of at most 2 Psi, so that the mean of z / (x + other) is at most, over all a and b,
+  /// Returns a tighter limit for the mean over all depths. x rises and falls; between two turning
+  /// points a and b its squared slope z(x) is at most Phi^2, and starts and ends at 0 with a slope
+  /// of at most 2 Psi. The mean of z / (x + other) is therefore at most the maximum over a and b of
   ///   integral sqrt(z) / (x + other) dx  /  integral dx / sqrt(z)   from a to b.
   double mean_over_depths(double signal_e, double ambient_e, double other_e2) const;
 
  private:
-  Eigen::ArrayXd response_, slope_, curvature_;  // over one period, at equal distances
+  Eigen::ArrayXd response_, slope_, curvature_;  // over one period, equidistant
 };
 
-/// Integral over the period of (s x')^2 / (s x + other), x and x' sampled at equal distances.
+/// Returns the integral over the period of (s x')^2 / (s x + other) for equidistant samples of x
+/// and x'.
 double information_of_shape(const Eigen::VectorXd& shape, const Eigen::VectorXd& slope,
                             double signal_e, double other_e);
 
-/// A real signal and its slope per period, from harmonics 0 .. highest, at 4 x highest points.
+/// Evaluates a real signal and its slope per period at 4 x highest points, from harmonics 0 to
+/// highest.
 void sample_with_slope(const Eigen::VectorXcd& harmonics, Eigen::VectorXd& values,
                        Eigen::VectorXd& slope);
 
-/// Which information a Cramer-Rao bound counts.
+/// Information counted by a Cramer-Rao bound.
 enum class NoiseInformation {
   mean,               ///< of the expected measurements, weighted by 1 / variance
-  mean_and_variance,  ///< also of the size of the noise (under 0.1 % more)
+  mean_and_variance,  ///< also from the noise level (less than 0.1 % more)
 };
 
-/// How well any unbiased estimator can measure depth with one code, signal and ambient unknown.
+/// Cramer-Rao bound on depth for one code; signal and ambient light unknown.
 /// @see docs/bounds.md
 class CramerRaoBound {
  public:
-  /// Depths are the middles of equal cells; slopes are means over a cell.
-  /// @param camera         the one `model` was made with
-  /// @param cells_per_bin  none: 4, or as many more as the highest harmonics need
+  /// Depths are the centres of equal cells; slopes are means over a cell.
+  /// @param camera         the camera of `model`
+  /// @param cells_per_bin  default: 4, or more if the highest harmonics require it
   CramerRaoBound(const ForwardModel& model, const Camera& camera,
                  NoiseInformation information = NoiseInformation::mean,
                  std::optional<int> cells_per_bin = std::nullopt);
 
-  /// Smallest standard deviation [m] at the depth of each cell: the root of the depth entry of the
-  /// inverse Fisher matrix over (depth, S, A), variance mu_i + constant variance. Infinite where
-  /// depth cannot be separated from signal and ambient.
+  /// Smallest standard deviation of unbiased estimators [m] at the depth of each cell: the root of
+  /// the depth entry of the inverse Fisher matrix over (depth, S, A), with variance mu_i + constant
+  /// variance. Infinite if depth cannot be separated from signal and ambient light.
   Eigen::VectorXd sigma_m(const OperatingPoint& point) const;
-  /// Mean over depth, as the camera weighs depths, of sqrt(2 / pi) sigma: the mean absolute error
-  /// of a normal deviation [m].
+  /// Mean over depth, weighted as by the camera, of sqrt(2 / pi) sigma, the mean absolute value of
+  /// a normal deviation [m].
   double mae_m(const OperatingPoint& point) const;
-  /// The same averaged over a signal scaled uniformly in (0, 1); at each albedo held to range / 4,
-  /// the mean circular error of a guess, without which the average diverges.
+  /// As above, averaged over a signal scaled uniformly in (0, 1). At each albedo the bound is
+  /// limited to range / 4, the mean circular error of a guess; otherwise the average diverges.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
  private:
   double range_m_;
   NoiseInformation information_;
-  // Electrons per unit of S (cells, K) and of A (K), of measurements and of the light they are made
-  // of; slopes per period.
+  // Electrons per unit of S (cells, K) and of A (K), for measurements and for the light that causes
+  // their shot noise; slopes per period.
   Eigen::MatrixXd signal_, signal_slope_, shot_signal_, shot_signal_slope_;
   Eigen::VectorXd ambient_, shot_ambient_;
   Eigen::VectorXd constant_variance_e2_;
-  Eigen::VectorXd masses_;  // share of depths in each cell; empty: all alike
-  /// Of rows, whose noise is correlated: at the same depths, and its slope.
+  Eigen::VectorXd masses_;  // share of depths in each cell; empty: uniform
+  /// For rows, whose noise is correlated: covariance at the same depths, and its slope.
   std::optional<RowCovariance> covariance_;
   Eigen::MatrixXd covariance_slope_;
 
@@ -126,30 +131,30 @@ class CramerRaoBound {
       Eigen::Index depth, const OperatingPoint& point) const;
 };
 
-/// How well any unbiased estimator can measure depth that sees all N time bins of the exposure,
-/// with the light of rows: below the CramerRaoBound of all rows of that light, whatever their
-/// weights. Without read noise; signal and ambient unknown.
+/// Bound for unbiased estimators that observe all N time bins of an exposure with the light of a
+/// rows code: below the CramerRaoBound of any rows for this light. Without read noise; signal and
+/// ambient light unknown.
 class HistogramBound {
  public:
-  /// @param camera  the one `model` was made with
+  /// @param camera  the camera of `model`
   /// @throws std::invalid_argument unless model.has_rows()
   HistogramBound(const ForwardModel& model, const Camera& camera);
 
-  /// Mean over depth of sqrt(2 / pi) sigma [m]; every bin is alike.
+  /// Mean over depth of sqrt(2 / pi) sigma [m]; all bins are equivalent.
   double mae_m(const OperatingPoint& point) const;
-  /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
+  /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
  private:
   double range_m_;
   Eigen::MatrixXd light_, slope_;  // electrons of all bins per unit of S, (N, depths in a bin)
-  Eigen::VectorXd masses_;         // share of depths at each of those in a bin; empty: all alike
-  double ambient_e_ = 0.0, dark_e_ = 0.0;  // of every bin
+  Eigen::VectorXd masses_;         // share of depths at each position in a bin; empty: uniform
+  double ambient_e_ = 0.0, dark_e_ = 0.0;  // per bin
 };
 
-/// How well any code at all can do on a camera, in a number of exposures: below the circular error
-/// of every code whose harmonics the camera's arms limit; 0 without impulse responses. Of rows,
-/// what photons recorded one by one tell, without read noise.
+/// Lower limit on the circular error of any code on a camera, for a number of exposures, derived
+/// from the harmonics that the camera's arms pass; 0 without impulse responses. For rows, photons
+/// are recorded individually without read noise.
 /// @see docs/bounds.md for derivation and assumptions
 class ReceiverBound {
  public:
@@ -157,26 +162,27 @@ class ReceiverBound {
   /// @throws std::invalid_argument if the camera is invalid
   ReceiverBound(const Camera& camera, int exposures);
 
-  /// Mean over depth of the largest information on depth [1 / period^2] that taps can gather: from
-  /// the largest harmonic the arms let through and from how much a gate of duty kappa can hold.
-  /// Where depths are not alike, as many times that as the most frequent occur more often.
+  /// Upper limit on the mean over depth of the information [1 / period^2] that taps can gather,
+  /// from the largest harmonic that the arms pass and the capacity of a gate of duty kappa.
+  /// Multiplied by the largest relative density if depths are not uniform.
   double tap_information(const OperatingPoint& point) const;
-  /// The same for photons recorded one by one behind both arms, one read-out per exposure (two
-  /// where each measurement is a difference of two), from the arms' response itself or from the
-  /// largest ripple within the peak, and for those that any gate makes of them: the least of these.
+  /// As above for photons recorded individually behind both arms, with one read-out per exposure
+  /// (two if measurements are differences). The smallest of three limits: from the arms' response,
+  /// from the largest ripple within the peak, and from any gate.
   double photon_information(const OperatingPoint& point) const;
-  /// The mean over depth of what any gate makes of photons while the light passes it: infinite for
-  /// rows and for measured responses, which may ring.
+  /// As above for the mean over depth after any gate; infinite for rows and for measured responses,
+  /// which may ring.
   double gate_information(const OperatingPoint& point) const;
-  /// The least of all.
+  /// Smallest of these limits.
   double information(const OperatingPoint& point) const;
 
-  /// Mean circular error [m] below which no estimator comes, biased or not, wraps and confused
-  /// depths included: the Ziv-Zakai bound from how far apart taps can keep any two depths and from
-  /// information(), S and A known. range / 4 without light, range sqrt(2 / pi) / sqrt(information)
-  /// in much of it, and that at all where depths are not alike; 0 without impulse responses.
+  /// Lower limit on the mean circular error [m] of any estimator, biased or not, including wraps
+  /// and confused depths: the Ziv-Zakai bound from the largest distance that taps can give any two
+  /// depths and from information(), with S and A known. range / 4 without light; approaches range
+  /// sqrt(2 / pi) / sqrt(information) in bright light, which is used throughout if depths are not
+  /// uniform; 0 without impulse responses.
   double mae_m(const OperatingPoint& point) const;
-  /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
+  /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
  private:
@@ -184,68 +190,68 @@ class ReceiverBound {
   int taps_;
   bool has_rows_;
   bool drain_;
-  int read_outs_;  // of an exposure that no measurement is without
+  int read_outs_;  // least number per measurement
   double peak_factor_;
   double sensitivity_;  // of the most sensitive tap
   double dark_e_per_s_;
   double constant_variance_e2_;
-  double max_density_;                        // of depths, over that of uniform ones
+  double max_density_;                        // of depths, relative to uniform
   std::vector<double> exposure_s_;            // of each exposure
-  std::optional<PhotonInformation> photons_;  // behind both arms; none without limit
-  std::optional<GateInformation> gates_;      // the same; none of rows and of what may ring
-  Eigen::VectorXd transfer_power_;            // |H|^2 of both arms at harmonics 1 ..
+  std::optional<PhotonInformation> photons_;  // behind both arms; none if unlimited
+  std::optional<GateInformation> gates_;      // as photons_; none if rows or ringing
+  Eigen::VectorXd transfer_power_;            // |H|^2 of both arms at harmonics 1, 2, ...
 
   double gathered(const OperatingPoint& point) const;
   double recorded_information(const OperatingPoint& point, bool by_gates) const;
 };
 
-/// What the light alone allows, for scale: depth from photons recorded one by one by an ideal
-/// direct time-of-flight receiver, with the camera's light source, its total exposure time and
-/// nothing else of it (no demodulation, no read noise, no dark current). Signal and ambient are
-/// known.
+/// Bound set by the light alone, for comparison: an ideal direct time-of-flight receiver that
+/// records individual photons, with the camera's light source and total exposure time (no
+/// demodulation, read noise or dark current). Signal and ambient light are known.
 ///   J <= T integral over the period of (S m')^2 / (S m + A) du
-/// No receiver of any kind does better with the same light, so it is never above ReceiverBound.
+/// No receiver does better with the same light, so this never exceeds ReceiverBound.
 /// @see docs/bounds.md for derivation and assumptions
 class DirectTofBound {
  public:
   /// @throws std::invalid_argument if the camera is invalid
   explicit DirectTofBound(const Camera& camera);
 
-  /// No modulation within the camera's peak and average power carries more [1 / period^2];
-  /// infinite where the light has no impulse response.
+  /// Upper limit for any modulation within the camera's peak and average power [1 / period^2];
+  /// infinite if the light has no impulse response.
   double photon_information(const OperatingPoint& point) const;
-  /// range sqrt(2 / pi) / sqrt(photon_information) [m], and range / 4, a guess, without light: the
-  /// Ziv-Zakai bound of it, where depths are all alike.
+  /// range sqrt(2 / pi) / sqrt(photon_information) [m], or if depths are uniform the Ziv-Zakai
+  /// bound, which is range / 4 without light.
   double mae_m(const OperatingPoint& point) const;
-  /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
+  /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
-  /// What one modulation carries, exactly [1 / period^2]; infinite without impulse response.
+  /// Exact information of one modulation [1 / period^2]; infinite without impulse response.
   double information_of(const Waveform& modulation, const OperatingPoint& point) const;
 
  private:
   double range_m_;
-  double exposure_s_;  // of all exposures together, times the sensitivity of the best tap
+  double exposure_s_;  // total, times the sensitivity of the best tap
   double peak_factor_;
-  double max_density_;                        // of depths, over that of uniform ones
-  Eigen::VectorXcd transfer_;                 // of the light; empty if it has no limit
-  std::optional<PhotonInformation> photons_;  // behind the light's response; none if no limit
+  double max_density_;                        // of depths, relative to uniform
+  Eigen::VectorXcd transfer_;                 // of the light; empty if unlimited
+  std::optional<PhotonInformation> photons_;  // behind the light's response; none if unlimited
 };
 
-/// Cramer-Rao bound of direct depth where light comes back twice: the inverse Fisher matrix over
-/// (z, delta, S1, S2, A) of the expected measurements, weighted by their variance, which holds the
-/// light of both returns. Behind a tail of known mean delay: over (z, S1, S2, A).
-/// @note two returns pay only where this is below the bias of single-path decoding
+/// Cramer-Rao bound on the direct depth with a second return: from the Fisher matrix over (z,
+/// delta, S1, S2, A) of the expected measurements, weighted by their variance, which includes both
+/// returns. With a tail of known mean delay: over (z, S1, S2, A).
+/// @note decoding two returns is only worthwhile where this is below the bias of single-path
+///       decoding
 class MultipathBound {
  public:
-  /// @param camera  the one `model` was made with
+  /// @param camera  the camera of `model`
   MultipathBound(const ForwardModel& model, const Camera& camera);
 
-  /// Smallest standard deviation of direct depth [m], at the middle of each bin (N).
+  /// Smallest standard deviation of direct depth [m], at the centre of each bin (N).
   Eigen::VectorXd sigma_m(const OperatingPoint& point, double ratio, double delay_m) const;
   Eigen::VectorXd tail_sigma_m(const OperatingPoint& point, const ExponentialTail& tail) const;
-  /// Mean over depth of sqrt(2 / pi) sigma, at each depth held to range / 4, the mean circular
-  /// error of a guess [m].
+  /// Mean over depth of sqrt(2 / pi) sigma [m], at each depth limited to range / 4, the mean
+  /// circular error of a guess.
   double mae_m(const Eigen::VectorXd& sigma_m) const;
 
  private:
@@ -256,11 +262,11 @@ class MultipathBound {
   double range_m_;
   Eigen::MatrixXd readout_, table_;  // T o chi of the tap values, (points, taps)
   Eigen::VectorXd ambient_, shot_ambient_, floor_variance_e2_;
-  Eigen::VectorXd masses_;  // share of depths in each bin; empty: all alike
+  Eigen::VectorXd masses_;  // share of depths in each bin; empty: uniform
 };
 
-/// Bias of single-path decoding behind a second return, where it is closer than the correlation
-/// functions' features: r delta / (1 + r) [m], with every code.
+/// Bias of single-path decoding with a second return that is closer than the features of the
+/// correlation functions: r delta / (1 + r) [m], for any code.
 double single_path_bias_m(double ratio, double delay_m);
 
 }  // namespace tofsmith

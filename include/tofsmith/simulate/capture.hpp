@@ -16,7 +16,7 @@
 
 namespace tofsmith {
 
-/// Light of a simulated capture.
+/// Options of a simulated capture.
 struct CaptureOptions {
   double signal_e_per_s = 1e4;
   double ambient_e_per_s = 1e4;
@@ -25,7 +25,7 @@ struct CaptureOptions {
   std::uint64_t seed = 1;
   int frames = 1;  ///< F
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate() const;
 };
 auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
@@ -40,51 +40,49 @@ auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
                           Help{"frames one after another, each with its own noise"}));
 }
 
-/// Signal of a pixel, were the sensor fully open [e/s]; 0 where nothing returns (NaN depth).
+/// Signal of a pixel at a gate that is always open [e/s]; 0 without a return (NaN depth).
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
                             const CaptureOptions& options);
 
-/// Raw measurements of a scene, (F, H, W, K): electrons, or counts if the sensor has an ADC.
-/// Depth beyond the unambiguous range wraps, as in a camera. A pixel without return sees ambient
-/// light only. A lens (Camera::blur) blurs over the image's pixels; staged_capture.hpp casts rays.
+/// Simulates raw measurements of a scene, (F, H, W, K), in electrons, or counts if the sensor has
+/// an ADC. Depth beyond the unambiguous range wraps. Pixels without a return receive only ambient
+/// light. A lens (Camera::blur) blurs the image pixels; staged_capture.hpp casts several rays per
+/// pixel.
 /// @throws std::invalid_argument if scene, camera or options are invalid, or the code does not fit
-///         the camera; Interrupted if progress says so
-/// @note the noise of a pixel depends on (seed, pixel, frame) alone: same bits for any number of
-///       threads
+///         the camera; Interrupted if `progress` cancels
+/// @note noise depends only on (seed, pixel, frame): same bits for any number of threads
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
                   const CaptureOptions& options = {}, const Progress& progress = {});
 
-/// How light comes to the pixels of a scene, beside its one direct way. Multipath returns and
-/// a tail add to the direct return; a transient takes its place: the pixel's signal is shared out
-/// over the histogram.
+/// Indirect light in a scene. Multipath returns and a tail are added to the direct return; a
+/// transient replaces it, so that its histogram distributes the pixel's signal over time.
 struct SceneLight {
-  MultipathReturns returns;             ///< empty: none
-  std::optional<ExponentialTail> tail;  ///< behind every direct return
-  /// One for all pixels, or one for each, row by row; empty: none.
+  MultipathReturns returns;             ///< may be empty
+  std::optional<ExponentialTail> tail;  ///< added to every direct return
+  /// One for all pixels, or one per pixel, row by row; may be empty.
   std::vector<Transient> transients;
-  /// What the lens then scatters over the image, ambient light too: the kernel of StrayLight
-  /// (decode/stray_light.hpp); empty: nothing.
+  /// Stray light in the lens, including ambient light: the kernel of StrayLight
+  /// (decode/stray_light.hpp); may be empty.
   Image<float> stray_light;
 
   bool is_direct_only() const { return returns.empty() && !tail && transients.empty(); }
 
-  /// @throws std::invalid_argument naming what does not fit the scene or the camera's range;
-  ///         transients together with returns or a tail
+  /// @throws std::invalid_argument if something does not fit the scene or the camera's range, or if
+  ///         transients are combined with returns or a tail
   void validate(const SceneImage& scene, const Camera& camera) const;
 };
 
-/// As capture() of direct light, with light that comes back by longer ways too. Without such light
-/// the frames are the same, bit by bit; with it pixels draw from the same streams.
+/// As capture() above, with indirect light. Without indirect light the frames have the same bits;
+/// with it, pixels use the same random streams.
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
                   const Camera& camera, const CaptureOptions& options = {},
                   const Progress& progress = {});
 
-/// Truth of a capture: where each pixel's light came from. Tails and transients are in what made
-/// them.
+/// True light of a capture. For tails and transients see SceneLight.
 struct MultipathTruth {
   Image<float> direct_m;               ///< depth of the direct return; NaN: none
-  Image<float> direct_e_per_s;         ///< its signal, with a transient all of the pixel's
-  std::vector<std::int64_t> first{0};  ///< as MultipathReturns
+  Image<float> direct_e_per_s;         ///< its signal; with a transient, the pixel's total signal
+  std::vector<std::int64_t> first{0};  ///< see MultipathReturns
   std::vector<float> distance_m;       ///< of every multipath return [m]
   std::vector<float> signal_e_per_s;   ///< of every multipath return [e/s]
 };

@@ -19,20 +19,20 @@
 
 namespace tofsmith {
 
-/// Where the true depths of trials lie.
+/// Distribution of the true depths of trials.
 enum class DepthSampling {
   uniform,  ///< anywhere in the range
-  bins,     ///< on bins only: flatters codes that are wrong in between
+  bins,     ///< on bins only; favours codes that are wrong in between
 };
 constexpr std::array<std::string_view, 2> words_of(DepthSampling /*any*/) {
   return {"uniform", "bins"};
 }
 
-/// Circular error above which a depth counts as an outlier, by default.
+/// Default of the circular error above which a depth is an outlier.
 inline constexpr double default_outlier_threshold_m = 0.5;
 inline constexpr Help outlier_threshold_help{"circular error above which a depth is an outlier"};
 
-/// Options of evaluate(); fields_of() below describes each of them.
+/// Options of evaluate(), described in fields_of() below.
 struct EvaluateOptions {
   std::int64_t trials = 20000;  ///< odd numbers are rounded up
   std::uint64_t seed = 1;
@@ -47,7 +47,7 @@ struct EvaluateOptions {
   bool draw_every_measurement = false;
   bool bounds = true;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate() const;
 };
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
@@ -79,23 +79,21 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
 /// Depth error at one operating point.
 struct PointDepthError {
   OperatingPoint point;
-  std::int64_t trials = 0;        ///< made
+  std::int64_t trials = 0;        ///< number of trials
   Estimate linear_mde_m;          ///< mean |decoded - true|
-  Estimate circular_mde_m;        ///< mean of the shorter way round the range
-  Estimate linear_rmse_m;         ///< root of the mean square of the linear error
-  Estimate circular_rmse_m;       ///< of the circular error
-  Estimate outlier_rate;          ///< share of circular errors beyond the threshold
+  Estimate circular_mde_m;        ///< mean wrapped |decoded - true|
+  Estimate linear_rmse_m;         ///< root mean square of the linear error
+  Estimate circular_rmse_m;       ///< root mean square of the circular error
+  Estimate outlier_rate;          ///< share of circular errors above the threshold
   double cramer_rao_mae_m = 0.0;  ///< CramerRaoBound of the code
-  /// ReceiverBound of the camera, with the code's exposures; of rows, HistogramBound of their
-  /// light.
+  /// ReceiverBound of the camera for the code's exposures; for rows, HistogramBound of their light.
   double receiver_bound_mae_m = 0.0;
-  double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: there is none
+  double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: none
 };
-/// A bound as tables of numbers hold it: not a number where it bounds nothing, which is 0.
+/// Returns a bound for numeric tables: NaN for 0, which means no bound.
 inline double bound_or_nan(double bound_m) {
   return bound_m == 0.0 ? std::numeric_limits<double>::quiet_NaN() : bound_m;
 }
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
   return std::tuple(
       Field("point", p.point, FieldMark::in_place), Field("trials", p.trials, FieldMark::apart),
@@ -111,12 +109,11 @@ auto fields_of(ConstOrNot<PointDepthError> auto& p) {
             FieldMark::bound, FieldMark::may_be_null));
 }
 
-/// One figure for all operating points, of what is known of each.
+/// Averages over all operating points.
 struct DepthErrorMean {
   Estimate geometric_mean_m;
   Estimate mean_m;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DepthErrorMean> auto& m) {
   return std::tuple(Field("geometric_mean_m", m.geometric_mean_m, at_least(0)),
                     Field("mean_m", m.mean_m, at_least(0)));
@@ -127,10 +124,10 @@ struct DepthErrorReport {
   std::string code;
   int exposures = 0;
   int taps = 0;
-  int measurements = 0;  ///< that leave the sensor
+  int measurements = 0;  ///< that the sensor outputs
   int samples = 0;
-  std::int64_t trials = 0;         ///< made per operating point, with a target: at most
-  int points_short_of_target = 0;  ///< that reached max_trials first
+  std::int64_t trials = 0;         ///< per operating point; with a target: the maximum
+  int points_short_of_target = 0;  ///< points that reached max_trials first
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
   DepthErrorMean linear, circular;            ///< of mean absolute errors
@@ -141,7 +138,6 @@ struct DepthErrorReport {
     return kind == DepthErrorKind::linear ? linear : circular;
   }
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
   return std::tuple(
       Field("code", r.code, InDocuments{"name"}), Field("exposures", r.exposures, at_least(1)),
@@ -154,57 +150,56 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
       Field("circular_rmse", r.circular_rmse), Field("points", r.points));
 }
 
-/// Monte Carlo depth error at every operating point of the camera, with bounds beside it.
+/// Computes the depth error at every operating point of the camera by Monte Carlo simulation, with
+/// bounds.
 ///
-/// Trial t of point p draws from the stream (seed, p, t) alone: its depth, uniform on the t-th of
-/// `trials` equal slices of the range (slices in which depths are equally likely, where the camera
-/// weighs them), its albedo if that is uniform, and its noise. Codes are so
-/// compared on the same depths. Noise is normal or Poisson as the sensor says, of the variance of
-/// that depth; of rows it is drawn in every time bin, or normal with their covariance. Where all
-/// that follows is linear and ZNCC decodes, normal noise is drawn in the plane that ZNCC looks at,
-/// with the covariance it has there: the same distribution from fewer numbers. Standard errors come
-/// from the differences of trials in neighbouring slices; they hold for the sliced depths (and err
-/// on the large side).
+/// Trial t of point p uses only the random stream (seed, p, t). Its depth is uniform in the t-th of
+/// `trials` equal slices of the range (slices of equal probability if the camera weights depths);
+/// then follow albedo, if it is uniform, and noise. All codes are thus compared at the same depths.
+/// Noise is normal or Poisson, as specified by the sensor, with the variance at that depth; for
+/// rows it is drawn in every time bin, or normal with their covariance. If the conversion is linear
+/// and the method is ZNCC, normal noise is drawn in the plane that ZNCC uses, with its covariance
+/// there: the same distribution from fewer random numbers. Standard errors are computed from
+/// differences of trials in neighbouring slices, and are slightly too large.
 ///
-/// With a target, a point gets further rounds of trials, each sliced by itself, at least half as
-/// many again as it has. Where the error is linear, as many are made as the wraps foreseen from the
-/// circular error need, whether or not any were met.
+/// With a target, a point gets further rounds of trials, each sliced separately and at least half
+/// as large as all previous ones together. For the linear error there are enough trials for the
+/// number of wraps predicted from the circular error, even if none occurred.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
-///         the method cannot decode it; Interrupted if progress says so
-/// @note same bits for any number of threads, on one dispatch_target()
+///         the method cannot decode it; Interrupted if `progress` cancels
+/// @note same bits for any number of threads with the same dispatch_target()
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
                           const EvaluateOptions& options = {}, const Progress& progress = {});
 
 /// The best origin of depth of a code.
 struct BestRotation {
-  int rotation_bin = 0;  ///< CodeSet::rotated by this many bins has the least linear error
-  /// Geometric mean over the operating points of the linear error [m], for each rotation (N). Where
-  /// the camera weighs depths, of the error that it asks for.
+  int rotation_bin = 0;  ///< argument of CodeSet::rotated with the smallest linear error
+  /// Geometric mean over the operating points of the linear error [m] for each rotation (N); of the
+  /// camera's error kind if it weights depths.
   std::vector<double> linear_geometric_mean_m;
 };
 
-/// Finds the rotation with the least linear depth error. Circular error does not depend on it, but
-/// where the camera weighs depths (OperatingRange::depths): there the error that the camera asks
-/// for decides, and trials, drawn uniformly, are weighed at every rotation by how often their depth
-/// occurs.
+/// Finds the rotation with the smallest linear depth error. The circular error does not depend on
+/// rotation unless the camera weights depths (OperatingRange::depths). In that case the camera's
+/// error kind decides, and the uniformly drawn trials are weighted at every rotation by the
+/// frequency of their depth.
 ///
-/// Rotating a code moves true and decoded depths alike: a trial costs |decoded - true| at every
-/// rotation but those that put the origin between the two, where it costs the range less that. So
-/// one run of trials gives the error at all N rotations. (Every rotation is judged by the same
-/// trials and the least is taken: its own figure is a little low; evaluate the rotated code for an
-/// honest one. A generator of the light rounds switching times: on one, rotations by whole points
-/// alone are chosen among.)
+/// A rotation moves true and decoded depths alike. The error of a trial is |decoded - true|, except
+/// at rotations that put the origin between the two, where it is the range minus that. One run of
+/// trials therefore gives the error at all N rotations. (The minimum over rotations that share
+/// trials is biased low; evaluate the rotated code for an unbiased value. If a generator of the
+/// light rounds switching times, only rotations by whole points are considered.)
 /// @param options  as for evaluate
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});
 
-/// Mean circular depth error [m] of a table on frames made from itself, so that measured tables
-/// stand beside codes: expected electrons along the chords between its rows, normal noise of the
-/// variance it states, one depth drawn in each of `trials` equal slices of the range.
-/// @param light   S in multiples of what the table was measured with, A in e/s
+/// Computes the mean circular depth error [m] of a table for frames simulated from the table
+/// itself, to compare measured tables with codes: expected electrons along the chords between its
+/// rows, normal noise of its variance, one depth in each of `trials` equal slices of the range.
+/// @param light   S relative to the light of the table's measurement, A in e/s
 /// @param trials  >= 2; odd numbers are rounded up
 /// @throws std::invalid_argument if the table or the number of trials is invalid
-/// @note same bits for any number of threads, on one dispatch_target()
+/// @note same bits for any number of threads with the same dispatch_target()
 Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& light,
                              std::int64_t trials = 20000, std::uint64_t seed = 1);
 
@@ -216,27 +211,25 @@ struct OperatingMultipathError {
     return kind == DepthErrorKind::linear ? linear_m : circular_m;
   }
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<OperatingMultipathError> auto& e) {
   return std::tuple(Field("linear_m", e.linear_m, at_least(0)),
                     Field("circular_m", e.circular_m, at_least(0)));
 }
 
-/// Errors of a code in the operating multipath.
+/// Errors of a code with the camera's multipath light.
 struct OperatingMultipathReport {
-  OperatingMultipathError single_path;                ///< decoded as single-path
-  std::optional<OperatingMultipathError> two_return;  ///< as two returns; none: the code cannot
+  OperatingMultipathError single_path;                ///< by a single-path decoder
+  std::optional<OperatingMultipathError> two_return;  ///< by a two-return decoder, if supported
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<OperatingMultipathReport> auto& r) {
   return std::tuple(Field("single_path", r.single_path), Field("two_return", r.two_return));
 }
 
-/// Computes the depth error where every pixel has a second return, for zncc and for the two-return
-/// decoder on the same trials. Trial t of an operating point draws depth, uniform on the t-th slice
-/// of the range, albedo, return and noise from its own random stream. Of the options, only trials
-/// (per operating point) and seed count.
-/// @throws std::invalid_argument as evaluate(); Interrupted
+/// Computes the depth error with a second return in every pixel, for zncc and for the two-return
+/// decoder on the same trials. Trial t of an operating point draws depth, uniform in the t-th slice
+/// of the range, albedo, return and noise from its own random stream. Only `trials` (per operating
+/// point) and `seed` of the options are used.
+/// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
 OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
                                                     const OperatingMultipath& later,
                                                     const EvaluateOptions& options = {},

@@ -15,48 +15,49 @@
 
 namespace tofsmith {
 
-/// Depth of a scene as one decoder sees it.
+/// Depth of a scene from one decoder.
 struct MultipathSceneDecoding {
   std::string method;    ///< "single-path", "two-return"
   Image<float> depth_m;  ///< NaN: none
-  Image<float> error_m;  ///< decoded - true, the shorter way round; NaN where unknown
+  Image<float> error_m;  ///< decoded - true, wrapped; NaN where unknown
 };
 
-/// Pixels whose multipath light comes about as late, and how far off decoders are there.
+/// Errors of decoders in pixels with a similar delay of the multipath light.
 struct DelayClass {
   double from_m = 0.0, to_m = 0.0;  ///< mean delay of the multipath light
   std::int64_t pixels = 0;
-  double ratio = 0.0;           ///< mean of multipath light over direct light
-  std::vector<double> bias_m;   ///< mean of decoded - true, of each decoding
+  double ratio = 0.0;           ///< mean ratio of multipath to direct light
+  std::vector<double> bias_m;   ///< mean of decoded - true, per decoder
   std::vector<double> error_m;  ///< mean of |decoded - true|
-  double two_share = 0.0;       ///< found to hold two returns
+  double two_share = 0.0;       ///< share of pixels with two returns detected
   double unresolved_share = 0.0;
 };
 
-/// A scene whose surfaces light each other, captured once and decoded as single-path and as two
-/// returns.
+/// A scene with interreflections, captured once and decoded by a single-path and a two-return
+/// decoder.
 struct MultipathScene {
   std::string name, code;
   SceneImage truth;
   PinholeView view;
   CaptureOptions light;
-  Image<float> multipath_ratio;    ///< multipath light over direct light; 0: none; NaN: no return
+  Image<float> multipath_ratio;    ///< ratio to direct light; 0: none; NaN: no return
   Image<float> multipath_delay_m;  ///< mean delay of the multipath light; NaN: none
   std::vector<MultipathSceneDecoding> decodings;  ///< single-path, then two-return
-  Image<ReturnStatus> returns;                    ///< of two-return decoding
-  std::vector<DelayClass> classes;                ///< by mean delay; those without pixels left out
+  Image<ReturnStatus> returns;                    ///< from two-return decoding
+  std::vector<DelayClass> classes;                ///< by mean delay; without empty classes
   DelayClass all;                                 ///< all pixels with multipath light
 };
 
-/// Captures and decodes. Pixels without multipath light are in no class.
+/// Captures and decodes the scene. Pixels without multipath light are in no class.
 /// @throws std::invalid_argument as capture(), TwoReturnDecoder and returns.validate(); Interrupted
+///         if `progress` cancels
 MultipathScene multipath_scene(std::string name, const SceneImage& truth, const PinholeView& view,
                                const MultipathReturns& returns, const CodeSet& code,
                                const Camera& camera, const CaptureOptions& light,
                                const MultipathOptions& decoding = {},
                                const Progress& progress = {});
 
-/// Which light comes back twice, and how error behind it is measured.
+/// Multipath light to simulate, and parameters of the simulation.
 struct MultipathErrorOptions {
   std::vector<double> delay_m = {0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};
   std::vector<double> ratio = {0.1, 0.3, 0.6};  ///< r = S2 / S1
@@ -65,9 +66,9 @@ struct MultipathErrorOptions {
   double ambient_e_per_s = 1e4;                     ///< A
   std::int64_t trials = 2000;
   std::uint64_t seed = 1;
-  MultipathOptions decoding;  ///< tail_m is taken from each tail's own mean delay
+  MultipathOptions decoding;  ///< tail_m is replaced by the mean delay of each tail
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate(double range_m) const;
 };
 auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
@@ -82,21 +83,20 @@ auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
       Field("decoding", o.decoding, Help{"options of two-return and tail decoding"}));
 }
 
-/// Error of direct depth in one kind of light: all errors the shorter way round the range.
+/// Error of the direct depth for one kind of light; all errors are wrapped.
 struct MultipathCell {
   double ratio = 0.0;
   double delay_m = 0.0;           ///< of the second return, or mean delay of the tail
   double law_m = 0.0;             ///< r delta / (1 + r)
   Estimate single_bias_m;         ///< mean of decoded - true, single-path (zncc)
   Estimate single_error_m;        ///< mean of |decoded - true|
-  Estimate bias_m, error_m;       ///< of two-return (tail) decoding; NaN where the code cannot
+  Estimate bias_m, error_m;       ///< by the two-return (tail) decoder; NaN if unsupported
   double cramer_rao_mae_m = 0.0;  ///< MultipathBound
-  double two_share = 0.0;         ///< of pixels found to hold two returns
+  double two_share = 0.0;         ///< share of pixels with two returns detected
   double unresolved_share = 0.0;
 
   double gain() const { return single_error_m.value / error_m.value; }
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MultipathCell> auto& c) {
   return std::tuple(Field("ratio", c.ratio), Field("delay_m", c.delay_m), Field("law_m", c.law_m),
                     Field("single_bias_m", c.single_bias_m, FieldMark::without_error,
@@ -107,15 +107,14 @@ auto fields_of(ConstOrNot<MultipathCell> auto& c) {
                     Field("two_share", c.two_share), Field("unresolved_share", c.unresolved_share));
 }
 
-/// Maps at one signal.
+/// Maps for one signal.
 struct MultipathMaps {
   double signal_e_per_s = 0.0;
-  MultipathCell single;               ///< no second return: what two-return decoding loses
-  MultipathCell single_by_tail;       ///< the same by tail decoding, of the middle tail
-  std::vector<MultipathCell> points;  ///< ratio by ratio, each delay by delay
-  std::vector<MultipathCell> tails;   ///< the same of tails
+  MultipathCell single;               ///< no second return: cost of two-return decoding
+  MultipathCell single_by_tail;       ///< as above by the decoder for the middle tail
+  std::vector<MultipathCell> points;  ///< all delays of the first ratio, then of the next
+  std::vector<MultipathCell> tails;   ///< as above for tails
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MultipathMaps> auto& m) {
   return std::tuple(Field("signal_e_per_s", m.signal_e_per_s),
                     Field("single", m.single, InDocuments{"single_return"}),
@@ -123,21 +122,21 @@ auto fields_of(ConstOrNot<MultipathMaps> auto& m) {
                     Field("points", m.points, InDocuments{"multipath"}), Field("tails", m.tails));
 }
 
-/// What a code does where light comes back twice.
+/// Errors of a code with two returns or a tail.
 struct MultipathErrorReport {
   std::string code;
   int measurements = 0;
-  std::string why_no_two_returns;   ///< empty where two-return decoding works
-  std::string why_no_tail;          ///< empty where tail decoding works
-  std::vector<MultipathMaps> maps;  ///< of each signal
+  std::string why_no_two_returns;   ///< empty if two-return decoding is supported
+  std::string why_no_tail;          ///< empty if tail decoding is supported
+  std::vector<MultipathMaps> maps;  ///< per signal
 };
 
-/// Bias and error over (delta, r), single-path against two-return decoding, in the camera's noise.
-/// Trial t of a cell draws from the stream (seed, cell, t): its depth, uniform on the t-th of
-/// `trials` slices of the range (of those that the camera says occur), then noise; all codes see
-/// the same.
-/// @throws std::invalid_argument if camera, code or options are invalid; Interrupted if progress
-///         says so
+/// Computes bias and error over (delta, r) for single-path and two-return decoding, with the
+/// camera's noise. Trial t of a cell uses the random stream (seed, cell, t): its depth is uniform
+/// in the t-th of `trials` slices of the range (weighted as by the camera), then follows noise; all
+/// codes use the same depths and noise.
+/// @throws std::invalid_argument if camera, code or options are invalid; Interrupted if `progress`
+///         cancels
 /// @note same bits for any number of threads
 MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
                                      const MultipathErrorOptions& options = {},

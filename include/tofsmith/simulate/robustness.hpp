@@ -15,7 +15,7 @@
 
 namespace tofsmith {
 
-/// How far a camera may be from what it is said to be, and how its depth error is then measured.
+/// Deviations of a camera from its description, and parameters of the evaluation.
 struct RobustnessOptions {
   double bandwidth = 0.2;
   double peak = 0.1;
@@ -25,11 +25,11 @@ struct RobustnessOptions {
   double droop = 0.0;
   bool together = false;
   std::int64_t trials = 4000;
-  std::uint64_t seed = 1;  ///< every camera sees the same depths and noise
+  std::uint64_t seed = 1;  ///< all cameras use the same depths and noise
   DecodeMethod method = DecodeMethod::zncc;
   UnwrapWeights unwrap_weights = UnwrapWeights::variance;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws std::invalid_argument
   void validate() const;
 };
 auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
@@ -52,53 +52,53 @@ auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
       Field("unwrap_weights", o.unwrap_weights, unwrap_weights_help, unwrap_weights_condition));
 }
 
-/// A camera that is not quite what it was said to be.
+/// A camera that deviates from its description.
 struct PerturbedCamera {
-  std::string name;      ///< "bandwidth -20 %", ..
-  Camera camera;         ///< with its own limits; plays perturbed_code()
-  double peak = 1.0;     ///< its peak power over that it was said to have
-  double clock_s = 0.0;  ///< grid of its switching times [s]; 0: none
-  double droop = 0.0;    ///< sag of its light within half a period
+  std::string name;      ///< "bandwidth -20 %", ...
+  Camera camera;         ///< with its changed limits; used with perturbed_code()
+  double peak = 1.0;     ///< peak power relative to the description
+  double clock_s = 0.0;  ///< grid of switching times [s]; 0: none
+  double droop = 0.0;    ///< sag of the light within half a period
 };
 
-/// The camera with one thing changed at a time, light levels and average power kept:
-///   - bandwidth: every frequency of both arms' impulse responses scaled (measured responses are
-///     stretched in time); left out where no arm has one,
-///   - peak: peak power scaled, see perturbed_code(),
-///   - edge jitter: added in quadrature to that of each arm, independent in both (a common one
-///     would cancel),
-///   - tap mismatch: added to that of the camera; left out where it would reach 1,
-///   - clock: switching times of both arms on the points of a clock, see perturbed_code(),
-///   - droop: the light sags while it is on, see perturbed_code(),
-///   - together: all of these at once, bandwidth and peak lowered.
+/// Returns cameras with one change each, at the same light levels and average power:
+/// - bandwidth: all frequencies of both arms' impulse responses are scaled (measured responses are
+///   stretched in time); omitted if no arm has one,
+/// - peak: peak power is scaled, see perturbed_code(),
+/// - edge jitter: added in quadrature to the jitter of each arm, independently (common jitter would
+///   cancel),
+/// - tap mismatch: added to the camera's; omitted if the sum would reach 1,
+/// - clock: switching times of both arms are rounded to a clock, see perturbed_code(),
+/// - droop: the light sags while it is on, see perturbed_code(),
+/// - together: all changes at once, with lower bandwidth and peak.
 std::vector<PerturbedCamera> perturbations(const Camera& camera,
                                            const RobustnessOptions& options = {});
 
-/// What a perturbed source makes of a code at the same average power.
-///   - Binary modulation: the level is multiplied by `peak` and every pulse's length divided by it,
-///     about its centre. Pulses that so come to overlap merge, at the loss of the light that would
-///     have been twice; pulses that would fill the period stay on.
-///   - Sampled modulation: deviations from its mean are scaled so that its peak is `peak` times
-///     what it was; what falls below 0 is cut, and the whole scaled to the old mean (its peak is
-///     then a little less). Where even the mean would exceed the new peak, the whole is dimmed.
-/// Then a clock moves every switching time of both arms to its nearest point, a whole number of
-/// them per period, as generated() does; what so comes to emit more than the average power is
-/// dimmed. Last, binary light that droops falls off as exp(-t / s) from every rise on, with the s
-/// at which half a period takes it to 1 - droop; power is lost. It is then kept as means over the
-/// code's samples. Light that is not binary has no plateaus and stays. Demodulation changes by the
-/// clock alone. Without any of the three it is the code itself.
-/// @throws std::invalid_argument if the clock has fewer than 2 points or leaves a modulation dark
+/// Returns a code as emitted and received by a perturbed camera, at the same average power.
+/// - Binary modulation: the level is multiplied by `peak` and the length of every pulse divided by
+///   it, about its centre. Pulses that would overlap merge, which loses the overlapping light;
+///   pulses that would fill the period stay on.
+/// - Sampled modulation: deviations from the mean are scaled so that the peak changes by the factor
+///   `peak`; negative values are clipped, and the result is scaled to the old mean, which slightly
+///   reduces the peak. If even the mean would exceed the new peak, the modulation is dimmed.
+///
+/// A clock then moves every switching time of both arms to its nearest point (a whole number of
+/// points per period), as generated(); modulation above the average power is dimmed. Finally,
+/// binary light with droop decays as exp(-t / s) from every rise, with s such that half a period
+/// reduces it to 1 - droop; power is lost. It is stored as means over the code's samples. Other
+/// light has no plateaus and is not changed by droop. Demodulation changes only by the clock.
+/// @throws std::invalid_argument if the clock has fewer than 2 points per period or leaves a
+///         modulation dark
 CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed);
 
 /// Depth error on a perturbed camera: geometric mean over its operating points [m].
 struct PerturbedError {
   std::string name;
-  /// By a decoder that knows the perturbed camera; where the code measures no depth on that camera,
-  /// for example because mismatched taps let ambient light through, as uncalibrated_m.
+  /// With a decoder that knows the perturbed camera. Equal to uncalibrated_m if the code cannot
+  /// measure depth on that camera, e.g. because mismatched taps let ambient light through.
   Estimate calibrated_m;
-  Estimate uncalibrated_m;  ///< by one that believes the camera to be what it was said to be
+  Estimate uncalibrated_m;  ///< with a decoder that assumes the described camera
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PerturbedError> auto& e) {
   return std::tuple(Field("name", e.name),
                     Field("calibrated_m", e.calibrated_m, at_least(0), FieldMark::as_object,
@@ -107,19 +107,18 @@ auto fields_of(ConstOrNot<PerturbedError> auto& e) {
                           InDocuments{"uncalibrated"}));
 }
 
-/// Depth error of a code when its camera is not quite what it was said to be.
+/// Depth error of a code on a camera and on its perturbations.
 struct RobustnessReport {
-  DepthErrorKind kind = DepthErrorKind::linear;  ///< of all errors, as the camera's operating range
-  std::int64_t trials = 0;                       ///< made, per operating point
+  DepthErrorKind kind = DepthErrorKind::linear;  ///< of all errors, from the operating range
+  std::int64_t trials = 0;                       ///< per operating point
   std::uint64_t seed = 0;
-  Estimate nominal_m;  ///< on the camera as it was said to be
+  Estimate nominal_m;  ///< on the camera as described
   std::vector<PerturbedError> perturbed;
 
-  /// The largest error, the nominal one included [m].
+  /// Largest error, including the nominal one [m].
   Estimate worst_calibrated_m() const;
   Estimate worst_uncalibrated_m() const;
 };
-/// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
   return std::tuple(
       Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials), Field("seed", r.seed),
@@ -127,25 +126,25 @@ auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
       Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
 }
 
-/// Judges a code on the perturbations of its camera. Perturbations that change the code to one that
-/// the camera cannot use are left out, such as pulses too short for the light's generator.
+/// Evaluates a code on the perturbations of its camera. Perturbations that lead to a code that the
+/// camera does not support are omitted, e.g. pulses too short for the light's generator.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
-///         the method cannot decode it; Interrupted if progress says so
+///         the method cannot decode it; Interrupted if `progress` cancels
 /// @note same bits for any number of threads
 RobustnessReport robustness(const CodeSet& code, const Camera& camera,
                             const RobustnessOptions& options = {}, const Progress& progress = {});
 
-/// What the limits of a camera's generators do to a code. All three errors are of the same depths
-/// and the same noise, without bounds.
+/// Effect of the limits of a camera's generators on a code. All three errors use the same depths
+/// and noise, without bounds.
 struct GeneratorLoss {
   DepthErrorReport nominal;       ///< on the camera without generators
-  DepthErrorReport actual;        ///< with them, by a decoder that knows the actual waveforms
-  DepthErrorReport uncalibrated;  ///< with them, by a decoder that assumes the nominal waveforms
-  /// Rms difference of the nominal and actual correlation functions, per measurement (K), over the
-  /// rms of the nominal one about its mean.
+  DepthErrorReport actual;        ///< with generators and a decoder for the actual waveforms
+  DepthErrorReport uncalibrated;  ///< with generators and a decoder for the nominal waveforms
+  /// RMS difference of nominal and actual correlation functions, per measurement (K), relative to
+  /// the RMS of the nominal one about its mean.
   std::vector<double> correlation_change;
 
-  /// Geometric mean over the operating points [m], of the kind the camera is judged by.
+  /// Geometric mean over the operating points [m].
   Estimate nominal_m(DepthErrorKind kind) const { return nominal.of(kind).geometric_mean_m; }
   /// actual / nominal
   double ratio(DepthErrorKind kind) const;
@@ -153,8 +152,8 @@ struct GeneratorLoss {
   double uncalibrated_ratio(DepthErrorKind kind) const;
 };
 
-/// @param camera  with generators; the camera without them has the nominal waveforms
-/// @throws std::invalid_argument as evaluate(); Interrupted if progress says so
+/// @param camera  with generators; without them the waveforms are nominal
+/// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
 /// @note same bits for any number of threads
 GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
                              const EvaluateOptions& options = {}, const Progress& progress = {});

@@ -17,41 +17,41 @@
 
 namespace tofsmith {
 
-/// How far a decoded frame is from the scene, over the pixels that have a true depth.
+/// Depth error of a decoded frame over the pixels with a true depth.
 struct SceneError {
-  double mean_m = 0.0;         ///< mean |decoded - true|, pixels without decoded depth left out
-  double median_m = 0.0;       ///< median of the same
-  double outlier_rate = 0.0;   ///< share beyond the threshold or without decoded depth
-  double decoded_share = 0.0;  ///< share of pixels that got a depth
+  double mean_m = 0.0;         ///< mean |decoded - true| over pixels with a decoded depth
+  double median_m = 0.0;       ///< median |decoded - true| over these pixels
+  double outlier_rate = 0.0;   ///< share of pixels beyond the threshold or without decoded depth
+  double decoded_share = 0.0;  ///< share of pixels with a decoded depth
   std::int64_t pixels = 0;     ///< with a true depth
   double outlier_threshold_m = 0.0;
 };
 
-/// True distance as the camera can see it: wrapped into the range; NaN = no return.
+/// True distance wrapped to the camera's range; NaN: no return.
 Image<float> wrapped_depth_m(const SceneImage& scene, const Camera& camera);
 
-/// decoded - true [m], the linear or the circular difference; NaN where either is unknown.
+/// Returns decoded - true [m], linear or circular; NaN where either is unknown.
 /// @throws std::invalid_argument if the sizes differ
 Image<float> depth_difference_m(const Image<float>& decoded_m, const SceneImage& scene,
                                 const Camera& camera, DepthErrorKind kind);
 
-/// Summary of the differences. @throws std::invalid_argument if the sizes differ
+/// Summarizes the differences. @throws std::invalid_argument if the sizes differ
 SceneError scene_error(const Image<float>& decoded_m, const SceneImage& scene, const Camera& camera,
                        DepthErrorKind kind,
                        double outlier_threshold_m = default_outlier_threshold_m);
 
-/// How an image of this size is seen: through the lens, or 60 degrees wide without one.
-/// @throws std::invalid_argument if the lens is of images of another size
+/// Returns the view of images of this size: that of the lens, or 60 degrees wide without one.
+/// @throws std::invalid_argument if the lens is for another image size
 PinholeView view_of(const std::optional<Lens>& lens, int width, int height);
-/// The lens of a view, of images of any size.
+/// Returns the lens of a view, valid for any image size.
 Lens lens_of(const PinholeView& view);
 
-/// How far away the parts of a scene are, for a camera.
+/// Distances in a scene, compared with a camera's range.
 struct SceneExtent {
-  std::int64_t pixels = 0;        ///< in all
+  std::int64_t pixels = 0;        ///< total
   std::int64_t returns = 0;       ///< with a depth
-  std::int64_t beyond_range = 0;  ///< of these, at or beyond the unambiguous range
-  double nearest_m = 0.0;         ///< radial; 0 of no returns
+  std::int64_t beyond_range = 0;  ///< of the returns, at or beyond the unambiguous range
+  double nearest_m = 0.0;         ///< radial; 0 without returns
   double median_m = 0.0;
   double farthest_m = 0.0;
   double range_m = 0.0;  ///< unambiguous range of the camera
@@ -62,18 +62,18 @@ struct SceneExtent {
 
 SceneExtent scene_extent(const SceneImage& scene, const Camera& camera);
 
-/// 1 where depth is at or beyond the camera's unambiguous range: what it measures there is wrapped
-/// and looks like a nearer surface. 0 elsewhere and where nothing returns.
+/// Mask of pixels at or beyond the camera's unambiguous range, whose depth wraps and looks like a
+/// nearer surface. 0 elsewhere and without a return.
 Image<std::uint8_t> beyond_range(const SceneImage& scene, const Camera& camera);
 
-/// The same raw numbers once more, filtered before they are decoded.
+/// Result of decoding the same raw numbers after filtering.
 struct FilteredSceneDecoding {
   Image<float> depth_m;
-  Image<float> averaged;  ///< of how many measurements numbers are the mean, as FilteredFrame
+  Image<float> averaged;  ///< number of averaged measurements, see FilteredFrame
   SceneError error;
 };
 
-/// One code's depth of one capture.
+/// Depth of one code from one capture.
 struct SceneDecoding {
   std::string code;
   Image<float> depth_m;
@@ -88,12 +88,12 @@ struct SceneCapture {
   std::vector<SceneDecoding> decodings;
 };
 
-/// What became of a scene.
+/// A scene with its captures.
 struct SceneResult {
   std::string name;
   SceneImage truth;
   PinholeView view;
-  double reference_distance_m = 1.0;  ///< where albedo 1 returns the signal of an operating point
+  double reference_distance_m = 1.0;  ///< where albedo 1 gives the signal of an operating point
   std::vector<SceneCapture> captures;
 };
 
@@ -103,16 +103,17 @@ struct NamedLight {
   OperatingPoint point;
 };
 
-/// Captures and decodes `scene` with every code at every light level and fills its captures.
-/// Codes see the same noise, drawn from `seed`.
-/// @param filter  with which measurements are also filtered; none: they are not
+/// Captures and decodes `scene` with every code at every light level, and stores the captures in
+/// it. All codes use the same noise, drawn from `seed`.
+/// @param filter  none: measurements are not also filtered
 /// @throws std::invalid_argument if scene or camera are invalid or a code does not fit; Interrupted
+///         if `progress` cancels
 void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, const Camera& camera,
                         std::span<const NamedLight> lights, std::uint64_t seed,
                         const std::optional<FilterOptions>& filter = {},
                         const Progress& progress = {});
 
-/// Median of the true depths [m]; 1 for a scene without any.
+/// Median of the true depths [m]; 1 if there are none.
 double median_depth_m(const SceneImage& scene);
 
 }  // namespace tofsmith

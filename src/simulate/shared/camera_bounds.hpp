@@ -10,18 +10,18 @@
 
 namespace tofsmith {
 
-/// Bounds at the operating points of a camera that know of a code only how many exposures it has:
-/// computed once for all codes that are judged on the camera. Not for several threads at a time.
+/// Bounds at the operating points of a camera that depend only on the number of exposures of a
+/// code; computed once for all codes. Not thread-safe.
 class CameraBounds {
  public:
   struct Level {
     double receiver_mae_m = 0.0, direct_tof_mae_m = 0.0;
   };
 
-  /// @param camera  as for evaluate(), with albedo and neighbours; must outlive this
+  /// @param camera  as for evaluate(), with albedo and neighbours; must outlive this object
   explicit CameraBounds(const Camera& camera) : camera_(camera) {}
 
-  /// In the order of camera.operating.points(); the receiver's is 0 where the camera reads rows.
+  /// Returns bounds in the order of camera.operating.points(); the receiver's is 0 for rows.
   const std::vector<Level>& of(int exposures);
 
  private:
@@ -29,8 +29,8 @@ class CameraBounds {
   std::map<int, std::vector<Level>> levels_;
 };
 
-/// evaluate() with bounds that are shared with other codes: the same figures.
-/// @param bounds  of the same camera
+/// As evaluate(), with bounds shared between codes; returns the same values.
+/// @param bounds  for the same camera
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                           CameraBounds& bounds, const Progress& progress);
 

@@ -8,12 +8,12 @@
 
 namespace tofsmith {
 
-/// Depths of a Cramer-Rao bound in a bin.
+/// Number of depths per bin in a Cramer-Rao bound.
 constexpr int cells_per_bin = 4;
-constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
+constexpr double min_e2 = 1e-9;  // minimum variance; avoids 0 / 0 without light and noise
 
-/// Values at the middle of every second cell of a table of twice as many points, and the slope over
-/// the cell around them.
+/// Computes values at the centre of cells, from a table of twice as many points, and the slope over
+/// each cell.
 inline void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
                                Eigen::MatrixXd& slope) {
   const Eigen::Index cells = fine.rows() / 2;
@@ -25,7 +25,7 @@ inline void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& mid
   }
 }
 
-/// The adjoint: gradient by the fine table of a function whose gradient by both is given.
+/// The adjoint of middles_and_slopes(): returns the gradient with respect to the fine table.
 inline Eigen::MatrixXd pull_back_middles_and_slopes(const Eigen::MatrixXd& by_middle,
                                                     const Eigen::MatrixXd& by_slope) {
   const Eigen::Index cells = by_middle.rows();
@@ -37,10 +37,10 @@ inline Eigen::MatrixXd pull_back_middles_and_slopes(const Eigen::MatrixXd& by_mi
   return by_fine;
 }
 
-/// Of the columns of a whitened Jacobian, the part of that of depth across the other two:
+/// Component of the depth column of a whitened Jacobian that is orthogonal to the other two:
 ///   across = by_depth - signal_share by_signal - ambient_share by_ambient,
-/// [F^-1]_zz = 1 / |across|^2: well defined even where ambient light and signal cannot be
-/// separated, and the matrix has no inverse.
+///   [F^-1]_zz = 1 / |across|^2.
+/// Well-defined even if ambient light and signal cannot be separated and the matrix is singular.
 template <typename Vector>
 struct DepthPart {
   DepthPart(Vector by_depth, Vector by_signal, Vector by_ambient) {
@@ -57,24 +57,24 @@ struct DepthPart {
     across = by_depth;
   }
 
-  /// Smallest standard deviation [m]; infinite where depth cannot be told from the others.
+  /// Smallest standard deviation [m]; infinite if depth cannot be separated from the other columns.
   double deviation_m(double range_m) const { return length > 0.0 ? range_m / length : infinity; }
 
   Vector across;
-  double length;  ///< of it; 0 where rounding alone is left
+  double length;  ///< of across; 0 if only rounding error remains
   double signal_share, ambient_share;
 
  private:
-  /// Residual of `vector` across `direction` (unit length or zero).
-  /// @return what was along it
+  /// Removes the component of `vector` along `direction` (unit length or zero).
+  /// @return the removed component
   static double take_out(Vector& vector, const Vector& direction) {
     const double along = vector.dot(direction);
     vector -= along * direction;
     return along;
   }
 
-  /// Scales to unit length, or to zero what rounding alone made.
-  /// @return the scale
+  /// Normalizes a vector, or sets it to zero if only rounding error remains.
+  /// @return scale factor
   static double normalize_or_drop(Vector& vector, double original_norm) {
     const double norm = vector.norm();
     if (norm > 1e-10 * original_norm && norm > 0.0) {

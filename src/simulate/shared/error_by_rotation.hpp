@@ -12,9 +12,9 @@
 
 namespace tofsmith {
 
-/// Sum of linear errors [bin] at every rotation, of trials whose depths are all alike, as a step
-/// function of the rotation kept by its jumps: jumps[r] is what rotation r adds over rotation
-/// r - 1; jumps[0] is the sum at rotation 0.
+/// Sum of linear errors [bin] at every rotation for uniform depths, as a step function of the
+/// rotation that is stored by its jumps: jumps[r] is the increase from rotation r - 1 to r;
+/// jumps[0] is the sum at rotation 0.
 class ErrorByRotation {
  public:
   explicit ErrorByRotation(int samples) : jumps_(static_cast<std::size_t>(samples) + 1, 0.0) {}
@@ -26,7 +26,7 @@ class ErrorByRotation {
     const auto [low, high] = std::minmax(true_bin, decoded_bin);
     const double error = high - low;
     jumps_[0] += error;
-    // The origin, put at bin r, parts the two if low < r <= high.
+    // An origin at bin r separates the two depths if low < r <= high.
     const double longer = samples - 2.0 * error;
     jumps_[static_cast<std::size_t>(low) + 1] += longer;
     if (high < samples - 1.0) jumps_[static_cast<std::size_t>(high) + 1] -= longer;
@@ -34,7 +34,7 @@ class ErrorByRotation {
   void merge(const ErrorByRotation& other) {
     for (std::size_t r = 0; r < jumps_.size(); ++r) jumps_[r] += other.jumps_[r];
   }
-  /// Sums at rotations 0 .. N - 1.
+  /// Sums at rotations 0 to N - 1.
   std::vector<double> sums() const {
     std::vector<double> result(jumps_.begin(), jumps_.end() - 1);
     for (std::size_t r = 1; r < result.size(); ++r) result[r] += result[r - 1];
@@ -45,9 +45,10 @@ class ErrorByRotation {
   std::vector<double> jumps_;
 };
 
-/// Sum of errors [bin] at every rotation where depths are not alike, of trials whose depths are:
-/// each is weighed by how often the bin occurs that it lies in, seen from the origin. Of the linear
-/// error, a trial costs its circular one, but where the origin parts the shorter way round.
+/// Sum of errors [bin] at every rotation for non-uniform depths, from trials with uniform depths:
+/// each trial is weighted by the frequency of the bin that contains its depth, relative to the
+/// origin. For the linear error, a trial counts its circular error, plus the difference where the
+/// origin separates the shorter arc.
 class WeighedErrorByRotation {
  public:
   WeighedErrorByRotation(const DepthPrior& prior, DepthErrorKind kind, int samples)
@@ -76,30 +77,30 @@ class WeighedErrorByRotation {
     circular_ += other.circular_;
     parted_ += other.parted_;
   }
-  /// Sums at rotations 0 .. N - 1.
+  /// Sums at rotations 0 to N - 1.
   std::vector<double> sums() const {
     const Eigen::VectorXd all = parted_ + circular_correlation(circular_, weight_);
     std::vector<double> result(static_cast<std::size_t>(all.size()));
     std::transform(all.begin(), all.end(), result.begin(),
-                   [](double sum) { return std::max(sum, 0.0); });  // but for rounding
+                   [](double sum) { return std::max(sum, 0.0); });  // removes rounding errors
     return result;
   }
 
  private:
-  Eigen::VectorXd weight_;  // of each bin, 1 on average
+  Eigen::VectorXd weight_;  // per bin, mean 1
   bool is_linear_;
-  Eigen::VectorXd circular_;  // of trials in each bin, unweighed
-  Eigen::VectorXd parted_;    // what each rotation costs beside
+  Eigen::VectorXd circular_;  // circular error of the trials in each bin, without weights
+  Eigen::VectorXd parted_;    // additional error at each rotation
 };
 
-/// The best origin of depth: of all rotations by their errors, or monotone functions of them, the
-/// first of the least. Wherever a code is given an origin, this is how it is chosen.
+/// Returns the best origin of depth: the first rotation with the smallest error, or monotone
+/// function of it. All code that selects an origin uses this function.
 inline int best_of_rotations(const std::vector<double>& errors) {
   return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
 }
 
-/// The errors of all rotations, smoothed over their neighbours round the circle: errors of all
-/// rotations share trials, and where these are few the least of noisy values is an accident.
+/// Smooths the errors of all rotations over their neighbours, cyclically. Rotations share their
+/// trials; with few trials the minimum of the unsmoothed values is due to noise.
 inline std::vector<double> smoothed_over_rotations(const std::vector<double>& errors) {
   constexpr std::array<double, 5> weights = {1.0, 2.0, 3.0, 2.0, 1.0};
   const std::size_t count = errors.size();
