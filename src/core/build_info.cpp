@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// cmake/TofsmithBuildInfo.cmake defines the TOFSMITH_BUILD_.. of this file.
+// cmake/TofsmithBuildInfo.cmake defines TOFSMITH_BUILD_... for this file.
 #include "tofsmith/core/build_info.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// The instruction sets that kernels are compiled for; a better one is a lower bit.
+/// Instruction sets with compiled kernels; better ones have lower bits.
 std::vector<std::string> compiled_targets() {
   std::vector<std::string> names;
   for (std::uint64_t left = HWY_TARGETS; left != 0; left &= left - 1)

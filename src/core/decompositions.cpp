@@ -16,7 +16,7 @@ ThinSvd thin_svd(const Eigen::MatrixXd& matrix) {
   try {
     svd->compute(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
   } catch (const std::bad_alloc&) {
-    // It rebuilds a part of itself in place and would free it twice, so its memory is given up.
+    // After this exception Eigen's destructor would free memory twice, so leak the object instead.
     [[maybe_unused]] const auto* const leaked = svd.release();
     throw;
   }

@@ -51,7 +51,7 @@ bool KeyList::enter(const Key& key) {
 
 bool KeyList::enter_part(const Key& key, std::span<const std::string> /*names*/,
                          bool /*is_there*/) {
-  // Parts of parts belong to the outer one.
+  // A part of a part is listed under the outer one.
   parts_.push_back(parts_.back().empty() ? std::string(key.name) : parts_.back());
   return true;
 }

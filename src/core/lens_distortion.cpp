@@ -24,13 +24,13 @@ constexpr EnumWords<DistortionModel, distortion_models.size()> model_words("Dist
                                                                            "distortion_model",
                                                                            distortion_models);
 
-/// A place and its image, and how the image moves with it.
+/// Distorted position, and its derivative with respect to the position.
 struct Imaged {
   Vector2d image;
   Matrix2d slope;
 };
 
-/// OpenCV's formulas with all coefficients there.
+/// OpenCV's formulas with all coefficients.
 class OpenCvFormula {
  public:
   /// @param cross  factor of p1 x y and p2 x y; 1 in rational-6kt
@@ -47,7 +47,7 @@ class OpenCvFormula {
                  below_dq = k4 + q * (2 * k5 + 3 * q * k6);
     const double radial = above / below;
     const double dq = (above_dq - radial * below_dq) / below;
-    // What thin prisms add changes with q = r^2 alone.
+    // The thin prism terms depend only on q = r^2.
     const double x_dq = s1 + 2 * q * s2, y_dq = s3 + 2 * q * s4;
     Imaged result;
     result.image = {
@@ -61,7 +61,7 @@ class OpenCvFormula {
     return result;
   }
 
-  /// Places are what is distorted.
+  /// The formula applies to ideal positions directly.
   static Vector2d of_ideal(const Vector2d& ideal) { return ideal; }
   static std::optional<Vector2d> ideal_of(const Vector2d& place) { return place; }
 
@@ -70,7 +70,7 @@ class OpenCvFormula {
   double cross_;
 };
 
-/// The polynomial of a fisheye, of places whose distance from the axis is the angle.
+/// The fisheye polynomial, for positions whose distance from the axis is the angle.
 class FisheyeFormula {
  public:
   explicit FisheyeFormula(const std::vector<double>& given) {
@@ -106,8 +106,8 @@ auto with_formula(const LensDistortion& distortion, const Use& use) {
   return use(OpenCvFormula(given, distortion.model == DistortionModel::opencv ? 2.0 : 1.0));
 }
 
-/// The place next to `start` whose image is `target`, by Newton's method. None where it would be
-/// another fold's: places and images turn opposite ways, or the way there bends by much.
+/// Finds the position near `start` with image `target` by Newton's method. None if it would be on
+/// another fold: orientation reversed, or the path bends too much.
 template <typename Formula>
 std::optional<Vector2d> next_place(const Formula& formula, const Vector2d& start,
                                    const Vector2d& target) {
@@ -132,10 +132,10 @@ std::optional<Vector2d> next_place(const Formula& formula, const Vector2d& start
 
 struct Followed {
   Vector2d place;
-  double reach;  ///< share of the way
+  double reach;  ///< fraction of the path
 };
 
-/// Returns true if a place lies beyond the largest radius of a lens, if it has one.
+/// Returns true if a position is beyond max_radius.
 template <typename Formula>
 bool is_beyond(const Formula& formula, const Vector2d& place, std::optional<double> max_radius) {
   if (!max_radius) return false;
@@ -143,8 +143,9 @@ bool is_beyond(const Formula& formula, const Vector2d& place, std::optional<doub
   return !ideal || ideal->norm() > *max_radius;
 }
 
-/// Goes from the axis straight to an image and takes the place along, so that it stays on the first
-/// fold. @param first_step  share of the way; steps get as short as the way bends
+/// Follows the straight line from the axis to an image and tracks the position, so that it stays on
+/// the first fold.
+/// @param first_step  fraction of the line; reduced where the path bends
 template <typename Formula>
 Followed follow(const Formula& formula, const Vector2d& image, double first_step,
                 std::optional<double> max_radius) {
@@ -188,7 +189,7 @@ double LensDistortion::reach(const Vector2d& distorted) const {
     const Followed way = follow(formula, distorted, careful_step, max_radius);
     if (is_beyond(formula, way.place, max_radius)) return 1.0;
     if (formula.ideal_of(way.place)) return way.reach;
-    // A fisheye's right angle, which one image in that direction is at.
+    // Image of the fisheye's right angle in this direction.
     const Vector2d edge = (0.5 * std::numbers::pi / way.place.norm()) * way.place;
     return std::min(way.reach, formula(edge).image.norm() / distorted.norm());
   });

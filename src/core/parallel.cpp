@@ -9,8 +9,8 @@
 #include "core/shared/working_threads.hpp"
 #include "tofsmith/core/error.hpp"
 
-// The thread sanitizer does not see how Debian's TBB hands work over, and takes all of it for
-// races: it gets threads of our own, and sees those in our work.
+// The thread sanitizer reports false races in Debian's TBB, which is not instrumented. Sanitizer
+// builds use the threads below instead, so that it detects races in our own code.
 #if defined(__SANITIZE_THREAD__)
 #include <atomic>
 #include <exception>
@@ -33,7 +33,7 @@ namespace tofsmith {
 namespace {
 
 std::atomic<int> allowed_threads = 4;
-thread_local bool is_at_work = false;  // what is split further within is done by the same thread
+thread_local bool is_at_work = false;  // nested loops run on the calling thread
 
 class Team {
  public:
@@ -77,15 +77,14 @@ void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& w
 struct ThreadLimit::Control {
   explicit Control(int threads) : around(allowed_threads.exchange(threads)) {}
   ~Control() { allowed_threads = around; }
-  int around;  ///< of the limit outside of this one
+  int around;  ///< limit to restore
 };
 
 int working_threads() { return allowed_threads; }
 #elif defined(TOFSMITH_HAS_TBB)
 namespace {
 
-/// Where work is done that more threads were asked for than there are cores; null: TBB's own
-/// choice, which is never more.
+/// Arena for more threads than cores; null: TBB's default, which never exceeds the cores.
 std::atomic<tbb::task_arena*> wide_arena = nullptr;
 
 int allowed_parallelism() {
@@ -103,8 +102,8 @@ int working_threads() {
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   const auto run = [&] {
-    // Where another part of the work that this belongs to fails, TBB leaves out what is not begun
-    // here and returns as if all were done.
+    // If an enclosing task group is cancelled, TBB skips the remaining iterations but returns
+    // normally.
     tbb::task_group_context own;
     tbb::parallel_for(
         std::int64_t{0}, count, [&](std::int64_t i) { work(i); }, own);
@@ -127,9 +126,9 @@ struct ThreadLimit::Control {
 
   tbb::global_control control;
   std::optional<tbb::task_arena> arena;
-  tbb::task_arena* around = nullptr;  ///< of the limit outside of this one
+  tbb::task_arena* around = nullptr;  ///< limit to restore
 };
-#else  // in the thread that asks, in order
+#else  // serial, on the calling thread
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   for (std::int64_t i = 0; i < count; ++i) work(i);
 }
@@ -146,7 +145,7 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
   TOFSMITH_ASSERT_LT(std::int64_t{0}, block);
   const std::int64_t blocks = (count + block - 1) / block;
   const auto work_on = [&](std::int64_t b) { work({b * block, std::min(count, (b + 1) * block)}); };
-  parallel_for(blocks, std::ref(work_on));  // a function object of this size would be allocated
+  parallel_for(blocks, std::ref(work_on));  // avoids a heap allocation
 }
 
 ThreadLimit::ThreadLimit(int threads) {

@@ -10,11 +10,11 @@
 namespace tofsmith {
 
 namespace {
-/// Eigen's transform keeps its plans by length, and scratch space beside them, so it must not be
-/// shared between threads.
+/// Eigen's transform caches plans by length, with scratch space, so it must not be shared between
+/// threads.
 Eigen::FFT<double>& plans_of_this_thread() {
 #ifdef EIGEN_FFTW_DEFAULT
-  // FFTW's planner is one for the whole process.
+  // All threads share FFTW's planner.
   static const bool planner_is_safe = (fftw_make_planner_thread_safe(), true);
   static_cast<void>(planner_is_safe);
 #endif

@@ -12,7 +12,7 @@ namespace {
 /// Uniform in (0, 1).
 double open_uniform(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
 
-/// ln n! of n < 16.
+/// ln n! for n < 16.
 double log_factorial(double n) {
   static const std::array<double, 16> table = [] {
     std::array<double, 16> values{};
@@ -23,7 +23,8 @@ double log_factorial(double n) {
   return table[static_cast<std::size_t>(n)];
 }
 
-/// ln of the probability of k; from 16 on by Stirling's series, exact in double precision there.
+/// ln of the probability of k; for k >= 16 by Stirling's series, which is then exact in double
+/// precision.
 double log_probability(double k, double mean) {
   if (k < 16.0) return k * std::log(mean) - mean - log_factorial(k);
   const double r = 1.0 / k, r2 = r * r;

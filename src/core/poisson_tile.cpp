@@ -20,7 +20,7 @@ constexpr double min_stirling_count = 16.0;
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/poisson_tile.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own headers after foreach_target.
+// Highway requires its own headers after foreach_target.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -42,7 +42,7 @@ HWY_INLINE Double open_uniform(const std::uint32_t* word) {
   return hn::Mul(hn::Add(number, all(0.5)), all(0x1p-32));
 }
 
-/// A vector of attempts, as attempted_poisson() makes one.
+/// A vector of attempts, see attempted_poisson().
 struct Attempt {
   HWY_INLINE Attempt(const std::uint32_t* u_word, const std::uint32_t* v_word, const double* means)
       : mean(hn::Max(hn::LoadU(Doubles(), means), all(min_rejection_mean))),
@@ -54,13 +54,14 @@ struct Attempt {
     const Double slope = hn::Add(hn::Div(hn::Add(a, a), us), b);
     k = hn::Floor(hn::Add(hn::MulAdd(slope, u, mean), all(0.43)));
   }
-  /// Accepted without looking at the density, v <= 0.9277 - 3.6224 / (b - 2): four in five.
+  /// Accepted without evaluating the density, v <= 0.9277 - 3.6224 / (b - 2): four in five.
   HWY_INLINE auto is_quick() const {
     const Double room = hn::Sub(b, all(2.0));
     const auto is_low = hn::Le(hn::Mul(v, room), hn::MulAdd(all(0.9277), room, all(-3.6224)));
     return hn::And(hn::Ge(us, all(0.07)), is_low);
   }
-  /// Accepted by the density; for k >= 16, where Stirling's series is exact in double precision.
+  /// Accepted by the density; requires k >= 16, where Stirling's series is exact in double
+  /// precision.
   HWY_INLINE auto is_below_density() const {
     const Doubles d;
     const Double inverse_alpha = hn::Add(all(1.1239), hn::Div(all(1.1328), hn::Sub(b, all(3.4))));
@@ -87,7 +88,7 @@ HWY_INLINE void store_mask(Mask mask, std::uint8_t* is_so) {
   for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) is_so[lane] = one[lane] > 0.0;
 }
 
-/// First attempts of all; means below 10 come out as some number, to be drawn otherwise.
+/// First attempts of all trials; counts with a mean below 10 are meaningless and drawn otherwise.
 void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
                    const double* mean, double* count, std::uint8_t* is_accepted) {
   for (int i = 0; i < trials; i += lanes_of(Doubles())) {
@@ -97,7 +98,7 @@ void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int
   }
 }
 
-/// Attempts and whether they are accepted; where the count is below 16, that is not known.
+/// Attempts; acceptance is not valid for counts below 16.
 void full_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
                   const double* mean, double* count, std::uint8_t* is_accepted) {
   for (int i = 0; i < trials; i += lanes_of(Doubles())) {
@@ -129,7 +130,7 @@ std::uint32_t block_of(int draw, std::uint32_t number) {
   return first_poisson_block + static_cast<std::uint32_t>(draw) * blocks_per_draw + number;
 }
 
-/// Words of one stream, scalar.
+/// Scalar version for one stream.
 std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t block, int i) {
   const r123::Philox4x32::ctr_type counter = {
       {block, streams.first_trial + static_cast<std::uint32_t>(i),
@@ -141,7 +142,7 @@ std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t
   return {words[0], words[1], words[2], words[3]};
 }
 
-/// Trials whose count is still open, side by side.
+/// Trials without an accepted count, stored contiguously.
 struct OpenTrials {
   int size = 0;
   std::array<int, trials_per_tile> trial;
@@ -153,10 +154,10 @@ struct OpenTrials {
     trial[static_cast<std::size_t>(size)] = i;
     mean[static_cast<std::size_t>(size++)] = mean_;
   }
-  /// One attempt of each; what is accepted goes to `counts`, the others stay.
+  /// Makes one attempt per trial; accepted counts are moved to `counts`.
   void attempt(double* counts) {
     for (std::size_t i = static_cast<std::size_t>(size); i % 8 != 0; ++i) {
-      mean[i] = min_rejection_mean;  // whole vectors
+      mean[i] = min_rejection_mean;  // fills the last vector
       u_word[i] = v_word[i] = 0;
     }
     HWY_DYNAMIC_DISPATCH(full_poisson)

@@ -20,7 +20,7 @@ void RemainingTime::add(double passed_s, double fraction) {
 
 std::optional<double> RemainingTime::seconds() const {
   constexpr double soon_s = 3.0, long_s = 30.0;
-  constexpr double little = 0.03;  // of the work, unless it takes long
+  constexpr double little = 0.03;  // fraction of the work, unless it takes long
   constexpr double agreement = 1.5;
   const auto [passed_s, fraction] = now_;
   if (passed_s < soon_s || (fraction < little && passed_s < long_s)) return std::nullopt;

@@ -5,7 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/random_tile.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target, and for this one first.
+// Highway requires its own header after foreach_target, and this file's header first.
 #include <hwy/highway.h>
 
 #include "core/shared/vector_math-inl.hpp"
@@ -15,12 +15,12 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Philox4x32 (Salmon et al., SC 2011): multipliers of words 0 and 2, what the keys grow by.
+// Philox4x32 (Salmon et al., SC 2011): multipliers of words 0 and 2, and increments of the keys.
 constexpr std::uint32_t multiplier_0 = 0xD2511F53, multiplier_2 = 0xCD9E8D57;
 constexpr std::uint32_t step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
 constexpr int rounds = 10;
 
-/// Words of 64 bits of which only the lower halves count.
+/// 64-bit words of which only the lower halves are used.
 using Wide = hn::CappedTag<std::uint64_t, 8>;
 using WideVector = hn::Vec<Wide>;
 
@@ -58,7 +58,7 @@ void words(const TrialStreams& streams, std::uint32_t block, int trials, std::ui
   const auto item_low = hn::Set(d, streams.work_item & 0xffffffffu);
   const auto item_high = hn::Set(d, streams.work_item >> 32);
   auto trial = hn::Iota(d, streams.first_trial);
-  // Two vectors at a time: one multiplies while the other waits.
+  // Two vectors at a time hide the latency of multiplications.
   for (int i = 0; i < trials; i += 2 * lanes) {
     const auto next = hn::Add(trial, hn::Set(d, static_cast<std::uint64_t>(lanes)));
     WideVector a0 = draw, a1 = trial, a2 = item_low, a3 = item_high;

@@ -16,7 +16,7 @@ SharedProgress::SharedProgress(Progress progress, double pieces, std::string ste
 
 void SharedProgress::add(double pieces) {
   if (!progress_) return;
-  double done = done_.load(std::memory_order_relaxed);  // libc++ 14 has no fetch_add of it
+  double done = done_.load(std::memory_order_relaxed);  // libc++ 14 lacks fetch_add for doubles
   while (!done_.compare_exchange_weak(done, done + pieces, std::memory_order_relaxed)) {
   }
   done += pieces;

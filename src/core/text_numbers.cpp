@@ -22,7 +22,7 @@ std::optional<double> take_number(std::string_view& text) {
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   return number;
 #else
-  // Emscripten's library lacks the above; its strtod() knows no locale.
+  // Emscripten lacks std::from_chars for doubles; its strtod() ignores the locale.
   const std::string_view digits = text.substr(0, text.find_first_not_of("0123456789.e-+"));
   if (digits.empty() || digits.front() == '+') return std::nullopt;
   const std::string copy(digits);

@@ -11,7 +11,7 @@
 namespace tofsmith {
 
 std::string_view unit_of_key(std::string_view name) {
-  // Longer endings come first: "_e_per_s" also ends in "_s".
+  // Longer endings come first: "_e_per_s" also ends with "_s".
   constexpr std::array<std::pair<std::string_view, std::string_view>, 23> units = {{
       {"_e_per_s", "e/s"},
       {"_e_per_dn", "e/DN"},
@@ -66,7 +66,7 @@ std::string estimate_mm_text(const Estimate& error_m) { return estimate_text(err
 
 double wrap(double position, double period) {
   const double wrapped = position - period * std::floor(position / period);
-  return wrapped < period ? wrapped : 0.0;  // rounding can land exactly on the end point
+  return wrapped < period ? wrapped : 0.0;  // rounding may give exactly the end point
 }
 
 double circular_difference(double to, double from, double period) {

@@ -12,33 +12,33 @@
 
 namespace tofsmith {
 
-/// A file, configuration or network problem. The message starts with the place
-/// (`name:line:column`, `name: byte 128`) and says what was found and what was expected.
+/// A file, configuration or network error. The message starts with the place (`name:line:column`,
+/// `name: byte 128`), followed by found and expected values.
 class IoError : public std::runtime_error {
  public:
   IoError(std::string_view place, std::string_view problem);
 
-  /// Where: a file, `name:line:column`, `name: byte 128`, a setting as it was given.
+  /// A file, `name:line:column`, `name: byte 128`, or a setting as given.
   const std::string& place() const { return place_; }
-  /// What was found there and what was expected: the message without its place.
+  /// The message without the place.
   const std::string& problem() const { return problem_; }
 
  private:
   std::string place_, problem_;
 };
 
-/// A rule, and the value that breaks it. What can be asked, such as why_not_playable(), answers
-/// with it or with its text; what has to hold throws it as InvalidArgument.
+/// A rule and the value that violates it. Queries such as why_not_playable() return it or its text;
+/// checks throw it as InvalidArgument.
 struct BrokenRule {
   std::string field;  ///< as a user writes it: `sensor.taps`, `DesignOptions::trials`
-  std::string value;  ///< what was found
-  std::string rule;   ///< what must hold
+  std::string value;  ///< the value found
+  std::string rule;   ///< the requirement
 
   /// "`field` = `value`; `rule`"
   std::string text() const;
 };
 
-/// A bad argument, shape or option. The message is the text of the rule that it breaks.
+/// A bad argument, shape or option. The message is the text of the violated rule.
 class InvalidArgument : public std::invalid_argument {
  public:
   explicit InvalidArgument(BrokenRule broken);
@@ -51,7 +51,7 @@ class InvalidArgument : public std::invalid_argument {
   BrokenRule broken_;
 };
 
-/// Work stopped because the caller's progress callback asked for it.
+/// Work was cancelled by the caller's progress callback.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
@@ -72,32 +72,32 @@ std::string describe(const Value& value) {
 /// Throws InvalidArgument "`field` = `value`; `rule`".
 [[noreturn]] void reject(std::string_view field, std::string_view value, std::string_view rule);
 
-/// The answer of a question: `value`, as it is printed, breaks a rule.
+/// Returns a violated rule with the printed form of `value`.
 template <typename Value>
 BrokenRule broken(std::string_view field, const Value& value, std::string_view rule) {
   return {std::string(field), detail::describe(value), std::string(rule)};
 }
 
-/// Checks one setting and names field, value and rule when it is broken.
+/// Checks a setting.
 /// @throws InvalidArgument "`field` = `value`; `rule`" unless `holds`
 template <typename Value>
 void require(bool holds, std::string_view field, const Value& value, std::string_view rule) {
   if (!holds) reject(field, detail::describe(value), rule);
 }
 
-/// Makes a check of a question.
-/// @throws InvalidArgument of the rule that is broken, if one is
+/// Converts the result of a query to a check.
+/// @throws InvalidArgument if a rule is violated
 void require(const std::optional<BrokenRule>& broken);
 
-/// The text of an answer; none where no rule is broken.
+/// Text of the violated rule; none if no rule is violated.
 std::optional<std::string> text_of(const std::optional<BrokenRule>& broken);
 
-/// The entry of `known` closest to `word` in edit distance, or "" when none is near enough to be
-/// what the user meant. Of equally close ones, the one with the longer common beginning.
+/// Returns the entry of `known` with the smallest edit distance to `word`, or "" if none is
+/// similar. Ties are resolved by the longer common prefix.
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& known);
 
-/// Levenshtein distance between two words, counting a swap of neighbours as one edit.
+/// Levenshtein distance between two words, with a swap of neighbours as one edit.
 int edit_distance(std::string_view a, std::string_view b);
 
 template <typename Range>
@@ -120,7 +120,7 @@ std::string nearest_word(std::string_view word, const Range& known) {
 
 }  // namespace tofsmith
 
-/// Our own bug, not the user's: aborts and prints both operands.
+/// Asserts an invariant: aborts and prints both operands if violated, which is a bug in tofsmith.
 #define TOFSMITH_ASSERT_OP(a, op, b)                                                   \
   do {                                                                                 \
     if (!((a)op(b)))                                                                   \

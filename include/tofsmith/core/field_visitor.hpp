@@ -16,29 +16,29 @@
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
 
-// The description of a struct that users set by keys, such as the tables of a camera file. Each
-// such struct has one function, next to its declaration, that passes its members to a visitor:
+// Describes structs that users set by keys, such as the tables of a camera file. Each such struct
+// has one function, next to its declaration, that passes its members to a visitor:
 //
 //   inline void describe(FieldVisitor& fields, Generator& generator) {
 //     fields.value(Key("amplitude_bits", "Resolution of the amplitude", closed(1, 24)),
 //                  generator.amplitude_bits);
 //   }
 //
-// Visitors read and write documents, check ranges and list keys. Nothing else contains the name,
-// the range or the help text of a key. Units follow from the end of the name: unit_of_key().
+// Visitors read and write documents, check ranges and list keys. The name, range and help text of a
+// key are defined only there. Units follow from the end of the name: unit_of_key().
 namespace tofsmith {
 
-/// What a description states about a key besides its value.
+/// Name, range and help text of a key.
 struct Key {
   std::string_view name;
-  std::string_view help;            ///< noun phrase without unit, range and default
-  Range range = {};                 ///< of a number, or of each number of a list
-  std::string_view reason = {};     ///< why numbers outside the range are rejected
-  std::string_view example = {};    ///< of a required key; empty: the key is optional
-  std::string_view condition = {};  ///< of a key that does not always apply, as a user writes it
-  bool applies = true;              ///< whether the condition holds for this struct
-  bool is_basic = false;            ///< one of the keys that most users change
-  double usual_low = 0.0, usual_high = 0.0;  ///< numbers that most cameras have; both 0: unknown
+  std::string_view help;                     ///< noun phrase without unit, range and default
+  Range range = {};                          ///< of a number, or of each number in a list
+  std::string_view reason = {};              ///< explains why other numbers are rejected
+  std::string_view example = {};             ///< for a required key; empty: the key is optional
+  std::string_view condition = {};           ///< text, if the key does not always apply
+  bool applies = true;                       ///< the condition holds for this struct
+  bool is_basic = false;                     ///< commonly changed
+  double usual_low = 0.0, usual_high = 0.0;  ///< range of typical cameras; both 0: unknown
 
   Key(std::string_view its_name, std::string_view its_help, Range its_range = {})
       : name(its_name), help(its_help), range(its_range) {}
@@ -52,34 +52,33 @@ struct Key {
   Key& usually(double low, double high) { return usual_low = low, usual_high = high, basic(); }
 };
 
-/// One word of several.
+/// A word from a list.
 struct WordChoice {
   std::span<const std::string_view> words;
   std::size_t chosen;
 };
-/// A number, or a list with at least one number; the list is empty if there is a single number.
+/// A number, or a list of at least one number; the list is empty if there is a single number.
 struct NumberOrList {
   double& number;
   std::vector<double>& list;
 };
-/// A number, or a word in its place.
+/// A number, or a word instead.
 struct NumberOrWord {
   double& number;
   std::string_view word;
   bool& is_word;
 };
-/// A list of raw numbers, which may be NaN or infinite. Empty if the key is not given.
+/// A list of raw numbers, which may be NaN or infinite. Empty if the key is absent.
 struct RawNumberList {
   std::vector<double>& numbers;
 };
-/// The path of a file to read; relative paths start where the document is. Empty if the key is not
-/// given.
+/// The path of an input file, relative to the document. Empty if the key is absent.
 struct InputPath {
   std::string& path;
 };
 
-/// Visits the keys of described structs in the order of their description. A visitor may change the
-/// values, so that later keys can depend on earlier ones.
+/// Visits the keys of described structs in the order of description. A visitor may change values,
+/// on which later keys may depend.
 class FieldVisitor {
  public:
   using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*,
@@ -102,7 +101,7 @@ class FieldVisitor {
     if (key.applies && !target) target.emplace();
     pass(key, target ? &*target : &blank);
   }
-  /// One of `words`, the enumerators in their order.
+  /// One of `words`, which are in the order of the enumerators.
   template <typename Enum>
   void choice(const Key& key, Enum& target, std::span<const std::string_view> words) {
     WordChoice choice{words, static_cast<std::size_t>(target)};
@@ -110,8 +109,7 @@ class FieldVisitor {
     target = static_cast<Enum>(choice.chosen);
   }
   /// A table with the keys of a struct.
-  /// @param visit_fields  calls value() for each key: (FieldVisitor&, Struct&); describe()
-  /// otherwise
+  /// @param visit_fields  calls value() for each key: (FieldVisitor&, Struct&); default: describe()
   template <typename Struct, typename Describe>
   void table(const Key& key, Struct& target, const Describe& visit_fields) {
     if (!enter(key)) return;
@@ -128,8 +126,8 @@ class FieldVisitor {
     if (!target) target.emplace();
     table(key, *target);
   }
-  /// A struct whose keys stand in the table of the struct that contains it.
-  /// @param key           names the part in lists; documents do not contain it
+  /// A struct whose keys are in the table of the containing struct.
+  /// @param key           name of the part in lists; not in documents
   /// @param visit_fields  calls value() for each key: (FieldVisitor&, Struct&)
   template <typename Struct, typename Describe>
   void part(const Key& key, std::optional<Struct>& target, const Describe& visit_fields) {
@@ -147,15 +145,15 @@ class FieldVisitor {
 
  protected:
   virtual void visit(const Key& key, const Value& value) = 0;
-  /// Whether to visit a key, and thereby to create its value, that may be absent.
+  /// Returns true to visit a key that may be absent, which creates its value.
   virtual bool wants(const Key& key, bool is_there) = 0;
   /// Called instead of visit() for a key that does not apply.
   virtual void refuse(const Key& key, const Value& value) = 0;
-  /// Whether to visit the keys of a table. leave() follows the last of them.
+  /// Returns true to visit the keys of a table, followed by leave().
   virtual bool enter(const Key& key) = 0;
   virtual void leave() = 0;
-  /// Whether to visit the keys of a part, `names`, and thereby to create its struct, which may be
-  /// absent. leave_part() follows the last of them.
+  /// Returns true to visit the keys of a part, `names`, which creates its struct if absent;
+  /// followed by leave_part().
   virtual bool enter_part(const Key& key, std::span<const std::string> names, bool is_there) = 0;
   virtual void leave_part() {}
 
@@ -167,7 +165,7 @@ class FieldVisitor {
   static std::vector<std::string> names_of(const Describe& describe_struct);
 };
 
-/// Collects the names of the keys of one struct, also of keys that do not apply.
+/// Collects the names of the keys of one struct, including keys that do not apply.
 class KeyNames : public FieldVisitor {
  public:
   std::vector<std::string> names;
@@ -204,20 +202,20 @@ enum class ValueType {
   path,
   table,
 };
-/// The enumerator's name.
+/// Name of the enumerator.
 std::string_view name_of(ValueType type);
 
-/// A key with the tables that contain it, and its description.
+/// Full name and description of a key.
 struct KeyDescription {
-  std::string name;  ///< such as "light.impulse_response.f_max_hz"
-  std::string part;  ///< part of the table that the key belongs to, if the table has parts
+  std::string name;  ///< with tables: "light.impulse_response.f_max_hz"
+  std::string part;  ///< part of the table that contains the key, if any
   ValueType type = ValueType::number;
-  std::vector<std::string> words = {};  ///< of a choice, or instead of a number
-  bool may_be_absent = false;           ///< without a default
+  std::vector<std::string> words = {};  ///< of a choice, or accepted instead of a number
+  bool may_be_absent = false;           ///< no default
   Key key;                              ///< range, help and condition
 };
 
-/// Lists the keys of described structs, also keys that do not apply and keys of absent tables.
+/// Lists the keys of described structs, including keys that do not apply and keys of absent tables.
 class KeyList : public FieldVisitor {
  public:
   std::vector<KeyDescription> keys;
@@ -236,13 +234,13 @@ class KeyList : public FieldVisitor {
 
   std::vector<std::string> prefixes_{""};
   std::vector<std::string> parts_{""};
-  bool is_optional_ = false;  ///< the next key
+  bool is_optional_ = false;  ///< for the next key
 };
 
 /// Checks the range of every number.
 class RangeCheck : public FieldVisitor {
  public:
-  /// @param prefix  before the names of keys in errors: "light."
+  /// @param prefix  prepended to keys in errors: "light."
   explicit RangeCheck(std::string prefix = "") : prefixes_{std::move(prefix)} {}
 
  protected:
@@ -264,7 +262,7 @@ class RangeCheck : public FieldVisitor {
 };
 
 /// Checks the range of every number of a described struct.
-/// @param prefix  before the names of keys in errors: "light."
+/// @param prefix  prepended to keys in errors: "light."
 /// @throws InvalidArgument "light.peak_factor = 0; must be finite and >= 1"
 template <typename Struct>
 void check_ranges(Struct its, std::string prefix = "") {

@@ -18,58 +18,59 @@
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
 
-// The fields of an options or result struct, listed once beside it, in the order of declaration:
+// The fields of an options or result struct are listed once, next to the struct, in the order of
+// declaration:
 //
 //   auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
-//     return std::tuple(Field("starts", o.starts, at_least(1), ByEffort{2}), Field("polish",
-//     o.polish));
+//     return std::tuple(Field("starts", o.starts, at_least(1), ByEffort{2}),
+//                       Field("polish", o.polish));
 //   }
 //
-// Validation, keys of finished work, JSON, options of the command line, keyword arguments of Python
-// with their documentation, and effort go through for_each_field(), which does not compile where a
-// field is missing.
+// Validation, keys of finished work, JSON, command line options, Python keyword arguments with
+// their documentation, and effort use for_each_field(), which does not compile if a field is
+// missing.
 namespace tofsmith {
 
-/// What uses of a field must know besides its type.
+/// Properties of a field besides its type.
 enum class FieldMark : unsigned {
-  from_above = 1,     ///< the struct that holds this one sets it; not the user's to give
-  apart = 2,          ///< not in the struct's own JSON object, but elsewhere in the document
-  in_place = 4,       ///< its fields stand among those of the struct that holds it
-  without_error = 8,  ///< an estimate of which results give the value alone
-  as_object = 16,     ///< an estimate that is an object of its own in JSON
+  from_above = 1,     ///< set by the enclosing struct, not user-settable
+  apart = 2,          ///< elsewhere in the JSON document, not in the struct's object
+  in_place = 4,       ///< its fields are part of the enclosing object
+  without_error = 8,  ///< an estimate whose standard error is not reported
+  as_object = 16,     ///< an estimate that is a separate object in JSON
   may_be_null = 32,   ///< in JSON
-  bound = 64          ///< a bound of errors, which not every table of them shows
+  bound = 64          ///< an error bound, which some tables omit
 };
 constexpr unsigned as_bits(FieldMark mark) { return static_cast<unsigned>(mark); }
 
-/// A count that searching longer or shorter scales, never to below this (scale_by_effort).
+/// A count that is scaled by effort, down to this minimum (scale_by_effort).
 struct ByEffort {
   int min = 0;
 };
 
-/// A noun phrase for a field, or an imperative for a flag, without unit, range, words and default,
-/// which follow from the field.
+/// A noun phrase for a field, or an imperative for a flag. Unit, range, words and default are added
+/// from the field.
 struct Help {
   std::string_view text;
 };
 
-/// The value in place of an optional field that is absent: "as many as fit".
+/// Text that describes the value if an optional field is absent: "as many as fit".
 struct IfAbsent {
   std::string_view text;
 };
 
-/// When a field applies: "method unwrap".
+/// Condition under which a field applies: "method unwrap".
 struct OnlyWith {
   std::string_view condition;
 };
 
-/// What JSON documents call a field, where that is not its name.
+/// Name of a field in JSON documents, if different.
 struct InDocuments {
   std::string_view name;
 };
 
-/// An enumeration whose words users write: words_of() returns the word of every value, in the order
-/// of the values.
+/// An enumeration with a word for every value: words_of() returns the words in the order of the
+/// values.
 template <typename Enum>
 concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {
   words_of(any).size();
@@ -96,8 +97,7 @@ Enum parse_word(std::string_view field, std::string_view word) {
 std::string full_help(std::string_view unit, std::string_view help, std::string_view only_with,
                       std::string_view if_absent);
 
-/// A field of a struct: its name, a reference to its value, the range of numbers, and further
-/// marks.
+/// A field of a struct: name, reference to the value, range of numbers, and marks.
 template <typename Value>
 struct Field {
   const char* name;
@@ -116,10 +116,10 @@ struct Field {
     (set(its_marks), ...);
   }
   bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
-  /// The help text with unit, condition and the value in place of an absent one:
-  /// "longest delay of a second return [m] (a third of the range)".
+  /// Help text with unit, condition and default: "longest delay of a second return [m] (a third of
+  /// the range)".
   std::string help_text() const { return full_help(unit(), help, only_with, if_absent); }
-  /// The unit of numbers; "" of other values and of plain numbers.
+  /// Unit of numbers; "" if there is none.
   std::string_view unit() const;
 
  private:
@@ -132,7 +132,7 @@ struct Field {
   void set(FieldMark mark) { marks |= as_bits(mark); }
 };
 
-/// A struct to read or to write.
+/// A struct, const or not.
 template <typename Type, typename Struct>
 concept ConstOrNot = std::is_same_v<std::remove_const_t<Type>, Struct>;
 
@@ -145,7 +145,7 @@ concept HasFields = requires(Struct& its) {
 namespace detail {
 template <typename Struct, typename Listed>
 inline constexpr bool lists_all = false;
-/// Listed values make the whole struct, in their order, and leave no member over.
+/// True if the struct can be initialized from the listed values, in order, but not from one more.
 template <typename Struct, typename... Values>
 inline constexpr bool lists_all<Struct, std::tuple<Field<Values>...>> = requires {
   Struct{std::declval<Values>()...};
@@ -153,12 +153,12 @@ inline constexpr bool lists_all<Struct, std::tuple<Field<Values>...>> = requires
 &&!requires { Struct{std::declval<Values>()..., {}}; };
 }  // namespace detail
 
-/// Whether fields_of() lists every member of an aggregate, in the order of declaration.
+/// True if fields_of() lists every member of an aggregate, in the order of declaration.
 template <typename Struct>
 inline constexpr bool lists_every_field =
     detail::lists_all<Struct, decltype(fields_of(std::declval<Struct&>()))>;
 
-/// Whether a struct is of nothing but doubles.
+/// True if all members of a struct are doubles.
 template <typename Struct>
 inline constexpr bool is_row =
     std::is_same_v<decltype(std::apply(
@@ -177,8 +177,8 @@ void for_each_field(Struct& its, Visit&& visit) {
   std::apply([&](const auto&... fields) { (visit(fields), ...); }, fields_of(its));
 }
 
-/// What results call the standard error of an estimate: "error_se_m" beside "error_m",
-/// "linear_se_m" beside "linear_mde_m".
+/// Name of the standard error of an estimate in results: "error_se_m" for "error_m", "linear_se_m"
+/// for "linear_mde_m".
 std::string error_name(std::string_view name);
 
 template <typename Value>
@@ -205,7 +205,7 @@ struct SingleValueOf<std::optional<Content>> {
 };
 }  // namespace detail
 
-/// The type of an item of a list, or of an optional value; else the type itself.
+/// Item type of a list or an optional value; else the type itself.
 template <typename Value>
 using SingleValue = typename detail::SingleValueOf<Value>::Type;
 
@@ -232,8 +232,8 @@ std::string_view Field<Value>::unit() const {
   return is_number ? unit_of_key(name) : std::string_view();
 }
 
-/// Checks the range of every field; members that are structs check their own.
-/// @param owner  before the names in errors: "OptimizeOptions::"
+/// Checks the range of every field; struct members check themselves.
+/// @param owner  prepended to names in errors: "OptimizeOptions::"
 /// @throws std::invalid_argument "OptimizeOptions::starts = -3; must be >= 1"
 template <typename Struct>
 void check_fields(const Struct& its, std::string_view owner = "") {
@@ -241,11 +241,10 @@ void check_fields(const Struct& its, std::string_view owner = "") {
       its, [&](const auto& field) { detail::check(field.name, field.value, field.range, owner); });
 }
 
-/// A count times `effort`, rounded, and at least as large as it must stay.
+/// Returns a count times `effort`, rounded, but at least the minimum.
 int scaled_count(int count, double effort, ByEffort by_effort);
 
-/// Searches longer, or shorter, by the factor `effort`: scales counts marked ByEffort, also of
-/// members that are structs.
+/// Scales counts marked ByEffort by the factor `effort`, including those in struct members.
 template <typename Struct>
 void scale_by_effort(Struct& its, double effort) {
   for_each_field(its, [&](const auto& field) {

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// A picture of H x W values, row by row from the top left.
+/// An image of H x W values, row by row from the top left.
 template <typename Value>
 struct Image {
   int height = 0;
@@ -35,8 +35,8 @@ struct Image {
   }
 };
 
-/// Raw measurements of one or more frames, (F, H, W, K), last axis fastest: electrons, or counts
-/// when the sensor has an ADC.
+/// Raw measurements of one or more frames, (F, H, W, K), last axis fastest: electrons, or counts if
+/// the sensor has an ADC.
 struct RawFrames {
   int frames = 0;
   int height = 0;
@@ -54,19 +54,19 @@ struct RawFrames {
   float* frame(int f) { return const_cast<float*>(static_cast<const RawFrames*>(this)->frame(f)); }
 };
 
-/// Variances of filtered numbers relative to the variance that `RawView::averaged` states, which is
+/// Variances of filtered numbers, relative to the variance given by `RawView::averaged`, which is
 /// that of depth.
 struct NoiseRatios {
-  float of_lobes = 1.0f;     ///< between one lobe and another, for confidence
-  float of_residual = 1.0f;  ///< of the part that no depth explains
+  float of_lobes = 1.0f;     ///< between lobes, for confidence
+  float of_residual = 1.0f;  ///< of the component that no depth explains
 
-  /// The ratios of a pixel: 1 unless it is a mean, because filters leave some pixels as measured.
+  /// Ratios of a pixel: 1 unless it is a mean, because filters leave some pixels unchanged.
   NoiseRatios at(float averaged) const { return averaged > 1.0f ? *this : NoiseRatios(); }
 };
 
-/// The raw numbers of one frame where they are, in any of four types and any regular layout: number
-/// k of the pixel at (row, column) stands row * row_stride + column * column_stride +
-/// k * measurement_stride elements after the first. Owns nothing.
+/// A view of the raw numbers of one frame, of four types and any regular layout: number k of the
+/// pixel at (row, column) is at offset row * row_stride + column * column_stride + k *
+/// measurement_stride [elements].
 struct RawView {
   std::variant<const float*, const double*, const std::uint16_t*, const std::uint8_t*> data;
   int height = 0;
@@ -75,19 +75,19 @@ struct RawView {
   std::ptrdiff_t row_stride = 0;          ///< [elements]
   std::ptrdiff_t column_stride = 0;       ///< [elements]
   std::ptrdiff_t measurement_stride = 0;  ///< [elements]
-  /// How many equal measurements the numbers of a pixel are the mean of, each > 0, row by row (H,
-  /// W): their variance is so many times smaller. Null: 1, as they leave a sensor.
+  /// Number of equal measurements averaged in a pixel's numbers, each > 0, row by row (H, W); the
+  /// variance is divided by it. Null: 1, as output by a sensor.
   const float* averaged = nullptr;
-  NoiseRatios noise;  ///< of the pixels for which `averaged` > 1
-  /// The numbers were stored as unsigned integers and converted to another type.
+  NoiseRatios noise;  ///< of pixels with `averaged` > 1
+  /// The numbers were stored as unsigned integers and then converted.
   bool was_unsigned = false;
-  /// Special numbers have already been replaced (see RawMarking): decoders and filters do not look
-  /// for them again.
+  /// Special numbers have been replaced already (see RawMarking), so that decoders and filters do
+  /// not search for them.
   bool is_marked = false;
 
   std::int64_t pixels() const { return std::int64_t{height} * width; }
 
-  /// (H, W, K), the measurements of a pixel side by side.
+  /// (H, W, K), with the measurements of a pixel adjacent.
   template <typename Number>
   static RawView interleaved(const Number* data, int height, int width, int measurements) {
     return {data,         height, width, measurements, std::ptrdiff_t{width} * measurements,
@@ -100,12 +100,13 @@ struct RawView {
   }
 };
 
-/// Frame f of several.
-/// @throws std::invalid_argument if there is no such frame, or not as many values as the sizes say
+/// Returns a view of one frame.
+/// @throws std::invalid_argument if there is no such frame, or the number of values differs from
+///         the shape
 RawView view_of_frame(const RawFrames& raw, int frame);
 
-/// Copies pixels first .. first + count - 1 (row by row) as float, the measurements of a pixel side
-/// by side; doubles are rounded.
+/// Copies pixels [first, first + count) (row by row) as float, with the measurements of a pixel
+/// adjacent; doubles are rounded.
 void copy_pixels(const RawView& raw, std::int64_t first, std::int64_t count, float* values);
 
 }  // namespace tofsmith

@@ -12,59 +12,59 @@
 
 namespace tofsmith {
 
-/// Formulas of distortions, of OpenCV and of the Azure Kinect's SDK.
+/// Distortion formulas of OpenCV and the Azure Kinect SDK.
 enum class DistortionModel {
   opencv,        ///< radial (rational), tangential and thin prism, of x/z and y/z
-  fisheye,       ///< a polynomial of the angle off the axis
-  rational_6kt,  ///< Azure Kinect: radial (rational) and another tangential term than OpenCV's
+  fisheye,       ///< polynomial of the angle from the axis
+  rational_6kt,  ///< Azure Kinect: radial (rational), with a tangential term that differs from
+                 ///< OpenCV's
 };
 
-/// Words for the enumerators, in their order.
+/// Names of the enumerators, in their order.
 inline constexpr std::array<std::string_view, 3> distortion_models = {"opencv", "fisheye",
                                                                       "rational-6kt"};
-/// "opencv", "fisheye", "rational-6kt".
 std::string_view name_of(DistortionModel model);
 
-/// How a lens moves the image of a point away from where an ideal pinhole has it. Places are those
-/// in the plane z = 1: x/z and y/z of an ideal ray, and (u - cx) / fx, (v - cy) / fy of a pixel.
+/// Lens distortion, which moves image points from their ideal pinhole position. Positions are in
+/// the plane z = 1: x/z and y/z of an ideal ray, and (u - cx) / fx, (v - cy) / fy of a pixel.
 ///
 ///   opencv   x' = x R + 2 p1 x y + p2 (r^2 + 2 x^2) + s1 r^2 + s2 r^4
 ///            y' = y R + p1 (r^2 + 2 y^2) + 2 p2 x y + s3 r^2 + s4 r^4
 ///            R = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
-///   rational-6kt  as opencv without thin prism, but p1 x y for 2 p1 x y and p2 x y for 2 p2 x y
-///   fisheye  r' = a + k1 a^3 + k2 a^5 + k3 a^7 + k4 a^9,  a = atan r, the same direction
+///   rational-6kt  as opencv without thin prism, with p1 x y for 2 p1 x y and p2 x y for 2 p2 x y
+///   fisheye  r' = a + k1 a^3 + k2 a^5 + k3 a^7 + k4 a^9,  a = atan r, same direction
 ///
-/// A ray belongs to a place only as far as places move outwards with their rays: where the
-/// distortion folds back, several rays would meet one place.
+/// The inverse is defined only up to the radius at which the distortion folds back, i.e. where
+/// distorted positions stop moving outwards; beyond it several rays share a position.
 /// @see OpenCV 4, module calib3d: projectPoints() and fisheye::projectPoints(); Azure Kinect Sensor
 ///      SDK, src/transformation/intrinsic_transformation.c
 struct LensDistortion {
   DistortionModel model = DistortionModel::opencv;
   /// opencv: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]; fisheye: k1 k2 k3 k4; rational-6kt:
-  /// k1 k2 p1 p2 k3 k4 k5 k6. Missing numbers are 0. The last two of opencv are the tilt of the
-  /// sensor.
+  /// k1 k2 p1 p2 k3 k4 k5 k6. Missing coefficients are 0. The last two of opencv are the tilt of
+  /// the sensor, which must be 0.
   std::vector<double> coefficients;
-  /// Distance from the axis at z = 1 up to which the formulas hold; pixels beyond it see nothing.
-  /// None: the formulas hold until the distortion folds back.
+  /// Largest radius at z = 1 for which the formulas hold; pixels beyond it see nothing. None: the
+  /// formulas hold until the distortion folds back.
   std::optional<double> max_radius = {};
 
-  /// Where the image of an ideal place falls.
+  /// Returns the distorted position of an ideal one.
   Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;
-  /// Whose image falls there; none where the distortion folds back before, or a fisheye looks 90
-  /// degrees off the axis or more, and beyond max_radius.
+  /// Returns the ideal position of a distorted one; none beyond a fold, beyond max_radius, or at 90
+  /// degrees or more from the axis (fisheye).
   std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
-  /// How much of the way from the axis to `distorted` undistort() can go, in [0, 1]; 1: all of it,
-  /// or to max_radius.
+  /// Returns the fraction of the line from the axis to `distorted` on which undistort() succeeds; 1
+  /// if all of it does, or up to max_radius.
   double reach(const Eigen::Vector2d& distorted) const;
 
-  /// @throws std::invalid_argument naming `field`, value and rule: how many numbers there are, that
-  ///         they are finite, and that the sensor is not tilted
+  /// @throws std::invalid_argument naming `field` if the number of coefficients is wrong, one is
+  ///         not finite, or the sensor is tilted
   void validate(std::string_view field) const;
 
   friend bool operator==(const LensDistortion&, const LensDistortion&) = default;
 };
 
-/// Keys of [lens] and of the view of a scene file.
+/// Keys of [lens] and of the view in a scene file.
 /// @param has_model, has_coefficients  false: `condition` is not met
 inline void describe(FieldVisitor& fields, LensDistortion& distortion, bool has_model = true,
                      bool has_coefficients = true, std::string_view condition = {}) {

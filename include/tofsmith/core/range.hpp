@@ -8,8 +8,9 @@
 
 namespace tofsmith {
 
-/// Interval of numbers that a setting accepts. The default accepts every number, NaN included; all
-/// other intervals are made by the functions below, which the compiler evaluates and checks.
+/// Interval of numbers that a setting accepts. The default accepts every number, including NaN;
+/// other intervals are created by the functions below, which are evaluated and checked at compile
+/// time.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -23,10 +24,10 @@ struct Range {
     return std::isfinite(value) && (includes_low ? value >= low : value > low) &&
            (includes_high ? value <= high : value < high);
   }
-  /// The interval in words: "finite and >= 0", "in (0, 1]", "finite"; of integers ">= 0".
+  /// Text of the interval: "finite and >= 0", "in (0, 1]", "finite"; for integers ">= 0".
   std::string text(bool is_integer = false) const;
 
-  /// The same interval, with infinity as a further value.
+  /// The same interval, including infinity.
   consteval Range or_infinity() const {
     Range range = *this;
     range.includes_infinity = true;

@@ -8,14 +8,14 @@
 
 namespace tofsmith {
 
-/// Special raw numbers, which a sensor or its driver writes in place of a measurement. They are
+/// Special raw numbers that a sensor or its driver outputs instead of a measurement. They are
 /// compared before any arithmetic and may be NaN or infinite.
 struct RawMarkers {
   std::vector<double> saturated;  ///< the measurement is clipped
-  std::vector<double> invalid;    ///< there is no measurement, for example of a dead pixel
+  std::vector<double> invalid;    ///< there is no measurement, e.g. in a dead pixel
 
   bool empty() const { return saturated.empty() && invalid.empty(); }
-  /// Returns true if the list names the number. NaN equals NaN.
+  /// Return true if the list contains the number. NaN equals NaN.
   bool mean_saturated(double number) const;
   bool mean_invalid(double number) const;
   /// @throws std::invalid_argument naming the field as raw.*, value and rule

@@ -8,12 +8,12 @@
 
 namespace tofsmith {
 
-/// A figure and the standard deviation of its own uncertainty.
+/// A value and its standard error.
 struct Estimate {
   double value = 0.0;
   double standard_error = 0.0;
 };
-/// a / b; the standard error takes the two for independent.
+/// a / b; the standard error assumes that both are independent.
 Estimate ratio_of(const Estimate& a, const Estimate& b);
 
 /// Mean and variance of a stream of values in one pass (Welford).
@@ -23,9 +23,9 @@ class RunningStatistics {
 
   std::int64_t count() const { return count_; }
   double mean() const { return mean_; }
-  /// Unbiased sample variance; 0 below two values.
+  /// Unbiased sample variance; 0 for fewer than two values.
   double variance() const;
-  /// Standard deviation of mean() as an estimate of the true mean; 0 below two values.
+  /// Standard error of mean(); 0 for fewer than two values.
   double standard_error() const;
   Estimate estimate() const { return {mean(), standard_error()}; }
 
@@ -35,14 +35,14 @@ class RunningStatistics {
   double sum_of_squares_ = 0.0;  // of differences from the mean
 };
 
-/// The middle value, or the mean of the middle two; 0 of none.
+/// Median; the mean of the middle two for an even number; 0 if empty.
 double median_of(std::vector<double> values);
 
-/// Arithmetic mean of independent estimates, errors propagated.
+/// Arithmetic mean of independent estimates with error propagation.
 Estimate mean_of(std::span<const Estimate> estimates);
 
-/// Geometric mean of independent positive estimates, errors propagated to first order.
-/// A value of exactly 0 makes the mean 0; one that is not a number makes it not a number.
+/// Geometric mean of independent positive estimates with first-order error propagation. 0 if a
+/// value is 0, NaN if one is NaN.
 Estimate geometric_mean_of(std::span<const Estimate> estimates);
 
 }  // namespace tofsmith

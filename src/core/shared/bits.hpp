@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// The lowest bits of a number, 0 .. 64.
+/// Mask of the lowest 0 to 64 bits.
 constexpr std::uint64_t mask_of(int bits) {
   return bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
 }

@@ -4,11 +4,11 @@
 
 namespace tofsmith {
 
-/// Probability that a chi-square variable of `degrees` >= 1 degrees of freedom exceeds `value` >=
+/// Probability that a chi-square variable with `degrees` >= 1 degrees of freedom exceeds `value` >=
 /// 0.
 double chi_square_tail(double value, int degrees);
 
-/// The value that a chi-square variable exceeds with probability `rate` in (0, 1).
+/// Value that a chi-square variable exceeds with probability `rate` in (0, 1).
 double chi_square_quantile_of_tail(double rate, int degrees);
 
 }  // namespace tofsmith

@@ -6,10 +6,10 @@
 
 namespace tofsmith {
 
-// Eigen's decompositions of matrices of any size, compiled here once: wherever one is instantiated
-// it costs seconds, ten for the first.
+// Decompositions of Eigen for matrices of dynamic size, compiled once here because each
+// instantiation takes seconds (ten for the first).
 
-/// A = U diag(values) V^T with as many values as the shorter side; the largest first.
+/// A = U diag(values) V^T with min(rows, columns) values in descending order.
 struct ThinSvd {
   Eigen::MatrixXd u;
   Eigen::VectorXd values;
@@ -17,27 +17,28 @@ struct ThinSvd {
 };
 ThinSvd thin_svd(const Eigen::MatrixXd& matrix);
 
-/// The matrix P with P A = 1 for independent columns, and how many columns are independent: those
-/// whose pivot exceeds `threshold` times the largest.
+/// The matrix P with P A = 1 for independent columns, and the number of independent columns, whose
+/// pivots exceed `threshold` times the largest.
 struct PseudoInverse {
   Eigen::Index rank = 0;
   Eigen::MatrixXd inverse;
 };
 PseudoInverse pseudo_inverse(const Eigen::MatrixXd& matrix, double threshold);
 
-/// The x with the least |A x - values|.
+/// Returns the x that minimizes |A x - values|.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
 
-/// The lower triangle L with A = L L^T, for a positive definite A.
+/// Returns the lower triangle L with A = L L^T for a positive definite A.
 Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
 
-/// The X with A X = right, for a symmetric A that is not negative.
+/// Returns the X with A X = right for a positive semidefinite A.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
-/// Orthonormal basis of the orthogonal complement of these columns, which may be dependent.
+/// Returns an orthonormal basis of the orthogonal complement of the columns, which may be
+/// dependent.
 Eigen::MatrixXd complement_of(const Eigen::MatrixXd& columns);
 
-/// The least eigenvalue of a symmetric matrix.
+/// Returns the smallest eigenvalue of a symmetric matrix.
 double least_eigenvalue(const Eigen::MatrixXd& matrix);
 
 }  // namespace tofsmith

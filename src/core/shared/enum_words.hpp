@@ -14,12 +14,12 @@
 
 namespace tofsmith {
 
-/// The words for the values 0 .. Count - 1 of an enumeration.
+/// Words for the values 0 to Count - 1 of an enumeration.
 template <typename Enum, std::size_t Count>
 class EnumWords {
  public:
-  /// @param type   the enumeration's name
-  /// @param field  what users set by one of the words
+  /// @param type   name of the enumeration
+  /// @param field  name of the setting
   template <typename... Words>
   constexpr EnumWords(std::string_view type, std::string_view field, Words... words)
       : type_(type), field_(field), words_{words...} {
@@ -30,7 +30,7 @@ class EnumWords {
                       const std::array<std::string_view, Count>& words)
       : type_(type), field_(field), words_(words) {}
 
-  /// In the order of the values.
+  /// Words in the order of the values.
   std::span<const std::string_view, Count> all() const { return words_; }
 
   /// @throws std::invalid_argument if the enumeration has no such value

@@ -9,16 +9,15 @@
 
 namespace tofsmith {
 
-/// Convolution of images of one size with a kernel, nothing beyond their edges.
+/// Convolution of images of one size with a kernel; values outside the image are 0.
 class PaddedConvolution {
  public:
-  /// @param kernel  (2 R + 1, 2 Q + 1), its middle at no displacement; what is farther than the
-  ///                image is large counts for nothing
+  /// @param kernel  (2 R + 1, 2 Q + 1), centred; parts beyond the size of the image are ignored
   PaddedConvolution(const Image<float>& kernel, int height, int width);
 
-  /// @param image  of the size given
+  /// @param image  of the size given to the constructor
   Image<float> apply(const Image<float>& image) const;
-  /// What a convolution takes beside its image [bytes].
+  /// Memory of a convolution in addition to its image [bytes].
   static double bytes(const Image<float>& kernel, int height, int width);
 
  private:
@@ -30,7 +29,7 @@ class PaddedConvolution {
 
   int height_, width_;
   PeriodicTransform along_row_, along_column_;
-  Eigen::MatrixXcd real_, imaginary_;  // of the kernel: both halves along their columns
+  Eigen::MatrixXcd real_, imaginary_;  // kernel: column transforms of both halves
 };
 
 }  // namespace tofsmith

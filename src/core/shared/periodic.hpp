@@ -6,9 +6,9 @@
 
 namespace tofsmith {
 
-/// Real Fourier transform of a periodic signal sampled at N points, end point excluded.
-///   X[k] = sum_n x[n] exp(-2 pi i k n / N),  k = 0 .. N/2
-/// Plans are made once per thread and length and kept; any thread may use any object.
+/// Real Fourier transform of a periodic signal of N samples, without the end point.
+///   X[k] = sum_n x[n] exp(-2 pi i k n / N),  k = 0, ..., N/2
+/// Plans are cached per thread and length; objects may be shared between threads.
 class PeriodicTransform {
  public:
   /// @throws std::invalid_argument unless samples >= 1
@@ -18,9 +18,9 @@ class PeriodicTransform {
   /// Number of independent coefficients, N/2 + 1.
   int coefficients() const { return samples_ / 2 + 1; }
 
-  /// Half spectrum of `signal` (N), written to `spectrum` (N/2 + 1).
+  /// Computes the half spectrum (N/2 + 1) of `signal` (N).
   void forward(const Eigen::VectorXd& signal, Eigen::VectorXcd& spectrum) const;
-  /// Signal (N) of the half spectrum (N/2 + 1); inverse(forward(x)) = x.
+  /// Computes the signal (N) from its half spectrum (N/2 + 1); inverse(forward(x)) = x.
   void inverse(const Eigen::VectorXcd& spectrum, Eigen::VectorXd& signal) const;
 
  private:
@@ -30,13 +30,13 @@ class PeriodicTransform {
 /// (a * b)[n] = sum_j a[j] b[n - j], indices modulo N.
 Eigen::VectorXd circular_convolution(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
-/// (a corr b)[z] = sum_n a[n] b[n - z], indices modulo N: how well b, delayed by z, matches a.
+/// (a corr b)[z] = sum_n a[n] b[n - z], indices modulo N: the match of a with b delayed by z.
 Eigen::VectorXd circular_correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
 /// Circular total variation: sum_n |x[n + 1] - x[n]|, indices modulo N.
 double circular_total_variation(const Eigen::VectorXd& x);
 
-/// x[n - shift], indices modulo N: the signal arrives `shift` samples later.
+/// x[n - shift], indices modulo N: delays the signal by `shift` samples.
 Eigen::VectorXd circular_shift(const Eigen::VectorXd& x, int shift);
 
 }  // namespace tofsmith

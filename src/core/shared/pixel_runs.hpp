@@ -9,9 +9,9 @@
 
 namespace tofsmith {
 
-/// Calls use(number, length, done) for every run of pixels first .. first + count - 1 that stand in
-/// one row: the first number of its first pixel, its pixels, and how many came before it. Pixels of
-/// a run are column_stride apart, their measurements measurement_stride.
+/// Calls use(number, length, done) for every run of the pixels [first, first + count) within one
+/// row: pointer to the first number, number of pixels, and number of pixels in previous runs.
+/// Pixels of a run are column_stride apart, their measurements measurement_stride.
 template <typename Use>
 void for_each_run(const RawView& view, std::int64_t first, std::int64_t count, const Use& use) {
   std::visit(

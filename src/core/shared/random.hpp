@@ -8,9 +8,9 @@
 
 namespace tofsmith {
 
-/// Random numbers that depend only on what they are drawn for: Philox4x32-10 with
-/// key = seed and counter = (draw, trial, work item). Any thread or rank that works on an item
-/// sees the same numbers, in any order of work.
+/// Random numbers that depend only on their purpose: Philox4x32-10 with key = seed and counter =
+/// (draw, trial, work item). Any thread or process draws the same numbers for an item, in any order
+/// of work.
 /// @see Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011 (Random123)
 class RandomStream {
  public:
@@ -24,9 +24,9 @@ class RandomStream {
   result_type operator()();
   /// Uniform on [0, 1), 53 random bits.
   double uniform();
-  /// Standard normal (Box-Muller; draws come in pairs, the second is kept for the next call).
+  /// Standard normal (Box-Muller; the second number of a pair is kept for the next call).
   double normal();
-  /// Number of events of a Poisson process with this mean; 0 when mean <= 0.
+  /// Number of events of a Poisson process with this mean; 0 if mean <= 0.
   double poisson(double mean);
 
  private:
@@ -37,7 +37,7 @@ class RandomStream {
   std::optional<double> spare_normal_;
 };
 
-/// One 64-bit key from several, for work items named by more than one number.
+/// Combines keys to one 64-bit key, for work items identified by several numbers.
 std::uint64_t combine_keys(std::uint64_t a, std::uint64_t b);
 
 }  // namespace tofsmith

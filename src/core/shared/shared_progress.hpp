@@ -11,18 +11,18 @@
 
 namespace tofsmith {
 
-/// Progress inside a parallel loop, so that it can be stopped between its pieces. Any thread tells
-/// what it has done; the callback is only called from the thread that made this object, and not
-/// more often than people can read, so that small pieces cost nothing.
+/// Progress of a parallel loop, which can be cancelled between its pieces. Any thread reports
+/// completed pieces; the callback is called only from the thread that created this object, at a
+/// limited rate, so that small pieces have no overhead.
 class SharedProgress {
  public:
-  /// Tells that `step` begins.
-  /// @param pieces  how many make the whole
-  /// @throws Interrupted if the callback asks to stop
+  /// Reports the start of `step`.
+  /// @param pieces  total number
+  /// @throws Interrupted if the callback cancels
   SharedProgress(Progress progress, double pieces, std::string step);
 
-  /// `pieces` more are done; parts of one count too.
-  /// @throws Interrupted on every thread once the callback has asked to stop
+  /// Adds completed pieces, possibly fractions.
+  /// @throws Interrupted on every thread after the callback has cancelled
   void add(double pieces = 1.0);
 
  private:

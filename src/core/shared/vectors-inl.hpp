@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The vectors of every kernel: as wide as the instruction set has them, up to 64 bytes. Compiled
-// once for every instruction set.
+// Vector types of all kernels: as wide as the instruction set supports, up to 64 bytes. Compiled
+// once per instruction set.
 #if defined(TOFSMITH_CORE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_CORE_VECTORS_INL_HPP
 #undef TOFSMITH_CORE_VECTORS_INL_HPP
@@ -43,7 +43,7 @@ HWY_INLINE hn::TFromD<Tag> sum_of_lanes(Tag, hn::Vec<Tag> lanes) {
   if constexpr (hn::MaxLanes(Tag()) == 1) {
     return hn::GetLane(lanes);
   } else {
-    const hn::Half<Tag> half;  // HWY_SCALAR has no hn::UpperHalf, hence the lookup by argument
+    const hn::Half<Tag> half;  // HWY_SCALAR has no hn::UpperHalf, hence argument-dependent lookup
     return sum_of_lanes(half, hn::Add(hn::LowerHalf(half, lanes), UpperHalf(half, lanes)));
   }
 }

@@ -4,7 +4,7 @@
 
 namespace tofsmith {
 
-/// How many threads parallel_for works on at most: all cores, or what ThreadLimit says.
+/// Returns the maximum number of threads of parallel_for: all cores, or the current ThreadLimit.
 int working_threads();
 
 }  // namespace tofsmith
