@@ -81,7 +81,7 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
       Field("use_doubles", o.use_doubles, Help{"compute in double precision where possible"}));
 }
 
-/// Smallest frame with a spatial filter [pixels] that `auto` processes on a GPU. Without one,
+/// Smallest frame with a spatial filter [pixels] that `auto` processes on a GPU. Without a filter,
 /// copying a frame takes longer than decoding it on the CPU.
 inline constexpr std::int64_t auto_min_pixels_to_filter = 75'000;
 

@@ -197,7 +197,7 @@ class CodeSet {
   /// @throws std::invalid_argument unless taps() == 1
   CodeSet with_signed_weights() const;
   /// Convert between a signed code and a code of two buckets with complementary gains.
-  /// @throws std::invalid_argument if the code is of neither kind
+  /// @throws std::invalid_argument if the code is not of the required kind
   CodeSet signed_of_buckets() const;
   CodeSet buckets_of_signed() const;
 

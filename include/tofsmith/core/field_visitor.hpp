@@ -77,8 +77,8 @@ struct InputPath {
   std::string& path;
 };
 
-/// Visits the keys of described structs in the order of description. A visitor may change values,
-/// on which later keys may depend.
+/// Visits the keys of described structs in order. A visitor may change values, on which later keys
+/// may depend.
 class FieldVisitor {
  public:
   using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*,

@@ -30,8 +30,8 @@ double wrap(double position, double period);
 /// Signed shortest difference on a circle of length `period`, in [-period/2, period/2).
 double circular_difference(double to, double from, double period);
 
-/// Formats a number with `digits` significant digits, or more to show a whole number, without
-/// exponent: "61.23", "0.0123", "175312", "nan", "inf".
+/// Formats a number with `digits` significant digits, but all digits before the decimal point,
+/// without exponent: "61.23", "0.0123", "175312", "nan", "inf".
 std::string plain_number(double value, int digits);
 
 /// Formats a length with a suitable unit: 0.0653 as "65.3 mm", 1.25 as "1.25 m".

@@ -52,8 +52,8 @@ struct BounceOptions {
   int rays = 256;       ///< per pixel, 16 to 65536
   double bin_m = 0.05;  ///< width of the delay bins in which light is merged [m], > 0
   std::uint64_t seed = 1;
-  /// Unambiguous range [m], > 0. Light that arrives later than this after the direct return is
-  /// moved by whole ranges to where the camera sees it.
+  /// Unambiguous range [m], > 0. Light delayed by more than this is moved by whole ranges to its
+  /// apparent depth.
   double range_m = std::numeric_limits<double>::infinity();
 
   /// @throws std::invalid_argument

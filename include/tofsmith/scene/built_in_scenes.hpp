@@ -74,8 +74,8 @@ std::vector<std::string> built_in_scene_names();
 ///      are our choice
 StagedScene built_in_scene(std::string_view name, int width = 320, int height = 240);
 
-/// Places a mesh, which by the convention of mesh files has its y axis up, upright and facing a
-/// camera that looks along z.
+/// Places a mesh upright and facing a camera that looks along z. By the convention of mesh files,
+/// the y axis of the mesh points up.
 /// @param scale_m   metres per unit of the mesh, > 0
 /// @param centre_m  position of the centre of its bounding box
 /// @throws std::invalid_argument if the mesh is a single point

@@ -40,11 +40,11 @@ class MeshSearch {
                      std::int32_t shape) const = 0;
 };
 
-/// Creates the search of a mesh, which must outlive it, e.g. embree_search() of tofsmith/io. If
-/// empty, every triangle is tested.
+/// Creates the search structure of a mesh; the mesh must outlive it. An example is embree_search()
+/// of tofsmith/io. If empty, every triangle is tested.
 using MeshSearchMaker = std::function<std::unique_ptr<const MeshSearch>(const Mesh& mesh)>;
 
-/// Image seen by a camera, with the shapes.
+/// Image seen by a camera, with the shape in each pixel.
 struct SeenScene {
   SceneImage image;
   Image<std::int32_t> shape;  ///< index of the shape in each pixel; -1: no return

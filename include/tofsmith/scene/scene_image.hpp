@@ -55,7 +55,7 @@ struct PinholeView {
   /// distortion folds back.
   /// @note distortion requires the solution of an equation; PixelRays caches the rays of all pixels
   Eigen::Vector3d ray(int row, int column) const;
-  /// Ratio of radial distance to z-depth in a pixel, >= 1; NaN as ray().
+  /// Ratio of radial distance to z-depth in a pixel, >= 1; NaN where ray() is.
   double radial_per_z(int row, int column) const;
   /// Projects a point to (column, row) [px], inside the image or not; none behind the camera and
   /// where the distortion folds back.
@@ -66,7 +66,7 @@ struct PinholeView {
   void validate() const;
 };
 
-/// The rays of all pixels of a view; cached if its lens distorts.
+/// The rays of all pixels of a view, cached if the lens has distortion.
 class PixelRays {
  public:
   /// No pixels.

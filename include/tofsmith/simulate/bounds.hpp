@@ -79,8 +79,7 @@ class GateInformation {
 double information_of_shape(const Eigen::VectorXd& shape, const Eigen::VectorXd& slope,
                             double signal_e, double other_e);
 
-/// Evaluates a real signal and its slope per period at 4 x highest points, from harmonics 0 to
-/// highest.
+/// Evaluates a real signal and its slope per period at 4 n points, from harmonics 0 to n.
 void sample_with_slope(const Eigen::VectorXcd& harmonics, Eigen::VectorXd& values,
                        Eigen::VectorXd& slope);
 
@@ -152,9 +151,9 @@ class HistogramBound {
   double ambient_e_ = 0.0, dark_e_ = 0.0;  // per bin
 };
 
-/// Lower limit on the circular error of any code on a camera, for a number of exposures, derived
-/// from the harmonics that the camera's arms pass; 0 without impulse responses. For rows, photons
-/// are recorded individually without read noise.
+/// Lower limit on the circular error of any code on a camera, for a given number of exposures,
+/// derived from the harmonics that the camera's arms pass; 0 without impulse responses. For rows,
+/// photons are recorded individually without read noise.
 /// @see docs/bounds.md for derivation and assumptions
 class ReceiverBound {
  public:
@@ -176,11 +175,11 @@ class ReceiverBound {
   /// Smallest of these limits.
   double information(const OperatingPoint& point) const;
 
-  /// Lower limit on the mean circular error [m] of any estimator, biased or not, including wraps
-  /// and confused depths: the Ziv-Zakai bound from the largest distance that taps can give any two
-  /// depths and from information(), with S and A known. range / 4 without light; approaches range
-  /// sqrt(2 / pi) / sqrt(information) in bright light, which is used throughout if depths are not
-  /// uniform; 0 without impulse responses.
+  /// Lower limit on the mean circular error [m] of any estimator, biased or not, with S and A
+  /// known; includes wraps and confused depths. It is the Ziv-Zakai bound computed from
+  /// information() and from the largest distance between any two depths that taps can achieve:
+  /// range / 4 without light, and about range sqrt(2 / pi) / sqrt(information) in bright light. If
+  /// depths are not uniform, the latter is used at all light levels. 0 without impulse responses.
   double mae_m(const OperatingPoint& point) const;
   /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;

@@ -155,12 +155,12 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
 ///
 /// Trial t of point p uses only the random stream (seed, p, t). Its depth is uniform in the t-th of
 /// `trials` equal slices of the range (slices of equal probability if the camera weights depths);
-/// then follow albedo, if it is uniform, and noise. All codes are thus compared at the same depths.
-/// Noise is normal or Poisson, as specified by the sensor, with the variance at that depth; for
-/// rows it is drawn in every time bin, or normal with their covariance. If the conversion is linear
-/// and the method is ZNCC, normal noise is drawn in the plane that ZNCC uses, with its covariance
-/// there: the same distribution from fewer random numbers. Standard errors are computed from
-/// differences of trials in neighbouring slices, and are slightly too large.
+/// albedo (if uniform) and noise follow. All codes are thus compared at the same depths. Noise is
+/// normal or Poisson, as specified by the sensor, with the variance at that depth; for rows it is
+/// drawn in every time bin, or normal with their covariance. If the conversion is linear and the
+/// method is ZNCC, normal noise is drawn in the plane that ZNCC uses, with its covariance there:
+/// the same distribution from fewer random numbers. Standard errors are computed from differences
+/// of trials in neighbouring slices, and are slightly too large.
 ///
 /// With a target, a point gets further rounds of trials, each sliced separately and at least half
 /// as large as all previous ones together. For the linear error there are enough trials for the

@@ -62,8 +62,8 @@ struct SceneExtent {
 
 SceneExtent scene_extent(const SceneImage& scene, const Camera& camera);
 
-/// Mask of pixels at or beyond the camera's unambiguous range, whose depth wraps and looks like a
-/// nearer surface. 0 elsewhere and without a return.
+/// Returns 1 for pixels at or beyond the camera's unambiguous range, whose depth wraps and looks
+/// like a nearer surface; 0 elsewhere and without a return.
 Image<std::uint8_t> beyond_range(const SceneImage& scene, const Camera& camera);
 
 /// Result of decoding the same raw numbers after filtering.
@@ -105,7 +105,7 @@ struct NamedLight {
 
 /// Captures and decodes `scene` with every code at every light level, and stores the captures in
 /// it. All codes use the same noise, drawn from `seed`.
-/// @param filter  none: measurements are not also filtered
+/// @param filter  if set, filtered measurements are decoded as well
 /// @throws std::invalid_argument if scene or camera are invalid or a code does not fit; Interrupted
 ///         if `progress` cancels
 void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, const Camera& camera,

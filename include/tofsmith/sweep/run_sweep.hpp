@@ -169,7 +169,7 @@ class SweepStore {
   const std::string& target() const;
 
   /// Adds items that the store does not contain yet.
-  /// @param settings  returns JSON of the i-th item, for information
+  /// @param settings  returns JSON of the i-th item, for display
   void add(std::span<const std::string> keys,
            const std::function<std::string(std::size_t)>& settings);
 
@@ -293,7 +293,7 @@ class SweepQueue {
 
   std::span<const std::string> keys_;
   SweepStore& store_;
-  std::vector<std::int64_t> items_;    ///< not examined yet from next_ on
+  std::vector<std::int64_t> items_;    ///< to examine, from next_ on
   std::vector<std::int64_t> running_;  ///< marked by other processes when examined
   bool takes_running_ = false;
   std::size_t next_ = 0, size_ = 0;
@@ -302,8 +302,7 @@ class SweepQueue {
 
 struct SweepRunOptions {
   SweepShard shard;
-  double batch_s = 1.0;  ///< amount of work claimed at a time, lost if the process is killed [s], >
-                         ///< 0
+  double batch_s = 1.0;  ///< work claimed at a time, lost if killed [s], > 0
 
   /// @throws std::invalid_argument
   void validate() const;

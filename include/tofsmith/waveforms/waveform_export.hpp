@@ -46,7 +46,7 @@ struct QuantizedWaveform {
   double amplitude_vpp() const { return high_v - low_v; }
   double offset_v() const { return 0.5 * (low_v + high_v); }
 
-  /// Returns true in the first half of every period, in which the trigger is on.
+  /// Returns true if the trigger is on, i.e. in the first half of every period.
   bool trigger_at(int point) const {
     return point % points_per_period() < (points_per_period() + 1) / 2;
   }
@@ -90,7 +90,7 @@ struct WaveformFormat {
   std::int32_t levels = 0;  ///< of a point; 0: 2^bits, for any requested number of bits
   int default_bits = 14;
   int max_bits = 16;          ///< of amplitude
-  bool skips_points = false;  ///< tables with more points than the sample rate allows are accepted
+  bool skips_points = false;  ///< accepts tables that exceed the sample rate; skips points
   std::string trigger;        ///< where the trigger is stored; empty: nowhere
   std::vector<FormatVariant> variants;
 };
@@ -99,7 +99,7 @@ const std::vector<WaveformFormat>& waveform_formats();
 /// @throws std::invalid_argument that lists the formats and suggests the most similar one
 const WaveformFormat& waveform_format(std::string_view name);
 /// Returns the index of a variant of the format; 0 for "". @throws std::invalid_argument that lists
-/// them
+/// the variants
 int variant_index(const WaveformFormat& format, std::string_view variant);
 
 /// Families of generators with the same commands.
@@ -122,7 +122,7 @@ struct GeneratorModel {
   double true_arb_rate_hz = 0.0;        ///< maximum without skipped points, if the generator can
                                         ///< skip points (Siglent); 0: not supported
   int min_points = 2, max_points = 0;   ///< of a table
-  int memories = 0;                     ///< number of stored tables; 0: as many as fit
+  int memories = 0;                     ///< maximum number of stored tables; 0: limited by size
   double min_vpp = 0.0, max_vpp = 0.0;  ///< into 50 ohm
 
   /// Name of the WaveformFormat that the generator accepts.
