@@ -70,7 +70,6 @@ Member pulsed_multi_frequency(int low_steps, int high_frequency) {
 }
 
 std::optional<Member> member_named(std::string_view name) {
-  // Combines the check and the builder of a numbered member.
   const auto numbered = [](auto misfit, auto build, int number) {
     return Member{[=](const FamilyOptions& o) { return misfit(number, o); },
                   [=](const FamilyOptions& o) { return build(number, o); }};
@@ -111,7 +110,6 @@ std::optional<Member> member_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// Returns the example name of each family.
 std::vector<std::string> examples() {
   std::vector<std::string> names;
   for (const FamilyDescription& family : list_families()) names.push_back(family.example);

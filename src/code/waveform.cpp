@@ -204,7 +204,6 @@ Eigen::VectorXd Waveform::cell_averages(int samples) const {
     }
     return values_of(averaged, samples, 0.5);
   }
-  // Integrate the step function over each cell.
   const StepFunction function = steps();
   Eigen::VectorXd cells = Eigen::VectorXd::Zero(samples);
   const double count = samples;

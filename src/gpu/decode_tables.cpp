@@ -14,7 +14,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Adds overloads for other types of tables.
 class Words : public TableWords {
  public:
   using TableWords::add;

@@ -16,7 +16,6 @@ namespace tofsmith {
 /// only to overlap copies with kernels.
 inline constexpr std::int64_t min_tile_pixels = 1024, min_overlapped_pixels = 65536;
 
-/// Pixels [first, first + count) of a frame.
 struct FramePart {
   std::int64_t first = 0, count = 0;
 };

@@ -23,7 +23,6 @@ struct DeviceFrames::Plan {
   auto on_device(const Steps& steps);
   void forget();
   FrameSource source();
-  /// Downloads the current frame.
   RawView numbers_here();
 
   Device device;

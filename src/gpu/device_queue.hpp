@@ -37,7 +37,6 @@ struct DeviceKernel {
   DeviceHandle handle = no_handle();
 };
 
-/// A point in the work of a queue.
 struct DeviceMark {
   DeviceHandle handle = no_handle();
 };
@@ -60,7 +59,6 @@ class DeviceQueue {
   /// @param first  offset in `from` [bytes]; `first_there`: offset in `to`
   void copy(const DeviceMemory& from, std::size_t first, const DeviceMemory& to,
             std::size_t first_there, std::size_t bytes) const;
-  /// Fills the memory with zeros.
   void clear(const DeviceMemory& memory) const;
   /// Returns a kernel; a program is compiled once per device and options.
   DeviceKernel kernel(std::string_view source, const std::string& options, const char* name) const;
@@ -85,7 +83,6 @@ class DeviceQueue {
   void follow(const DeviceMark& mark) const;
   /// Submits the enqueued work to the device.
   void flush() const;
-  /// Waits until all work is done.
   void finish() const;
 
  private:

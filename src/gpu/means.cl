@@ -48,7 +48,6 @@ kernel void write_means(const int pixels, const int measurements, const int fram
   averaged[pixel] = averaged_now;
 }
 
-/// Writes the means of some pixels.
 kernel void gather_means(const int pixels, const int measurements, const int frames,
                          const float lowest, const float highest, global const double* sums,
                          Ints wanted, const int count, global double* means) {

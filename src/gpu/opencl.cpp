@@ -65,7 +65,6 @@ void check(cl_int error, const std::string& place, const char* what) {
   throw IoError(place, problem);
 }
 
-/// Returns a text property of a platform or device.
 template <typename Get>
 std::string text_of(const Get& get) {
   std::size_t size = 0;

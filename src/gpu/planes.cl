@@ -329,7 +329,6 @@ kernel void gather_numbers(const struct TileParameters tile, global const uchar*
   numbers[i * (MEASUREMENTS + 1) + MEASUREMENTS] = averaged ? averaged[pixel] : 1.0f;
 }
 
-/// Writes values of the listed pixels into a plane.
 kernel void scatter_values(Ints pixels, const int count, Floats values, global float* plane) {
   const int i = (int)get_global_id(0);
   if (i < count) plane[pixels[i]] = values[i];

@@ -140,7 +140,6 @@ float on_curve(const struct CurvePlace* place, Floats tables, int k) {
   return product_plus(place->share, b - a, a);
 }
 
-/// Returns the change of the curve per bin.
 float per_bin(const struct CurvePlace* place, Floats tables, int k) {
   return tables[place->to + k] - tables[place->from + k];
 }

@@ -15,7 +15,6 @@ Plane time_plane(const struct TimeParameters* p, global float* planes, int index
   return planes + (size_t)index * (size_t)p->height * (size_t)p->width;
 }
 
-/// Returns measurement k of the running mean of a pixel.
 float mean_of(const struct TimeParameters* p, Floats means, int pixel, int k) {
   return means[(size_t)k * (size_t)p->height * (size_t)p->width + (size_t)pixel];
 }
@@ -188,7 +187,6 @@ kernel void weigh_by_cells(const struct TimeParameters p, Floats averaged, Float
   if (weight > 0.0f) weights[pixel] = weight / (1.0f + weight * changed);
 }
 
-/// Returns the maximum weight of a pixel's past.
 float most_weight(const struct TimeParameters* p, Floats averaged, Floats averaged_before,
                   int pixel) {
   const float past = averaged_before[pixel];

@@ -172,7 +172,6 @@ Table explanation(const DesignResult& result, DepthErrorKind kind) {
   return table;
 }
 
-/// All candidates with their depth errors.
 Section candidates_section(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
   std::vector<DepthErrorRow> rows;

@@ -12,7 +12,6 @@
 
 namespace tofsmith {
 
-/// A code with its errors.
 struct DepthErrorRow {
   const DepthErrorReport* error = nullptr;
   std::string method;

@@ -121,7 +121,6 @@ std::string sunlight_text(const Optics& optics) {
   return "none";
 }
 
-/// The conditions under which the error must be reached.
 KeyValueList conditions(const Camera& camera, const Requirements& found,
                         const RequirementOptions& options) {
   KeyValueList list{{{"depth error to reach", length_text(options.error_m)},

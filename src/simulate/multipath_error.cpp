@@ -23,7 +23,6 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// The light of a cell.
 struct CellLight {
   double signal_e_per_s = 0.0;
   double ratio = 0.0;

@@ -10,7 +10,6 @@
 
 namespace tofsmith {
 
-/// Parameters of a sensor's noise.
 struct NoiseParts {
   NoiseModel model;
   bool subtracts, is_signed;

@@ -16,7 +16,6 @@ namespace tofsmith {
 /// @param designed  the code, if it was designed for the item
 std::string item_result_json(const DepthErrorReport& report, const CodeSet* designed = nullptr);
 
-/// A stored result.
 struct ItemResult {
   DepthErrorReport error;
   std::optional<CodeSet> designed;

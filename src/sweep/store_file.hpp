@@ -10,7 +10,6 @@
 
 namespace tofsmith {
 
-/// Header of a store.
 struct StoreHead {
   std::string target;  ///< instruction set that the results were computed with
 };

@@ -60,7 +60,6 @@ std::vector<std::size_t> reported_axes(const SweepSpec& spec) {
   return axes;
 }
 
-/// Calls `row(result, point)` for all points of all items.
 void for_each_row(std::span<const SweepResult> results,
                   const std::function<void(const SweepResult&, const PointDepthError&)>& row) {
   for (const SweepResult& result : results)

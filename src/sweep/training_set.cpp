@@ -93,7 +93,6 @@ NpzArrays arrays_of(const Example& example, const RawFrames& raw, const Decoder&
   return arrays;
 }
 
-/// A scene that cannot be loaded.
 struct UnusableScene : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -16,7 +16,6 @@ namespace tofsmith {
 std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadRequest& request);
 std::vector<UploadStep> keysight_steps(const UploadRequest& request);
 std::vector<UploadStep> tektronix_steps(const UploadRequest& request);
-/// Messages that switch outputs off.
 std::vector<std::string> siglent_outputs_off(const UploadRequest& request);
 std::vector<std::string> scpi_outputs_off(const UploadRequest& request);
 
@@ -25,9 +24,7 @@ std::string script_heading(const GeneratorModel& model, const std::vector<std::s
 /// Returns the other lines of a script.
 std::string script_messages(const UploadScript& script);
 
-/// Returns a message without an answer.
 UploadStep message_step(std::string what, std::string message);
-/// Returns a message that switches an output on.
 UploadStep output_on(std::string message);
 /// Returns a query and the checks of its answer.
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks);

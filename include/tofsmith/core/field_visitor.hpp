@@ -202,7 +202,6 @@ enum class ValueType {
   path,
   table,
 };
-/// Name of the enumerator.
 std::string_view name_of(ValueType type);
 
 /// Full name and description of a key.
@@ -237,7 +236,6 @@ class KeyList : public FieldVisitor {
   bool is_optional_ = false;  ///< for the next key
 };
 
-/// Checks the range of every number.
 class RangeCheck : public FieldVisitor {
  public:
   /// @param prefix  prepended to keys in errors: "light."

@@ -16,7 +16,6 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 /// for plain numbers.
 std::string_view unit_of_key(std::string_view name);
 
-/// Speed of light in vacuum [m/s].
 inline constexpr double speed_of_light_m_per_s = 299792458.0;
 
 /// Depth at which the round trip takes one period [m]: c / (2 f0).

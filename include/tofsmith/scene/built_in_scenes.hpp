@@ -49,7 +49,6 @@ struct StagedScene {
   StagedScene at(double time_s) const;
 };
 
-/// Names of the scenes of built_in_scene().
 std::vector<std::string> built_in_scene_names();
 
 /// Returns a scene that needs no files. All except `table-top` are seen along z from the origin.

@@ -107,7 +107,6 @@ auto fields_of(ConstOrNot<MultipathCell> auto& c) {
                     Field("two_share", c.two_share), Field("unresolved_share", c.unresolved_share));
 }
 
-/// Maps for one signal.
 struct MultipathMaps {
   double signal_e_per_s = 0.0;
   MultipathCell single;               ///< no second return: cost of two-return decoding

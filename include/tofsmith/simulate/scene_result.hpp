@@ -88,7 +88,6 @@ struct SceneCapture {
   std::vector<SceneDecoding> decodings;
 };
 
-/// A scene with its captures.
 struct SceneResult {
   std::string name;
   SceneImage truth;
@@ -97,7 +96,6 @@ struct SceneResult {
   std::vector<SceneCapture> captures;
 };
 
-/// A light level with its name.
 struct NamedLight {
   std::string name;
   OperatingPoint point;

@@ -105,7 +105,6 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name =
 /// @throws IoError as parse_sweep_toml(), or if the file cannot be read
 SweepSpec read_sweep_toml(const std::filesystem::path& path);
 
-/// Options of SweepStore::open().
 struct SweepStoreOptions {
   /// Name of the network file system that the store is on ("NFS"), "" for none; detected if absent.
   std::optional<std::string> network_file_system = {};
@@ -212,7 +211,6 @@ struct WorkItem {
   std::optional<DesignOptions> design = {};
 };
 
-/// The items of a sweep.
 class WorkList {
  public:
   explicit WorkList(SweepSpec spec) : spec_(std::move(spec)), size_(spec_.items()) {}
@@ -321,7 +319,6 @@ struct SweepRun {
 SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
                    const SweepRunOptions& options = {}, const Progress& progress = {});
 
-/// A finished item of a sweep.
 struct SweepResult {
   std::int64_t item = 0;
   std::string key;

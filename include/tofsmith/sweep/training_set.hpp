@@ -18,7 +18,6 @@
 
 namespace tofsmith {
 
-/// One scene of a training set.
 struct TrainingScene {
   std::string name;            ///< path within the folder or the list
   std::filesystem::path file;  ///< current path
@@ -59,14 +58,12 @@ struct TrainingSetRun {
   std::filesystem::path index;         ///< list of all finished scenes
 };
 
-/// A scene in memory.
 struct LoadedTrainingScene {
   SceneImage image;
   PinholeView view;
 };
 using TrainingSceneLoader = std::function<LoadedTrainingScene(const TrainingScene&)>;
 
-/// Result of one scene.
 struct TrainingSceneOutcome {
   std::string entry;    ///< JSON entry of the index; "" if the scene failed
   std::string problem;  ///< why it failed
