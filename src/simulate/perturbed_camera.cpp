@@ -129,7 +129,7 @@ Waveform on_clock(const Waveform& waveform, double clock_s, const Camera& camera
 
 Waveform within_power(const Waveform& modulation) {
   const double mean = modulation.mean();
-  if (mean <= 1.0 + 1e-9) return modulation;  // tolerance of the check of a code
+  if (mean <= 1.0 + 1e-9) return modulation;  // same tolerance as the check of codes
   return modulation.is_binary() && !modulation.on_intervals().empty()
              ? Waveform::binary(modulation.on_intervals(), modulation.level() / mean)
          : modulation.is_binary() ? Waveform::constant(1.0)

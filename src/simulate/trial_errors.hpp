@@ -24,7 +24,7 @@ struct ErrorSums {
 std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
                                   double threshold_bin, const Progress& progress);
 
-/// Returns depth errors at every point of the trials, and their means, with bounds of 0.
+/// Returns depth errors at every point of the trials, and their means; bounds are 0.
 /// @param code, camera  of the trials
 DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, const Camera& camera,
                               const EvaluateOptions& options, const Progress& progress);

@@ -20,8 +20,7 @@ namespace tofsmith {
 ///   sum over n of w_n power_n 4 sin^2(pi n h), with any shares w_n >= 0 that add to at most 1,
 ///   h^2 information.
 /// The result is a lower limit for the minimum over all shares.
-/// @param power  value at harmonics 1 to size if they had all of the shares, >= 0; empty: only the
-///               information is used
+/// @param power  power_n of harmonics 1 to size, >= 0; empty: only the information is used
 /// @param information  mean over delays [1 / period^2], >= 0 or infinity
 /// @see docs/bounds.md; J. Ziv, M. Zakai, IEEE Trans. Inf. Theory 15 (1969) 386
 double ziv_zakai_mae(const Eigen::VectorXd& power, double information);

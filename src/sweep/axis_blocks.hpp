@@ -24,7 +24,7 @@ struct AxisBlock {
 /// product whose last one varies fastest.
 std::vector<std::vector<AxisBlock>> axis_blocks(const SweepSpec& spec);
 
-/// Returns a b, at most 2^62.
+/// Returns the product a b, at most 2^62.
 std::int64_t counted_product(std::int64_t a, std::int64_t b);
 
 /// Returns the name of a block in errors: "axis samples", "group optics".

@@ -93,8 +93,8 @@ class WeighedErrorByRotation {
   Eigen::VectorXd parted_;    // additional error at each rotation
 };
 
-/// Returns the best origin of depth: the first rotation with the smallest error, or monotone
-/// function of it. All code that selects an origin uses this function.
+/// Returns the best origin of depth: the first rotation with the smallest error. Used wherever an
+/// origin is selected; `errors` may be a monotone function of the errors.
 inline int best_of_rotations(const std::vector<double>& errors) {
   return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
 }
