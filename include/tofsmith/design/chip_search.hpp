@@ -16,38 +16,40 @@
 
 namespace tofsmith {
 
-/// One binary waveform on a chip clock: bit k is set if it is on during chip k.
+/// A binary waveform on a chip clock: bit k is set if the waveform is on during chip k.
 using ChipWord = std::uint32_t;
 
-/// Largest number of chips of a period.
+/// Maximum number of chips per period.
 inline constexpr int max_chips = 24;
 
-/// The word, `shift` chips later on a circle of `chips`. Any shift.
+/// Returns the word delayed by `shift` chips, cyclically. `shift` can be negative or exceed
+/// `chips`.
 ChipWord delayed_chips(ChipWord word, int shift, int chips);
-/// The word reversed in time: chip k becomes chip -k.
+/// Returns the word reversed in time: chip k becomes chip -k, modulo `chips`.
 ChipWord reversed_chips(ChipWord word, int chips);
-/// Every chip.
+/// Returns the word with all chips on.
 constexpr ChipWord all_chips(int chips) { return (ChipWord{1} << chips) - 1; }
-/// "110" for a word of three chips that is on during the first two.
+/// Returns the chips as text: "110" for a word of three chips that is on during the first two.
 std::string chip_text(ChipWord word, int chips);
-/// The word of such a text. @throws std::invalid_argument for other characters or lengths
+/// Inverse of chip_text(). @throws std::invalid_argument for other characters or lengths
 ChipWord chip_word(std::string_view text);
 
-/// A code of a camera with a chip clock: every waveform is on or off for whole chips, and at most
+/// A code for a camera with a chip clock: every waveform is on or off for whole chips, and at most
 /// one tap of an exposure is open at a time.
 struct ChipCode {
-  int chips = 0;                       ///< n, per period
-  int taps = 0;                        ///< t, per exposure
+  int chips = 0;                       ///< n, chips per period
+  int taps = 0;                        ///< t, taps per exposure
   std::vector<ChipWord> modulation;    ///< (E)
-  std::vector<ChipWord> demodulation;  ///< (E x t), exposure by exposure
+  std::vector<ChipWord> demodulation;  ///< (E x t), grouped by exposure
 
   int exposures() const { return static_cast<int>(modulation.size()); }
   int measurements() const { return static_cast<int>(demodulation.size()); }
-  /// The words of one exposure's taps begin here.
+  /// Returns a pointer to the `taps` words of an exposure.
   const ChipWord* taps_of(int exposure) const;
-  /// chi of a measurement at a depth of `shift` chips: chips in which light falls on the open tap.
+  /// Returns chi of a measurement at a depth of `shift` chips: the number of chips during which
+  /// light arrives while the tap is open.
   int correlation(int measurement, int shift) const;
-  /// "M 110000 D 110000/001100/000011", exposures parted by ", ".
+  /// Returns text such as "M 110000 D 110000/001100/000011", with exposures separated by ", ".
   std::string text() const;
 
   /// @throws std::invalid_argument naming the word and the rule it breaks
@@ -56,30 +58,31 @@ struct ChipCode {
   friend bool operator==(const ChipCode&, const ChipCode&) = default;
 };
 
-/// Why a camera has no chip clock: no shortest pulse, or a period that is not a whole number of
-/// them, 3 .. max_chips. None: it has one.
+/// Returns why a camera has no chip clock, or nothing if it has one. A chip clock requires a
+/// shortest pulse whose length divides the period into 3 to max_chips chips.
 std::optional<BrokenRule> why_no_chip_clock(const Camera& camera);
 
-/// Chips per period of a camera's clock: period / sensor.shortest_pulse_s.
-/// @throws std::invalid_argument as why_no_chip_clock()
+/// Returns the chips per period of a camera's clock: period / sensor.shortest_pulse_s.
+/// @throws std::invalid_argument if why_no_chip_clock() returns a reason
 int chips_of(const Camera& camera);
 
-/// Level at which a modulation that is on for `on_chips` plays, over average power: the camera's
-/// peak, or what the average allows. With light.peak_factor = 1 it is 1, *peak* power is what is
-/// fixed, and S is the rate at peak light; with more, mean power is fixed as soon as peak allows.
+/// Returns the level, relative to average power, of a modulation that is on for `on_chips`: the
+/// smaller of the peak factor and the level that the average power allows. With light.peak_factor =
+/// 1 the level is 1, so the *peak* power is fixed and S is the rate at peak light. With larger
+/// factors the mean power is fixed as soon as the peak allows it.
 double chip_level(int on_chips, int chips, double peak_factor);
 
-/// The code as waveforms, at the camera's levels and samples.
+/// Converts the code to waveforms with the levels and the number of samples of the camera.
 CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::string& name);
 
-/// How codes on a chip clock are searched.
+/// Options of the search for codes on a chip clock.
 struct ChipSearchOptions {
-  int exposures = 1;  ///< E; with the camera's taps at least 3 measurements, at most 16
+  int exposures = 1;  ///< E; 3 to 16 measurements with the camera's taps
   double margin_sigma = 8.0;
-  double separation_periods = 1.0 / 36.0;  ///< a quarter chip of nine
+  double separation_periods = 1.0 / 36.0;  ///< a quarter of a chip at 9 chips per period
   bool equal_duty = true;
-  /// A code of three taps of equal duty in one exposure counts 1, another one 20, because it takes
-  /// that much longer.
+  /// Largest search that is exhaustive. Each code counts as 1 with one exposure and three taps of
+  /// equal duty, and as 20 otherwise because it takes 20 times as long.
   double max_exhaustive = 3e11;
   int finalists = 4;
   int annealing_starts = 24;
@@ -107,19 +110,18 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of annealing"}));
 }
 
-/// What became of all codes. Each was dropped by the first test named that it failed.
+/// Statistics of a search. A code that is dropped counts for the first test that it failed.
 struct ChipSearchCounts {
-  double raw = 0.0;  ///< codes there are: words of light and taps
-  double after_symmetry =
-      0.0;                    ///< of these, none a delay, a mirror image or a reordering of another
-  std::int64_t examined = 0;  ///< tried one by one, a few symmetric ones twice
-  std::int64_t pruned_by_turning = 0;  ///< three taps: not once around, one way (exact)
-  std::int64_t pruned_by_bound = 0;    ///< a bound on their metric is worse than the best
+  double raw = 0.0;                    ///< all combinations of modulation and tap words
+  double after_symmetry = 0.0;         ///< distinct up to delay, mirror image and order
+  std::int64_t examined = 0;           ///< examined individually; a few symmetric codes twice
+  std::int64_t pruned_by_turning = 0;  ///< three taps: does not turn once, in one direction (exact)
+  std::int64_t pruned_by_bound = 0;    ///< a lower bound on the metric exceeds the best
   std::int64_t metric_evaluations = 0;
   std::int64_t pruned_by_metric = 0;
-  std::int64_t ambiguous = 0;     ///< exact integer test
-  std::int64_t below_margin = 0;  ///< closer than margin_sigma
-  std::int64_t kept = 0;          ///< better than the best so far, when looked at
+  std::int64_t ambiguous = 0;     ///< by the exact integer test
+  std::int64_t below_margin = 0;  ///< depths closer than margin_sigma
+  std::int64_t kept = 0;          ///< better than the best codes at that time
 
   ChipSearchCounts& operator+=(const ChipSearchCounts& other);
 };
@@ -128,45 +130,48 @@ struct ChipSearchCounts {
 struct ChipImprovement {
   ChipCode code;
   double rms_m = 0.0;
-  double share = 0.0;  ///< of the search, when it was found
+  double share = 0.0;  ///< fraction of the search completed at that time
 };
 
-/// A code that came out of the search.
+/// A resulting code of the search.
 struct ChipFinalist {
   ChipCode code;
-  double rms_m = 0.0;  ///< metric: geometric mean over the points of chip_metric_rms_m
+  double rms_m = 0.0;  ///< geometric mean over the operating points of chip_metric_rms_m()
   double margin_sigma =
-      0.0;  ///< proven, at the point where it is the smallest share of what is asked
+      0.0;  ///< proven; at the operating point with the smallest ratio to the required margin
 };
 
-/// What the search did.
+/// Log of a search.
 struct ChipSearchLog {
   ChipSearchCounts counts;
   std::vector<ChipImprovement> improvements;
-  std::vector<double> margin_sigma;  ///< asked at every operating point
+  std::vector<double> margin_sigma;  ///< required at each operating point
   double seconds = 0.0;
 };
 
-/// The best codes there are on a camera's chip clock.
+/// Result of a search for codes on a chip clock.
 struct ChipSearchResult {
   std::vector<ChipFinalist>
-      finalists;        ///< best first by the metric; judge() says who wins in noise
-  bool proved = false;  ///< whether no code has a better metric than the finalists
-  std::string proof;    ///< what is proven, or why it is not, in a sentence or two
+      finalists;        ///< by the metric, best first; judge() ranks them by depth error
+  bool proved = false;  ///< true if no code has a better metric than the finalists
+  std::string proof;    ///< statement of the proof, or why there is none
   ChipSearchLog log;
 };
 
-/// What keeps codes of so many exposures from being searched for a camera, a valid one: no chip
-/// clock, too few or too many measurements, or what chip_metric_rms_m leaves out.
+/// Returns why codes with this number of exposures cannot be searched for a valid camera, or
+/// nothing: no chip clock, too few or too many measurements, or a property that chip_metric_rms_m()
+/// does not model.
 std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures);
 
-/// Searches modulations and tap assignments of a camera with a chip clock for the least geometric
-/// mean over its operating points of chip_metric_rms_m, among codes that are not ambiguous and keep
-/// the margin at every point. (Where no standard code keeps it, as the one that comes nearest
-/// does.) All codes are tried, up to symmetry, and the result is proven, where there are not too
-/// many; else codes are annealed from multi-phase squares and the result is not proven.
-/// @throws std::invalid_argument for bad options or camera, or as why_not_searchable(); Interrupted
-/// @note the same result and counts for any number of threads
+/// Searches modulations and tap assignments on the camera's chip clock. Minimizes the geometric
+/// mean over the operating points of chip_metric_rms_m() among unambiguous codes that keep the
+/// required margin at every point. If no standard code keeps the margin, it is lowered to that of
+/// the best standard code. The search is exhaustive, up to symmetry, and its result proven if the
+/// number of codes permits. Otherwise codes are found by simulated annealing from multi-phase
+/// squares, without proof.
+/// @throws std::invalid_argument for invalid options or camera, or if why_not_searchable() returns
+///   a reason; Interrupted
+/// @note results and counts do not depend on the number of threads
 /// @see docs/exhaustive_search.md
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options = {},
                                    const Progress& progress = {});

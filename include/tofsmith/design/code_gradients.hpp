@@ -13,14 +13,14 @@
 
 namespace tofsmith {
 
-/// Depth and light of P pixels.
+/// Depth and light levels of P pixels.
 struct PixelLight {
   std::span<const double> depth_bin, signal_e_per_s, ambient_e_per_s;  ///< (P) each
 };
 
 /// Gradient of a function of the measurements of P pixels.
 struct PixelGradient {
-  MeasurementTable table;                                      ///< by the code's table
+  MeasurementTable table;                                      ///< with respect to the code's table
   Eigen::VectorXd depth_bin, signal_e_per_s, ambient_e_per_s;  ///< (P)
 };
 
@@ -38,28 +38,29 @@ struct DecodedGradient {
   std::vector<Value> electrons;  ///< (P, K)
 };
 
-/// Options of the soft decoder, which chooses chord j between bins with probability
-///   exp(S_j / temperature_e2) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the chord's best
-///   point p,
-/// on the correlation functions without the part that ambient light explains.
+/// Options of the soft decoder. It weights chord j between adjacent bins by
+///   exp(S_j / temperature_e2) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the best point p of
+///   the chord,
+/// with the ambient component projected out of the correlation functions.
 struct SoftDecoding {
-  std::span<const double> temperature_e2;  ///< (P), > 0; noise suggests the variance of y
+  std::span<const double> temperature_e2;  ///< (P), > 0; the noise variance of y is a natural
+                                           ///< choice
   bool circular = false;                   ///< depths and errors are circular
 };
 
 /// Differentiable steps from waveforms to depth, each with its adjoint, for learning codes: tables,
-/// electrons, soft decoding and the Cramer-Rao bound of waveforms that are constant within each of
-/// N cells. optimize() uses the same tables and the same soft decoder. Waveforms may have any real
-/// values, even ones that the camera does not support. Arms, contrast, readout of taps, dark
-/// current and exposures are those of the camera. Variances are those before any clipping.
-/// @note thread-safe; same bits for any number of threads
+/// electrons, soft decoding and the Cramer-Rao bound, for waveforms that are constant within each
+/// of N cells. optimize() uses the same tables and soft decoder. Waveforms may have any real
+/// values, even if the camera does not support them. Impulse responses, contrast, readout of taps,
+/// dark current and exposures are those of the camera. Variances exclude clipping.
+/// @note thread-safe; bit-identical for any number of threads
 class CodeGradients {
  public:
   /// Matrix with one row per pixel.
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// @throws std::invalid_argument if the camera is invalid, or has rows, a generator, playback,
-  ///         temperature or tap_mismatch, which depend on the waveforms
+  /// @throws std::invalid_argument if the camera is invalid, or has rows or any of generator,
+  ///   playback, temperature and tap_mismatch, because those depend on the waveforms
   CodeGradients(const Camera& camera, int samples, int exposures);
   ~CodeGradients();
   CodeGradients(const CodeGradients&) = delete;
@@ -67,30 +68,31 @@ class CodeGradients {
 
   int samples() const;
   int exposures() const;
-  int tap_values() const;    ///< columns of a demodulation, exposures x taps
+  int tap_values() const;    ///< columns of the demodulation: exposures x taps
   int measurements() const;  ///< K
   bool has_shot() const;     ///< true if tables include the light behind differences
 
   /// Computes the correlation functions of waveforms (N, E) and (N, E x taps) at the bins.
   MeasurementTable measure(const Eigen::MatrixXd& modulation,
                            const Eigen::MatrixXd& demodulation) const;
-  /// Computes the gradient by {modulation, demodulation} from the gradient by the table.
+  /// Computes the gradient with respect to {modulation, demodulation} from that with respect to the
+  /// table.
   std::pair<Eigen::MatrixXd, Eigen::MatrixXd> pull_back(const Eigen::MatrixXd& modulation,
                                                         const Eigen::MatrixXd& demodulation,
                                                         const MeasurementTable& by_table) const;
 
-  /// Computes the expected electrons [e] and the variance [e^2] of the measurements (P, K), as
-  /// ForwardModel does.
+  /// Computes the expected electrons [e] and the variance [e^2] of the measurements (P, K) as in
+  /// ForwardModel.
   void electrons(const MeasurementTable& table, const PixelLight& light, Rows& mean,
                  Rows& variance) const;
-  /// @param by_mean, by_variance  (P, K)
-  /// @param wanted  gradients to compute; the others are zero
+  /// @param by_mean, by_variance  gradients with respect to mean and variance (P, K)
+  /// @param wanted  gradients to compute; others are zero
   PixelGradient pull_back_electrons(const MeasurementTable& table, const PixelLight& light,
                                     const Rows& by_mean, const Rows& by_variance,
                                     WantedGradients wanted = {}) const;
 
-  /// Computes the expected depth [bin] (P) of electrons (P, K) without dark current. Circular: the
-  /// circular mean about the best match, in [0, N).
+  /// Computes the expected depth [bin] (P) from electrons (P, K) without dark current. If circular,
+  /// this is the circular mean around the best match, in [0, N).
   template <typename Value>
   std::vector<double> soft_decode(const MeasurementTable& table, std::span<const Value> electrons,
                                   const SoftDecoding& decoding) const;
@@ -100,8 +102,8 @@ class CodeGradients {
                                  const SoftDecoding& decoding,
                                  std::span<const double> true_bin) const;
   /// Computes the gradient of sum weight[p] soft_decode()[p], or of soft_error() if true_bin is not
-  /// empty. The gradient by a temperature is -<y, gradient by y> / (2 temperature), since S is
-  /// quadratic in y.
+  /// empty. The gradient with respect to a temperature is -<y, gradient with respect to y> / (2
+  /// temperature), because S is quadratic in y.
   template <typename Value>
   DecodedGradient<Value> pull_back_decoded(const MeasurementTable& table,
                                            std::span<const Value> electrons,
@@ -109,16 +111,17 @@ class CodeGradients {
                                            std::span<const double> true_bin,
                                            std::span<const double> weight) const;
 
-  /// Computes CramerRaoBound::sigma_m() of a table with 4 cells per bin [m] (4 N, points).
+  /// Computes CramerRaoBound::sigma_m() [m] (4 N, points) of a table, at 4 cells per bin.
   Eigen::MatrixXd depth_deviation_m(const MeasurementTable& table,
                                     std::span<const OperatingPoint> points) const;
-  /// Computes the gradient of sum by_deviation o depth_deviation_m() by the table, and by
-  /// signal_e_per_s and ambient_e_per_s (points). Infinite deviations do not contribute.
+  /// Computes the gradient of sum by_deviation o depth_deviation_m() (o: elementwise product) with
+  /// respect to the table, signal_e_per_s and ambient_e_per_s (points). Infinite deviations do not
+  /// contribute.
   PixelGradient pull_back_depth_deviation(const MeasurementTable& table,
                                           std::span<const OperatingPoint> points,
                                           const Eigen::MatrixXd& by_deviation) const;
 
-  /// Electrons of dark current (K), which decoding subtracts.
+  /// Returns the electrons of dark current (K), which decoding subtracts.
   const Eigen::VectorXd& dark_electrons() const;
 
   struct Steps;  ///< implementation

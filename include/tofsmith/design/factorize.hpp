@@ -15,64 +15,64 @@
 
 namespace tofsmith {
 
-/// A pair of waveforms that measure one value per pixel.
+/// Modulation and demodulation of one measurement.
 struct WaveformPair {
   Waveform modulation;
   Waveform demodulation;
 };
-/// Its fields (core/fields.hpp).
+/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<WaveformPair> auto& p) {
   return std::tuple(Field("modulation", p.modulation), Field("demodulation", p.demodulation));
 }
 
-/// The correlation function that one measurement should have.
+/// Desired correlation function of one measurement.
 struct CorrelationTarget {
-  Eigen::VectorXd samples;         ///< chi at the N bins; linear in between
-  double demodulation_mean = 0.5;  ///< mean gain to hold: what ambient light sees
-  /// Waveforms that have this correlation function on a camera without limits, if known.
+  Eigen::VectorXd samples;         ///< chi at the N bins, linear in between
+  double demodulation_mean = 0.5;  ///< mean gain, which sets the response to ambient light
+  /// Waveforms with this correlation function on a camera without limits, if known.
   std::optional<WaveformPair> ideal;
 };
-/// Its fields (core/fields.hpp).
+/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<CorrelationTarget> auto& t) {
   return std::tuple(Field("samples", t.samples), Field("demodulation_mean", t.demodulation_mean),
                     Field("ideal", t.ideal));
 }
 
-/// The correlation functions of a whole code.
+/// Desired correlation functions of all measurements of a code.
 struct TargetSet {
   std::string name;
   std::vector<CorrelationTarget> measurements;
 
   int samples() const { return static_cast<int>(measurements.front().samples.size()); }
 };
-/// Its fields (core/fields.hpp).
+/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<TargetSet> auto& t) {
   return std::tuple(Field("name", t.name), Field("measurements", t.measurements));
 }
 
-/// The correlation functions of a one-tap code without impulse responses. Of a family built without
-/// a peak limit these are the ideal ones.
+/// Returns the correlation functions of a one-tap code without impulse responses. For a family
+/// built without a peak limit these are the ideal ones.
 TargetSet targets_of(const CodeSet& code);
 
-/// The camera without what keeps it from playing ideal codes: one tap read by itself, full contrast
-/// and any peak. A family built for it has the correlation functions that targets_of() is for.
+/// Returns the camera without the limits that prevent ideal codes: one tap with individual readout,
+/// full contrast and unlimited peak. Build a family for this camera to pass it to targets_of().
 Camera ideal_camera(const Camera& camera);
 
-/// A user's own correlation functions.
-/// @param table      (rows, K), values at equal steps of depth over one period, end point left out;
-///                   resampled linearly onto `samples` bins
-/// @param normalize  rescale every column to minimum 0 and maximum 1
-/// @throws std::invalid_argument naming column and row of a value that is not finite
+/// Creates targets from a table of correlation functions.
+/// @param table  (rows, K), values at equal steps of depth over one period without the end point;
+///   resampled linearly to `samples` bins
+/// @param normalize  rescales every column to minimum 0 and maximum 1
+/// @throws std::invalid_argument with column and row of a value that is not finite
 TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int samples,
                              bool normalize);
 
-/// Options of the factorization of one correlation function into a playable pair of waveforms.
+/// Options of the factorization of one correlation function into a feasible pair of waveforms.
 struct FactorizeOptions {
   /// lambda of problem (6). At 1e-2 the iteration collapses to constants.
   std::vector<double> total_variation_weights = {3e-4, 1e-5};
   int max_iterations = 12;
   double objective_tolerance = 1e-4;
-  /// As the paper words it. Measured: finds zero error less often.
+  /// The formulation of the paper. In tests it reached zero error less often.
   bool feed_back_projection = false;
   int random_starts = 30;
   bool structured_starts = true;
@@ -109,64 +109,64 @@ auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of the random starts"}));
 }
 
-/// One pair of convex steps.
+/// Progress after one pair of convex steps.
 struct FactorizeIteration {
   double objective = 0.0;              ///< rms + lambda (TV(d) + TV(m) / p)
   double relaxed_residual_rms = 0.0;   ///< before projection
-  double playable_residual_rms = 0.0;  ///< after projection to what the arms can play
+  double playable_residual_rms = 0.0;  ///< after projection to feasible waveforms
 };
-/// Its fields (core/fields.hpp).
+/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FactorizeIteration> auto& i) {
   return std::tuple(Field("objective", i.objective),
                     Field("relaxed_residual_rms", i.relaxed_residual_rms),
                     Field("playable_residual_rms", i.playable_residual_rms));
 }
 
-/// A playable pair and how far its correlation function is from the target.
+/// A feasible pair of waveforms and its residual to the target.
 struct PairCandidate {
   WaveformPair pair;
-  double residual_rms = 0.0;  ///< rms over depth; the target is linear between bins
-  std::string start;          ///< "random 3", "2 pulses 1/3 apart, duty 0.2", "naive"
-  int iterations = 0;         ///< pairs of convex steps it took
+  double residual_rms = 0.0;  ///< RMS over depth; the target is linear between bins
+  std::string start;          ///< e.g. "random 3", "2 pulses 1/3 apart, duty 0.2", "naive"
+  int iterations = 0;         ///< number of pairs of convex steps
 };
 
-/// What factorizing one correlation function gave.
+/// Result of the factorization of one correlation function.
 struct Factorization {
   std::vector<PairCandidate> candidates;    ///< distinct, smallest residual first; never empty
-  std::vector<FactorizeIteration> history;  ///< of the random start that came closest; else empty
-  std::vector<int> iterations_per_start;    ///< of all starts that alternated
-  double target_variation_rms = 0.0;        ///< rms of the target about its mean
-  std::string message;                      ///< one line: reached, approached or out of reach
+  std::vector<FactorizeIteration> history;  ///< of the best random start, if any
+  std::vector<int> iterations_per_start;    ///< of all starts that ran the alternation
+  double target_variation_rms = 0.0;        ///< RMS of the target minus its mean
+  std::string message;                      ///< in one line: reached, approached or out of reach
 
   const PairCandidate& best() const { return candidates.front(); }
   bool exact() const { return best().residual_rms < 1e-6; }
 };
 
-/// Finds waveforms whose correlation function on `camera` comes closest to `target`:
+/// Finds waveforms whose correlation function on `camera` approximates `target`:
 ///   min over m, d of  rms(chi - (h_m * m) corr (h_d * d)) + lambda (TV(d) + TV(m) / p)
 ///   s.t.  mean m <= 1,  0 <= m <= p,  0 <= d <= 1
-/// with m and d binary where the camera's arms are. A target that cannot be reached ends as a
-/// result with its residual and a message, never as an exception.
-/// @throws std::invalid_argument for bad options, a bad camera or a target of other length than N
-/// @throws Interrupted if `progress` asks to stop
-/// @see Gutierrez-Barragan et al., CVPR 2019, problems (6) and (7); deviates: keeps the projection
-///      beside the iteration, refines switching times
+/// with m and d binary if the camera requires it. A target that cannot be reached yields a result
+/// with its residual and a message, not an exception.
+/// @throws std::invalid_argument for invalid options or camera, or a target whose length is not N
+/// @throws Interrupted if `progress` requests it
+/// @see Gutierrez-Barragan et al., CVPR 2019, problems (6) and (7); differs: does not feed the
+///   projection back into the iteration by default, and refines switching times
 Factorization factorize(const CorrelationTarget& target, const Camera& camera,
                         const FactorizeOptions& options = {}, const Progress& progress = {});
 
-/// One run of the alternation of convex steps.
+/// Result of one run of the alternation of convex steps.
 struct Alternation {
-  WaveformPair relaxed;                     ///< last iterate of the convex steps, N samples each
-  WaveformPair playable;                    ///< best projection to playable waveforms
+  WaveformPair relaxed;                     ///< last iterate of the convex steps (N samples)
+  WaveformPair playable;                    ///< best projection to feasible waveforms
   std::vector<FactorizeIteration> history;  ///< one entry per pair of convex steps
 };
 
 /// Runs the alternation of factorize() once, without refining switching times afterwards.
-/// @param start  number of the random start, >= 0; waveforms depend on it, options.seed and N
-/// @param total_variation_weight  lambda >= 0; replaces options.total_variation_weights. 0 omits
-///        total variation.
-/// @param options  max_iterations, objective_tolerance, feed_back_projection and seed apply
-/// @throws std::invalid_argument for bad arguments, a bad camera or a target of other length than N
+/// @param start  index of the random start, >= 0; start waveforms depend on it, options.seed and N
+/// @param total_variation_weight  lambda >= 0, replaces options.total_variation_weights; 0 omits
+///   total variation
+/// @param options  only max_iterations, objective_tolerance, feed_back_projection and seed are used
+/// @throws std::invalid_argument for invalid arguments or camera, or a target whose length is not N
 Alternation alternate(const CorrelationTarget& target, const Camera& camera, int start,
                       double total_variation_weight, const FactorizeOptions& options = {});
 

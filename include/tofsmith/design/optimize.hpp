@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-/// Options of the direct optimization of codes for depth error.
+/// Options of the direct minimization of depth error.
 struct OptimizeOptions {
   int samples = 120;
   int starts = 20;
@@ -29,11 +29,11 @@ struct OptimizeOptions {
   bool polish = true;
   int polish_steps = 250;
   std::uint64_t seed = 1;
-  /// Weight of log E3 in the loss, next to log E1^(1 - w) E2^w of OperatingMultipath::weight, where
-  /// E3 is the error of the direct depth if pairs of returns are searched on the bins of a grid. It
-  /// keeps pairs from looking like others.
+  /// Weight v of log E3 in the loss, which also contains log E1 and log E2 with weights 1 - w and w
+  /// (OperatingMultipath::weight). E3 is the error of the direct depth if pairs of returns are
+  /// searched on a grid of bins. The term keeps pairs distinguishable from one another.
   double two_return_weight = 0.02;
-  /// Above it, the judge multiplies the error by the ratio to this limit, at most by 1.25.
+  /// Above this limit, judge() multiplies the error by the ratio to the limit, by at most 1.25.
   double max_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -72,42 +72,42 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
             multipath));
 }
 
-/// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:
-/// geometric mean over its operating points, linear or circular as the camera asks.
+/// Optimizes all modulations and demodulations jointly for the depth error on a camera: geometric
+/// mean over its operating points, linear or circular as specified by the camera.
 ///
-/// Waveforms go downhill along stochastic gradients through band limit, correlation, noise and a
-/// soft decoder, from a pool of starts (all families, random codes and the codes given);
-/// the best are changed and go downhill again; the best of all are refined, made to switch where
-/// arms are binary, and their edges polished. Light may use less than its peak. Taps: one; two
-/// buckets that share all charge; more, exclusive, with a drain where the camera has one; a mixer.
-/// Every pulse and gap of binary waveforms is at least sensor.shortest_pulse_s long.
+/// Waveforms follow stochastic gradients through band limit, correlation, noise and a soft decoder,
+/// from a pool of starts (all families, random codes and the codes in `also`). The best are
+/// perturbed and descend again. The best of all are refined and, if the arms are binary, binarized,
+/// followed by optimization of the edges. The light source may stay below its peak. Supported
+/// receivers: one tap; two buckets that share all charge; more exclusive taps, with a drain if the
+/// camera has one; a mixer. Every pulse and gap of binary waveforms is at least
+/// sensor.shortest_pulse_s long.
 ///
-/// Where an arm need not switch the whole search is made for arms that do, too, and then begins
-/// with what it found. From twice the default effort on (with_effort()) a search begins with all of
-/// that of half the effort. Candidates of both join: what contains more never loses by it.
-/// @param exposures  1 .. 8, with at least 3 measurements in all (2 differences)
-/// @param also  codes that join the starts, where they have as many exposures
-/// @return codes that the camera can play, each named "optimized-k<exposures>", those first that
-/// the
-///         search likes better: the best of the pool with switching times on the grid, then with
-///         polished edges; those of arms that switch and of less effort before. They are not
-///         judged: Candidate::error is empty, and which one is best, at which origin, and whether
-///         it beats the codes given, is for judge() of design/design.hpp, with random numbers that
-///         nothing was chosen by. design() does both.
-/// @throws std::invalid_argument for bad options, an invalid camera, too few measurements, a camera
-///         without band limit and without sensor.shortest_pulse_s; Interrupted
-/// @note same bits for any number of threads
+/// If an arm is not binary, the search also runs for binary arms first and then starts from those
+/// results. From twice the default effort on (see with_effort()), a search starts from all results
+/// of a search with half the effort. The candidates of both searches are returned, so more freedom
+/// or effort never gives a worse code.
+/// @param exposures  1 to 8, with at least 3 measurements in total (2 differences)
+/// @param also  additional starting codes; those with other numbers of exposures are ignored
+/// @return feasible codes named "optimized-k<exposures>", best first by the error of the search:
+///   the best of the pool with switching times on the grid, then with optimized edges, then the
+///   results for binary arms and lower effort. They are not ranked: Candidate::error is empty. Pass
+///   them to judge() (design/design.hpp), which compares them, at their best origins, with the
+///   initial codes using independent random numbers; design() does this.
+/// @throws std::invalid_argument for invalid options or camera, too few measurements, or a camera
+///   without band limit and without sensor.shortest_pulse_s; Interrupted
+/// @note bit-identical for any number of threads
 std::vector<Candidate> optimize(const Camera& camera, int exposures,
                                 const OptimizeOptions& options = {},
                                 std::span<const CodeSet> also = {}, const Progress& progress = {});
 
-/// The same for the worst of several variants of a camera, the first of which is the camera itself:
-/// the code must be one that it can play. Taps and readout of all must be the same.
+/// Optimizes for the worst of several variants of a camera. The first variant is the camera itself,
+/// which must support the code. All variants must have the same taps and readout.
 std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options = {},
                                 std::span<const CodeSet> also = {}, const Progress& progress = {});
 
-/// A shortest pulse that the camera's samples can follow [s]: two of them.
+/// Returns a shortest pulse that the camera's samples can resolve [s]: two samples.
 double suggested_shortest_pulse_s(const Camera& camera);
 
 }  // namespace tofsmith
