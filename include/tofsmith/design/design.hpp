@@ -16,15 +16,15 @@
 
 namespace tofsmith {
 
-/// Why an iterative method ended.
+/// Reason why an iterative method ended.
 enum class Termination {
-  not_run,          ///< nothing was computed; a result starts this way
-  converged,        ///< the method's own test of optimality holds
-  stalled,          ///< rounding keeps the method from any further progress
-  iteration_limit,  ///< the allowed iterations are used up
+  not_run,          ///< initial state of a result
+  converged,        ///< the optimality test of the method is met
+  stalled,          ///< rounding prevents further progress
+  iteration_limit,  ///< maximum number of iterations reached
 };
 
-/// The enumerator's name.
+/// Returns the name of the enumerator.
 std::string_view name_of(Termination termination);
 
 /// How codes are found.
@@ -38,30 +38,30 @@ enum class DesignMethod {
 constexpr std::array<std::string_view, 5> words_of(DesignMethod /*any*/) {
   return {"factorize", "optimize", "search", "best", "atlas"};
 }
-/// The enumerator's name.
+/// Returns the name of the enumerator.
 std::string_view name_of(DesignMethod method);
-/// @throws std::invalid_argument for any other word
+/// @throws std::invalid_argument for unknown names
 DesignMethod parse_design_method(std::string_view name);
 
-/// How the codes of a camera are designed and judged.
+/// Options for designing and ranking codes for a camera.
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
-  /// Each once. Factorization aims at Hamiltonian codes, which have 3 to 6 exposures. On cameras
-  /// that read rows of one exposure: numbers of rows.
+  /// Distinct numbers of exposures; for cameras that read rows of one exposure, numbers of rows.
+  /// Factorization approximates Hamiltonian codes, which have 3 to 6 exposures.
   std::vector<int> exposures;
-  /// A target of the user's, factorized instead of the Hamiltonian ones.
+  /// Target of the factorization; replaces the Hamiltonian codes.
   std::optional<TargetSet> target;
-  FactorizeOptions factorize;  ///< its seed comes from the one below
-  OptimizeOptions optimize;    ///< so does this one's
-  ChipSearchOptions search;    ///< and this one's; its exposures are those above
-  /// The gradients see other bandwidths and edge jitter; the choice among all candidates sees all
-  /// perturbations (simulate/robustness.hpp).
+  FactorizeOptions factorize;  ///< seed is replaced by the one below
+  OptimizeOptions optimize;    ///< seed is replaced by the one below
+  ChipSearchOptions search;    ///< seed and exposures are replaced by those of this struct
+  /// If true, gradients include other bandwidths and edge jitter, and candidates are ranked by the
+  /// worst of all perturbations (simulate/robustness.hpp).
   bool robust = false;
-  /// If absent: suggested_baselines() and, unless only factorization is asked for, all other
-  /// built-in codes that few trials find near the best (eight at most).
+  /// If absent: suggested_baselines() and, unless the method is factorize, up to eight of the other
+  /// built-in codes, chosen by a quick screening.
   std::optional<std::vector<std::string>> baselines;
-  /// The best few codes of code_atlas(), fitted to this camera's peak, compete unless only
-  /// factorization or search is asked for.
+  /// Number of similar cameras of code_atlas() whose best codes compete, adapted to the peak of
+  /// this camera. Not used by the methods factorize and search.
   int atlas_cameras = 4;
   bool best_rotation = true;
   int search_trials = 600;
@@ -106,155 +106,156 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
       Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 
-/// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
-/// the last percent; 0 for none at all, DesignMethod::atlas.
-/// @throws std::invalid_argument unless effort is 0 or in [0.01, 100], or for 0 and a method other
-///         than best or atlas
+/// Scales the work of all searches by the factor `effort`: 0.1 for a quick look, 3 for the last
+/// percent. 0 skips the search (DesignMethod::atlas).
+/// @throws std::invalid_argument unless effort is 0 or in [0.01, 100], or if effort is 0 and the
+///   method is neither best nor atlas
 DesignOptions with_effort(DesignOptions options, double effort);
 
-/// All candidates of a camera, each name once, and which one is best.
+/// All candidates of a camera, with distinct names, and the index of the best one.
 struct DesignResult {
   std::vector<Candidate> candidates;
   std::size_t best = 0;
-  std::vector<std::string> left_out;  ///< codes and methods the camera cannot use, with the reason
-  std::vector<std::string> explanation;  ///< why the winner won, in a few sentences
+  std::vector<std::string> left_out;     ///< unusable codes and methods, with the reason
+  std::vector<std::string> explanation;  ///< why the winner is best, in a few sentences
 
   const Candidate& winner() const { return candidates[best]; }
-  /// The candidate of that name, or null.
+  /// Returns the candidate with this name, or null.
   const Candidate* find(std::string_view name) const;
 };
 
-/// What candidates are ranked by [m]: the depth error by the camera's choice or, where options ask
-/// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated; on
-/// cameras with operating.multipath the error in that multipath is weighed in. (Codes that two
-/// returns are decoded badly with count as worse, see OptimizeOptions::max_two_return_loss.)
+/// Returns the error by which candidates are ranked [m]: the linear or circular depth error, as
+/// selected by the camera. With DesignOptions::robust it is the error on the worst perturbed camera
+/// with a calibrated decoder. On cameras with operating.multipath the error in that multipath is
+/// included, with a penalty for large two-return errors (see OptimizeOptions::max_two_return_loss).
 double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options);
 
-/// A code's depth error by the camera's choice, alone: geometric mean over the operating points
-/// [m].
+/// Returns the depth error of the given kind: geometric mean over the operating points [m].
 double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind);
 
-/// Called for every code that was to be designed before it is judged, to keep finished work. `load`
-/// may return what was designed earlier for the same inputs, which is then used instead of
-/// designing again; nothing: design it. Candidates of one name are attempts at one code, of which
-/// the judge keeps the best.
+/// Callbacks to save and restore finished designs. `load` returns the candidates that were saved
+/// earlier under `name` for the same inputs; if it returns none, the code is designed and then
+/// passed to `save`. Candidates with the same name are alternatives, of which judge() keeps the
+/// best.
 struct DesignStore {
   std::function<std::vector<Candidate>(const std::string& name)> load;
   std::function<void(const std::string& name, const std::vector<Candidate>& candidates)> save;
 };
 
-/// All candidates, the least geometric_mean_error_m first.
+/// Returns all candidates, sorted by ascending geometric_mean_error_m().
 std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result,
                                                       DepthErrorKind kind);
 
-/// How many times as large another candidate's geometric_mean_error_m is as the winner's, from the
-/// same trials; the standard error takes the two for independent, which errs on the large side.
+/// Returns the ratio of another candidate's geometric_mean_error_m() to that of the winner, from
+/// the same trials. The standard error treats the two as independent, so it is an overestimate.
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind);
 
-/// Numbers of exposures that suit a method on a camera: fewer the more taps there are, more the
-/// wider the band.
+/// Returns numbers of exposures that suit a method on a camera: fewer with more taps, more with
+/// larger bandwidth.
 std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);
 
-/// Families that every comparison shows where DesignOptions::baselines names none: for
-/// factorization alone the Hamiltonian codes that are aimed at (for a target of the user's, those
-/// of the exposures listed), else sinusoids, squares, multi-frequency and Hamiltonian codes.
+/// Returns the default of DesignOptions::baselines. For factorization: the Hamiltonian codes that
+/// are approximated or, with a custom target, those with the listed numbers of exposures.
+/// Otherwise: sinusoids, squares, multi-frequency and Hamiltonian codes.
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options);
 
-/// The judge of designs: moves every candidate to its best origin if options ask (best_rotation()),
-/// judges all by evaluate() with DesignOptions::seed and trials, random numbers that none was made
-/// with, keeps the best of those that share a name, and ranks them by ranking_error_m.
-/// Candidates by which no depth can be decoded are left out, with the reason.
-/// @param candidates  that the camera can play; their code and how it was made
-/// @return the winner is never worse than any candidate given
-/// @throws std::invalid_argument for bad options or camera, a code that does not fit, or if nothing
-///         is left to judge; Interrupted
+/// Ranks candidates. Rotates each candidate to its best origin if requested (best_rotation()),
+/// evaluates all by evaluate() with DesignOptions::seed and trials, whose random numbers no method
+/// used, keeps the best of candidates with the same name, and ranks the rest by ranking_error_m().
+/// Candidates from which depth cannot be decoded are listed in DesignResult::left_out.
+/// @param candidates  codes that the camera supports, with their origin
+/// @return the winner is never worse than any given candidate
+/// @throws std::invalid_argument for invalid options or camera, an unsupported code, or if no
+///   usable candidate is left; Interrupted
 DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
                    const DesignOptions& options = {}, const Progress& progress = {});
 
-/// Designs codes for `camera` by the methods asked for, lets all baselines compete, and lets
-/// judge() pick. factorize(), optimize() and search_chip_codes() only make candidates. The naive
-/// code of every target (its ideal demodulation with one pulse, where that is known and playable)
-/// competes too, so the winner is never worse than naive.
-/// @throws std::invalid_argument for bad options, an invalid camera, or targets it cannot play:
-///         more than two taps, exposure times for another number of exposures, or a number of
-///         samples that cannot represent a Hamiltonian code; Interrupted
+/// Designs codes for `camera` by the requested methods and ranks them with all baselines by
+/// judge(). factorize(), optimize() and search_chip_codes() only propose candidates. The naive code
+/// of each target (its ideal demodulation with a single pulse, if known and supported by the
+/// camera) also competes, so the winner is never worse than it.
+/// @throws std::invalid_argument for invalid options or camera, or unsupported targets: more than
+///   two taps, exposure times for a different number of exposures, or a number of samples that
+///   cannot represent a Hamiltonian code; Interrupted
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4 and 5
 DesignResult design(const Camera& camera, const DesignOptions& options = {},
                     const Progress& progress = {}, const DesignStore& store = {});
 
-/// A camera of the atlas of best codes, in terms that do not depend on its frequency. All else is
-/// as in the paper's simulations: 15 MHz, 0.3 s in all, read noise of 20 e, its 5 x 5 light levels.
+/// Camera of the atlas of best codes, independent of its frequency. All other properties are those
+/// of the paper's simulations: 15 MHz, total exposure of 0.3 s, read noise of 20 e and 5 x 5 light
+/// levels.
 struct AtlasCamera {
   double peak_factor = 15.0;
-  double bandwidth_f0 = 0.0;            ///< f_max of both arms' Hann responses [f0]; 0: no limit
-  double shortest_pulse_periods = 0.0;  ///< of the period, pulses and gaps; 0: any
+  double bandwidth_f0 = 0.0;            ///< f_max of the Hann response of both arms [f0]; 0:
+                                        ///< unlimited
+  double shortest_pulse_periods = 0.0;  ///< shortest pulse or gap / period; 0: no limit
   int taps = 1;
   int exposures = 4;
   DepthErrorKind error = DepthErrorKind::linear;
 
-  /// All of it.
+  /// Returns the complete camera.
   Camera camera() const;
 
   friend bool operator==(const AtlasCamera&, const AtlasCamera&) = default;
 };
 
-/// The best code that was found for a camera of the atlas.
+/// The best known code for a camera of the atlas.
 struct AtlasEntry {
   AtlasCamera of;
   CodeSet code;  ///< "atlas-t1-k4-p15-b10-linear": taps, exposures, peak, bandwidth
-  Estimate linear_m, circular_m;  ///< its errors there, geometric means over the light levels
+  Estimate linear_m, circular_m;  ///< errors on that camera: geometric means over the light levels
   const Estimate& error_m() const {
     return of.error == DepthErrorKind::linear ? linear_m : circular_m;
   }
 };
 
-/// Changes whenever older files are read no more.
+/// Incremented on incompatible changes of the file format.
 inline constexpr int atlas_version = 1;
 
-/// The atlas of best codes that is built in: by taps, exposures, peak, bandwidth and kind of error.
+/// Returns the built-in atlas, sorted by taps, exposures, peak, bandwidth and kind of error.
 const std::vector<AtlasEntry>& code_atlas();
-/// The entry whose code has that name, or null.
+/// Returns the entry with this code name, or null.
 const AtlasEntry* find_atlas_entry(std::string_view code);
 
-/// Reads an atlas as scripts/atlas.sh writes it.
-/// @param file  what errors call it
-/// @throws IoError "file:line: .." for one of another version, and for what is damaged
+/// Parses an atlas file written by scripts/atlas.sh.
+/// @param file  file name for error messages
+/// @throws IoError "file:line: ..." if the version is not supported or the file is damaged
 std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file = "atlas.txt");
 
-/// Of entries that differ in their exposures alone, those with the least error.
+/// Returns the entry with the smallest error of each set that differs only in exposures.
 std::vector<AtlasEntry> best_by_exposures(const std::vector<AtlasEntry>& entries);
 
-/// A power law through errors of the atlas: error = at_ones_m bandwidth^-a peak^-b.
+/// A power law fitted to errors of the atlas: error = at_ones_m bandwidth^-a peak^-b.
 struct AtlasLaw {
   double at_ones_m = 0.0;
   double bandwidth_power = 0.0, peak_power = 0.0;  ///< a and b
   double rms_residual = 0.0, max_residual = 0.0;   ///< of log error
-  int entries = 0;                                 ///< that it was fitted to
-  /// What it says of a camera with a bandwidth [m].
+  int entries = 0;                                 ///< number of fitted entries
+  /// Returns the predicted error for a camera with limited bandwidth [m].
   double error_m(const AtlasCamera& camera) const;
 };
 
-/// Fits a law to those of the entries that have a bandwidth; none: they are fewer than 6, or all of
-/// one bandwidth or peak.
+/// Fits a power law to the entries with limited bandwidth. Returns nothing if there are fewer than
+/// 6, or if all have the same bandwidth or peak.
 std::optional<AtlasLaw> fit_atlas_law(const std::vector<AtlasEntry>& entries);
 
-/// What a requirement can vary of a camera.
+/// Property of a camera that find_requirements() can vary.
 enum class CameraQuantity {
-  bandwidth,  ///< of both arms: their cutoffs; shorter pulses with it
+  bandwidth,  ///< of both arms: scales the cutoffs and shortens pulses
   power,      ///< of the modulated light
   exposure,   ///< integration time
 };
-/// The enumerator's name.
+/// Returns the name of the enumerator.
 std::string_view name_of(CameraQuantity quantity);
-/// @throws std::invalid_argument for any other word
+/// @throws std::invalid_argument for unknown names
 CameraQuantity parse_camera_quantity(std::string_view name);
 
-/// The camera with `factor` times as much of a quantity, > 0.
-/// @throws InvalidArgument for bandwidth, where neither arm has a limit
+/// Returns the camera with a quantity scaled by `factor`, > 0.
+/// @throws InvalidArgument for bandwidth if neither arm is bandwidth-limited
 Camera with_scaled(Camera camera, CameraQuantity quantity, double factor);
 
-/// How a requirement is met.
+/// Options of find_requirements().
 struct RequirementOptions {
   double error_m = 0.005;
   bool vary_bandwidth = true;
@@ -266,7 +267,7 @@ struct RequirementOptions {
   bool map = true;
   std::uint64_t seed = 1;
 
-  /// What is varied, in the order of the enumeration.
+  /// Returns the quantities to vary, in the order of the enumeration.
   std::vector<CameraQuantity> varied() const;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -288,39 +289,40 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 
-/// How much of one quantity it takes, everything else as the camera has it.
+/// Required value of one quantity if all others stay the same.
 struct Sufficiency {
   CameraQuantity quantity = CameraQuantity::power;
-  /// Times the camera's: the least that suffices; none: not even max_factor does.
+  /// Smallest sufficient factor; none if max_factor is not sufficient.
   std::optional<double> factor;
-  double error_m = 0.0;  ///< there, or at max_factor
-  CodeSet code;          ///< that reaches it
-  /// Below this factor no code can, by ReceiverBound; 0: the bound excludes nothing.
+  double error_m = 0.0;  ///< at that factor, or at max_factor
+  CodeSet code;          ///< code that has this error
+  /// Factors below this one are impossible for any code, by ReceiverBound; 0: none are excluded.
   double excluded_below = 0.0;
 };
 
-/// Error of the best code found at each bandwidth, over power, by a tenth of the trials.
+/// Error of the best code found for each bandwidth and power, with a tenth of the trials.
 struct RequirementMap {
   std::vector<double> bandwidth, power;  ///< factors, ascending
   Eigen::MatrixXd error_m;               ///< (bandwidth, power)
 };
 
-/// What it takes of a camera to measure depth as well as asked.
+/// Result of find_requirements().
 struct Requirements {
-  double error_m = 0.0;             ///< that the camera reaches as it is
-  CodeSet code;                     ///< with this code
-  double bound_m = 0.0;             ///< ReceiverBound of the camera as it is; 0: none
+  double error_m = 0.0;             ///< error of the unmodified camera
+  CodeSet code;                     ///< code that has this error
+  double bound_m = 0.0;             ///< ReceiverBound of the unmodified camera; 0: none
   std::vector<Sufficiency> varied;  ///< in the order of the enumeration
   std::optional<RequirementMap> map;
 };
 
-/// Finds, for each quantity by itself, the least with which a code reaches the error: codes are
-/// designed at every factor of four on the way and again where the search ends, and every code
-/// found is judged with the baselines, by the same random numbers. The error falls with each
-/// quantity, so the least is found by halving; to 0.5 %. The circular error counts, whatever the
-/// camera says: at a given distance nothing wraps.
-/// @throws std::invalid_argument as design(), for bad options, or for bandwidth where there is no
-///         limit; Interrupted
+/// Finds the smallest value of each quantity, varied separately, for which some code has at most
+/// the requested error. Codes are designed at factors of four and at the end of the bisection; all
+/// codes found are evaluated with the baselines on the same random numbers. Since the error
+/// decreases with each quantity, the smallest factor is found by bisection, to 0.5 %. The circular
+/// error is used regardless of the camera's choice, because there is no wrap-around at a given
+/// distance.
+/// @throws std::invalid_argument as design(), for invalid options, or for bandwidth if neither arm
+///   is bandwidth-limited; Interrupted
 Requirements find_requirements(const Camera& camera, const RequirementOptions& options,
                                const Progress& progress = {});
 
