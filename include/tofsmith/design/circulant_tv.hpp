@@ -55,8 +55,8 @@ struct CirculantTvResult {
   Eigen::VectorXd x;  ///< feasible (N)
   double objective = std::numeric_limits<double>::infinity();
   /// Largest violation of the optimality conditions, in units of w. Active set: twice the gain, per
-  /// unit of height, from raising or lowering any interval of x. ADMM: the violation by the dual
-  /// path.
+  /// unit of height, from raising or lowering any interval of x. ADMM: the smallest violation by
+  /// a dual path.
   double certificate = std::numeric_limits<double>::infinity();
   double budget_multiplier = 0;  ///< Lagrange multiplier of the budget, >= 0; 0 if inactive
   int iterations = 0;            ///< scans (active set) or splitting steps (ADMM)

@@ -9,31 +9,31 @@
 
 namespace tofsmith {
 
-/// A text that codes share exactly if delays, playing backwards and the order of taps and exposures
-/// make their correlation functions equal.
+/// Returns a canonical string: two codes have the same key exactly if their correlation functions
+/// are equal up to delay, time reversal, and the order of taps and exposures.
 std::string symmetry_key(const ChipCode& code);
 
-/// A code and its metric.
+/// A code and its score.
 struct ScoredCode {
   ChipCode code;
   double score = 0.0;
-  double share = 0.0;  ///< of the search, when it was found
+  double share = 0.0;  ///< fraction of the search completed when the code was found
   std::string key;
 };
 
-/// The best codes seen, no two of them the same but for symmetry.
+/// Keeps the best distinct codes; codes that differ only by symmetry count as one.
 class BestCodes {
  public:
   explicit BestCodes(int count) : count_(static_cast<std::size_t>(count)) {}
 
-  /// Codes must be below this to be kept: the worst of the best, infinite while there is room.
+  /// Upper limit of the score of new codes: the worst kept score, or infinity if there is room.
   double limit() const;
-  /// @return whether the code is now the best
+  /// @return true if the code is now the best
   bool offer(const ChipCode& code, double score, double share);
-  /// Takes in what another has, in its order.
+  /// Adds the codes of `other`, in their order.
   void merge(const BestCodes& other);
   const std::vector<ScoredCode>& codes() const { return codes_; }
-  /// Every code that was the best when it was offered or merged.
+  /// Returns every code that was the best at the time it was added.
   const std::vector<ScoredCode>& improvements() const { return improvements_; }
 
  private:

@@ -15,13 +15,14 @@ namespace tofsmith {
 
 namespace {
 
-/// Integer vector of one depth, without what ambient light adds; the rest is 0.
+/// Integer vector for one depth, with the ambient component projected out; unused entries are 0.
 using Direction = std::array<std::int64_t, 16>;
 
-/// Directions at the corners s = 0 .. n - 1 of the correlation functions. The map
+/// Computes the directions at the corners s in [0, n) of the correlation functions. With a
+/// reference tap r that is open for at least one chip, the null space of the map
 ///   q_i = kappa_r C_i - C_r kappa_i,  i != r,
-/// with a tap r that is open at all has no kernel but the ambient vector kappa, so two depths have
-/// measurements that differ by light levels alone exactly if their q point the same way.
+/// is the ambient vector kappa. So the measurements of two depths differ only by light levels
+/// exactly if their q have the same direction.
 std::vector<Direction> corner_directions(const ChipCode& code) {
   std::vector<std::int64_t> open;
   for (const ChipWord word : code.demodulation) open.push_back(std::popcount(word));
@@ -29,18 +30,18 @@ std::vector<Direction> corner_directions(const ChipCode& code) {
       static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
   std::vector<Direction> corners(static_cast<std::size_t>(code.chips), Direction{});
   for (int s = 0; s < code.chips; ++s)
-    for (int i = 0; i < code.measurements(); ++i)  // 0 for the reference itself
+    for (int i = 0; i < code.measurements(); ++i)  // zero for i = r
       corners[static_cast<std::size_t>(s)][static_cast<std::size_t>(i)] =
           open[static_cast<std::size_t>(reference)] * code.correlation(i, s) -
           code.correlation(reference, s) * open[static_cast<std::size_t>(i)];
   return corners;
 }
 
-/// The one relation x with sum_j x_j columns_j = 0, up to scale, by elimination without fractions
-/// (Bareiss); none if there are none or several.
+/// Returns the relation x with sum_j x_j columns_j = 0 if it is unique up to scale. Uses
+/// fraction-free elimination (Bareiss).
 std::optional<std::array<std::int64_t, 4>> only_relation(std::span<const Direction> columns) {
   const std::size_t width = columns.size(), height = Direction().size();
-  std::array<Direction, 4> rows{};  // of the transposed matrix
+  std::array<Direction, 4> rows{};  // rows of the transposed matrix
   std::array<std::array<std::int64_t, 4>, 4> combination{};
   for (std::size_t j = 0; j < width; ++j) {
     rows[j] = columns[j];
@@ -69,8 +70,8 @@ std::optional<std::array<std::int64_t, 4>> only_relation(std::span<const Directi
   return combination[width - 1];
 }
 
-/// Whether some x >= 0, not 0, has sum x_j columns_j = 0. If so, one has a support whose columns
-/// have no other relation, so trying all supports decides.
+/// Returns true if sum_j x_j columns_j = 0 for some x >= 0, x != 0. In that case such an x exists
+/// whose support has a unique relation, so it is sufficient to test all supports.
 bool have_positive_relation(std::span<const Direction> columns) {
   for (unsigned support = 1; support < 1U << columns.size(); ++support) {
     std::array<Direction, 4> chosen{};
@@ -92,13 +93,13 @@ Direction negative(Direction vector) {
   return vector;
 }
 
-/// Whether the direction stands still or vanishes on the way from one corner to the next.
+/// Returns true if the direction is constant or vanishes between two adjacent corners.
 bool stands_still(const Direction& here, const Direction& next) {
   return have_positive_relation(std::array{here, next}) ||
          have_positive_relation(std::array{here, negative(next)});
 }
 
-/// Whether the way turns back on itself at the middle one of three corners.
+/// Returns true if the path of the directions reverses at the middle of three corners.
 bool turns_back(const Direction& before, const Direction& here, const Direction& next) {
   return have_positive_relation(std::array{before, negative(next), here}) ||
          have_positive_relation(std::array{before, negative(next), negative(here)});
@@ -113,7 +114,7 @@ bool is_ambiguous(const ChipCode& code) {
   if (std::all_of(code.demodulation.begin(), code.demodulation.end(),
                   [](ChipWord word) { return word == 0; }))
     return true;
-  if (code.measurements() < 3) return true;  // as many unknowns as measurements
+  if (code.measurements() < 3) return true;  // no more measurements than unknowns
   const std::vector<Direction> corners = corner_directions(code);
   const std::size_t n = corners.size();
   const auto corner = [&](std::size_t s) -> const Direction& { return corners[s % n]; };
@@ -123,7 +124,7 @@ bool is_ambiguous(const ChipCode& code) {
     if (turns_back(corner(s), corner(s + 1), corner(s + 2))) return true;
   for (std::size_t s = 0; s < n; ++s)
     for (std::size_t u = s + 2; u < n; ++u) {
-      if (u + 1 - s == n) continue;  // neighbours around the end
+      if (u + 1 - s == n) continue;  // adjacent across the end of the period
       if (have_positive_relation(
               std::array{corner(s), corner(s + 1), negative(corner(u)), negative(corner(u + 1))}))
         return true;

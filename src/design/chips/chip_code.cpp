@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// The word as a waveform: its runs of chips, joined across the end of the period.
+/// Converts a word to a waveform; runs of chips are joined across the end of the period.
 Waveform chip_waveform(ChipWord word, int chips, double level) {
   if (word == 0) return Waveform::constant(0.0);
   if (word == all_chips(chips)) return Waveform::constant(level);

@@ -11,37 +11,39 @@
 
 namespace tofsmith {
 
-/// Fisher matrix over (depth in chips, log S, ambient light in electrons per open chip) at one
-/// depth. Matrices of several exposures add.
+/// Fisher matrix at one depth over (depth in chips, log S, ambient light in electrons per open
+/// chip). Matrices of independent exposures add.
 struct FisherMatrix {
   double zz = 0.0, zs = 0.0, ss = 0.0, za = 0.0, sa = 0.0, aa = 0.0;
 
   FisherMatrix& operator+=(const FisherMatrix& other);
-  /// [inverse]_zz; infinite where depth cannot be separated from the other two.
+  /// Returns [inverse]_zz; infinite if depth cannot be separated from signal and ambient light.
   double depth_variance() const;
 };
 
-/// Nodes of the quadrature within a chip.
+/// Quadrature nodes per chip.
 inline constexpr int nodes_per_chip = 4;
 
-/// Fisher matrices of one exposure at all nodes, chip by chip (4 n), added to `nodes`.
+/// Adds the Fisher matrices of one exposure to `nodes`, in order of depth (4 n).
 void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, const ChipLight& light,
                   FisherMatrix* nodes);
 
-/// gamma [chips^2]: the mean over depth of depth_variance(). Stops at a value above `limit`.
+/// Returns gamma [chips^2], the mean over depth of depth_variance(). Returns early if it exceeds
+/// `limit`.
 double mean_depth_variance(const FisherMatrix* nodes, int chips,
                            double limit = std::numeric_limits<double>::infinity());
 
-/// gamma of a code [chips^2]; stops at a value above `limit`.
+/// Returns gamma of a code [chips^2]. Returns early if it exceeds `limit`.
 double chip_gamma(const ChipCode& code, const ChipLight& light,
                   double limit = std::numeric_limits<double>::infinity());
 
-/// Fisher matrix of one tap with its depth at the first of two neighbouring depths, but with the
-/// largest weight, 1 / variance, it has anywhere between them: at the darker end.
+/// Returns an upper bound on the weight of one tap between two adjacent depths: the Fisher matrix
+/// at the first depth, with the largest weight 1 / variance in between, which occurs at the darker
+/// end.
 FisherMatrix largest_tap_fisher(int correlation, int next, int open_chips,
                                 double electrons_per_chip, const ChipLight& light);
 
-/// Judges codes at all operating points of a camera, the cheapest question first.
+/// Evaluates codes at all operating points of a camera, with the cheapest tests first.
 class ChipJudge {
  public:
   ChipJudge(const Camera& camera, const ChipSearchOptions& options);
@@ -50,29 +52,32 @@ class ChipJudge {
   int taps() const { return taps_; }
   const std::vector<ChipLight>& lights() const { return lights_; }
 
-  /// Geometric mean over the points of gamma [chips^2].
+  /// Returns the geometric mean over the operating points of gamma [chips^2].
   double score(const ChipCode& code) const;
-  /// The same, but some value above `limit` where it is above that. `nodes` holds the Fisher
-  /// matrices at every point (points x 4 n) of all exposures but the code's last.
+  /// As score(), but may return any value above `limit` if the score exceeds `limit`. `nodes`
+  /// contains the Fisher matrices at every point (points x 4 n), summed over all exposures but the
+  /// last one.
   double score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
                          double limit) const;
   std::vector<FisherMatrix> nodes_of(const ChipCode& code, int exposures) const;
 
-  /// Whether the code is unambiguous and keeps the margin at every point; counts what failed.
+  /// Returns true if the code is unambiguous and keeps the margin at every point; counts failures.
   bool is_safe(const ChipCode& code, ChipSearchCounts& counts) const;
-  /// Least margin over the points, as a share of what is asked there; sampled, never too small.
+  /// Returns the smallest ratio of margin to required margin over the points. Sampled, so it is an
+  /// upper bound.
   double sampled_margin_share(const ChipCode& code) const;
-  /// Proven margin at the point where it is the smallest share of what is asked [sigma].
+  /// Returns the proven margin at the point with the smallest ratio to the required margin [sigma].
   double proven_margin_sigma(const ChipCode& code) const;
-  /// Margin asked at every point [sigma].
+  /// Returns the required margin at every point [sigma].
   const std::vector<double>& asked_sigma() const { return asked_sigma_; }
-  /// Asks of every point no more than one of these codes keeps there: the one whose smallest share
-  /// of what is asked is the largest.
+  /// Lowers the required margins to the margins of the best of these codes, which has the largest
+  /// minimum ratio of margin to required margin. No change if a code keeps all required margins.
   void ask_no_more_than(const std::vector<ChipCode>& codes);
 
-  /// Root of a score as depth [m].
+  /// Converts a score to an RMS depth error [m].
   double rms_m(double score) const;
-  /// Whether the words are a code at all: light and taps that change, duties as asked.
+  /// Returns true if the words form a valid code: modulation and taps are not constant, and duties
+  /// follow the options.
   bool is_allowed(const ChipCode& code) const;
 
  private:

@@ -14,11 +14,12 @@
 namespace tofsmith {
 
 namespace {
-/// Stretches of true depth are not halved below this [chips]; what is not proven there fails.
+/// Minimum length of an interval of true depths [chips]. If the bound is not proven there, the test
+/// fails.
 constexpr double shortest_stretch = 1e-7;
 }  // namespace
 
-/// Inner products weighted by 1 / variance, of what ambient light does not explain.
+/// Inner products weighted by 1 / variance, with the ambient component projected out.
 struct ChipMargin::Whitening {
   int size;
   Values weight, weighted_open;
@@ -80,7 +81,8 @@ ChipMargin::Whitening ChipMargin::whitening(const Values& variance) const {
   return whitening;
 }
 
-/// The parts of `chip` that are far enough from some true depth in [first, last].
+/// Returns the parts of `chip` whose distance from some true depth in [first, last] is at least the
+/// separation.
 ChipMargin::Stretches ChipMargin::alternatives(double first, double last, int chip) const {
   Stretches stretches;
   stretches.add({chip, 0.0, 1.0});
@@ -110,8 +112,9 @@ double ChipMargin::squared_distance(int chip, double place, const Stretch& alter
   return w.product(truth, truth) + 2.0 * minimize_bounded(quadratic, 2).value;
 }
 
-/// With the largest variances of the stretch in place of all others, the distance from the line of
-/// its measurements to the cone of the other stretch's is a convex problem in three unknowns.
+/// Bounds the squared distance between the measurements of two intervals from below. With the
+/// largest variances on the interval, the distance from the line segment of its measurements to the
+/// cone of the alternative's is a convex problem in three unknowns.
 double ChipMargin::lower_bound(int chip, double begin, double end,
                                const Stretch& alternative) const {
   Values variance = variance_at(chip, begin);
@@ -122,7 +125,7 @@ double ChipMargin::lower_bound(int chip, double begin, double end,
   const Values first = values_at(chip, begin), last = values_at(chip, end);
   const Values a = values_at(alternative.chip, alternative.begin),
                b = values_at(alternative.chip, alternative.end);
-  Values step{};  // first - last: x_0 of it is taken off
+  Values step{};  // first - last; truth is first - x_0 step
   for (std::size_t i = 0; i < static_cast<std::size_t>(measurements_); ++i)
     step[i] = first[i] - last[i];
 
@@ -134,7 +137,7 @@ double ChipMargin::lower_bound(int chip, double begin, double end,
   quadratic.g = {w.product(step, first), w.product(a, first), w.product(b, first)};
   const BoundedMinimum least = minimize_bounded(quadratic, 3);
   if (least.x[0] <= 1.0) return w.product(first, first) + 2.0 * least.value;
-  // Beyond the end of the stretch: by convexity the end itself is best.
+  // The minimum lies outside the interval, so by convexity it is at its end.
   Quadratic at_end;
   at_end.h[0] = {aa, ab, 0.0};
   at_end.h[1] = {ab, bb, 0.0};
@@ -150,8 +153,9 @@ double ChipMargin::nearest(int chip, double place) const {
   return least;
 }
 
-/// Whether no other depth on a chip is nearer to a stretch of true depths than sqrt(factor least),
-/// by bounds that are refined by halving. A true distance below `least` found on the way lowers it.
+/// Returns true if the distance from every true depth in the interval to all alternatives on
+/// `alternative_chip` is at least sqrt(factor least). Bounds are refined by bisection. A smaller
+/// exact distance that is found on the way lowers `least`.
 bool ChipMargin::clears(int chip, double begin, double end, int alternative_chip, double& least,
                         double factor) const {
   double bound = infinity;

@@ -9,7 +9,7 @@
 
 namespace tofsmith {
 
-/// Most measurements that codes on a chip clock may have.
+/// Maximum number of measurements of a code on a chip clock.
 inline constexpr int max_chip_measurements = 16;
 
 /// Whitened distances between the measurements of different depths of one code.
@@ -17,16 +17,17 @@ class ChipMargin {
  public:
   ChipMargin(const ChipCode& code, const ChipLight& light, double separation_periods);
 
-  /// Whether the least distance is proven to be at least this [standard deviations].
+  /// Returns true if the smallest distance is proven to be at least `sigma` [standard deviations].
   bool reaches(double sigma) const;
-  /// Proven lower bound of the least distance, not more than 1e-3 of it below; 0 below 1e-3.
+  /// Returns a proven lower bound on the smallest distance, at most 0.1 % below it; 0 below 1e-3.
   double proven_sigma() const;
-  /// The least distance over `per_chip` true depths in every chip: never below the least of all.
+  /// Returns the smallest distance over `per_chip` true depths per chip, an upper bound on the
+  /// minimum.
   double sampled_sigma(int per_chip, double stop_below_sigma = 0.0) const;
 
  private:
   using Values = std::array<double, max_chip_measurements>;
-  /// Part of a chip that holds depths to compare with.
+  /// Part of a chip with alternative depths.
   struct Stretch {
     int chip;
     double begin, end;
@@ -53,8 +54,8 @@ class ChipMargin {
   int chips_, measurements_;
   double separation_chips_;
   double constant_e2_;
-  std::vector<Values> signal_e_;  // at the corners 0 .. n
-  Values ambient_e_{};            // expected electrons of ambient light
+  std::vector<Values> signal_e_;  // at the corners 0, ..., n
+  Values ambient_e_{};            // expected electrons from ambient light
   Values open_{};                 // direction of ambient light
 };
 

@@ -26,10 +26,11 @@
 namespace tofsmith {
 namespace {
 
-constexpr double hottest = 0.15, coldest = 0.005;  // in units of log rms
+constexpr double hottest = 0.15, coldest = 0.005;  // initial and final temperature, in units of log
+                                                   // RMS
 constexpr double margin_penalty = 2.5;
 
-/// One chain of changes, from one code.
+/// A single annealing chain.
 class Annealing {
  public:
   Annealing(const ChipJudge& judge, const ChipCode& start, std::uint64_t seed, std::uint64_t chain,
@@ -41,7 +42,7 @@ class Annealing {
         cost_(cost(start, infinity)) {}
 
   void run(std::int64_t steps, ChipSearchCounts& counts, SharedProgress& progress) {
-    constexpr std::int64_t steps_reported = 64;  // at a time
+    constexpr std::int64_t steps_reported = 64;  // per update of the progress
     for (std::int64_t step = 0; step < steps; ++step) {
       if (step % steps_reported == 0) progress.add(steps_reported);
       const double share = static_cast<double>(step) / static_cast<double>(steps);
@@ -65,7 +66,8 @@ class Annealing {
   const BestCodes& best() const { return best_; }
 
  private:
-  /// log rms, and how much is missing of the margin; some cost above `limit` if above that.
+  /// log RMS error plus a penalty for insufficient margin. If the log RMS alone exceeds `limit`, it
+  /// is returned without the penalty.
   double cost(const ChipCode& code, double limit) const {
     const double score = judge_.score(code);
     if (!std::isfinite(score)) return infinity;
@@ -75,7 +77,7 @@ class Annealing {
   }
 
   void keep(double share, ChipSearchCounts& counts) {
-    const double score = std::exp(2.0 * cost_);  // of a code without penalty
+    const double score = std::exp(2.0 * cost_);  // the score, if there is no penalty
     if (!(score < best_.limit()) || !asked_.insert(code_.text()).second) return;
     if (!judge_.is_safe(code_, counts)) return;
     ++counts.kept;
@@ -85,7 +87,7 @@ class Annealing {
   int below(int count) { return static_cast<int>(random_.uniform() * count); }
   ChipWord chip() { return ChipWord{1} << below(judge_.chips()); }
 
-  /// One small change of one exposure.
+  /// Applies a random change to one exposure.
   void change(ChipCode& code) {
     const int exposure = below(code.exposures());
     ChipWord& light = code.modulation[static_cast<std::size_t>(exposure)];
@@ -117,14 +119,14 @@ class Annealing {
     }
   }
 
-  /// Gives every tap a chip more, or one less.
+  /// Adds one chip to every tap, or removes one.
   void change_duties(ChipWord* taps) {
     const bool grow = below(2) == 0;
     ChipWord taken = 0;
     for (int i = 0; i < judge_.taps(); ++i) taken |= taps[i];
     for (int i = 0; i < judge_.taps(); ++i) {
       const ChipWord from = grow ? all_chips(judge_.chips()) & ~taken : taps[i];
-      if (from == 0) return;  // not allowed: is_allowed says so
+      if (from == 0) return;  // invalid; rejected by is_allowed()
       ChipWord picked = 0;
       while (picked == 0) picked = chip() & from;
       taps[i] ^= picked;
@@ -135,14 +137,14 @@ class Annealing {
   const ChipJudge& judge_;
   RandomStream random_;
   ChipCode code_;
-  std::unordered_set<std::string> asked_;  // codes whose safety is settled
+  std::unordered_set<std::string> asked_;  // codes that were already tested for safety
   BestCodes best_;
   double cost_;
 };
 
-/// Simulated annealing from the best of the codes given, the cost being log rms, with a penalty for
-/// a margin that is too small. All codes it keeps are safe; none is proven best.
-/// @note the same for any number of threads: every start has random numbers of its own
+/// Simulated annealing from the best of the given codes. The cost is the log RMS error plus a
+/// penalty for insufficient margin. All returned codes are safe; none is proven to be optimal.
+/// @note independent of the number of threads, because every start has its own random numbers
 BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>& seeds,
                             const ChipSearchOptions& options, ChipSearchCounts& counts,
                             const Progress& progress) {
@@ -181,7 +183,7 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
   return best;
 }
 
-/// Whether all codes can be tried, and how many about that is.
+/// Returns true if the number of codes permits an exhaustive search.
 bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
   const bool is_enumerated = rules.taps >= 2 && rules.taps <= max_assigned_taps &&
                              options.exposures <= 2 && (options.exposures == 2 || rules.taps >= 3);
@@ -255,19 +257,19 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
                               .drain = camera.sensor.drain};
   ChipSearchResult result;
 
-  // 1. Standard codes say what margin can be asked, and where to start.
+  // 1. Standard codes determine the achievable margin and provide starting points.
   ChipJudge judge(camera, options);
   std::vector<ChipCode> seeds = multi_phase_codes(rules.chips, rules.taps, options.exposures);
   std::erase_if(seeds, [&](const ChipCode& code) { return !judge.is_allowed(code); });
   judge.ask_no_more_than(seeds);
   result.log.margin_sigma = judge.asked_sigma();
 
-  // 2. Annealing finds good codes: the answer, or what an exhaustive search prunes by.
+  // 2. Annealing finds good codes: the result, or the limit for pruning an exhaustive search.
   const bool is_exhaustive = can_be_exhaustive(rules, options);
   ChipSearchOptions annealing = options;
   if (is_exhaustive) {
-    // One exposure is searched faster than annealed. Pairs cannot do without: a limit 7 % higher
-    // takes 20 times as long, so that fewer starts than these save nothing.
+    // An exhaustive search of one exposure is faster than annealing. For pairs, a limit that is 7 %
+    // higher takes 20 times as long, so fewer starts would save nothing.
     annealing.annealing_starts = options.exposures == 1 ? 0 : 8;
     annealing.annealing_steps = 2000;
   }
@@ -275,7 +277,7 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
   ChipSearchCounts annealed;
   BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed, parts[0]);
 
-  // 3. Then all codes, if there are not too many.
+  // 3. Exhaustive search, if the number of codes permits.
   if (is_exhaustive) {
     const ExhaustiveTask task{.judge = &judge,
                               .rules = rules,
@@ -292,7 +294,7 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
     result.proof = "Not proven: there are too many codes to try them all; these were annealed.";
   }
 
-  // 4. The finalists, with proven margins.
+  // 4. Finalists with proven margins.
   for (const ScoredCode& scored : best.codes())
     result.finalists.push_back(finalist_of(scored, judge));
   for (const ScoredCode& scored : best.improvements())

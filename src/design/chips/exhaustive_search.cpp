@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// A delay, or a delay played backwards.
+/// A delay with optional time reversal.
 struct Motion {
   int shift;
   bool is_mirror;
@@ -21,9 +21,9 @@ struct Motion {
   }
 };
 
-/// Lists all assignments whose first tap is a given word, the least of its kind among the taps.
-/// Every kind of assignment has one of that form: turn it until the least kind of its taps, as a
-/// word, is its least representative, and sort the others.
+/// Lists all assignments whose first tap is a given word and has the smallest class representative
+/// of all taps. Every equivalence class has a member of this form: transform it so that the tap
+/// with the smallest representative equals that representative, and sort the other taps.
 class FirstTapLister {
  public:
   FirstTapLister(const AssignmentRules& rules, const std::vector<ChipWord>& kind, ChipWord first)
@@ -38,7 +38,7 @@ class FirstTapLister {
   std::vector<TapAssignment> take() { return std::move(found_); }
 
  private:
-  /// Chooses the next tap, above the one before, from the free chips.
+  /// Selects the next tap, greater than the previous one, from the free chips.
   void choose(int tap, ChipWord free, ChipWord previous) {
     if (tap == rules_.taps) {
       if (!rules_.drain && free != 0) return;
@@ -47,7 +47,7 @@ class FirstTapLister {
     }
     const ChipWord first = current_.taps[0];
     const int duty = std::popcount(first);
-    // All subsets of the free chips, from large to small.
+    // Iterates over all subsets of the free chips, in descending order.
     for (ChipWord word = free; word > previous; word = (word - 1) & free) {
       if (rules_.equal_duty && std::popcount(word) != duty) continue;
       if (kind_[word] < first) continue;
@@ -56,7 +56,7 @@ class FirstTapLister {
     }
   }
 
-  /// Whether no motion that puts one of the taps in first place makes the others less.
+  /// Returns true if no motion that maps a tap to the first position makes the other taps smaller.
   bool is_least() {
     current_.is_achiral = false;
     const ChipWord first = current_.taps[0];
@@ -73,7 +73,7 @@ class FirstTapLister {
 
   bool stays_least(const Motion& motion, int leading) {
     std::array<ChipWord, max_assigned_taps> moved;
-    moved.fill(~ChipWord{0});  // behind all words
+    moved.fill(~ChipWord{0});  // sorts after all words
     std::size_t count = 0;
     for (int tap = 0; tap < rules_.taps; ++tap)
       if (tap != leading)
@@ -99,7 +99,7 @@ double binomial(int n, int k) {
 }
 
 double raw_with_unequal_duties(int chips, int taps, bool drain) {
-  // Surjections on the taps, by inclusion and exclusion.
+  // Number of surjections onto the taps, by inclusion-exclusion.
   double count = 0.0;
   for (int shut = 0; shut <= taps; ++shut)
     count += (shut % 2 == 0 ? 1.0 : -1.0) * binomial(taps, shut) *
@@ -107,7 +107,7 @@ double raw_with_unequal_duties(int chips, int taps, bool drain) {
   return count;
 }
 
-/// Equal metrics may differ by rounding; none of them is lost.
+/// Tolerance that keeps codes with equal metric despite rounding.
 constexpr double rounding = 1.0 + 1e-9;
 
 }  // namespace
@@ -115,7 +115,7 @@ constexpr double rounding = 1.0 + 1e-9;
 std::vector<ChipWord> necklace_table(int chips) {
   std::vector<ChipWord> least(std::size_t{1} << chips, ~ChipWord{0});
   for (ChipWord word = 0; word < least.size(); ++word) {
-    if (least[word] != ~ChipWord{0}) continue;  // a delay of an earlier one
+    if (least[word] != ~ChipWord{0}) continue;  // a delay of an earlier word
     for (int shift = 0; shift < chips; ++shift) least[delayed_chips(word, shift, chips)] = word;
   }
   return least;
@@ -215,8 +215,8 @@ double exhaustive_size(const AssignmentRules& rules, int exposures) {
   for (int tap = 2; tap <= rules.taps; ++tap) reorderings *= tap;
   const double modulations = std::exp2(rules.chips) - 2;
   const double n = rules.chips, assignments = raw_tap_assignments(rules) / reorderings;
-  // Delays of light and taps on their own, and mirror images, of the first exposure; the taps'
-  // own delays of the others; and their order.
+  // Symmetries of the first exposure: independent delays of modulation and taps, and mirror images.
+  // For the other exposures: delays of the taps. Finally, the order of the exposures.
   const double first = modulations * assignments / (2 * n * n);
   return exposures == 1
              ? first

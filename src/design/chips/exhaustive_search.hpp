@@ -12,71 +12,71 @@
 
 namespace tofsmith {
 
-/// Most taps that assignments are enumerated for.
+/// Maximum number of taps of enumerated assignments.
 inline constexpr int max_assigned_taps = 4;
 
-/// What each chip of a period is given to: one of the taps, or none.
+/// Assignment of each chip of a period to one of the taps, or to none.
 struct TapAssignment {
   std::array<ChipWord, max_assigned_taps> taps{};
-  bool is_achiral = false;  ///< played backwards it is itself, but for a delay and the taps' order
+  bool is_achiral = false;  ///< equals its time reversal up to delay and order of taps
 };
 
-/// Which assignments are listed.
+/// Rules for the enumeration of assignments.
 struct AssignmentRules {
   int chips = 9;
   int taps = 3;
-  bool equal_duty = true;    ///< every tap is open for as many chips
-  bool drain = true;         ///< chips may be given to no tap
-  bool up_to_mirror = true;  ///< of two that are each other played backwards, one
+  bool equal_duty = true;    ///< all taps are open for the same number of chips
+  bool drain = true;         ///< chips may remain unassigned
+  bool up_to_mirror = true;  ///< list only one assignment of each mirror pair
 };
 
-/// One assignment of every kind that delays, the order of taps (and playing backwards) make of each
-/// other; no tap is always shut. In an order that depends on the rules alone.
+/// Lists one assignment of each equivalence class under delays, order of taps and, if up_to_mirror,
+/// time reversal. No tap is empty. The order depends only on the rules.
 std::vector<TapAssignment> tap_assignments(const AssignmentRules& rules);
 
-/// How many there are before symmetry is used.
+/// Returns the number of assignments before symmetries are removed.
 double raw_tap_assignments(const AssignmentRules& rules);
 
-/// The least of all delays of every word (2^n).
+/// Returns the smallest delayed version of every word (2^n).
 std::vector<ChipWord> necklace_table(int chips);
-/// Modulations up to delays: on at least once and off at least once, in ascending order.
+/// Returns the modulations up to delay, except always on and always off, in ascending order.
 std::vector<ChipWord> modulation_necklaces(int chips);
 
-/// What a search is to look at, and what it starts from.
+/// Input of an exhaustive search.
 struct ExhaustiveTask {
   const ChipJudge* judge = nullptr;
   AssignmentRules rules;
   int finalists = 1;
-  double limit = 0.0;  ///< score of codes known to be safe: no need to look beyond
+  double limit = 0.0;  ///< score of known safe codes; worse codes are skipped
 };
 
-/// What an exhaustive search found: the best codes there are, and what became of the others.
+/// Result of an exhaustive search.
 struct ExhaustiveFinding {
   BestCodes best;
   ChipSearchCounts counts;
 };
 
-/// All codes of one exposure: three taps by exact turning of their directions where duties are
-/// equal, else by a bound on the metric.
+/// Searches all codes of one exposure. Three taps of equal duty are pruned by the exact turning
+/// test, others by a bound on the metric.
 ExhaustiveFinding search_single_exposures(const ExhaustiveTask& task, const Progress& progress);
 
-/// All pairs of exposures, by a bound on the metric.
+/// Searches all pairs of exposures, pruned by a bound on the metric.
 ExhaustiveFinding search_exposure_pairs(const ExhaustiveTask& task, const Progress& progress);
 
-/// Codes that an exhaustive search would have to look at, after symmetry, about.
+/// Estimates the number of codes in an exhaustive search after symmetries are removed.
 double exhaustive_size(const AssignmentRules& rules, int exposures);
 
-/// One share of a search: adds to counts and best codes that no other share writes to.
+/// Searches one item. Writes only to its own counts and best codes.
 using SearchShare =
     std::function<void(std::int64_t item, BestCodes& best, ChipSearchCounts& counts)>;
 
-/// Works through items in rounds. Within a round every item starts from what was best before it, so
-/// that results and counts do not depend on threads; rounds grow as the best settles.
+/// Processes items in rounds. All items of a round start with the best codes of the previous round,
+/// so results and counts do not depend on the number of threads. Rounds grow up to `items_at_once`.
 void search_in_rounds(std::int64_t items, std::int64_t items_at_once, ExhaustiveFinding& finding,
                       const SearchShare& share, const Progress& progress);
 
-/// A whole search: `Search` lists what there is (items, counted by sizes) and searches an item.
-/// @param listing  what listing takes its time for, for the progress
+/// Runs a complete search. `Search` lists the items with their counts and searches one of them.
+/// @param listing  progress message while items are listed
 template <typename Search>
 ExhaustiveFinding search_all(const ExhaustiveTask& task, const char* listing,
                              std::int64_t items_at_once, const Progress& progress) {
@@ -93,14 +93,14 @@ ExhaustiveFinding search_all(const ExhaustiveTask& task, const char* listing,
   return finding;
 }
 
-/// Looks at one code, given the Fisher matrices of its other exposures, and keeps it if it is good.
+/// Tests one code, given the Fisher matrices of its other exposures, and keeps it if it is good.
 void look_at(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
              const ExhaustiveTask& task, double share, BestCodes& best, ChipSearchCounts& counts);
 
-/// Writes the entries of a Fisher matrix as find_informed reads them, `stride` floats apart.
+/// Writes the entries of a Fisher matrix in the layout of find_informed(), `stride` floats apart.
 void put_fisher(const FisherMatrix& matrix, float* first, int stride);
 
-/// The score that is still looked at.
+/// Returns the largest score that is still considered.
 double limit_of(const ExhaustiveTask& task, const BestCodes& best);
 
 }  // namespace tofsmith

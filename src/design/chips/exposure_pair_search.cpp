@@ -16,36 +16,36 @@ namespace {
 
 constexpr std::int64_t firsts_at_once = 4;
 
-/// Light and taps of one exposure.
+/// Modulation and taps of one exposure.
 struct Exposure {
   ChipWord light = 0;
   std::array<ChipWord, max_assigned_taps> taps{};
-  std::int32_t orbit = 0;  ///< exposures that a common delay or mirror image makes of each other
-  bool is_first = false;   ///< the one of its orbit that stands for it
+  std::int32_t orbit = 0;  ///< class under delay and mirror image
+  bool is_first = false;   ///< true for the representative of the class
 };
 
-/// Correlation functions of an exposure after a delay or mirror image, taps in ascending order:
-/// equal for exposures that measure the same.
+/// Returns the sorted correlation functions of an exposure after a delay or mirror image, as a key
+/// that is equal for equivalent exposures.
 std::string functions_of(const Exposure& exposure, const AssignmentRules& rules, int shift,
                          bool is_mirror) {
   std::array<std::string, max_assigned_taps> rows;
   for (std::size_t tap = 0; tap < static_cast<std::size_t>(rules.taps); ++tap) {
-    // How long the tap is open tells apart what ambient light does.
+    // The duty of the tap determines the response to ambient light.
     rows[tap] += static_cast<char>(std::popcount(exposure.taps[tap]));
     for (int s = 0; s < rules.chips; ++s)
       rows[tap] += static_cast<char>(std::popcount(
           exposure.taps[tap] &
           delayed_chips(exposure.light, is_mirror ? shift - s : shift + s, rules.chips)));
   }
-  std::sort(rows.begin(), rows.end());  // those of no tap are empty
+  std::sort(rows.begin(), rows.end());  // unused entries are empty
   std::string all;
   for (const std::string& row : rows) all += row;
   return all;
 }
 
-/// All exposures that measure differently. Delays of a tap assignment together with its light
-/// change nothing, so one assignment of every kind with every modulation, delayed in all ways, is
-/// enough.
+/// Returns all exposures with distinct measurements. A common delay of taps and modulation has no
+/// effect, so one assignment of each class, combined with every delay of every modulation, is
+/// sufficient.
 std::vector<Exposure> distinct_exposures(const AssignmentRules& rules) {
   AssignmentRules all = rules;
   all.up_to_mirror = false;
@@ -73,13 +73,13 @@ std::vector<Exposure> distinct_exposures(const AssignmentRules& rules) {
   return exposures;
 }
 
-/// One search over all pairs of exposures: the first stands for its orbit, the second is any of the
-/// same or a later orbit.
+/// Search over all pairs of exposures. The first exposure is the representative of its orbit; the
+/// second belongs to the same or a later orbit.
 class ExposurePairSearch {
  public:
   explicit ExposurePairSearch(const ExhaustiveTask& task)
       : task_(task), n_(task.rules.chips), exposures_(distinct_exposures(task.rules)) {
-    // Later orbits lie together behind earlier ones.
+    // Group exposures by orbit, in ascending order.
     std::stable_sort(exposures_.begin(), exposures_.end(),
                      [](const auto& a, const auto& b) { return a.orbit < b.orbit; });
     for (std::size_t i = 0; i < exposures_.size(); ++i)
@@ -116,7 +116,8 @@ class ExposurePairSearch {
   }
 
  private:
-  /// Largest Fisher matrix of an exposure between depths s and s + 1 chips, as far as weights go.
+  /// Returns an upper bound on the Fisher matrix of an exposure between depths s and s + 1 [chips];
+  /// see largest_tap_fisher().
   FisherMatrix information(const Exposure& exposure, int s, const ChipLight& light) const {
     FisherMatrix sum;
     const double electrons = light.electrons_of(std::popcount(exposure.light));
@@ -141,7 +142,7 @@ class ExposurePairSearch {
     return code;
   }
 
-  /// All pairs of one first exposure.
+  /// Searches all pairs with one first exposure.
   void search_with(std::size_t first, double share, BestCodes& best,
                    ChipSearchCounts& counts) const {
     const Exposure& own = exposures_[first];

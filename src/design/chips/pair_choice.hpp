@@ -8,19 +8,19 @@
 
 namespace tofsmith {
 
-/// One pair per measurement, as indices into the candidates of each factorization.
+/// Selected pair of each measurement, as index into the candidates of its factorization.
 using PairChoice = std::vector<std::size_t>;
 
-/// The code made of the chosen pairs, with the second bucket where the camera has two.
+/// Builds the code from the selected pairs, with the second bucket if the camera has two.
 CodeSet assemble(const std::string& name, const std::vector<Factorization>& factorizations,
                  const PairChoice& choice, const Camera& camera);
 
-/// Chooses pairs by depth error, not by residual: starts from the smallest residuals, from the
-/// naive pairs and from some at random, and changes one measurement at a time as long as the error
-/// falls. All trials share their random numbers, so small differences count.
-/// @param at_best_rotation  each code gets its best origin later: its circular error is judged, as
-///                          few trials tell nothing of how many wraps are left there; where depths
-///                          are weighed, its error at that origin
+/// Selects pairs by depth error instead of residual. Starts from the smallest residuals, the naive
+/// pairs and random choices, and changes one measurement at a time as long as the error decreases.
+/// All evaluations use the same random numbers, so small differences are significant.
+/// @param at_best_rotation  true if codes are later rotated to their best origin. Then the circular
+///   error is used, because a few trials cannot predict the remaining wrap-around; with weighted
+///   depths, the error at the best origin.
 PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
                                  const Camera& camera, const EvaluateOptions& options,
                                  bool at_best_rotation, const Progress& progress);
