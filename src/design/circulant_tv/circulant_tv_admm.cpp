@@ -17,8 +17,8 @@ namespace {
 
 constexpr double over_relaxation = 1.7;
 constexpr int steps_per_check = 10;
-// The penalty is doubled or halved when one residual exceeds the other by this factor, up to a
-// step after which it stays, as convergence asks.
+// The penalty is doubled or halved if one residual exceeds the other by this factor. Convergence
+// requires that it stays constant after some step.
 constexpr double imbalance = 5;
 constexpr int steps_per_adaptation = 50;
 constexpr int last_adaptation = 2000;

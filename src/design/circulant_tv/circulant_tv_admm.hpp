@@ -11,21 +11,21 @@ namespace tofsmith {
 
 struct CirculantTvAdmmOptions {
   int max_iterations = 20000;           ///< splitting steps, >= 1
-  double tolerance = 1e-11;             ///< rms of both residuals, in units of the upper bound, > 0
-  double certificate_tolerance = 1e-7;  ///< converged when the certificate is at most this, > 0
+  double tolerance = 1e-11;             ///< RMS of both residuals / upper bound, > 0
+  double certificate_tolerance = 1e-7;  ///< converged if the certificate is at most this, > 0
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
 
-/// The problem by alternating directions with one split: x meets the data (a division of spectra),
-/// z everything else, by the exact proximal map
+/// Solves the problem by ADMM with one split: x minimizes the data term (a division of spectra),
+/// and z satisfies everything else by the exact proximal map
 ///   prox(v) = clip(prox_TV(v) - mu, 0, upper_bound),  mu >= 0 the price of the budget.
-/// Hundreds of times slower than the active set; independent of it.
-/// @param warm_start  where to start (N, finite), or empty
+/// Hundreds of times slower than the active set, but independent of it.
+/// @param warm_start  initial x (N, finite), or empty
 /// @return z, feasible, with its certificate; stalled if the residuals vanish but the certificate
-///         stays above its tolerance
-/// @throws std::invalid_argument if problem, options or start are not valid
+///   exceeds its tolerance
+/// @throws std::invalid_argument if problem, options or start are invalid
 CirculantTvResult solve_circulant_tv_by_admm(const CirculantTvProblem& problem,
                                              const CirculantTvAdmmOptions& options = {},
                                              const std::optional<Eigen::VectorXd>& warm_start = {});

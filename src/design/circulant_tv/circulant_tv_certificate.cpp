@@ -12,12 +12,12 @@
 namespace tofsmith {
 namespace {
 
-// What the dual path must do at each sample, rotated so that a jump (if any) precedes sample 0.
+// Conditions for the dual path at each sample, rotated so that a jump (if any) precedes sample 0.
 struct DualConditions {
   Eigen::VectorXd gradient;  // of the least-squares term
-  Eigen::VectorXi bound;     // -1 on the lower, +1 on the upper bound, 0 inside
+  Eigen::VectorXi bound;     // -1 at the lower, +1 at the upper bound, 0 inside
   Eigen::VectorXi jump;      // sign of the jump after the sample
-  bool constant = true;      // no jumps at all
+  bool constant = true;      // true if there are no jumps
   double weight = 0;
 };
 
@@ -48,11 +48,11 @@ DualConditions conditions_at(const CirculantTvProblem& problem, const Eigen::Vec
   return conditions;
 }
 
-// The admissible values of the dual at one place on the ring.
+// Interval of admissible values of the dual between two samples.
 struct DualInterval {
   double low, high;
 
-  // Moves the nearer end into [floor, ceiling] where the interval misses it; returns how far.
+  // Clips the interval to [floor, ceiling]; returns the distance if they are disjoint.
   double confine(double floor, double ceiling) {
     const double miss = std::max({0.0, floor - high, low - ceiling});
     low = std::clamp(low, floor, ceiling);
@@ -61,7 +61,7 @@ struct DualInterval {
   }
 };
 
-// One lap around the ring; returns the largest violation of a piece.
+// Traverses the ring once; returns the largest violation of a piece.
 double walk(const DualConditions& conditions, double price, DualInterval& dual) {
   const double weight = conditions.weight;
   double worst = 0, of_this_piece = 0;
@@ -69,7 +69,7 @@ double walk(const DualConditions& conditions, double price, DualInterval& dual) 
     const double step = conditions.gradient[k] + price;
     dual.low = conditions.bound[k] < 0 ? -weight : dual.low + step;
     dual.high = conditions.bound[k] > 0 ? weight : dual.high + step;
-    // On the lower bound only the upper end is a condition, and the other way round.
+    // At the lower bound only the upper end is constrained, and vice versa.
     if (dual.low > dual.high)
       (conditions.bound[k] < 0 ? dual.low : dual.high) =
           conditions.bound[k] < 0 ? dual.high : dual.low;
@@ -91,7 +91,8 @@ double violation_at(const DualConditions& conditions, double price) {
     DualInterval dual{at_jump, at_jump};
     return walk(conditions, price, dual);
   }
-  // No jump to start from: the first lap narrows the start down, the second must reproduce it.
+  // Without a jump as a start, the first pass determines the start interval and the second must
+  // reproduce it.
   DualInterval dual{-weight, weight};
   walk(conditions, price, dual);
   const DualInterval start = dual;
@@ -124,7 +125,7 @@ OptimalityCertificate certificate(const CirculantTvProblem& problem, const Eigen
   result.violation = violation(0);
   if (!budget_binds) return result;
 
-  // Beyond this price every interval would pay to drop.
+  // Above this price, lowering any interval decreases the objective.
   constexpr double inverse_golden_ratio = 0.61803398874989485;
   double low = 0;
   double high = conditions.gradient.cwiseAbs().maxCoeff() + 2 * conditions.weight;

@@ -9,9 +9,9 @@
 namespace tofsmith {
 namespace {
 
-// Newton steps repeated on one face to make up for rounding in the reduced Hessian.
+// Newton steps that are repeated on one face to compensate for rounding in the reduced Hessian.
 constexpr int max_refinements = 3;
-// A face is solved when its gradient, in units of the total-variation weight, is this small.
+// Tolerance of the gradient on a face, in units of the total-variation weight.
 constexpr double face_tolerance = 1e-10;
 
 using Factor = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
@@ -22,7 +22,7 @@ double FaceMinimizer::minimize(PiecewiseConstant& x, BudgetState& budget,
                                const SignalLimits& limits) {
   double decrease = 0;
   int refinements = 0;
-  // Each step but the refinements removes a piece or holds one, or switches the budget.
+  // Each step except refinements removes or fixes a piece, or switches the budget.
   const int max_steps = 8 * x.size() + 64;
   for (int step = 0; step < max_steps; ++step) {
     assemble(x, limits);
@@ -91,8 +91,8 @@ void FaceMinimizer::factorize() {
   scale_.resize(count);
   for (int a = 0; a < count; ++a)
     scale_[a] = hessian_(a, a) > 0 ? 1 / std::sqrt(hessian_(a, a)) : 1.0;
-  // A band-limited kernel leaves directions without curvature. A little of it makes steps along
-  // them finite; the limits then stop them, or refinement makes up for it.
+  // A band-limited kernel has directions without curvature. Small damping makes steps along them
+  // finite; the limits then stop them, or refinement corrects them.
   for (double damping = 0;; damping = std::max(1e-15, 8 * damping)) {
     for (int a = 0; a < count; ++a) {
       for (int b = a; b < count; ++b) factor_(b, a) = hessian_(b, a) * scale_[a] * scale_[b];
@@ -120,7 +120,7 @@ void FaceMinimizer::solve_for_step(const PiecewiseConstant& x, BudgetState& budg
   solve(direction_);
   budget.multiplier = 0;
   if (budget.active) {
-    // [H l; l^T 0] [step; multiplier] = [-gradient; residual of the budget], l the lengths
+    // [H l; l^T 0] [step; multiplier] = [-gradient; residual of the budget], with the lengths l
     pull_.resize(count);
     for (int a = 0; a < count; ++a) pull_[a] = x[free_[a]].length;
     solve(pull_);
@@ -182,8 +182,8 @@ double FaceMinimizer::residual(const PiecewiseConstant& x, const BudgetState& bu
   return largest;
 }
 
-// With the budget spent and one free piece there is no freedom left but rounding. The piece stays
-// free even at a bound, because it is what tells the price of the budget.
+// With an active budget and one free piece, only rounding errors can be corrected. The piece
+// remains free even at a bound because it determines the price of the budget.
 void FaceMinimizer::settle_last_free_piece(PiecewiseConstant& x, int j, BudgetState& budget,
                                            const SignalLimits& limits) {
   const double length = x[j].length;
@@ -194,7 +194,7 @@ void FaceMinimizer::settle_last_free_piece(PiecewiseConstant& x, int j, BudgetSt
 void FaceMinimizer::hold_at_bound(PiecewiseConstant& x, int j, PieceState state, double value) {
   x[j].value = value;
   x[j].state = state;
-  // Neighbours at the same bound are one piece: a jump of zero must not keep its sign.
+  // Merge neighbours at the same bound: a zero jump must not keep its sign.
   if (x.size() > 1 && x[x.next(j)].state == state) {
     const int next = x.next(j);
     x.merge_with_previous(next);

@@ -10,31 +10,31 @@
 
 namespace tofsmith {
 
-/// What a piecewise constant signal has to keep to, and the price of its total variation.
+/// Constraints of a piecewise constant signal and its total-variation weight.
 struct SignalLimits {
   double total_variation_weight = 0;
   double upper_bound = 0;
-  double budget = 0;  ///< infinity where there is none
+  double budget = 0;  ///< infinity without a budget
 };
 
-/// Whether the sum of the signal is held at the budget, and what that costs per sample.
+/// State of the budget constraint and its multiplier per sample.
 struct BudgetState {
   bool active = false;
   double multiplier = 0;
 };
 
-/// Best values of the free pieces of a signal, with its jumps, their signs, the pieces held at a
-/// bound and an active budget all kept, until a step runs into a limit; then that limit joins them.
+/// Optimizes the values of the free pieces. Jumps, their signs, pieces fixed at a bound and an
+/// active budget are kept until a step reaches a limit, which is then added to the constraints.
 class FaceMinimizer {
  public:
   explicit FaceMinimizer(const LeastSquaresTerm& term) : term_(term) {}
 
-  /// Moves `x`, whose slopes are up to date, to the minimum on its face and on the smaller faces
-  /// that the way there leads to. Releases the budget when its multiplier turns negative.
-  /// @return by how much the objective went down
+  /// Moves `x` to the minimum on its face, and on the smaller faces that are reached on the way.
+  /// Slopes of x must be up to date. Releases the budget when its multiplier becomes negative.
+  /// @return decrease of the objective
   double minimize(PiecewiseConstant& x, BudgetState& budget, const SignalLimits& limits);
 
-  /// Linear systems solved so far by this object.
+  /// Returns the number of linear systems solved since the last reset.
   int newton_steps() const { return newton_steps_; }
   void reset_count() { newton_steps_ = 0; }
 
@@ -60,14 +60,14 @@ class FaceMinimizer {
 
   const LeastSquaresTerm& term_;
   std::vector<int> free_;       // indices of the free pieces
-  Eigen::MatrixXd hessian_;     // of the free pieces, lower triangle; grows only
-  Eigen::MatrixXd factor_;      // its Cholesky factor after scaling to unit diagonal; grows only
+  Eigen::MatrixXd hessian_;     // of the free pieces, lower triangle; never shrinks
+  Eigen::MatrixXd factor_;      // Cholesky factor after scaling to unit diagonal; never shrinks
   Eigen::VectorXd scale_;       // 1 / sqrt of the diagonal
-  Eigen::VectorXd gradient_;    // of the whole objective with respect to the free values
+  Eigen::VectorXd gradient_;    // of the objective with respect to the free values
   Eigen::VectorXd direction_;   // Newton step of the free values
   Eigen::VectorXd pull_;        // Hessian^-1 lengths, for the budget
   Eigen::VectorXd bend_;        // Hessian * direction
-  std::vector<double> motion_;  // direction of every piece, 0 where held
+  std::vector<double> motion_;  // direction of every piece, 0 if fixed
   int newton_steps_ = 0;
 };
 

@@ -14,7 +14,7 @@ namespace tofsmith {
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start) {
   constexpr int max_steps = 500;
-  constexpr double still = 1e-7;  // largest move of a sample, in units of the upper bound
+  constexpr double still = 1e-7;  // largest change of a sample, in units of the upper bound
   const PeriodicTransform transform(problem.samples());
   Eigen::VectorXcd kernel, target, half;
   transform.forward(problem.kernel, kernel);
@@ -34,7 +34,7 @@ Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
     project_on_box_and_budget(next, problem.upper_bound, problem.budget);
     const Eigen::VectorXd move = next - x;
     if (move.cwiseAbs().maxCoeff() < still * problem.upper_bound) return next;
-    // Momentum that points uphill is dropped, which keeps the objective from rising in the end.
+    // Reset momentum that points uphill, so that the objective decreases eventually.
     if ((ahead - next).dot(move) > 0.0) momentum = 1.0;
     const double grown = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
     ahead = next + (momentum - 1.0) / grown * move;
@@ -47,7 +47,7 @@ Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
 LeastSquaresTerm::LeastSquaresTerm(int samples) : samples_(samples), operator_(samples) {
   integrator_.setZero(operator_.transform().coefficients());
   for (Eigen::Index k = 1; k < integrator_.size(); ++k) {
-    // exp(i t) - 1 = 2 i sin(t / 2) exp(i t / 2), without cancellation at small t.
+    // exp(i t) - 1 = 2 i sin(t / 2) exp(i t / 2) avoids cancellation at small t.
     const double half_angle = std::numbers::pi * static_cast<double>(k) / samples;
     integrator_[k] = std::polar(0.5 / std::sin(half_angle), -half_angle - 0.5 * std::numbers::pi);
   }
@@ -84,7 +84,7 @@ void LeastSquaresTerm::prefix_gradient(const PiecewiseConstant& x, Eigen::Vector
   if (x.size() > 1)
     for (int j = 0; j < x.size(); ++j) {
       const double jump = x[j].value - x[x.previous(j)].value;
-      const int lead = origin - x[j].start;  // from the jump to the origin, modulo N
+      const int lead = origin - x[j].start;  // distance from the jump to the origin, modulo N
       if (jump != 0)
         sums.noalias() += jump * curve_.segment(lead > 0 ? lead : lead + samples_, samples_ + 1);
     }

@@ -10,20 +10,21 @@
 
 namespace tofsmith {
 
-/// The sub-problem without total variation, whose weight is not read:
+/// Solves the subproblem without total variation (its weight is ignored):
 ///   minimize 1/2 |A x - b|^2  subject to  0 <= x <= upper_bound,  sum x <= budget
-/// by accelerated projected gradients. It has many solutions wherever A damps much: x keeps of
-/// `start` (N) what the data do not determine. For comparison with designs that have a weight.
-/// @return feasible (N); the objective is not above that of the projected start
+/// by accelerated projected gradients. If A attenuates strongly, there are many solutions; x keeps
+/// the components of `start` (N) that the data do not determine. For comparison with regularized
+/// designs.
+/// @return feasible (N); the objective does not exceed that of the projected start
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start);
 
-/// A x = kernel * x (circular) and its adjoint on half spectra. Keeps the kernel's spectrum.
+/// A x = kernel * x (circular) and its adjoint on half spectra. Stores the spectrum of the kernel.
 class CirculantOperator {
  public:
   explicit CirculantOperator(int samples) : transform_(samples) {}
 
-  /// Returns whether the kernel differs from the one held before.
+  /// Returns true if the kernel changed.
   bool set_kernel(const Eigen::VectorXd& kernel) {
     if (kernel_.size() == kernel.size() && kernel_ == kernel) return false;
     kernel_ = kernel;
@@ -34,7 +35,7 @@ class CirculantOperator {
   const PeriodicTransform& transform() const { return transform_; }
   const Eigen::VectorXcd& spectrum() const { return spectrum_; }
 
-  /// sum_n r[n]^2 from the half spectrum of r (Parseval).
+  /// Returns sum_n r[n]^2 from the half spectrum of r (Parseval).
   double energy(const Eigen::VectorXcd& half) const {
     const int samples = transform_.samples();
     double sum = 2 * half.squaredNorm() - std::norm(half[0]);
@@ -50,18 +51,18 @@ class CirculantOperator {
 
 /// The term 1/2 |A x - b|^2 for piecewise constant x.
 ///
-/// With W the zero-mean, doubly integrated autocorrelation R of the kernel
-/// (W[n + 1] - 2 W[n] + W[n - 1] = R[n] - mean R), a jump of height h at sample s adds h W[n - s]
-/// to the prefix sum G[n] = sum_{i < n} gradient[i]: no transform is needed while there are few
-/// pieces. W is made by dividing spectra, not by summing twice, which would lose digits that a
-/// small total-variation weight needs.
+/// Let W be the zero-mean, doubly integrated autocorrelation R of the kernel (W[n + 1] - 2 W[n] +
+/// W[n - 1] = R[n] - mean R). A jump of height h at sample s adds h W[n - s] to the prefix sum
+/// G[n] = sum_{i < n} gradient[i], so no transform is needed for few pieces. W is computed by
+/// division of spectra, because summing twice would be too inaccurate for small total-variation
+/// weights.
 class LeastSquaresTerm {
  public:
   explicit LeastSquaresTerm(int samples);
 
   void set(const Eigen::VectorXd& kernel, const Eigen::VectorXd& target);
 
-  /// Second derivative of the term with respect to the values of pieces j and k: O(1).
+  /// Returns the second derivative of the term with respect to the values of pieces j and k: O(1).
   double curvature(const PiecewiseConstant& x, int j, int k) const {
     const int j0 = x[j].start + samples_, j1 = x.end_of(j) + samples_;
     const int k0 = x[k].start, k1 = x.end_of(k);
@@ -69,12 +70,12 @@ class LeastSquaresTerm {
            (curve_[j0 - k0] - curve_[j0 - k1]);
   }
 
-  /// Prefix sums of the gradient from the start of piece 0 around the ring: sums (N + 1),
-  /// sums[k] = sum of the first k samples' gradient, up to a constant. O(N J).
+  /// Computes prefix sums of the gradient around the ring, from the start of piece 0:
+  /// sums[k] (N + 1) is the sum over the first k samples, up to a constant. O(N J).
   void prefix_gradient(const PiecewiseConstant& x, Eigen::VectorXd& sums) const;
 
-  /// The same through the Fourier transform of the residual: its rounding errors are relative to
-  /// the residual, not to x.
+  /// As prefix_gradient(), but by FFT of the residual: rounding errors are relative to the
+  /// residual, not to x.
   /// @return the value of the term
   double prefix_gradient_by_transform(const PiecewiseConstant& x, Eigen::VectorXd& sums);
 
@@ -87,7 +88,7 @@ class LeastSquaresTerm {
   Eigen::VectorXcd target_spectrum_;  // of b
   double mean_curvature_ = 0;         // mean of R
   double mean_pull_ = 0;              // mean of A^T b
-  Eigen::VectorXd curve_;             // W over two periods, n = -N .. N at index n + N
+  Eigen::VectorXd curve_;             // W over two periods, n in [-N, N] at index n + N
   Eigen::VectorXd pull_;              // zero-mean prefix sums of A^T b over two periods
   Eigen::VectorXd signal_;            // scratch
   Eigen::VectorXcd half_;             // scratch

@@ -7,16 +7,18 @@
 namespace tofsmith {
 namespace {
 
-// Least slope over the intervals of a piece with neighbours. sums[0 .. length] are its prefix sums.
+// Finds the interval with the smallest slope within a piece that has neighbours. sums[0..length]
+// are the prefix sums of the piece.
 IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, double weight,
                        int direction) {
   const Piece& piece = x[j];
   const double sign = direction;
-  // Total variation changes by +weight at a new edge, and by the edge's own sign at an old one.
+  // Total variation changes by +weight at a new edge, and by the sign of the edge at an existing
+  // one.
   const double left_edge = sign * piece.rise * weight;
   const double right_edge = -sign * x[x.next(j)].rise * weight;
   IntervalMove best{j, 0, 0, direction, 0};
-  double min_entry = left_edge - sign * sums[0];  // slope of the best left end so far
+  double min_entry = left_edge - sign * sums[0];  // slope of the best left end up to k
   int entry = 0;
   double least = weight * 4;
   const int last = piece.length - 1;
@@ -43,8 +45,7 @@ IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, do
   return best;
 }
 
-// The same on a constant ring, where an interval may run across the origin: then its complement
-// does not.
+// As best_move() for a constant ring. If an interval crosses the origin, its complement does not.
 IntervalMove best_move_on_ring(const PiecewiseConstant& x, const double* sums, double weight,
                                int direction) {
   const int samples = x.samples();
@@ -85,7 +86,7 @@ void scan_for_moves(const PiecewiseConstant& x, const Eigen::VectorXd& sums, dou
                                     : best_move_on_ring(x, sums.data(), weight, direction);
       scan.violation = std::max(scan.violation, -move.slope / weight);
       const bool whole = move.last - move.first + 1 == x[j].length;
-      // A free piece that should move as a whole is the face's business, not a new structure.
+      // A free piece that would move as a whole is handled by FaceMinimizer.
       if (whole && x[j].state == PieceState::free) continue;
       if (move.slope < best.slope) best = move;
     }

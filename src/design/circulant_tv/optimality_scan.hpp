@@ -9,22 +9,23 @@
 
 namespace tofsmith {
 
-/// Raising (+1) or dropping (-1) the samples [first, last] of one piece, counted from its start.
+/// Raises (+1) or lowers (-1) the samples [first, last] of one piece, counted from its start.
 struct IntervalMove {
   int piece = 0, first = 0, last = 0, direction = 0;
-  double slope = 0;  ///< of the objective, per unit of height; negative when the move pays
+  double slope = 0;  ///< of the objective, per unit of height; negative if the move lowers it
 };
 
 struct OptimalityScan {
-  double violation = 0;  ///< -(least slope) / weight over all intervals; 0 when none pays
-  std::vector<IntervalMove> moves;  ///< best paying one of each piece that changes the structure
+  double violation = 0;  ///< -(smallest slope) / weight over all intervals; 0 if none is negative
+  std::vector<IntervalMove> moves;  ///< best move of each piece that lowers the objective and
+                                    ///< splits the piece
 };
 
-/// Searches every interval of every piece for one whose raise or drop lowers the objective: for a
-/// signal of given jumps these are all its ways down, and their absence proves optimality. One
-/// pass over the prefix sums (Kadane's largest sub-array sum, once per direction).
-/// @param sums    prefix sums of the gradient of the smooth part from the start of piece 0 (N + 1)
-/// @param weight  of total variation
+/// Searches all intervals of all pieces for moves that lower the objective. For a signal with given
+/// jumps these are all descent directions, so their absence proves optimality. One pass over the
+/// prefix sums (Kadane's maximum subarray, once per direction).
+/// @param sums    prefix sums of the gradient of the smooth term from the start of piece 0 (N + 1)
+/// @param weight  total-variation weight
 void scan_for_moves(const PiecewiseConstant& x, const Eigen::VectorXd& sums, double weight,
                     OptimalityScan& scan);
 

@@ -6,7 +6,7 @@
 namespace tofsmith {
 namespace {
 
-// Enough for the pieces to settle; the active set does the rest.
+// Sufficient to determine the pieces; the active set does the rest.
 constexpr int fallback_steps = 3000;
 
 }  // namespace

@@ -15,16 +15,16 @@ void TotalVariationProx::linear(const Eigen::VectorXd& y, double weight, Eigen::
   x = y;
   if (size <= 1 || weight == 0) return;
 
-  // The derivative of the cost-to-go of x[n] is piecewise linear and increasing. Its knots live in
-  // [first, last] of a buffer that grows from the middle; outside them it is the line
-  // slope * x + offset given by the left and the right accumulators.
+  // The derivative of the cost-to-go of x[n] is piecewise linear and increasing. Its knots are in
+  // [first, last] of a buffer that grows from the middle. Outside the knots it is the line
+  // slope * x + offset of the left or right accumulators.
   knots_.resize(2 * static_cast<std::size_t>(size));
   lower_.resize(static_cast<std::size_t>(size));
   upper_.resize(static_cast<std::size_t>(size));
   int first = size, last = size - 1;
 
-  // Clipping the derivative to [-weight, weight] is the effect of the jump to the next sample:
-  // knots beyond the clipping points go, and one new knot on each side takes their place.
+  // The jump to the next sample clips the derivative to [-weight, weight]: knots beyond the
+  // clipping points are replaced by one new knot on each side.
   double left_slope = 1, left_offset = -y[0];
   double right_slope = 1, right_offset = -y[0];
   for (int n = 0; n < size - 1; ++n) {
@@ -42,13 +42,13 @@ void TotalVariationProx::linear(const Eigen::VectorXd& y, double weight, Eigen::
     upper_[n] = (weight - right_offset) / right_slope;
     knots_[--first] = {lower_[n], left_slope, left_offset + weight};
     knots_[++last] = {upper_[n], -right_slope, weight - right_offset};
-    // Outside the knots the clipped derivative is -+weight; add the next sample's own x - y.
+    // Outside the knots the clipped derivative is -+weight; add x - y of the next sample.
     left_slope = right_slope = 1;
     left_offset = -weight - y[n + 1];
     right_offset = weight - y[n + 1];
   }
 
-  // The last sample is where the derivative vanishes; the others follow from their clips.
+  // The derivative vanishes at the last sample; the other samples follow from the clipping points.
   while (first <= last && left_slope * knots_[first].position + left_offset <= 0) {
     left_slope += knots_[first].slope_change;
     left_offset += knots_[first].offset_change;
@@ -72,7 +72,7 @@ void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, doubl
                                   Eigen::VectorXd& x) {
   require(weight >= 0, "weight", weight, "must be >= 0");
   if (y.size() <= 2 || weight == 0) {
-    // Two samples on a ring share two jumps.
+    // Two samples on a ring have two jumps between them.
     ring_dual = 0;
     linear(y, y.size() == 2 ? 2 * weight : weight, x);
     return;
@@ -81,8 +81,8 @@ void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, doubl
   double dual = std::clamp(ring_dual, -weight, weight);
   double gap = ring_gap(y, weight, dual, x);
 
-  // Bracket the root, walking from the start with growing steps; at an end of the dual's range a
-  // gap of the right sign is a true jump.
+  // Bracket the root with growing steps from the start. At an end of the range of the dual, a gap
+  // with the right sign is a true jump.
   double other = dual, other_gap = gap;
   for (double step = 0.02 * weight; std::abs(gap) > negligible; step *= 6) {
     const double end = gap > 0 ? weight : -weight;
@@ -94,8 +94,8 @@ void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, doubl
     if ((gap > 0) != (other_gap > 0)) break;
   }
 
-  // Illinois: regula falsi that halves the weight of an end that stays. The gap is piecewise linear
-  // in the dual, so that it ends on the root.
+  // Illinois algorithm: regula falsi that halves the weight of an end that stays. The gap is
+  // piecewise linear in the dual, so the iteration ends at the root.
   const double width = 4e-16 * weight;
   for (int iteration = 0; iteration < 100; ++iteration) {
     if (std::abs(gap) <= negligible || (gap > 0) == (other_gap > 0)) break;

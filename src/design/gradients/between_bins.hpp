@@ -11,45 +11,45 @@
 
 namespace tofsmith {
 
-/// Correlation functions at any real depth, from their samples at the N bins of waveforms that are
-/// held over the N cells: exact, as ForwardModel has them. Straight between bins without impulse
-/// responses, else by the harmonics that the arms let through.
+/// Correlation functions at any real depth, from samples at the N bins of waveforms that are
+/// constant within each of N cells. Exact, as in ForwardModel: linear between bins without impulse
+/// responses, otherwise by the harmonics within the bandwidth.
 class BetweenBins {
  public:
   BetweenBins(const Camera& camera, int samples);
 
-  /// Functions sampled in the columns of a table (N, F), ready to be evaluated.
+  /// Functions from the columns of a table (N, F), prepared for evaluation.
   struct Functions {
     HarmonicFunctions harmonics;
-    Eigen::MatrixXd chords;  ///< (F, N); empty where harmonics are kept
+    Eigen::MatrixXd chords;  ///< (F, N); empty if harmonics are used
     int count() const { return harmonics.functions; }
     void add(const Functions& others);
   };
   Functions of(const Eigen::MatrixXd& table) const;
   Functions zeros(int functions) const;
 
-  /// Values (F, harmonic_block) at so many positions [bin], at most harmonic_block; their slopes
-  /// per bin too unless null.
+  /// Computes the values (F, harmonic_block) at up to harmonic_block positions [bin], and the
+  /// slopes per bin unless `slopes` is null.
   void evaluate(const Functions& functions, std::span<const double> depth_bin, double* values,
                 double* slopes) const;
-  /// Adds to `gradient` that of sum weights[f][p] f(depth_bin[p]); weights (F, harmonic_block),
-  /// zero beyond the positions.
+  /// Adds to `gradient` the gradient of sum weights[f][p] f(depth_bin[p]). weights (F,
+  /// harmonic_block) must be zero for unused positions.
   void add(std::span<const double> depth_bin, const double* weights, Functions& gradient) const;
-  /// Values at `finer` even positions a bin, (finer N, F).
+  /// Returns the values at `finer` equidistant positions per bin, (finer N, F).
   Eigen::MatrixXd fine_table(const Functions& functions, int finer) const;
-  /// Its adjoint.
+  /// Adjoint of fine_table().
   Functions pull_back_fine(const Eigen::MatrixXd& by_fine, int finer) const;
-  /// Gradient by the table of a function whose gradient by the functions is given.
+  /// Converts a gradient with respect to the functions to one with respect to the table.
   Eigen::MatrixXd pull_back(const Functions& gradient) const;
 
  private:
-  /// The chord a position lies on.
+  /// Chord that contains a position.
   struct Chord {
     Eigen::Index bin, next;
     double fraction;
   };
   Chord chord_at(double depth_bin) const;
-  /// Harmonics on a grid of so many points: those too high for it fold onto lower ones.
+  /// Visits the harmonics on a grid of `points` samples; high harmonics are aliased to lower ones.
   template <typename Visit>
   void fold(int points, const Visit& visit) const;
 

@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "design/gradients/depth_elimination.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Highway requires its header after foreach_target.
 #include <hwy/highway.h>
 
 #include "core/shared/vectors-inl.hpp"
@@ -20,8 +20,9 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A few depths side by side at one light: weights w = 1 / variance of the measurements, and of the
-/// columns of the Jacobian, with products weighed by w, the part of depth across the other two:
+/// A vector of depths at one light level: weights w = 1 / variance of the measurements and, with
+/// inner products weighted by w, the component of the depth column of the Jacobian orthogonal to
+/// the signal and ambient columns:
 ///   across = depth - signal_share signal - ambient_share ambient.
 class Elimination {
  public:
@@ -32,7 +33,7 @@ class Elimination {
         depths_(electrons.signal.rows()),
         weights_(static_cast<std::size_t>(measurements_) * depth_block) {}
 
-  /// Depths from `first` on.
+  /// Loads a vector of depths, starting at `first`.
   HWY_INLINE void at(Eigen::Index first, const OperatingPoint& light) {
     first_ = first;
     const Doubles d;
@@ -53,7 +54,7 @@ class Elimination {
       ss = hn::MulAdd(hn::Mul(weight, s), s, ss);
       dd = hn::MulAdd(weighed_d, depth, dd);
     }
-    // Ambient light, where it is seen at all, is taken out of both; then signal out of depth.
+    // Eliminate ambient light (if visible) from signal and depth, then the signal from depth.
     const auto per_aa = inverse_or_zero(aa, hn::Zero(d));
     const auto signal_along = hn::Mul(as, per_aa), depth_along = hn::Mul(ad, per_aa);
     auto ss_across = hn::Zero(d), sd_across = hn::Zero(d);
@@ -93,7 +94,7 @@ class Elimination {
   hn::Mask<Doubles> is_told;
 
  private:
-  static constexpr double rounding = 1e-20;  // of squares: rounding alone is left
+  static constexpr double rounding = 1e-20;  // of squares: smaller values are rounding errors
 
   HWY_INLINE DoubleVector inverse_or_zero(DoubleVector value, DoubleVector least) const {
     return hn::IfThenElseZero(hn::Gt(value, least), hn::Div(all(1.0), value));
@@ -161,7 +162,7 @@ void add_gradient_of(const DepthElectrons& electrons, const Eigen::VectorXd& con
         add_lanes(by_ambient.data() + i * depth_block,
                   hn::Neg(hn::Mul(by_mean, depths.ambient_share)));
         by_signal_e = hn::MulAdd(by_mean, depths.row(electrons.slope, i), by_signal_e);
-        // A measurement without light and noise has the least variance, whatever changes.
+        // Without light and noise the variance is clipped to its minimum, so its gradient is zero.
         const auto by_variance =
             hn::IfThenElseZero(hn::Lt(weight, all(1.0 / min_e2)),
                                hn::Mul(hn::Mul(all(-0.5), by_mean), hn::Mul(weight, across)));

@@ -10,27 +10,27 @@
 
 namespace tofsmith {
 
-/// Depths that are worked on together: a table of them has a multiple of so many rows.
+/// Number of depths per block; tables of depths have a multiple of this number of rows.
 constexpr int depth_block = widest_vector / 2;
 
-/// Electrons of measurements, and of the light they are made of, per unit of signal (depths, K) and
-/// of ambient light (K); slopes per period. As CramerRaoBound has them.
+/// Electrons of the measurements, and of the light that contributes shot noise, per unit of signal
+/// (depths, K) and of ambient light (K). Slopes are per period. As in CramerRaoBound.
 struct DepthElectrons {
   Eigen::MatrixXd signal, slope, shot;
   Eigen::VectorXd ambient, shot_ambient;
 };
 
-/// Cramer-Rao bounds of depth with signal and ambient light unknown, as DepthPart
-/// (simulate/shared/depth_information.hpp) has them, of many depths at once: deviations [m]
-/// (depths, lights), infinite where depth cannot be told from the others.
+/// Computes Cramer-Rao bounds of depth with unknown signal and ambient light for many depths at
+/// once, as DepthPart (simulate/shared/depth_information.hpp): deviations [m] (depths, lights),
+/// infinite if depth cannot be separated from signal and ambient light.
 void eliminate_light(const DepthElectrons& electrons, const Eigen::VectorXd& constant_e2,
                      std::span<const OperatingPoint> lights, double range_m,
                      Eigen::MatrixXd& deviation_m);
 
-/// The gradient of sum by_deviation deviation_m: adds to that by the electrons, and writes that by
-/// the lights; infinite deviations have none.
+/// Computes the gradient of sum by_deviation deviation_m. Adds the gradient with respect to the
+/// electrons to `by_electrons` and overwrites `by_lights`. Infinite deviations do not contribute.
 ///
-/// sigma = range / |across|, and across is least over the shares of the other two columns:
+/// sigma = range / |across|, and |across| is minimal over the shares of the other two columns:
 ///   d |across|^2 / 2 = <across, w (d depth - share d signal - share d ambient)>
 ///                      - sum across^2 / (2 variance) d variance.
 void pull_back_elimination(const DepthElectrons& electrons, const Eigen::VectorXd& constant_e2,

@@ -10,12 +10,13 @@
 
 namespace tofsmith {
 
-/// What the steps of CodeGradients stand on.
+/// Shared state of the steps of CodeGradients.
 struct CodeGradients::Steps {
   Steps(const Camera& its, int samples, int exposures);
 
   bool has_shot() const { return sampled.subtracts(); }
-  /// Of all measurements and, where they are differences, of the light behind them: (K) or (2 K).
+  /// Returns the functions of all measurements (K), followed for differences by the total light of
+  /// each (2 K).
   BetweenBins::Functions functions_of(const MeasurementTable& table) const;
   void pull_back_functions(const BetweenBins::Functions& gradient,
                            MeasurementTable& by_table) const;
@@ -26,8 +27,8 @@ struct CodeGradients::Steps {
   int exposures;
 };
 
-/// Pixels whose gradients are summed together: whole blocks, in 64 groups at most, whatever the
-/// number of threads.
+/// Returns the number of pixels whose gradients are summed together: whole blocks, at most 64
+/// groups. Independent of the number of threads.
 std::int64_t pixels_in_a_group(std::int64_t pixels);
 
 }  // namespace tofsmith

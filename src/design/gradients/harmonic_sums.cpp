@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "design/gradients/harmonic_sums.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own headers after foreach_target.
+// Highway requires its headers after foreach_target.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -19,9 +19,9 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int tile = 16;  // harmonics whose cosines and sines stay in the nearest cache
+constexpr int tile = 16;  // harmonics whose cosines and sines stay in the L1 cache
 
-/// Cosines and sines of some harmonics in a row, at the points of a block.
+/// Cosines and sines of consecutive harmonics at the points of a block.
 struct Turns {
   alignas(64) double cosine[tile * harmonic_block];
   alignas(64) double sine[tile * harmonic_block];
@@ -41,7 +41,7 @@ struct Turns {
     }
   }
 
-  /// The next `count` harmonics; the first time from 1.
+  /// Computes the next `count` harmonics, starting at harmonic 1.
   HWY_INLINE void advance(int count) {
     const Doubles d;
     const int lanes = lanes_of(d);

@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Periodic functions by their harmonics:
-///   f(u) = sum_n real[n] cos(2 pi n u) - imag[n] sin(2 pi n u),  n = 0 .. harmonics - 1
+/// Periodic functions, represented by their harmonics:
+///   f(u) = sum_n real[n] cos(2 pi n u) - imag[n] sin(2 pi n u),  0 <= n < harmonics
 struct HarmonicFunctions {
   HarmonicFunctions(int harmonic_count, int function_count)
       : harmonics(harmonic_count),
@@ -24,15 +24,15 @@ struct HarmonicFunctions {
   std::vector<double> real, imag;  ///< (harmonics, functions)
 };
 
-/// Points that are worked on together: whole vectors of any instruction set.
+/// Number of points per block: a multiple of the vector length for all instruction sets.
 constexpr int harmonic_block = 64;
 
-/// Values of all functions, (functions, harmonic_block), at as many positions [periods]; their
-/// slopes per period too unless `slopes` is null.
+/// Computes the values of all functions (functions, harmonic_block) at harmonic_block positions
+/// [periods], and the slopes per period unless `slopes` is null.
 void sum_harmonics(const HarmonicFunctions& functions, const double* periods, double* values,
                    double* slopes);
 
-/// The adjoint of the values: adds to `gradient` that of sum weights[f][p] f(periods[p]).
+/// Adjoint of the values: adds to `gradient` the gradient of sum weights[f][p] f(periods[p]).
 void add_harmonics(const double* periods, const double* weights, HarmonicFunctions& gradient);
 
 }  // namespace tofsmith
