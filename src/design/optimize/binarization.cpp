@@ -10,14 +10,14 @@ namespace tofsmith {
 
 namespace {
 
-/// Value of every cell: that of its first sample.
+/// Returns the value of every cell, taken from its first sample.
 Eigen::VectorXd cell_values(const WaveformSpace& space, const Eigen::VectorXd& samples) {
   Eigen::VectorXd cells(space.cells);
   for (int c = 0; c < space.cells; ++c) cells[c] = samples[c * space.repeat];
   return cells;
 }
 
-/// Cells by value, largest first.
+/// Returns the cells sorted by value, largest first.
 std::vector<int> ranked(const Eigen::VectorXd& cells) {
   std::vector<int> order(static_cast<std::size_t>(cells.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -25,7 +25,7 @@ std::vector<int> ranked(const Eigen::VectorXd& cells) {
   return order;
 }
 
-/// 1 in the first `count` cells of the order.
+/// Sets the first `count` cells of the order to 1.
 SwitchedLabels first_of(const std::vector<int>& order, int count) {
   std::vector<int> cells(order.size(), 0);
   for (int i = 0; i < count; ++i)
@@ -37,7 +37,7 @@ SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int
   const Eigen::VectorXd first = cell_values(space, code.demodulation.col(e * space.taps));
   if (space.equal_duties) {
     SwitchedLabels halves = first_of(ranked(first), space.cells / 2);
-    for (int& label : halves.label) label = 1 - label;  // the first bucket is class 0
+    for (int& label : halves.label) label = 1 - label;  // class 0 is the first bucket
     return halves;
   }
   Eigen::MatrixXd shares(space.cells, space.classes());
@@ -54,7 +54,7 @@ SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int
   return SwitchedLabels::from_cells(cells);
 }
 
-/// How many of the brightest cells, lit evenly, come closest to the waveform.
+/// Returns the number of brightest cells that, at uniform level, approximate the waveform best.
 int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int min_on) {
   const auto total = static_cast<double>(order.size());
   int best = min_on;
@@ -62,7 +62,7 @@ int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, i
   for (int on = 1; on < static_cast<int>(order.size()); ++on) {
     lit += cells[order[static_cast<std::size_t>(on - 1)]];
     if (on < min_on) continue;
-    // Squared distance to level total / on, without what does not depend on `on`.
+    // Squared distance to level total / on, without terms that do not depend on `on`.
     const double distance = total * total / on - 2.0 * total / on * lit;
     if (distance < smallest) {
       smallest = distance;

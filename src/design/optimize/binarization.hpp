@@ -7,11 +7,11 @@
 
 namespace tofsmith {
 
-/// The playable code next to rendered waveforms. Gates go to the largest class of every cell (of
-/// two buckets with equal duties, the cells that favour the first most). Light goes to the
-/// brightest cells, as many of them as the judge likes best, near the number that fits the waveform
-/// best and never so few that the peak would be exceeded. Arms that need not switch stay as they
-/// are.
+/// Converts rendered waveforms to binary ones. Every cell goes to its largest gate class; for two
+/// buckets with equal duties, the half of the cells that most favours the first bucket goes to it.
+/// Light is on in the brightest cells. Their number is chosen by the judge near the best
+/// approximation of the waveform and is large enough not to exceed the peak. Non-binary arms stay
+/// unchanged.
 SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code,
                        const CodeJudge& judge);
 

@@ -11,9 +11,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double min_error_bin = 1e-9;  // errors have logarithms
+constexpr double min_error_bin = 1e-9;  // avoids log(0)
 
-/// The same waveforms on the grid they are judged on.
+/// Resamples waveforms to the grid of the judge.
 SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
   const int repeat = judge.samples() / code.samples();
   if (repeat == 1) return code;
@@ -26,7 +26,7 @@ SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
   return fine;
 }
 
-/// The code with its modulation delayed: correlation'(z) = correlation(z + rotation_bin).
+/// Delays the modulation: correlation'(z) = correlation(z + rotation_bin).
 SampledCode rotated(const SampledCode& code, int rotation_bin) {
   SampledCode result = code;
   const int samples = code.samples();
@@ -52,7 +52,7 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
   return batches;
 }
 
-/// Mean error over the trials [bin]; circular where two returns are decoded.
+/// Returns the mean error over the trials [bin]; always circular for two-return decoding.
 double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
                       bool linear) {
   linear = linear && !batch.two_returns;
@@ -64,7 +64,7 @@ double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decode
   return sum / static_cast<double>(decoded_bin.size());
 }
 
-/// Errors of a batch at every rotation [bin].
+/// Returns the errors of a batch at every rotation [bin].
 template <typename Errors>
 std::vector<double> sums_of(Errors errors, const TrialBatch& batch,
                             const std::vector<double>& decoded_bin) {
@@ -123,7 +123,7 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
       const DepthPrior& depths = problem_->depths;
       const bool circular = !problem_->linear() || rotating_[p].two_returns;
-      if (circular && depths.is_uniform()) continue;  // it does not depend on the rotation
+      if (circular && depths.is_uniform()) continue;  // independent of the rotation
       loss.decode(variant.levels[p].point, rotating_[p], decoded_bin);
       const auto kind = circular ? DepthErrorKind::circular : DepthErrorKind::linear;
       const std::vector<double> sums =

@@ -10,18 +10,18 @@
 
 namespace tofsmith {
 
-/// How good a code is on the grid.
+/// Quality of a code on the grid.
 struct CodeScore {
-  double log_error_bin = 0.0;  ///< mean over light levels of log depth error; of the worst variant
-  int rotation_bin = 0;        ///< at which it is judged; 0 where the error does not depend on it
+  double log_error_bin = 0.0;  ///< mean log depth error over light levels, for the worst variant
+  int rotation_bin = 0;        ///< rotation for this error; 0 if the error does not depend on it
 };
 
-/// Judges codes by the error of the hard decoder, all of them on the same trials. For the linear
-/// error, and where depths are not all alike, one set of trials finds the best common rotation and
-/// another, for the linear error denser at the ends of the range, judges the code there.
+/// Evaluates codes by the error of the hard decoder, all on the same trials. For the linear error,
+/// or weighted depths, one set of trials determines the best common rotation and another one the
+/// error there. For the linear error the latter is denser at the ends of the range.
 class CodeJudge {
  public:
-  /// @param trials  per light level
+  /// @param trials  number per light level
   CodeJudge(const DesignProblem& problem, int trials, std::uint64_t seed, std::uint64_t work_item);
 
   CodeScore score(const SampledCode& code) const;
@@ -31,11 +31,11 @@ class CodeJudge {
   int best_rotation(const SampledCode& code) const;
 
   const DesignProblem* problem_;
-  std::vector<TrialBatch> judging_;   // one per light level, shared by variants
-  std::vector<TrialBatch> rotating_;  // of depths that are all alike, to find the rotation
+  std::vector<TrialBatch> judging_;   // one per light level, shared by the variants
+  std::vector<TrialBatch> rotating_;  // uniform depths, to determine the rotation
 };
 
-/// The parameters with the origin of depth moved to `rotation_bin`, to the nearest cell.
+/// Moves the origin of depth to `rotation_bin`, rounded to a cell.
 WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
                            int rotation_bin);
 

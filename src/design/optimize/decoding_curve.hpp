@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// Memory that begins on a cache line, as whole-vector loads want it.
+/// Allocates memory aligned to cache lines, for aligned vector loads.
 template <typename Value>
 struct CacheLineAllocator {
   using value_type = Value;
@@ -32,37 +32,37 @@ template <typename Value>
 using Aligned = std::vector<Value, CacheLineAllocator<Value>>;
 using AlignedFloats = Aligned<float>;
 
-/// The curve that the decoder compares with, without what ambient light explains:
+/// Curve that the decoder matches, with the ambient component projected out:
 ///   p_j = P x_j,  x_j = g o chi_j,  P = I - a a^T / |a|^2,  a = g o kappa,  g_i = T_i / mean T,
-/// at bins j = 0 .. N, the last of which is the first again; and Q_jk = <p_j, p_k> for neighbours.
-/// @tparam Value  float, or double where gradients are checked against differences
+/// at bins j in [0, N], where bin N equals bin 0; and Q_jk = <p_j, p_k> for adjacent bins.
+/// @tparam Value  float, or double to compare gradients with finite differences
 template <typename Value>
 struct DecodingCurveOf {
   DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table);
 
-  /// Component r of the curve, j = 0 .. N and padding.
+  /// Returns component r of the curve, j in [0, N] plus padding.
   const Value* component(int r) const { return points.data() + r * stride; }
 
   int samples, measurements;
-  int stride;                    ///< between components; whole vectors, and room for one more point
+  int stride;                    ///< distance between components: whole vectors, plus one
   Aligned<Value> points;         ///< (R, stride)
-  Aligned<Value> squares;        ///< Q_jj, j = 0 .. N
-  Aligned<Value> products;       ///< Q_j,j+1, j = 0 .. N - 1
+  Aligned<Value> squares;        ///< Q_jj, j in [0, N]
+  Aligned<Value> products;       ///< Q_j,j+1, j in [0, N)
   Eigen::MatrixXd exact_points;  ///< (N, R)
 };
 using DecodingCurve = DecodingCurveOf<float>;
 
-/// Gradient of a function by what is in a decoding curve, summed over trials.
+/// Gradient with respect to the contents of a decoding curve, summed over trials.
 template <typename Value>
 struct CurveGradientOf {
   explicit CurveGradientOf(const DecodingCurveOf<Value>& curve);
   void clear();
-  /// Adds the gradient by the table that the curve was made of.
+  /// Adds the gradient with respect to the table of the curve.
   void pull_back(const SampledCamera& camera, const MeasurementTable& table,
                  const DecodingCurveOf<Value>& curve, MeasurementTable& gradient) const;
 
   Aligned<Value> points;                 ///< (R, stride)
-  Aligned<Value> squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 as seen from chord j
+  Aligned<Value> squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 through chord j
   Aligned<Value> products;
 };
 using CurveGradient = CurveGradientOf<float>;

@@ -17,17 +17,17 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int min_samples = 96;  // of the correlation functions, however long the cells
+constexpr int min_samples = 96;  // minimum number of samples of the correlation functions
 constexpr int min_cells = 4;
 
-/// Lengths whose transform is fast.
+/// Returns true for lengths with a fast Fourier transform.
 bool factors_are_small(int count) {
   for (const int factor : {2, 3, 5})
     while (count % factor == 0) count /= factor;
   return count == 1;
 }
 
-/// Share of the peak that pulses of whole cells can use.
+/// Returns the fraction of the peak that pulses of whole cells can use.
 double usable_peak(int cells, double peak_factor) {
   return cells / std::ceil(cells / peak_factor - 1e-9) / peak_factor;
 }
@@ -45,7 +45,8 @@ int cells_within(int most, double peak_factor) {
   return most;
 }
 
-/// `count` values between those of the list, evenly by rank and by logarithm over `floor`.
+/// Returns `count` values that interpolate the sorted list: uniform in rank, and logarithmic above
+/// `floor`.
 std::vector<double> in_between(std::vector<double> levels, int count, double floor) {
   std::sort(levels.begin(), levels.end());
   if (std::ssize(levels) <= count) return levels;
@@ -61,20 +62,20 @@ std::vector<double> in_between(std::vector<double> levels, int count, double flo
   return result;
 }
 
-/// How many pulses of the shortest length the period holds.
+/// Returns the number of shortest pulses that fit into a period.
 int runs_per_period(double shortest) { return static_cast<int>(std::floor(1.0 / shortest + 1e-9)); }
 
-/// Whether the means of a good code suffice to separate two returns: two strengths and two depths,
-/// and ambient light where it is seen, and one more.
+/// Returns true if there are enough measurements to separate two returns. Required are two
+/// strengths, two depths, ambient light (if visible) and one more.
 bool may_tell_two_returns(const Camera& camera, int exposures) {
   const int taps = camera.sensor.taps;
   if (camera.sensor.readout == Readout::difference) return exposures >= 5;
-  // Taps that share all charge add up to the same in every exposure.
+  // The sum of taps that share all charge is the same in every exposure.
   const bool share_all = taps > 1 && !(taps > 2 && camera.sensor.drain);
   return (share_all ? exposures * (taps - 1) + 1 : exposures * taps) >= 6;
 }
 
-/// Second returns on a grid that is coarse enough to try all pairs of bins.
+/// Restricts second returns to a grid that is coarse enough to test all pairs of bins.
 MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
   constexpr int max_bins = 160;
   int step = (samples + max_bins - 1) / max_bins;
@@ -89,7 +90,8 @@ MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
   return later;
 }
 
-/// The camera's points, and the same with second returns where those matter.
+/// Returns the operating points of the camera, and copies with second returns if they have a
+/// weight.
 std::vector<LightLevel> levels_of(const Camera& camera,
                                   const std::optional<OperatingMultipath>& later,
                                   double two_return_weight) {

@@ -29,14 +29,14 @@ namespace {
 
 constexpr std::uint64_t polish_key = 103;
 
-/// Whether two returns can be separated, well or badly.
+/// Returns true if two returns can be separated.
 bool tells_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
       make_decoding_table(ForwardModel(code, camera), camera));
 }
 
-/// Which of the pool are made playable: the best and, on cameras with operating multipath,
-/// the best few of the others that can be decoded as two returns.
+/// Selects the entries of the pool to convert to feasible codes: the best ones and, on cameras with
+/// operating multipath, the best few others for which two returns can be decoded.
 std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const OptimizePool& pool,
                                         const Camera& camera, const OptimizeOptions& options,
                                         const Sharpness& sharpness) {
@@ -54,8 +54,8 @@ std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const Opti
   return chosen;
 }
 
-/// A search of twice the usual effort begins with all of the usual one, and so on by factors of
-/// two: more effort never finds less.
+/// Returns the stages of a search. A search with twice the default effort starts with all of the
+/// default search, and so on by factors of two, so more effort never gives a worse code.
 std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   const OptimizeOptions usual;
   std::vector<PoolStage> stages;
@@ -68,7 +68,7 @@ std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   return stages;
 }
 
-/// How the codes were searched for.
+/// Returns the record of the search.
 SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
   return {.work_unit = "descents",
           .error_name = "smallest depth error so far, by the search's own trials",
@@ -76,8 +76,8 @@ SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
           .account = fmt::format("{} gradient steps", steps)};
 }
 
-/// The best of the pool as codes that can be played: switched, and with polished edges too.
-/// @param before  codes that stages before this one polished
+/// Converts the best of the pool to feasible codes: binarized, and also with optimized edges.
+/// @param before  number of codes with edges optimized by earlier stages
 std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
                                            const Camera& camera, const OptimizeOptions& options,
                                            std::uint64_t before, const Progress& progress) {
@@ -125,17 +125,18 @@ void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"
 
 namespace {
 
-/// All of the search, for arms as they are.
+/// Runs the complete search for the given arms.
 std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
                                     const OptimizeOptions& options, std::span<const CodeSet> also,
                                     const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
-  const Camera camera = in_buckets(variants.front());  // whose codes are searched
+  const Camera camera = in_buckets(variants.front());  // the camera for which codes are searched
 
-  // 1. Go downhill from many codes, from changed copies of the best, and once more from the best;
-  // 2. make the best of them playable; and again with more of all, where more is asked for.
+  // For every stage:
+  // 1. Descend from many codes, from perturbed copies of the best, and again from the best.
+  // 2. Convert the best to feasible codes.
   OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
   const std::vector<PoolStage> stages = stages_of(options);
   std::vector<double> weights;
@@ -152,7 +153,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     std::move(made.begin(), made.end(), std::back_inserter(candidates));
   }
 
-  // 3. Say how they were found.
+  // 3. Add the record of the search.
   const std::int64_t polished =
       options.polish ? std::ssize(candidates) / 2 * options.polish_steps : 0;
   const std::int64_t steps = pool.steps() + polished;
@@ -166,8 +167,8 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   return candidates;
 }
 
-/// Of arms that need not switch: what is found where they do competes, and is where one more
-/// descent begins.
+/// Search for arms that are not binary. The codes for binary arms compete and provide one more
+/// start.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
                                      const Progress& progress) {

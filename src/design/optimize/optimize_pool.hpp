@@ -16,13 +16,13 @@
 
 namespace tofsmith {
 
-/// Stochastic gradient descent whose steps are scaled by running means of the gradient and of its
+/// Stochastic gradient descent with steps scaled by running means of the gradient and of its
 /// square.
 /// @see Kingma and Ba, "Adam: a method for stochastic optimization", ICLR 2015
 class Adam {
  public:
-  /// Steps `values` against `gradient`, of the same shape at every call; entries that are not
-  /// finite count as 0.
+  /// Updates `values` against `gradient`, which must have the same shape in all calls. Non-finite
+  /// entries count as 0.
   void step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate);
 
  private:
@@ -31,62 +31,62 @@ class Adam {
   double mean_power_ = 1.0, square_power_ = 1.0;
 };
 
-/// How waveforms go downhill. Waveforms and decoder begin soft and sharpen on the way.
+/// Schedule of a descent. Waveforms and decoder start soft and become sharper.
 struct DescentSchedule {
   int steps = 300;
   int trials_per_step = 360;  ///< over all light levels
-  double rate = 0.08;         ///< of the parameters, where waveforms are soft
+  double rate = 0.08;         ///< of the parameters, while waveforms are soft
   Sharpness final_sharpness{6.0, 8.0};
-  double soft_share = 0.4;  ///< of the steps, before waveforms begin to sharpen
+  double soft_share = 0.4;  ///< fraction of the steps before waveforms become sharper
   double decision_sharpness_begin = 1.0,
          decision_sharpness_end = 3.0;  ///< sharpness of decisions per log likelihood
 };
 
-/// Parameters of lower error. Draws from the streams (seed, work item, step).
-/// @param progress called at every step
+/// Returns parameters with a lower error. Uses the random streams (seed, work item, step).
+/// @param progress  updated at every step
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress = nullptr);
 
-/// A code that descents have found.
+/// A code found by a descent.
 struct PoolEntry {
   WaveformParameters parameters;
   CodeScore score;
-  std::string start;  ///< where it began
+  std::string start;  ///< name of the start
 };
 
-/// A jump out of a basin of the error: one of the best of the pool, softened, with one pair of
-/// waveforms replaced (by a random one, or by one of another entry) or its gates rotated against
-/// its light, and noise on all.
+/// Jumps out of a local minimum. Takes one of the best entries, softens it, replaces one pair of
+/// waveforms (by a random pair or by one of another entry) or rotates its gates relative to its
+/// light, and adds noise.
 /// @param pool  best first, not empty
-/// @return parameters to descend from, and where they began
+/// @return parameters of the start, and the name of its origin
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
               RandomStream& random);
 
-/// Parameters no further from soft than `limit`, so that a descent can change them again.
+/// Clips parameters to [-limit, limit], so that a descent can change them again.
 WaveformParameters softened(WaveformParameters parameters, double limit);
 
-/// How much is tried of one stage of a search: in all, with the stages before it.
+/// Work of one stage of a search; starts and hops include those of earlier stages.
 struct PoolStage {
   int starts = 0, hops = 0;
-  int refinement_steps = 0;  ///< of this stage alone
+  int refinement_steps = 0;  ///< of this stage only
 };
 
-/// Codes that descents from many starts lead to, best first, with what happened on the way. A stage
-/// after others goes on where they ended.
+/// Codes found by descents from many starts, best first, with the history of the search. Every
+/// stage continues from the previous one.
 class OptimizePool {
  public:
   OptimizePool(const DesignProblem& problem, const OptimizeOptions& options, double bin_m);
 
   /// Descends from all starts.
   void run_starts(const PoolStage& stage, std::span<const CodeSet> also, const Progress& progress);
-  /// Descends from changed copies of the best, until hops or patience end.
+  /// Descends from perturbed copies of the best, until the hops or the patience are used up.
   void run_hops(const PoolStage& stage, const Progress& progress);
-  /// Descends once more, from softened copies of the best; keeps the better of each.
+  /// Descends again from softened copies of the best; keeps the better code of each pair.
   void refine(const PoolStage& stage, const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
-  /// The least error so far after every descent.
+  /// Returns the smallest error after every descent.
   const std::vector<SearchStep>& history() const { return history_; }
   std::int64_t steps() const { return steps_; }
   bool ended_early() const { return ended_early_; }

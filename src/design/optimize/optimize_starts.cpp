@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// Sum of harmonics 1 .. highest with normal coefficients, at the samples.
+/// Returns a sum of harmonics 1 to `highest_frequency` with normal coefficients.
 Eigen::VectorXd smooth_function(int samples, int highest_frequency, RandomStream& random) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(samples);
   for (int f = 1; f <= highest_frequency; ++f) {
@@ -30,15 +30,15 @@ Eigen::VectorXd smooth_function(int samples, int highest_frequency, RandomStream
   return values;
 }
 
-/// A code of zeros, to be written exposure by exposure.
+/// Returns a code of zeros, to be filled by exposure.
 SampledCode empty_code(const WaveformSpace& space) {
   return {Eigen::MatrixXd::Zero(space.samples(), space.exposures),
           Eigen::MatrixXd::Zero(space.samples(), space.exposures * space.taps)};
 }
 
-/// Highest harmonic that the camera lets through well enough to be of use.
+/// Returns the highest harmonic with a useful amplitude after both arms.
 int highest_useful_frequency(const DesignProblem& problem) {
-  constexpr double useful = 0.02;  // of the amplitude, behind both arms
+  constexpr double useful = 0.02;  // fraction of the amplitude
   constexpr int max_frequency = 14;
   int highest = 1;
   for (int n = 1; n <= std::min(max_frequency, problem.space.cells / 4); ++n)
@@ -46,14 +46,14 @@ int highest_useful_frequency(const DesignProblem& problem) {
   return highest;
 }
 
-/// `count` equal pulses, together on for `duty` of the period.
+/// Writes `count` equal pulses with total duty `duty`.
 void write_pulses(const WaveformSpace& space, int count, double duty, int exposure,
                   SampledCode& code) {
   code.modulation.col(exposure) =
       pulse_train(count, std::min(1.0, duty)).cell_averages(space.samples());
 }
 
-/// Taps open in turn, `frequency` times per period; one tap, half the time.
+/// Opens the taps in turn, `frequency` times per period; a single tap for half the time.
 void write_turns(const WaveformSpace& space, int frequency, double phase, int exposure,
                  SampledCode& code) {
   const int turns = std::max(2, space.taps), samples = space.samples();
@@ -64,7 +64,7 @@ void write_turns(const WaveformSpace& space, int frequency, double phase, int ex
   }
 }
 
-/// The tap that is open is the one of the largest of random smooth functions.
+/// Opens the tap whose random smooth function is the largest.
 void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int exposure,
                         RandomStream& random, SampledCode& code) {
   const int choices = std::max(2, space.taps), samples = space.samples();
@@ -78,7 +78,7 @@ void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int e
   }
 }
 
-/// Light where a random smooth function is largest, as long as the peak demands.
+/// Turns on the light where a random smooth function is largest, for the duty at the peak.
 void write_smooth_light(const WaveformSpace& space, int highest_frequency, int exposure,
                         RandomStream& random, SampledCode& code) {
   const int samples = space.samples();
@@ -102,7 +102,7 @@ void add_noise(WaveformParameters& parameters, double deviation, RandomStream& r
     for (double& value : values->reshaped()) value += deviation * random.normal();
 }
 
-/// Families with as many exposures as the space, built for its peak.
+/// Returns families with the exposures of the space, built for its peak.
 std::vector<CodeSet> families_of(const WaveformSpace& space) {
   std::vector<CodeSet> codes;
   if (space.taps > 2) return codes;
@@ -113,14 +113,14 @@ std::vector<CodeSet> families_of(const WaveformSpace& space) {
     names.push_back(fmt::format("pulsed-multifrequency-k{}-q5", space.exposures));
   const FamilyOptions options{.samples = 240, .peak_factor = space.peak_factor};
   for (const std::string& name : names) {
-    if (why_no_family(name, options)) continue;  // no such member: one start fewer
+    if (why_no_family(name, options)) continue;  // no such member of the family
     const CodeSet code = make_family(name, options);
     codes.push_back(space.taps == 2 ? code.with_two_buckets() : code);
   }
   return codes;
 }
 
-/// Near the code: waveforms that stay as soft as they begin, so much nearer.
+/// Returns a start near the code. Waveforms that stay soft start closer to it.
 OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double noise,
                        RandomStream& random) {
   constexpr double nearer = 2.0;
@@ -132,14 +132,14 @@ OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double
   return start;
 }
 
-/// Exposures at several frequencies: the first ones at the lowest, so that depth is unique, the
-/// rest at `high` with their phases spread evenly, or at random frequencies and phases if that is
-/// 0.
+/// Exposures at several frequencies. The first exposures have the lowest one, so that depth is
+/// unique. The others have frequency `high` with evenly spaced phases, or random frequencies and
+/// phases if `high` is 0.
 SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);
   const int highest = std::min(12, highest_useful_frequency(problem));
-  const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets see phases half a period apart too
+  const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets add the opposite phase
   SampledCode code = empty_code(space);
   for (int e = 0; e < space.exposures; ++e) {
     int frequency = 1;

@@ -11,8 +11,8 @@ namespace tofsmith {
 
 namespace {
 
-/// The camera, and with DesignOptions::robust what its band may be instead: other perturbations
-/// change the code or the taps, not what the gradients go through.
+/// Returns the camera and, with DesignOptions::robust, variants with other bandwidths. Other
+/// perturbations affect the code or the taps, which the gradients do not model.
 std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& options) {
   std::vector<Camera> variants{camera};
   if (options.robust)

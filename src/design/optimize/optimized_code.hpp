@@ -9,13 +9,13 @@
 
 namespace tofsmith {
 
-/// Numbers of exposures to optimize for: those asked for, else those that suit the camera.
+/// Returns the numbers of exposures to optimize: those in the options, or else the suggested ones.
 std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options);
 
-/// "optimized-k5"
+/// Returns a name such as "optimized-k5".
 std::string optimized_name(int exposures);
 
-/// What optimize() makes of so many exposures, from those of the starts that have as many.
+/// Returns the candidates of optimize() for a number of exposures, with all matching starts.
 /// @throws std::invalid_argument as optimize(); Interrupted
 std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
                                             const DesignOptions& options,

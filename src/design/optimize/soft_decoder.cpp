@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "design/optimize/soft_decoder.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own headers after foreach_target.
+// Highway requires its headers after foreach_target.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -19,14 +19,14 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// As wide as Floats and Doubles are.
+/// Vectors of the same width as Floats and Doubles.
 template <typename Value>
 using Tag = hn::CappedTag<Value, widest_vector * sizeof(float) / sizeof(Value)>;
 
 constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
 constexpr float smallest = 1e-30f;
 
-/// beta_j = <y, p_j>, j = 0 .. N.
+/// Computes beta_j = <y, p_j> for j in [0, N].
 template <typename Value>
 HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
                              const Value* HWY_RESTRICT electrons,
@@ -41,9 +41,10 @@ HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
   }
 }
 
-/// Best point of every chord: with u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it lies at
-/// t = v / (u + v) where both are > 0, else at the better end. Scores are S_j, -1 in the padding.
-/// @return the largest
+/// Finds the best point of every chord. With u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it is at
+/// t = v / (u + v) if both are > 0, otherwise at the better end. Scores are S_j, or -1 in the
+/// padding.
+/// @return the largest score
 template <typename Value>
 HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
                               typename SoftDecoderOf<Value>::Scratch& scratch) {
@@ -85,7 +86,7 @@ HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// The bin of the largest correlation. Uses scratch.ratio.
+/// Returns the bin with the largest correlation. Uses scratch.ratio.
 template <typename Value>
 HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
                         typename SoftDecoderOf<Value>::Scratch& scratch) {
@@ -120,7 +121,7 @@ Value best_place(const DecodingCurveOf<Value>& curve, const Value* electrons,
   return static_cast<Value>(chord) + scratch.place[chord];
 }
 
-/// What a vector of chords is off by.
+/// Returns the errors of a vector of chords.
 template <typename D, typename V, typename Value>
 HWY_INLINE V chord_error(D d, V place, Value true_bin, Value samples,
                          const SoftQuestion& question) {
@@ -135,8 +136,8 @@ HWY_INLINE V chord_error(D d, V place, Value true_bin, Value samples,
   return hn::Min(distance, hn::Sub(whole, distance));
 }
 
-/// Shares of the chords (unnormalized) and their errors. Returns {sum of shares, sum of shares
-/// times errors}.
+/// Computes the unnormalized weights of the chords and their errors. Writes {sum of weights, sum of
+/// weights times errors}.
 template <typename Value>
 HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQuestion& question,
                              Value largest, typename SoftDecoderOf<Value>::Scratch& scratch,
@@ -165,8 +166,9 @@ HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQues
   sums[1] = sum_of_lanes(d, error_total);
 }
 
-/// Gradient of the expected error by the matches b_j of every chord's two ends (scratch) and, added
-/// with its weight, by the squares and products of the curve.
+/// Computes the gradient of the expected error with respect to the matches b_j at both ends of
+/// every chord (scratch), and adds the weighted gradient with respect to the squares and products
+/// of the curve.
 template <typename Value>
 HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
                                      const SoftQuestion& question, Value weight,
@@ -190,7 +192,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     const auto s = hn::Sub(one, t);
     const auto share = hn::Mul(hn::Load(d, scratch.share.data() + j), hn::Set(d, normalization));
 
-    // By the score: S = match^2 / (2 square), stationary in t where t is free.
+    // Through the score S = match^2 / (2 square), which is stationary in t if t is free.
     const auto by_score =
         hn::Mul(hn::Mul(hn::Set(d, static_cast<Value>(question.sharpness)), share),
                 hn::Sub(hn::Load(d, scratch.error.data() + j), hn::Set(d, expected)));
@@ -203,7 +205,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     auto by_q11 = hn::Mul(hn::Mul(by_square, t), t);
     auto by_q01 = hn::Mul(hn::Mul(hn::Add(by_square, by_square), s), t);
 
-    // By the place of the best point, t = v / (u + v).
+    // Through the position of the best point, t = v / (u + v).
     const auto from_truth = hn::Sub(hn::Add(hn::Iota(d, static_cast<Value>(j)), t), truth);
     auto sign = hn::IfThenElse(hn::Gt(from_truth, zero), one, hn::Set(d, -1.0f));
     if (question.is_signed) sign = one;
@@ -229,11 +231,11 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     hn::Store(by_b0, d, scratch.by_match.data() + j);
     hn::StoreU(by_b1, d, scratch.by_next_match.data() + j + 1);
   }
-  // Padding lanes are zero: their share is. Point N is point 0.
+  // Weights are zero in padding lanes. Point N is point 0.
   scratch.by_next_match[0] = scratch.by_next_match[static_cast<std::size_t>(curve.samples)];
 }
 
-/// From the matches b_j = <y, p_j> to the points, with the weight, and to y.
+/// Propagates the gradient from the matches b_j = <y, p_j> to the points (weighted) and to y.
 template <typename Value>
 HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const Value* electrons,
                                       Value weight, CurveGradientOf<Value>& gradient,
@@ -262,7 +264,7 @@ HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const
   }
 }
 
-/// @param gradient  null: the error alone
+/// @param gradient  null: computes only the error
 template <typename Value>
 Value expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
                      const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
@@ -278,7 +280,7 @@ Value expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons
   return expected;
 }
 
-// Dispatched functions are no templates.
+// Dispatched functions cannot be templates.
 float decode_floats(const DecodingCurve& curve, const float* electrons,
                     SoftDecoder::Scratch& scratch) {
   return best_place(curve, electrons, scratch);

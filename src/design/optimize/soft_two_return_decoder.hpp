@@ -9,34 +9,34 @@
 
 namespace tofsmith {
 
-/// Delays of a second return that a decoder looks for, in bins of its grid.
+/// Range of delays of a second return that a decoder considers, in bins of its grid.
 struct DelayBins {
   int shortest = 1, longest = 2;
 };
 
-/// Decodes measurements as two returns, s1 p_j + s2 p_k with s1 >= s2 >= 0, k later than j by one
-/// of the delays. A pair's score is half of what it explains,
+/// Decodes measurements as two returns, s1 p_j + s2 p_k with s1 >= s2 >= 0, where k is later than j
+/// by one of the delays. The score of a pair is half the explained sum of squares,
 ///   S_jk = max over s1, s2 of s1 <y, p_j> + s2 <y, p_k> - |s1 p_j + s2 p_k|^2 / 2.
-/// On the bins of a grid and no finer: it tells whether two returns can be taken for two others,
-/// not how exactly they are found. Keeps scratch memory: one per thread.
+/// Positions are limited to the bins of a grid. This shows whether pairs of returns can be
+/// confused, but not their precision. Contains scratch memory; use one object per thread.
 class SoftTwoReturnDecoder {
  public:
-  /// @param step  grid of every step-th bin of the curve; divides its samples
+  /// @param step  the grid has every step-th bin of the curve; must divide its samples
   SoftTwoReturnDecoder(const DecodingCurve& curve, int step, DelayBins delays);
 
-  /// Bin of the curve of the direct return for the electrons (R).
+  /// Returns the position of the direct return for the electrons (R) [bins of the curve].
   double decode(const float* electrons);
-  /// Expected |error| of the direct return [bins of the curve], the shorter way round, where a pair
-  /// has probability exp(sharpness S_jk) / sum.
+  /// Returns the expected circular |error| of the direct return [bins of the curve], if a pair has
+  /// probability exp(sharpness S_jk) / sum.
   double expected_error(const float* electrons, const SoftQuestion& question);
-  /// The same; adds `weight` times the gradient by the curve to what pull_back gives, and writes
-  /// that by the electrons (R), unweighted.
+  /// Returns the same error, accumulates `weight` times its gradient with respect to the curve for
+  /// pull_back(), and writes the unweighted gradient with respect to the electrons (R).
   double expected_error(const float* electrons, const SoftQuestion& question, float weight,
                         float* by_electrons);
-  /// Adds the gradient by the curve that was summed up.
+  /// Adds the accumulated gradient with respect to the curve.
   void pull_back(CurveGradient& gradient) const;
 
-  /// Lanes: one value per bin, two periods of them, or one per pair, (delays, stride).
+  /// Arrays with one value per bin, over two periods, or one per pair, (delays, stride).
   struct Pairs {
     Pairs(int bin_count, DelayBins delay_bins);
     std::size_t of(int delay) const {
@@ -60,7 +60,7 @@ class SoftTwoReturnDecoder {
   };
 
   void set_match(const float* electrons);
-  /// Shares of all pairs, and the errors they stand for.
+  /// Computes the weights of all pairs and the expected error.
   Shares weigh(const float* electrons, const SoftQuestion& question);
 
   int step_, curve_stride_;

@@ -8,16 +8,17 @@
 
 namespace tofsmith {
 
-/// Gradient of a problem's objective by the waveforms, from fresh trials at every call. The
-/// objective is the smooth maximum, over the variants of the camera, of the mean log error over the
-/// light levels; what a level counts for follows from running means of its errors.
+/// Stochastic gradient of the objective with respect to the waveforms, from new trials in every
+/// call. The objective is the smooth maximum, over the variants of the camera, of the mean log
+/// error over the light levels. The weights of the levels follow from running means of their
+/// errors.
 class StochasticGradient {
  public:
   /// @param trials  per call, over all light levels and variants
-  /// @param random  of the noise that is kept in store
+  /// @param random  for the stored noise
   StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
 
-  /// @param decision_sharpness  sharpness of the decoder's decisions per log likelihood
+  /// @param decision_sharpness  sharpness of decisions per log likelihood
   SampledCode at(const SampledCode& code, double decision_sharpness, RandomStream& random);
 
  private:
@@ -28,7 +29,7 @@ class StochasticGradient {
   const DesignProblem* problem_;
   int trials_;
   NoiseStore noise_;
-  std::vector<std::vector<double>> average_error_;  // 0: not known yet
+  std::vector<std::vector<double>> average_error_;  // 0: not yet known
 };
 
 }  // namespace tofsmith

@@ -10,38 +10,38 @@
 
 namespace tofsmith {
 
-/// What is on when, in one period: label[i] from at[i] to the next switching time, the last to the
-/// first of the next period. Times in periods, increasing, all within one period; none: label[0] at
-/// all times. Neighbouring labels differ.
+/// Labels over one period: label[i] applies from at[i] to the next switching time, the last one
+/// until the first of the next period. Times are in periods, ascending, within one period. Without
+/// times, label[0] applies always. Adjacent labels differ.
 struct SwitchedLabels {
   std::vector<double> at;
   std::vector<int> label;
 
-  /// Label per cell of equal length.
+  /// Creates labels from cells of equal length.
   static SwitchedLabels from_cells(const std::vector<int>& cells);
 
   std::size_t runs() const { return at.size(); }
-  /// Begin of the run after run i; a period later for the last.
+  /// Returns the end of run i, in (0, 2).
   double end(std::size_t i) const { return i + 1 < at.size() ? at[i + 1] : at[0] + 1.0; }
   double length(std::size_t i) const { return end(i) - at[i]; }
-  /// Share of the period with that label.
+  /// Returns the fraction of the period with this label.
   double share(int wanted) const;
-  /// On where the label is that.
+  /// Returns a waveform that is on where the label equals `wanted`.
   Waveform waveform(int wanted, double level) const;
 };
 
-/// A code that can be played: arms that only switch by their switching times, others by samples.
+/// A feasible code: switching times for binary arms, samples for others.
 struct SwitchedCode {
   std::vector<SwitchedLabels> light;  ///< per exposure, 1 = on; empty: sampled.modulation
   std::vector<SwitchedLabels>
-      gates;            ///< per exposure, class of charge; empty: sampled.demodulation
-  SampledCode sampled;  ///< of arms that may play any value
+      gates;            ///< per exposure, class of the charge; empty: sampled.demodulation
+  SampledCode sampled;  ///< of arms that are not binary
 };
 
-/// Unit mean power where the light is on.
+/// Returns a light waveform with unit mean power.
 Waveform light_waveform(const SwitchedLabels& light);
 
-/// Its cell averages on the grid.
+/// Returns the cell averages on the grid.
 SampledCode sampled_on(const WaveformSpace& space, const SwitchedCode& code);
 
 CodeSet code_set(const std::string& name, const WaveformSpace& space, const SwitchedCode& code,

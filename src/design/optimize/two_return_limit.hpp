@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// How far two-return decoding of a code may err: a little farther than of the best code given.
+/// Limit of the two-return error of a code, relative to the best of the initial codes.
 class TwoReturnLimit {
  public:
   /// @param max_loss  OptimizeOptions::max_two_return_loss
@@ -21,8 +21,9 @@ class TwoReturnLimit {
     if (report && report->two_return)
       min_m_ = std::min(min_m_, report->two_return->circular_m.value);
   }
-  /// How many times worse a code counts: as often as it is over the limit, 1 within it, and no more
-  /// than 1.25, also if it cannot be decoded as two returns. 1 for all if no code given can.
+  /// Returns the factor by which the error of a code is multiplied: the ratio of its two-return
+  /// error to the limit, clipped to [1, 1.25], or 1.25 if two returns cannot be decoded. Always 1
+  /// if no initial code permits two-return decoding.
   double excess(const std::optional<OperatingMultipathReport>& report) const {
     if (!report || std::isinf(min_m_)) return 1.0;
     constexpr double max_excess = 1.25;

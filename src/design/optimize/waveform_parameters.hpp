@@ -8,51 +8,52 @@
 
 namespace tofsmith {
 
-/// Which waveforms a design may choose from.
+/// Set of waveforms of a design.
 struct WaveformSpace {
-  int cells = 120;  ///< switching times lie on this many cells per period
+  int cells = 120;  ///< cells per period; switching times are multiples of a cell
   int repeat = 1;   ///< samples per cell
   int exposures = 0;
   int taps = 1;
-  /// Charge may also go nowhere. One tap always has that choice; two buckets never do.
+  /// Charge may also be discarded. Always possible for one tap, never for two buckets.
   bool drain = false;
   double peak_factor = 15.0;
-  bool equal_duties = false;  ///< the two buckets of an exposure are each open half the time
+  bool equal_duties = false;  ///< each of the two buckets of an exposure is open half the time
 
   int samples() const { return cells * repeat; }
-  /// Where charge can go at a time: a tap, or the drain, which comes last.
+  /// Returns the number of destinations of charge: taps, and the drain as the last one.
   int classes() const { return taps + (drain ? 1 : 0); }
-  /// Columns of free parameters per exposure: with two classes one says all.
+  /// Returns the number of parameter columns per exposure; one is sufficient for two classes.
   int columns() const { return classes() == 2 ? 1 : classes(); }
 
   friend bool operator==(const WaveformSpace&, const WaveformSpace&) = default;
 };
 
-/// How steeply waveforms follow their parameters: at large values they only switch.
+/// Steepness of waveforms as a function of their parameters; at large values they are nearly
+/// binary.
 struct Sharpness {
   double modulation = 1.0;
   double demodulation = 1.0;
 };
 
-/// Free numbers behind the waveforms of a code; every choice of them is playable.
-///   modulation    m = p s(k (phi - lambda)), s the logistic function, lambda such that mean m = 1:
-///                 the light may so use less than its peak
-///   demodulation  one of two classes: s(k theta); more: softmax(k theta) over the classes
+/// Free parameters of the waveforms of a code; all values are feasible.
+///   modulation    m = p s(k (phi - lambda)), s the logistic function, lambda such that mean m = 1;
+///                 the light may stay below its peak
+///   demodulation  two classes: s(k theta); more: softmax(k theta) over the classes
 struct WaveformParameters {
   Eigen::MatrixXd modulation;    ///< phi (cells, E)
   Eigen::MatrixXd demodulation;  ///< theta (cells, E x columns)
 };
 
-/// The waveforms at these parameters.
+/// Computes the waveforms for these parameters.
 SampledCode render(const WaveformSpace& space, const WaveformParameters& parameters,
                    const Sharpness& sharpness);
 
-/// Gradient by the parameters of a function whose gradient by the waveforms is given.
+/// Converts a gradient with respect to the waveforms to one with respect to the parameters.
 /// @param code  render(space, parameters, sharpness)
 WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code,
                              const Sharpness& sharpness, const SampledCode& gradient);
 
-/// Parameters whose waveforms come close to the code's: +-scale where it is on or off.
+/// Returns parameters whose waveforms approximate the code: +scale where on, -scale where off.
 WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode& code,
                                    double scale);
 
