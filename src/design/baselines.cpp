@@ -27,8 +27,9 @@ namespace {
 constexpr int samples_of_standard_codes = 360;
 constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pulse_s";
 
-/// Preselection: trials per operating point, how far from the least error a code may be, and how
-/// many stay. A look at a share of the trials, which err by some per cent, leaves out what is far.
+/// Screening of families: trials per operating point, maximum ratio to the smallest error, and
+/// maximum number of codes. A first evaluation with a fraction of the trials excludes codes with
+/// large errors.
 constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000, share_looked_at = 5;
 constexpr double contending = 1.12, far = 1.5;
 constexpr std::size_t max_contenders = 8, max_atlas_codes = 4;
@@ -38,7 +39,7 @@ int trials_per_point(const Camera& camera) {
   return std::max(min_trials_per_point, trials_of_all_points / std::max(1, points));
 }
 
-/// By the camera's choice, at the best origin [m].
+/// Returns the error selected by the camera, at the best origin [m].
 double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
   const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
   if (!rotates(camera, {}))
@@ -48,7 +49,7 @@ double first_error_m(const CodeSet& code, const Camera& camera, int trials, std:
   return *std::min_element(of_rotation.begin(), of_rotation.end());
 }
 
-/// That of each code of those asked for, infinite of others.
+/// Returns the error of each code; infinite for null pointers.
 std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, const Camera& camera,
                                    int trials, std::uint64_t seed) {
   std::vector<double> errors_m(codes.size(), infinity);
@@ -60,8 +61,8 @@ std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, con
   return errors_m;
 }
 
-/// The first errors of codes: by all trials where they may contend, by a share of them where they
-/// are far from it. Pointers to nothing have infinite ones.
+/// Returns the screening errors of codes, with all trials for codes that may be among the best and
+/// a fraction of them for others. Infinite for null pointers.
 std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, const Camera& camera,
                                            std::uint64_t seed) {
   const int trials = trials_per_point(camera);
@@ -77,14 +78,14 @@ std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, co
   return errors_m;
 }
 
-/// Why a code cannot compete on a camera; none: it can.
+/// Returns why a code cannot compete on a camera, or nothing if it can.
 std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera& camera) {
   if (auto reason = why_not_playable(code, camera)) return reason;
   if (!keeps_shortest_run(code, camera)) return short_runs;
   return why_no_depth(code, camera);
 }
 
-/// The first of the codes that has the waveforms of code i. Entries of an atlas share some.
+/// Returns the index of the first code with the same waveforms as code i. Atlas entries share some.
 std::size_t first_like(const std::vector<CodeSet>& codes, std::size_t i) {
   const auto alike = [&](const CodeSet& code) {
     if (code.taps() != codes[i].taps() || code.exposures() != codes[i].exposures()) return false;
@@ -97,7 +98,7 @@ std::size_t first_like(const std::vector<CodeSet>& codes, std::size_t i) {
   return static_cast<std::size_t>(std::find_if(codes.begin(), codes.end(), alike) - codes.begin());
 }
 
-/// Lets a code compete as it is, if it can. What tells no depth is left out by the judge.
+/// Adds a code if the camera supports it. judge() excludes codes that do not determine depth.
 void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
                   DesignResult& result) {
   if (const auto reason = why_not_playable(code, camera))
@@ -106,7 +107,7 @@ void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
   result.candidates.push_back({.code = std::move(code), .method = method});
 }
 
-/// The first few of many names, and the number of the others, which are `kind`.
+/// Lists the first few names, followed by the number of the others of this `kind`.
 std::string brief_list(const std::vector<std::string>& names, const char* kind) {
   constexpr std::size_t listed = 4;
   if (names.size() <= listed + 1) return fmt::format("{}", fmt::join(names, ", "));
@@ -114,7 +115,7 @@ std::string brief_list(const std::vector<std::string>& names, const char* kind) 
                      names.size() - listed, kind);
 }
 
-/// Notes, once for each reason, which contenders of a kind cannot compete.
+/// Records the contenders that cannot compete, grouped by reason.
 void leave_out(DesignResult& result, const Contenders& contenders, const char* kind) {
   for (const auto& [reason, names] : contenders.left_out)
     leave_out(result, brief_list(names, kind), reason);
@@ -193,7 +194,8 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
       first_errors_m(comparable, camera, trials_per_point(camera), search_seed(options));
   for (std::size_t i = 0; i < codes.size(); ++i) errors_m[i] = errors_m[first_like(codes, i)];
   const auto note = [](const std::string& name, std::vector<std::string>& names) {
-    if (names.empty() || names.back() != name) names.push_back(name);  // it comes fitted, and as is
+    // Codes occur twice: unchanged and adapted.
+    if (names.empty() || names.back() != name) names.push_back(name);
   };
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < codes.size(); ++i)
@@ -265,8 +267,8 @@ std::vector<std::string> suggested_baselines(const Camera& camera, const DesignO
 
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options) {
   constexpr int highest_without_limit = 15, highest_tried = 30;
-  if (camera.sensor.taps > 2) return {};  // all that have as many taps are suggested
-  if (camera.sensor.readout == Readout::rows) return {};  // all that have rows are suggested
+  // All families of such receivers are suggested baselines.
+  if (camera.sensor.taps > 2 || camera.sensor.readout == Readout::rows) return {};
   const int harmonics = useful_harmonics(camera);
   const std::vector<std::string> shown = suggested_baselines(camera, options);
   std::vector<std::string> names;

@@ -39,7 +39,7 @@ TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int
   require(table.rows() >= 2, "rows of the target", table.rows(), "must be >= 2");
   require(table.cols() >= 1, "columns of the target", table.cols(), "must be >= 1");
   require(samples >= 8, "samples", samples, "must be >= 8");
-  constexpr double largest = 1e100;  // squares of more or of less are no numbers
+  constexpr double largest = 1e100;  // avoids overflow and underflow of squares
   TargetSet set{std::move(name), {}};
   for (Eigen::Index k = 0; k < table.cols(); ++k) {
     Eigen::VectorXd column = table.col(k);

@@ -10,11 +10,11 @@
 
 namespace tofsmith {
 
-/// The code, which says by what method, for which camera and from which seed it was made.
+/// Returns the code with its provenance: method, camera and seed.
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
                   std::uint64_t seed);
 
-/// What there is to say of the measurements of a code that aims at no target.
+/// Returns the measurement reports of a code without target.
 std::vector<MeasurementReport> reports_of(const CodeSet& code, const std::string& start);
 
 }  // namespace tofsmith

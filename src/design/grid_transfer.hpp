@@ -8,16 +8,16 @@
 
 namespace tofsmith {
 
-/// What both arms of a camera leave of waveforms that are held over the cells of a grid of N:
+/// Returns the gain of both arms for waveforms that are constant within N cells:
 ///   chi[k] = D[k] conj(M[k]) G[k] / N,  G[k] = sum_j H(k + j N) sinc^2((k + j N) / N),
-/// k = 0 .. N/2, exact at the N bins. All ones without impulse responses.
+/// for k in [0, N/2], exact at the N bins. All ones without impulse responses.
 Eigen::VectorXcd grid_transfer(const Camera& camera, int samples);
 
-/// What harmonic n of a correlation function has of coefficient n mod N of its samples at the N
-/// bins:
+/// Returns the ratio of harmonic n of a correlation function to coefficient n mod N of its samples
+/// at the N bins:
 ///   chi_n = shares[n] chi[n mod N] / N,  shares[n] = H(n) sinc^2(n / N) / G[n mod N],
-/// n = 0 .. as far as more than 1e-12 is left. Only of cameras whose arms are limited: without
-/// responses functions are straight between bins.
+/// for n = 0, 1, ... as long as it exceeds 1e-12. Only for cameras with impulse responses; without
+/// them functions are linear between bins.
 Eigen::VectorXcd harmonic_shares(const Camera& camera, int samples);
 
 }  // namespace tofsmith

@@ -20,13 +20,13 @@ namespace tofsmith {
 
 namespace {
 
-/// The measurements of an exposure.
+/// Returns the number of measurements per exposure.
 int measurements_per_exposure(const Sensor& sensor) {
   return sensor.readout == Readout::difference ? 1 : sensor.taps;
 }
 
-/// Why no code at all measures depth on a camera on which every candidate was left out: the
-/// camera's own reason where it is known, else the reasons of the first candidates.
+/// Returns why no candidate is usable on a camera: a property of the camera if known, otherwise the
+/// reasons of the first candidates.
 BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                             const std::vector<std::string>& left_out) {
   if (camera.light.peak_factor <= 1.0)
@@ -67,7 +67,8 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                 fmt::format("no candidate can be used on this camera: {}", reasons));
 }
 
-/// A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
+/// Excludes candidates that do not determine depth. This can happen for some targets and is not an
+/// error unless no candidate is left.
 void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& options,
                                    DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {
@@ -80,7 +81,8 @@ void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& op
   if (result.candidates.empty()) require(why_no_candidate(camera, options, result.left_out));
 }
 
-/// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
+/// Evaluates a candidate with random numbers that were not used to select it, at its best origin if
+/// requested.
 void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                CameraBounds& bounds, const Progress& progress) {
   EvaluateOptions judging;
@@ -104,17 +106,17 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
       geometric_mean_error_m(candidate.error, camera.operating.error);
 }
 
-/// Judges it again on the camera's perturbations.
+/// Evaluates the candidate on the perturbed cameras.
 void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
-  constexpr int max_trials = 4000;  // ratios, with the same trials on every camera
+  constexpr int max_trials = 4000;  // ratios need few trials, because all cameras share them
   candidate.robustness =
       robustness(candidate.code, camera,
                  {.trials = std::min(options.trials, max_trials), .seed = options.seed}, progress);
 }
 
-/// What all candidates are ranked by [m], with what two-return decoding copes with badly counting
-/// as so many times worse.
+/// Returns the ranking errors of all candidates [m], multiplied by the penalty for two-return
+/// errors.
 std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const Camera& camera,
                                const DesignOptions& options) {
   TwoReturnLimit two_returns(options.optimize.max_two_return_loss);
@@ -176,7 +178,7 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
                       const Progress& progress) {
   leave_out_what_tells_no_depth(camera, options, result);
   CameraBounds bounds(camera);
-  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner: at last
+  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner comes last
   const ProgressParts of_candidates(parts[0], result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});

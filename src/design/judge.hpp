@@ -10,24 +10,24 @@
 
 namespace tofsmith {
 
-/// Codes and origins are chosen by other random numbers than they are judged by. The judge's are
-/// those of evaluate() with the same seed.
+/// Returns the seed for choosing codes and origins. It differs from the seed of judge(), which uses
+/// the same random numbers as evaluate() with DesignOptions::seed.
 std::uint64_t search_seed(const DesignOptions& options);
 
-/// Whether candidates are moved to their best origin. The circular error does not depend on it,
-/// unless the camera weighs depths.
+/// Returns true if candidates are moved to their best origin. Without weighted depths, the circular
+/// error does not depend on the origin.
 bool rotates(const Camera& camera, const DesignOptions& options);
 
-/// Why no depth can be decoded with a code: the camera cannot play it, or what it measures does not
-/// distinguish depths. None: depth can be decoded.
+/// Returns why depth cannot be decoded with a code: the camera does not support it, or its
+/// measurements do not determine depth. None if it can.
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
-/// @throws std::invalid_argument for bad options or camera, or if together they ask for codes that
-///         are robust and take multipath into account
+/// @throws std::invalid_argument for invalid options or camera, or if both robust codes and
+///   operating.multipath are requested
 void require_judgeable(const Camera& camera, const DesignOptions& options);
 
-/// What judge() does, for checked options: leaves out candidates that tell no depth, judges the
-/// others, keeps the best of each name and finds the winner.
+/// Implements judge() for validated options: excludes candidates that do not determine depth,
+/// evaluates the others, keeps the best of each name and sets the winner.
 /// @throws std::invalid_argument if no candidate is left; Interrupted
 void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
                       const Progress& progress);

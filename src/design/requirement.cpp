@@ -26,7 +26,7 @@ void scale_bandwidth(ImpulseResponse& response, double factor) {
   response.time_step_s /= factor;
 }
 
-/// A code and its error on some camera.
+/// A code and its error on a camera.
 struct BestCode {
   double error_m = infinity;
   const CodeSet* code = nullptr;
@@ -34,7 +34,7 @@ struct BestCode {
 
 using Codes = std::vector<const CodeSet*>;
 
-/// A family on a camera, where its origin matters (depths that are not all alike) at the best one.
+/// Builds a family for a camera, at the best origin if depths are weighted.
 CodeSet family_for(const std::string& name, const Camera& camera, const DesignOptions& options) {
   CodeSet code = build_family(name, camera);
   if (!rotates(camera, options) || why_no_depth(code, camera)) return code;
@@ -42,21 +42,21 @@ CodeSet family_for(const std::string& name, const Camera& camera, const DesignOp
   return code.rotated(best_rotation(code, camera, search).rotation_bin);
 }
 
-/// Every code found so far. They are all tried wherever the camera is changed to.
+/// All codes found during the search. Every one is evaluated on every modified camera.
 class CodePool {
  public:
   CodePool(const Camera& camera, const RequirementOptions& options)
       : options_(options), design_(with_effort({}, options.effort)) {
     design_.seed = options.seed;
     design_.trials = std::clamp(options.trials / 10, 1000, 5000);
-    design_.baselines = suggested_baselines(camera, design_);  // others join no design
+    design_.baselines = suggested_baselines(camera, design_);  // only these, for speed
     for (const std::string& name : *design_.baselines)
       if (!why_no_family(name, camera)) codes_.push_back(family_for(name, camera, design_));
   }
 
-  /// Designs codes for a camera, whose winner joins.
-  /// @param exposures  to try; empty: what suits the camera
-  /// @param again      how many designs for much the same camera came before: each draws anew
+  /// Designs codes for a camera and adds the winner.
+  /// @param exposures  numbers of exposures; empty: suggested_exposures()
+  /// @param again      number of earlier designs for a similar camera, which selects the seed
   void design_for(const Camera& camera, const std::vector<int>& exposures, const Progress& progress,
                   int again = 0) {
     design_.exposures = exposures;
@@ -64,7 +64,8 @@ class CodePool {
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
-  /// Exposures of the best code on a camera, with `beside` fewer and more, as a design may have.
+  /// Returns the number of exposures of the best code on a camera, and up to `beside` fewer and
+  /// more.
   std::vector<int> exposures_near(const Camera& camera, int beside) const {
     const int best = best_on(camera, all()).code->exposures();
     std::vector<int> near;
@@ -79,7 +80,7 @@ class CodePool {
     return codes;
   }
 
-  /// Codes that may be best on either camera or on one between them.
+  /// Returns the codes that may be best on one of the cameras or on a camera between them.
   Codes contenders(const Camera& a, const Camera& b) const {
     const std::vector<double> on_a = first_errors(a, all()), on_b = first_errors(b, all());
     const double least_a = *std::min_element(on_a.begin(), on_a.end());
@@ -90,8 +91,7 @@ class CodePool {
     return codes;
   }
 
-  /// The best of some on a camera. Codes that a tenth of the trials find far worse are not tried
-  /// on.
+  /// Returns the best code on a camera, after a screening with a tenth of the trials.
   BestCode best_on(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first = first_errors(camera, codes);
     const double least_m = *std::min_element(first.begin(), first.end());
@@ -104,8 +104,8 @@ class CodePool {
     return best;
   }
 
-  /// Whether the best of some on a camera errs as little as asked. Far from it, a tenth of the
-  /// trials tells.
+  /// Returns true if the best code on a camera reaches the requested error. A tenth of the trials
+  /// decides clear cases.
   bool suffice_on(const Camera& camera, const Codes& codes) const {
     constexpr double far = 1.25;
     const double least_m = least_first_error_m(camera, codes);
@@ -114,14 +114,15 @@ class CodePool {
     return best_on(camera, codes).error_m <= options_.error_m;
   }
 
-  /// Of some codes on a camera, by a tenth of the trials.
+  /// Returns the smallest error on a camera, with a tenth of the trials.
   double least_first_error_m(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first_m = first_errors(camera, codes);
     return *std::min_element(first_m.begin(), first_m.end());
   }
 
  private:
-  /// By a tenth of the trials, codes side by side: what surrounds so few trials runs on one thread.
+  /// Evaluates the codes in parallel with a tenth of the trials. (Few trials of one code do not use
+  /// several threads.)
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
@@ -141,10 +142,10 @@ class CodePool {
 
   RequirementOptions options_;
   DesignOptions design_;
-  std::deque<CodeSet> codes_;  // which stay where they are
+  std::deque<CodeSet> codes_;  // a deque, so that pointers stay valid
 };
 
-/// Of the receiver bound over the operating points: geometric mean, as of errors [m]; 0: no bound.
+/// Returns the receiver bound: geometric mean over the operating points [m]; 0: no bound.
 double bound_m(const Camera& given) {
   const Camera camera = judged_camera(given);
   double log_sum = 0.0;
@@ -167,7 +168,7 @@ double bound_m(const Camera& given) {
 
 constexpr double relative_step = 0.005;
 
-/// The least factor in [low, high] at which `suffices`, which holds at high and not at low.
+/// Returns the smallest factor in [low, high] that suffices; high must suffice and low must not.
 template <typename Suffices>
 double least_between(double low, double high, Suffices&& suffices) {
   while (high / low > 1.0 + relative_step) {
@@ -188,12 +189,12 @@ double excluded_below(const Camera& camera, CameraQuantity quantity,
   return least_between(least, options.max_factor, may_suffice);
 }
 
-constexpr double stride = 4.0;  ///< of the walk
-/// Most designs where it ends: chance decides a few percent of each one's error.
+constexpr double stride = 4.0;  ///< factor between two designs
+/// Maximum number of designs at the end of the search; each one's error is random by a few percent.
 constexpr int end_designs = 3;
 
-/// Walks from the camera as it is in strides to where the error is met, or is not any more,
-/// designing on the way, and halves what lies in between.
+/// Multiplies or divides the quantity by the stride, with a design at each step, until the
+/// requested error is bracketed, and then bisects.
 Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
                            const RequirementOptions& options, CodePool& pool,
                            const Progress& progress) {
@@ -213,7 +214,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
                          [&](double factor) { return pool.suffice_on(on(factor), codes); });
   };
 
-  // 1. Strides, up or down, until the error is on the other side.
+  // 1. Strides up or down until the error is bracketed.
   const bool upwards = !suffices(1.0);
   double low = 1.0, high = 1.0;
   bool bracketed = false;
@@ -221,7 +222,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   for (int step = 1; step <= most_steps && !bracketed; ++step) {
     const double factor = std::clamp(upwards ? high * stride : low / stride,
                                      1.0 / options.max_factor, options.max_factor);
-    // Which numbers of exposures are best depends on the band, less on light.
+    // The best number of exposures depends on bandwidth, and less on light.
     design_at(factor, quantity == CameraQuantity::bandwidth ? 1 : 0, part++);
     const bool met = suffices(factor);
     if (upwards) {
@@ -249,7 +250,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
     return finish(*least);
   }
 
-  // 2. In between, with codes designed where the search ended, until they lower it no more.
+  // 2. Bisection, with new designs at the result until they no longer lower it.
   least = least_within(low, high);
   for (int round = 0; round < end_designs; ++round) {
     design_at(*least, 1, part++, round);
@@ -261,8 +262,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   return finish(*least);
 }
 
-/// Factors from a quarter of what suffices, or of 1, to four times the camera's, in steps of
-/// sqrt(2).
+/// Returns factors from `least` to `most` in steps of sqrt(2).
 std::vector<double> map_factors(double least, double most) {
   std::vector<double> factors;
   for (double factor = least; factor <= most * 1.01; factor *= std::sqrt(2.0))
@@ -341,7 +341,7 @@ Requirements find_requirements(const Camera& asked, const RequirementOptions& op
   camera.operating.error = DepthErrorKind::circular;
   const std::vector<CameraQuantity> quantities = options.varied();
   for (const CameraQuantity quantity : quantities)
-    static_cast<void>(with_scaled(camera, quantity, 1.0));  // refused before long work
+    static_cast<void>(with_scaled(camera, quantity, 1.0));  // throws before long work
   const bool has_map = options.map && options.vary_bandwidth && options.vary_power;
   std::vector<double> weights{1.0};
   weights.insert(weights.end(), quantities.size(), 8.0);

@@ -6,14 +6,14 @@
 
 namespace tofsmith {
 
-/// The camera's shortest pulse or gap [periods]; 0 if it has none.
+/// Returns the camera's shortest pulse or gap [periods]; 0 without a limit.
 double shortest_run_periods(const Camera& camera);
 
-/// Whether every pulse and gap of a binary waveform is at least so long, give or take rounding.
-/// Sampled waveforms have none.
+/// Returns true if every pulse and gap of a binary waveform is at least `shortest_run` long, up to
+/// rounding. Always true for sampled waveforms.
 bool keeps_shortest_run(const Waveform& waveform, double shortest_run);
 
-/// The same for all waveforms of a code on a camera.
+/// Returns true if all waveforms of a code keep the shortest run of the camera.
 bool keeps_shortest_run(const CodeSet& code, const Camera& camera);
 
 }  // namespace tofsmith

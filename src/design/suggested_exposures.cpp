@@ -12,7 +12,7 @@ int useful_harmonics(const Camera& camera) {
   if (!camera.band_limited()) return 0;
   const int highest = 4 * camera.samples;
   const Eigen::VectorXcd transfer = camera.transfer(highest);
-  // A Hann response is exactly that at its f_max, up to rounding.
+  // A Hann response equals this value at its f_max, up to rounding.
   constexpr double end_of_band = (1.0 - 1e-9) / 25.0;
   int last = 1;
   while (last < highest && std::abs(transfer[last + 1]) >= end_of_band) ++last;

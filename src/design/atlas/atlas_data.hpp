@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// The text of src/design/atlas/atlas.txt.
+/// Contents of src/design/atlas/atlas.txt.
 extern const std::string_view atlas_data;
 
 }  // namespace tofsmith

@@ -16,11 +16,11 @@
 namespace tofsmith {
 namespace {
 
-/// Half of the width of a Hann response whose f_max is 1: the width is 1.444 / f_max, and half of
-/// it lies above half the height.
+/// Half the width of a Hann response with f_max = 1: the full width is 1.444 / f_max, and the width
+/// at half height is half of it.
 constexpr double hann_half_width = 0.722;
 
-/// Where an entry's camera stands among others of as many taps and exposures.
+/// Position of a camera among atlas cameras with the same taps and exposures.
 struct AtlasPlace {
   double log_peak, log_bandwidth;
 };
@@ -39,7 +39,7 @@ double place_distance(const AtlasPlace& a, const AtlasPlace& b) {
   return std::hypot(a.log_peak - b.log_peak, a.log_bandwidth - b.log_bandwidth);
 }
 
-/// The place, moved to the edge of what entries cover if it is beyond.
+/// Clamps a position to the range of the entries.
 AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace place) {
   AtlasPlace low{infinity, infinity}, high{-infinity, -infinity};
   for (const AtlasEntry* entry : entries) {
@@ -51,7 +51,7 @@ AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace 
           std::clamp(place.log_bandwidth, low.log_bandwidth, high.log_bandwidth)};
 }
 
-/// The entries of one number of exposures of the nearest cameras, the nearest first.
+/// Returns the entries of the nearest cameras for one number of exposures, nearest first.
 std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> entries,
                                                const AtlasPlace& camera, int cameras) {
   const AtlasPlace place = clamped_to(entries, camera);
@@ -70,7 +70,7 @@ std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> en
 }
 
 Waveform fitted_light(const Waveform& light, double from_peak_factor, double to_peak_factor) {
-  constexpr double whole = 0.98;  // of the peak: what uses less does so for a reason
+  constexpr double whole = 0.98;  // of the peak; lower levels are intentional and kept
   const double level = light.level();
   const double wanted = level >= whole * from_peak_factor
                             ? to_peak_factor * level / from_peak_factor

@@ -9,20 +9,20 @@
 
 namespace tofsmith {
 
-/// How fine a camera resolves time [f0]: where both arms together leave 1/25, as two Hann responses
-/// do at their f_max, or where a Hann response is as wide as the shortest pulse, whichever is less.
-/// Infinite: no limit of either kind.
+/// Returns the time resolution of a camera as a bandwidth [f0]: the smaller of the frequency at
+/// which both arms together have a gain of 1/25, as two Hann responses at f_max, and the f_max of a
+/// Hann response as wide as the shortest pulse. Infinite without either limit.
 double effective_bandwidth_f0(const Camera& camera);
 
-/// The code with every pulse of its light longer or shorter about its middle, so that what had the
-/// whole of one peak factor has the whole of another.
+/// Scales the pulses of the modulation about their centres, so that light at the full peak of one
+/// camera is at the full peak of another.
 CodeSet fitted_to_peak(const CodeSet& code, double from_peak_factor, double to_peak_factor);
 
-/// Codes of the atlas for each number of exposures (or those asked for) of the nearest cameras of
-/// as many taps, none of a higher peak than the camera's: by the distance of log peak and log
-/// effective bandwidth, within what the atlas covers, for either kind of error, as they are and
-/// fitted to the camera's peak. Those for the camera's own kind of error come first, the nearest of
-/// them first.
+/// Returns codes of the most similar atlas cameras with the same number of taps, for each number of
+/// exposures (or the listed ones). The distance is measured in log peak and log effective
+/// bandwidth, clamped to the range of the atlas. Codes for both kinds of error are included,
+/// unchanged and adapted to the camera's peak; no code exceeds that peak. Codes for the camera's
+/// kind of error come first, nearest first.
 std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, const Camera& camera,
                                          const std::vector<int>& exposures, int cameras);
 

@@ -12,9 +12,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double smallest_rms = 1e-4;  // keeps the majorizer's weight positive near a perfect fit
+constexpr double smallest_rms = 1e-4;  // keeps the majorizer's weight positive
 
-/// One convex step; returns the best x for this kernel, or `current` where the solver fails.
+/// Solves one convex step; returns the optimal x for this kernel, or `current` if the solver fails.
 Eigen::VectorXd fit(CirculantTvSolver& solver, const CirculantTvProblem& problem,
                     const Eigen::VectorXd& current) {
   if (problem.total_variation_weight == 0.0) return least_squares_within_bounds(problem, current);

@@ -12,18 +12,19 @@ namespace tofsmith {
 
 struct AlternationResult {
   SampledPair relaxed;   ///< last iterate of the convex steps
-  SampledPair playable;  ///< best projection met on the way
+  SampledPair playable;  ///< best projection of all iterates
   double playable_residual_rms = 0.0;
   std::vector<FactorizeIteration> history;
 };
 
-/// Alternates the two convex steps of problem (6) / (7) from `start`: the demodulation that fits
-/// best with the modulation fixed, then the modulation with the demodulation fixed.
+/// Alternates the two convex steps of problem (6) / (7) from `start`: optimizes the demodulation
+/// with the modulation fixed, then vice versa.
 ///
-/// The residual's norm is not squared; rms <= rms^2 / (2 c) + c / 2 with c the current rms turns
-/// each step into 1/2 |A x - b|^2 + lambda N c TV(x), which does not raise the true objective.
-/// @param total_variation_weight  lambda >= 0; 0 leaves total variation out and shows what it is
-///        for: each step then goes on from the last waveforms, of which much stays undetermined
+/// The norm of the residual is not squared. With c the current rms, rms <= rms^2 / (2 c) + c / 2
+/// converts each step to 1/2 |A x - b|^2 + lambda N c TV(x), which does not increase the true
+/// objective.
+/// @param total_variation_weight  lambda >= 0; 0 omits total variation, for comparison. Each step
+///   then starts from the previous waveforms, because the solution is not unique.
 AlternationResult alternate(const PairModel& model, SampledPair start,
                             double total_variation_weight, const FactorizeOptions& options,
                             CirculantTvSolver& solver);

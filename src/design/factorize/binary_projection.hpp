@@ -14,11 +14,11 @@ struct SampledPair {
   Eigen::VectorXd demodulation;  // (N), in [0, 1]
 };
 
-/// 1 where x > threshold, else 0.
+/// Returns 1 where x > threshold, else 0.
 Eigen::VectorXd binary_demodulation(const Eigen::VectorXd& x, double threshold);
 
-/// On where x > threshold times its maximum, at the level of unit mean power, or at the peak where
-/// that is lower.
+/// Returns a waveform that is on where x > threshold * max(x), with unit mean power, or at the peak
+/// if that is lower.
 Eigen::VectorXd binary_modulation(const Eigen::VectorXd& x, double threshold, double peak_factor);
 
 struct BinaryProjection {
@@ -26,8 +26,8 @@ struct BinaryProjection {
   double residual_rms;
 };
 
-/// The nearest playable pair: arms that may only switch are thresholded, each at the level (of 19)
-/// that leaves the smallest residual with the other arm as it is; twice in turn.
+/// Projects to the nearest feasible pair. Each binary arm is thresholded at the level (of 19) with
+/// the smallest residual while the other arm is fixed; two passes.
 BinaryProjection project_to_binary(const PairModel& model, const SampledPair& relaxed);
 
 }  // namespace tofsmith

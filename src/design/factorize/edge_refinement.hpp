@@ -8,10 +8,10 @@
 
 namespace tofsmith {
 
-/// Moves the switching times of a binary pair continuously to the least-squares fit of the target's
-/// harmonics, number of edges at most as given. The light keeps its full energy (level = 1 / duty,
-/// duty >= 1 / p) and mean d is held at the target's.
-/// @return none if a waveform never switches, so that there is nothing to move
+/// Fits the harmonics of the target by moving the switching times of a binary pair continuously
+/// (least squares). The number of edges does not increase. The light keeps its full energy
+/// (level = 1 / duty, duty >= 1 / p), and mean d is kept near that of the target.
+/// @return none if a waveform is not binary or is constant
 std::optional<WaveformPair> refine_edges(const PairModel& model, const WaveformPair& start);
 
 }  // namespace tofsmith

@@ -20,13 +20,13 @@ namespace tofsmith {
 
 namespace {
 
-/// Samples as a playable waveform: switching times where the arm may only switch.
+/// Converts samples to a feasible waveform: switching times if the arm is binary.
 Waveform as_waveform(const Eigen::VectorXd& samples, bool binary, double level) {
   if (!binary) return Waveform::sampled(samples);
   return Waveform::binary_from_samples(samples, level > 0.0 ? level : 1.0);
 }
 
-/// A projection as waveforms: binary where the arm is.
+/// Converts a projection to waveforms.
 WaveformPair playable_pair(const PairModel& model, const SampledPair& p) {
   return {as_waveform(p.modulation, model.binary_modulation(), p.modulation.maxCoeff()),
           as_waveform(p.demodulation, model.binary_demodulation(), 1.0)};
@@ -53,7 +53,7 @@ bool by_residual(const PairCandidate& a, const PairCandidate& b) {
   return a.residual_rms < b.residual_rms;
 }
 
-/// Moves the switching times of the most promising candidates; each keeps the better version.
+/// Optimizes the switching times of the best candidates; keeps the better version of each.
 void refine_best(const PairModel& model, const FactorizeOptions& options,
                  std::vector<PairCandidate>& candidates, const Progress& progress) {
   const auto count = std::min<std::int64_t>(options.refined, std::ssize(candidates));
@@ -62,7 +62,7 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
     shared.add();
     PairCandidate& c = candidates[static_cast<std::size_t>(i)];
     if (c.residual_rms < 1e-9 || c.start == "naive")
-      return;  // nothing to gain; naive stays as it is
+      return;  // already exact, or must stay unchanged
     const auto refined = refine_edges(model, c.pair);
     if (!refined) return;
     const WaveformPair pair = settle_on_points(model, *refined).value_or(*refined);
@@ -73,7 +73,7 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
   });
 }
 
-/// Different waveforms with the same residual to nine digits are the same design, moved in time.
+/// Removes repeated designs: waveforms with equal residuals are delayed versions of one another.
 void drop_repeats(std::vector<PairCandidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), by_residual);
   const auto last = std::unique(
@@ -84,8 +84,8 @@ void drop_repeats(std::vector<PairCandidate>& candidates) {
   candidates.erase(last, candidates.end());
 }
 
-/// Leaves only pairs that respect the shortest pulse, if there are any.
-/// @return whether there are
+/// Removes pairs that violate the shortest pulse, unless all do.
+/// @return true if some remain
 bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candidates) {
   const auto too_short = [&](const PairCandidate& c) {
     return !keeps_shortest_run(c.pair.modulation, model.shortest_run()) ||
@@ -130,7 +130,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   options.validate();
   check_target(target, camera);
 
-  // 1. What the camera makes of a pair, and how far that is from the target.
+  // 1. Model the correlation function of a pair and its residual.
   const PairModel model(target, camera);
   Factorization result;
   result.target_variation_rms =
@@ -150,12 +150,12 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   }
   report(parts[0], 1.0, "alternating convex steps");
 
-  // 3. Structured pairs, and the naive one, compete as they stand.
+  // 3. Add structured pairs without alternation.
   if (options.structured_starts)
     for (auto&& one : structured_starts(model)) result.candidates.push_back(std::move(one));
   drop_repeats(result.candidates);
 
-  // 4. Move switching times continuously.
+  // 4. Optimize the switching times, then add the naive pair.
   if (options.refine_edges) refine_best(model, options, result.candidates, parts[1]);
   if (options.keep_naive)
     for (auto&& one : naive_start(model)) result.candidates.push_back(std::move(one));
@@ -163,7 +163,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   drop_repeats(result.candidates);
   report(progress, 1.0, "refining switching times");
 
-  // 5. Keep the best few, and the naive pair whatever its residual.
+  // 5. Keep the best few, and always the naive pair.
   std::vector<PairCandidate> kept;
   for (PairCandidate& c : result.candidates)
     if (std::ssize(kept) < options.kept || c.start == "naive") kept.push_back(std::move(c));

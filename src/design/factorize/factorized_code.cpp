@@ -21,13 +21,13 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int min_exposures = 3, max_exposures = 6;  // of the Hamiltonian codes to aim at
+constexpr int min_exposures = 3, max_exposures = 6;  // of the Hamiltonian targets
 
-/// Numbers of exposures of the Hamiltonian codes to aim at.
+/// Returns the numbers of exposures of the Hamiltonian targets.
 std::vector<int> factorizable_exposures(const Camera& camera, const DesignOptions& options) {
   std::vector<int> exposures = options.exposures;
   if (exposures.empty()) exposures = suggested_exposures(camera, DesignMethod::factorize);
-  std::erase_if(exposures, [](int count) {  // the others are for other methods
+  std::erase_if(exposures, [](int count) {  // other numbers are for other methods
     return count < min_exposures || count > max_exposures;
   });
   return exposures;
@@ -35,7 +35,7 @@ std::vector<int> factorizable_exposures(const Camera& camera, const DesignOption
 
 FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
 
-/// Why codes for these targets cannot be played at all, before time is spent on them.
+/// Returns why the camera cannot support codes for these targets, to fail before the search starts.
 std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& on) {
   if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
     return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
@@ -67,8 +67,8 @@ Eigen::MatrixXd target_table(const TargetSet& targets) {
   return table;
 }
 
-/// How near the correlation functions are to their targets, in one line. Whether a target is within
-/// reach is a matter of the pair that comes closest, not of the one that measures depth best.
+/// Summarizes the residuals in one line. Reachability of a target depends on the pair with the
+/// smallest residual, not on the pair with the smallest depth error.
 std::string describe_residuals(const std::vector<MeasurementReport>& reports,
                                const std::vector<Factorization>& factorizations) {
   std::string residuals, smallest, unreachable;
@@ -138,9 +138,9 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
 Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
                                const DesignOptions& options, const Progress& progress) {
   const Camera camera = in_buckets(on);
-  const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
+  const ProgressParts parts(progress, {40, 60});  // factorization, selection of pairs
   const auto begin = std::chrono::steady_clock::now();
-  // 1. Factorize every measurement by itself.
+  // 1. Factorize each measurement individually.
   FactorizeOptions factorizing_options = options.factorize;
   factorizing_options.seed = options.seed;
   std::vector<Factorization> factorizations;
@@ -148,14 +148,14 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
   for (const CorrelationTarget& target : targets.measurements)
     factorizations.push_back(
         factorize(target, camera, factorizing_options, of_targets[factorizations.size()]));
-  // 2. Choose among the pairs by the depth error of the whole code.
+  // 2. Select the pairs by the depth error of the whole code.
   EvaluateOptions search;
   search.trials = options.search_trials;
   search.seed = search_seed(options);
   search.bounds = false;
   const PairChoice choice =
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
-  // 3. Put the code together and say how near its target it is.
+  // 3. Assemble the code and report its residuals.
   CodeSet code = assemble(targets.name + "-factorized", factorizations, choice, camera);
   if (on.sensor.is_signed()) code = code.signed_of_buckets();
   Candidate candidate{.code = signed_by(std::move(code), "factorize", camera, options.seed),

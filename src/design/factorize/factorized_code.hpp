@@ -9,19 +9,19 @@
 
 namespace tofsmith {
 
-/// Why there is nothing to factorize: the camera cannot play codes for one of the targets at all,
-/// or its samples cannot represent a Hamiltonian code.
+/// Returns why there is nothing to factorize: the camera does not support codes for one of the
+/// targets, or its samples cannot represent a Hamiltonian code.
 std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options);
 
-/// Correlation functions to aim at: the user's, or Hamiltonian ones of every number of exposures
-/// asked for.
+/// Returns the target correlation functions: the custom target, or Hamiltonian codes with the
+/// requested numbers of exposures.
 std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options);
 
-/// What a designer would play for the targets without optimization: the ideal demodulation with one
-/// pulse each. None if that is not known or cannot be played.
+/// Returns the code without optimization: the ideal demodulation of each target with one pulse.
+/// Returns nothing if it is unknown or not supported by the camera.
 std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera);
 
-/// The code whose correlation functions come close to `targets`; not judged yet.
+/// Returns a code that approximates the correlation functions `targets`; not ranked yet.
 Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
                                const DesignOptions& options, const Progress& progress);
 

@@ -10,9 +10,9 @@
 
 namespace tofsmith {
 
-/// What the two arms of a camera make of sampled waveforms, and how far that is from a target.
-/// Samples are held over their cells; correlation functions are compared at the N bins, where the
-/// grid model is exact:
+/// Model of both arms for sampled waveforms, and the residual to a target. Samples are constant
+/// within their cells. Correlation functions are compared at the N bins, where the grid model is
+/// exact:
 ///   chi[k] = D[k] conj(M[k]) G[k] / N,  G[k] = sum_j H(k + j N) sinc^2((k + j N) / N).
 class PairModel {
  public:
@@ -23,36 +23,36 @@ class PairModel {
   double peak_factor() const { return peak_factor_; }
   bool binary_modulation() const { return binary_modulation_; }
   bool binary_demodulation() const { return binary_demodulation_; }
-  /// Shortest run, on or off, that an arm which only switches may play [periods].
+  /// Returns the shortest run, on or off, that a binary arm supports [periods].
   double shortest_run() const { return shortest_run_; }
   const CorrelationTarget& target() const { return target_; }
-  /// Target at the bins, and the same read backwards (what the modulation step fits).
+  /// Returns the target at the bins, and the time-reversed target (for the modulation step).
   const Eigen::VectorXd& target_samples() const { return target_.samples; }
   const Eigen::VectorXd& reversed_target_samples() const { return reversed_target_; }
-  /// Impulse responses of both arms at the harmonics 0 .. highest.
+  /// Returns the impulse responses of both arms at the harmonics [0, highest].
   Eigen::VectorXcd transfer(int highest) const { return camera_.transfer(highest); }
 
-  /// Half spectrum (unscaled) of a waveform's samples.
+  /// Returns the half spectrum (unscaled) of the samples of a waveform.
   Eigen::VectorXcd spectrum(const Eigen::VectorXd& samples) const;
 
-  /// First column of the circulant matrix that turns demodulation samples into the correlation
-  /// function, modulation fixed.
+  /// Returns the first column of the circulant matrix that maps demodulation samples to the
+  /// correlation function for a fixed modulation.
   Eigen::VectorXd demodulation_kernel(const Eigen::VectorXd& modulation) const;
-  /// The same for modulation samples and the reversed correlation function.
+  /// Returns the same for modulation samples and the time-reversed correlation function.
   Eigen::VectorXd modulation_kernel(const Eigen::VectorXd& demodulation) const;
 
-  /// rms over the bins of (correlation function - target), from half spectra.
+  /// Returns the RMS residual over the bins, from half spectra.
   double residual_rms(const Eigen::VectorXcd& modulation,
                       const Eigen::VectorXcd& demodulation) const;
-  /// The same from samples.
+  /// Returns the RMS residual over the bins, from samples.
   double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;
-  /// rms over depth for waveforms of any kind: switching times enter exactly, the target is linear
-  /// between bins, and the difference is sampled at 8 points per bin. Of what the camera's
-  /// generators make of the pair, where it has any; infinite where that is no light.
+  /// Returns the RMS residual over depth for any waveforms. Switching times are exact, the target
+  /// is linear between bins, and the difference is sampled at 8 points per bin. If the camera has
+  /// generators, their actual waveforms are used; infinite if the actual modulation is zero.
   double residual_rms(const WaveformPair& pair) const;
 
  private:
-  /// What the generators play for a pair.
+  /// Returns the actual waveforms of the generators.
   WaveformPair actual(const WaveformPair& pair) const;
 
   CorrelationTarget target_;

@@ -13,22 +13,23 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int delays_per_point = 4;     // of the pair, tried before it is rounded
-constexpr int max_settling_rounds = 8;  // of moving every switching time
-constexpr int fine_points = 4;          // a bin: rounding to these is left as it is
+constexpr int delays_per_point = 4;     // delays of the pair that are tried before rounding
+constexpr int max_settling_rounds = 8;  // maximum number of passes over all switching times
+constexpr int fine_points = 4;          // per bin; a finer grid is not rounded
 
-/// Points of a period that a generator plays; 0: nothing is rounded, or too little to matter.
+/// Returns the points per period of a generator, or 0 if rounding to them is negligible or absent.
 int coarse_points(const std::optional<Generator>& generator, const PairModel& model) {
   if (!generator) return 0;
   const int points = generator->points_per_period(model.camera().fundamental_frequency_hz);
   return points < fine_points * model.samples() ? points : 0;
 }
 
-/// One arm of the pair: on or off at every point of its generator, or as it is without one.
+/// One arm of the pair: on or off at every point of its generator, or unrounded without a
+/// generator.
 struct RoundedArm {
   Waveform waveform;
-  std::vector<char> on = {};  ///< empty: it is not rounded
-  double most_level = 1.0;    ///< level is 1 / duty up to here: light; 1: gates
+  std::vector<char> on = {};  ///< empty: not rounded
+  double most_level = 1.0;    ///< maximum of the level 1 / duty for light; 1 for gates
 
   RoundedArm(const Waveform& nominal, int points, double most_level_)
       : waveform(nominal), most_level(most_level_) {
@@ -41,7 +42,7 @@ struct RoundedArm {
 
   std::ptrdiff_t points_on() const { return std::count(on.begin(), on.end(), 1); }
 
-  /// Whether what is on is a waveform: it switches, and light is within the peak.
+  /// Returns true if the points are a valid waveform: not constant, and light within the peak.
   bool is_playable() const {
     const auto count = points_on();
     return count > 0 && count < std::ssize(on) &&
@@ -55,7 +56,7 @@ struct RoundedArm {
     const std::size_t first =
         static_cast<std::size_t>(std::find(on.begin(), on.end(), 0) - on.begin());
     std::vector<OnInterval> intervals;
-    for (std::size_t i = 1; i <= on.size(); ++i) {  // from an off point round to it
+    for (std::size_t i = 1; i <= on.size(); ++i) {  // once around, starting at an off point
       const std::size_t at = (first + i) % on.size();
       const bool was_on = on[(first + i - 1) % on.size()] != 0;
       if (on[at] != 0 && !was_on) intervals.push_back({static_cast<double>(at) / points, 0.0});
@@ -88,15 +89,16 @@ bool is_valid(const Settled& one, const PairModel& model) {
   return true;
 }
 
-/// Moves every switching time of an arm by a point, earlier and later, where that betters the pair.
-/// @return whether anything was bettered
+/// Moves each switching time of an arm by one point, earlier and later, if that reduces the
+/// residual.
+/// @return true if the residual was reduced
 bool move_edges(RoundedArm Settled::*which, const PairModel& model, Settled& best) {
   bool is_better = false;
   const std::size_t points = (best.*which).on.size();
   for (std::size_t i = 0; i < points; ++i)
     for (const std::size_t flipped : {i, (i + points - 1) % points}) {
       const std::vector<char>& on = (best.*which).on;
-      if (on[i] == on[(i + points - 1) % points]) break;  // no switching time before point i
+      if (on[i] == on[(i + points - 1) % points]) break;  // no edge before point i
       Settled moved = best;
       RoundedArm& arm = moved.*which;
       arm.on[flipped] = arm.on[flipped] == 0;

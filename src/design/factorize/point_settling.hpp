@@ -8,10 +8,11 @@
 
 namespace tofsmith {
 
-/// A binary pair whose switching times are points of the camera's generators, so that they play it
-/// as it is: rounded where in time that costs least, then each switching time moved by single
-/// points as long as the residual falls. The light keeps its full energy.
-/// @return none without generators that are coarse beside the bins, or where nothing switches
+/// Rounds the switching times of a binary pair to points of the camera's generators, so that these
+/// reproduce it exactly. The common delay with the smallest residual is chosen; then each switching
+/// time is moved by single points as long as the residual decreases. The light keeps its full
+/// energy.
+/// @return none without generators that are coarse compared with the bins, or without edges
 std::optional<WaveformPair> settle_on_points(const PairModel& model, const WaveformPair& pair);
 
 }  // namespace tofsmith

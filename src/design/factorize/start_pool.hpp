@@ -10,23 +10,23 @@
 
 namespace tofsmith {
 
-/// Where one run of the alternation begins.
+/// Start of one run of the alternation.
 struct AlternationStart {
   std::string name;
   SampledPair pair;
 };
 
-/// Uniform random waveforms of full power. Start `index` depends on the seed and N alone: every
-/// measurement begins from the same waveforms.
+/// Returns uniform random waveforms with full power. They depend only on the seed, N and `index`,
+/// so all measurements have the same starts.
 AlternationStart random_start(const PairModel& model, std::uint64_t seed, int index);
 
-/// The thresholded target as demodulation, with single pulses and pulse trains of several duties as
-/// modulation. Binary, so that they are candidates as they stand.
+/// Returns pairs with the thresholded target as demodulation, and single pulses and pulse trains of
+/// several duties as modulation. They are binary, so they are candidates without projection.
 std::vector<PairCandidate> structured_starts(const PairModel& model);
 
-/// The target's own demodulation with one pulse of duty max(1/p, ideal): what a designer would
-/// play without any optimization. Empty if the target's waveforms are not known or the sensor
-/// cannot play its demodulation.
+/// Returns the unoptimized pair: the demodulation of the target with one pulse of duty
+/// max(1/p, ideal). Empty if the ideal waveforms are unknown or the sensor does not support the
+/// demodulation.
 std::vector<PairCandidate> naive_start(const PairModel& model);
 
 }  // namespace tofsmith

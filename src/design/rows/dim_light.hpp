@@ -9,14 +9,15 @@
 
 namespace tofsmith {
 
-/// The dimmer light that rows should hold out in, as a share of what they are asked for.
+/// Light level, relative to the nominal one, at which rows should also work.
 inline constexpr double dim_share = 0.1;
 
-/// A camera in so many times its light.
+/// Returns the camera with light scaled by `share`.
 Camera in_share_of_light(Camera camera, double share);
 
-/// That the winner on a camera that reads rows errs more than a standard code in a tenth of the
-/// dimmest signal, and how to ask for rows that do not; none: it does not, beyond noise.
+/// Returns a note if, on a camera that reads rows, the winner has a larger error than a standard
+/// code at a tenth of the smallest signal, significantly beyond noise. The note describes how to
+/// design rows for that light.
 std::optional<std::string> dim_light_note(const Camera& camera, const DesignResult& result,
                                           const DesignOptions& options);
 

@@ -29,40 +29,41 @@ namespace {
 
 using std::numbers::pi;
 
-/// Bins per period of a tone, at least: depths between bins lie on chords.
+/// Minimum number of bins per period of a tone, because depth is interpolated linearly between
+/// bins.
 constexpr int min_bins_per_period = 6;
 constexpr int drawn_sets = 400, bettered_sets = 12, steps_per_set = 60, judged_sets = 8;
 constexpr int rounds_of_light = 12;
 
-/// Sets should hold out in dimmer light too, where lobes count that do not in the light asked for.
-/// A hundredth more error in that is worth 40 % less in a tenth of it; 3 % are the most.
+/// Tone sets should also work in dimmer light, where more side lobes matter. An increase of the
+/// error by 1 % is accepted for a decrease by 40 % at a tenth of the light, up to 3 % in total.
 constexpr double dim_weight = 0.02, max_loss = 1.03;
 
-/// Monte Carlo that sets are chosen by: trials are so many times DesignOptions::search_trials, of
-/// all operating points together, of all sets and then of the best.
+/// Trials of the Monte Carlo selection, in units of DesignOptions::search_trials and for all
+/// operating points together: first for all sets, then for the best.
 constexpr int first_trials = 5, dim_trials = 2;
-constexpr std::int64_t most_trials = 4'000'000'000;  // that evaluate() takes
+constexpr std::int64_t most_trials = 4'000'000'000;  // limit of evaluate()
 struct FinalRound {
   std::size_t sets;
   int trials;
 };
 constexpr std::array final_rounds = {FinalRound{6, 30}, FinalRound{3, 100}};
 
-/// Harmonics of the period, in rising order, each once.
+/// Distinct harmonics of the period, in ascending order.
 using Tones = std::vector<int>;
 
-/// A set of tones with its light.
+/// A set of tones with its modulation.
 struct ToneCode {
   Tones tones;
   Eigen::VectorXd light;  // (N)
   double foreseen_m = infinity;
   double dim_foreseen_m = infinity;  // at dim_share of the light
 
-  /// @param weight  of dimmer light
+  /// @param weight  of the error in dimmer light
   double score(double weight) const { return foreseen_m * std::pow(dim_foreseen_m, weight); }
 };
 
-/// What is foreseen of tones at the camera's operating points, and the light for them.
+/// Predicts the errors of tone sets at the camera's operating points, and finds their modulation.
 class ToneSearch {
  public:
   ToneSearch(const Camera& camera, int rows)
@@ -83,7 +84,7 @@ class ToneSearch {
     }
     for (Eigen::Index n = 1; n < response_.size(); ++n) {
       const double x = pi * static_cast<double>(n) / samples_;
-      response_[n] *= std::pow(std::sin(x) / x, 2);  // light is held over a bin, and counted in one
+      response_[n] *= std::pow(std::sin(x) / x, 2);  // cell averages of light and of counts
     }
     transfer_ = response_.head(highest_ + 1).cwiseAbs();
     for (int n = 1; n <= highest_; ++n)
@@ -94,7 +95,7 @@ class ToneSearch {
 
   int tones() const { return (rows_ + 1) / 2; }
 
-  /// Tones about the best one, or below it, closer together or less so.
+  /// Draws random tones around or below the best one, with a random spread.
   Tones draw(RandomStream& random) const {
     const double centre = -1.0 + 1.1 * random.uniform(), spread = 0.1 + 0.7 * random.uniform();
     std::set<int> drawn;
@@ -108,7 +109,7 @@ class ToneSearch {
     return tones_drawn;
   }
 
-  /// One tone moved a little, or to anywhere; the same set where that one is taken.
+  /// Moves one tone by a small or an arbitrary step; returns the same set if the new tone is taken.
   Tones stepped(const Tones& from, RandomStream& random) const {
     Tones tones = from;
     const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(tones.size()));
@@ -147,7 +148,7 @@ class ToneSearch {
     for (int k = 0; k < rows_; ++k) {
       const std::int64_t tone = tones[static_cast<std::size_t>(k / 2)];
       for (int n = 0; n < samples_; ++n) {
-        // In the middle of the bin: half steps of the period.
+        // At the centre of the bin, in half samples of the period.
         const int at = static_cast<int>(tone * (2 * n + 1) % (2 * samples_));
         weights(n, k) = k % 2 == 0 ? std::cos(pi * at / samples_) : std::sin(pi * at / samples_);
       }
@@ -203,11 +204,11 @@ class ToneSearch {
           is_on[static_cast<std::size_t>(n)] != 0 ? static_cast<double>(samples_) / on_bins_ : 0.0;
   }
 
-  /// Geometric means over the operating points, and over those of dimmer light.
+  /// Predicts geometric mean errors over the operating points, and at dimmer light.
   void foresee(ToneCode& code) const {
     const double exposure_s = camera_.exposure_s.of(0, 1), range_m = camera_.range_m();
     const Sensor& sensor = camera_.sensor;
-    // A photon's share of every bin, behind the arms.
+    // Fraction of the signal photons per bin, after both arms.
     Eigen::VectorXcd spectrum(transform_.coefficients());
     transform_.forward(code.light / code.light.sum(), spectrum);
     spectrum.array() *= response_.array();
@@ -250,20 +251,21 @@ class ToneSearch {
     code.dim_foreseen_m = mean_m(dim_);
   }
 
-  /// Change of the rows per period of depth; mean (K) at depth 0.
+  /// Returns the derivative of the rows per period of depth, from their mean (K) at depth 0.
   Eigen::VectorXd slope_of(const Tones& tones, const Eigen::VectorXd& mean) const {
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_);
     for (int k = 0; k < rows_; ++k) {
       const int other = k % 2 == 0 ? k + 1 : k - 1;
-      if (other >= rows_) continue;  // a cosine alone: at depth 0 its sine is not known
+      if (other >= rows_) continue;  // without a sine row the slope is unknown: 0
       slope[k] = (k % 2 == 0 ? -2 : 2) * pi * tones[static_cast<std::size_t>(k / 2)] * mean[other];
     }
     return slope;
   }
 
-  /// Error by lobes taken for the right one: at every depth where the score has one.
+  /// Returns the error caused by side lobes mistaken for the main lobe, summed over all side lobes.
   double lobes_m(const Tones& tones, const Eigen::VectorXd& power) const {
-    // At u = j / points, 8 for a period of the highest tone; least values by parabolas.
+    // At u = j / points, 8 points per period of the highest tone; minima by parabolic
+    // interpolation.
     const int points = std::min(samples_, 8 * tones.back());
     const int half = points / 2;
     std::vector<double> apart(static_cast<std::size_t>(half) + 2, 0.0);
@@ -280,7 +282,7 @@ class ToneSearch {
       if (here > before || here > after) continue;
       const double bend = before + after - 2 * here, tilt = after - before;
       const double least = bend > 0.0 ? std::max(0.0, here - tilt * tilt / (8 * bend)) : here;
-      // On both sides; Q(x) = erfc(x / sqrt 2) / 2.
+      // Both sides, with Q(x) = erfc(x / sqrt 2) / 2.
       error += static_cast<double>(j) / points * std::erfc(0.5 * std::sqrt(least));
     }
     return camera_.range_m() * error;
@@ -295,7 +297,7 @@ class ToneSearch {
   Camera dim_;  // camera_ in dimmer light
   int rows_, samples_, highest_;
   PeriodicTransform transform_;
-  Eigen::VectorXcd response_;  // H_n of arms, of all harmonics of the bins
+  Eigen::VectorXcd response_;  // H_n of both arms, for all harmonics of the bins
   Eigen::VectorXd transfer_;   // |H_n| of arms and bins
   Eigen::VectorXd cosine_, sine_;
   int best_ = 1, on_bins_ = 1;
@@ -305,7 +307,7 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
   std::stable_sort(codes.begin(), codes.end(), [weight](const ToneCode& a, const ToneCode& b) {
     return a.score(weight) < b.score(weight);
   });
-  // Sets of the same tones differ by where their light came to rest: the best stands for all.
+  // Sets with the same tones differ only in their modulation; keep the best one.
   std::vector<ToneCode> kept;
   for (ToneCode& code : codes) {
     if (static_cast<int>(kept.size()) == count) break;
@@ -317,13 +319,13 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
 }
 
 std::int64_t by_effort(double count, const DesignOptions& options) {
-  // The starts of a search say how long it may take.
+  // The number of starts represents the effort of the search.
   const double effort =
       static_cast<double>(options.optimize.starts) / static_cast<double>(OptimizeOptions().starts);
   return std::max<std::int64_t>(1, std::llround(count * effort));
 }
 
-/// The index of the set to take: by ever more trials of ever fewer sets.
+/// Returns the index of the best set, by successive rounds with fewer sets and more trials.
 std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& codes,
                       const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
@@ -349,7 +351,7 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
   const ProgressParts parts(progress, {20, 30, 50});
   std::vector<Judged> judged;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    // Of sets that are nearly alike, what was foreseen tells as much as few trials do.
+    // For similar sets, the prediction is as accurate as a few trials.
     judged.push_back({i, std::sqrt(codes[i].foreseen_m * error_m(i, camera, first_trials)),
                       error_m(i, dim, dim_trials)});
     report(parts[0], static_cast<double>(i + 1) / static_cast<double>(codes.size()), "rows");
@@ -399,7 +401,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   const ProgressParts parts(progress, {20, 40, 40});
   const std::uint64_t seed = search_seed(options);
 
-  // 1. Sets of tones at random, each with its light.
+  // 1. Draw random sets of tones, each with its modulation.
   std::vector<ToneCode> codes;
   const auto drawn = static_cast<int>(by_effort(drawn_sets, options)),
              bettered = static_cast<int>(by_effort(bettered_sets, options));
@@ -409,7 +411,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
     report(parts[0], static_cast<double>(i + 1) / drawn, "rows");
   }
 
-  // 2. The best of them, bettered tone by tone, for the light asked for and for dimmer light too.
+  // 2. Improve the best sets tone by tone, for the nominal light and including dimmer light.
   const std::vector<ToneCode> at_random = std::move(codes);
   codes.clear();
   for (std::uint32_t turn = 0; turn < 2; ++turn) {
@@ -431,7 +433,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   }
   keep_best(codes, 2 * judged_sets, dim_weight);
 
-  // 3. The one to take, by other random numbers than the judge's.
+  // 3. Select one set, with random numbers that judge() does not use.
   const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   CodeSet code = search.code_set(tones);

@@ -12,32 +12,32 @@
 
 namespace tofsmith {
 
-/// Two of one tone and one that tells the period.
+/// Two rows for one tone, and one more to resolve its ambiguity.
 constexpr int min_designed_rows = 3;
 
-/// Numbers of rows to design for: DesignOptions::exposures, or 8.
+/// Returns the numbers of rows to design: DesignOptions::exposures, or 8.
 std::vector<int> designable_rows(const DesignOptions& options);
 std::string rows_name(int rows);
 
-/// Why rows cannot be designed for a camera that reads rows; none: row_candidates() does.
+/// Returns why rows cannot be designed for a camera that reads rows; none if row_candidates() can.
 std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows);
 
-/// Rows and light together, of a camera that reads rows: one code, for the judge.
+/// Designs rows and modulation jointly for a camera that reads rows; returns one code to be ranked.
 ///
-/// Rows are cosines and sines at a few tones, which any number of shifts leaves alike, so that no
-/// depth is worse than another; light is what is strongest at these tones within its peak. Sets of
-/// tones are drawn around the one that carries most information (largest n |H_n|), and bettered by
-/// single steps, by the error foreseen at the operating points: the Cramer-Rao bound at one depth,
-/// with the covariance of the rows, and beside it
+/// Rows are cosines and sines of a few tones. A shift of depth rotates them without changing their
+/// norm, so all depths have similar errors. The modulation has the largest power at these tones
+/// within its peak. Sets of tones are drawn around the most informative tone (largest n |H_n|) and
+/// improved by single steps. The predicted error at the operating points is the sum of the
+/// Cramer-Rao bound at one depth, with the covariance of the rows, and of the side-lobe error
 ///   sum_lobes 2 |u| R Q(sqrt(g(u) / 2)), g(u) = sum_n q_n (1 - cos 2 pi n u),
 ///   q_n = (S |M_n|)^2 / variance of a row in constant light.
-/// The light of a set is the fixed point of: on where the sum of its tones, in the phases it has
-/// now and weighed by their share in the information, is largest.
+/// The modulation of a set is computed by fixed-point iteration: it is on where the sum of the
+/// tones, with their current phases and weighted by information, is largest.
 ///
-/// In a tenth of the light lobes may be taken for the right one that no longer count in the light
-/// asked for, and of two sets that err alike in that one may collapse. So sets are bettered for
-/// both as well; of those within 3 % of the least error by Monte Carlo that is taken whose error
-/// times the 0.02nd power of the error in a tenth of the light is least.
+/// At a tenth of the light, side lobes can be mistaken for the main lobe, so sets with equal errors
+/// may differ greatly. Sets are therefore optimized for both light levels. Among the sets within
+/// 3 % of the smallest Monte Carlo error e, the one with the smallest e d^0.02 is selected, where d
+/// is the error at a tenth of the light.
 std::vector<Candidate> row_candidates(const Camera& camera, int rows, const DesignOptions& options,
                                       const Progress& progress);
 
