@@ -25,16 +25,16 @@ constexpr EnumWords<DesignMethod, 5> method_words("DesignMethod", "method",
 constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
                                                       "converged", "stalled", "iteration_limit");
 
-/// A code that is yet to be designed.
+/// A code to be designed.
 struct Task {
   DesignMethod method;
   std::string name;
-  double effort;                      ///< share of the time, to show progress by
-  std::optional<BrokenRule> why_not;  ///< the camera cannot be served so
+  double effort;                      ///< share of the time, for the progress
+  std::optional<BrokenRule> why_not;  ///< reason if the camera is not supported
   std::function<std::vector<Candidate>(const Progress&)> run;
 };
 
-/// Of a search that found nothing.
+/// Error of a search that found no code.
 BrokenRule no_code_found(const std::string& name) {
   return broken(name, "none", "no code on the camera's chip clock distinguishes all depths");
 }
@@ -43,8 +43,8 @@ bool includes(DesignMethod asked, DesignMethod method) {
   return asked == method || asked == DesignMethod::best;
 }
 
-/// Whether nothing keeps a method from serving a camera. Something is a refusal if the method was
-/// asked for, and a note if all were.
+/// Returns true if a method supports a camera. Otherwise it throws if this method was requested, or
+/// records the reason if all methods were.
 bool serves(DesignMethod method, const std::optional<BrokenRule>& why_not,
             const DesignOptions& options, DesignResult& result) {
   if (options.method == method) require(why_not);
@@ -52,7 +52,7 @@ bool serves(DesignMethod method, const std::optional<BrokenRule>& why_not,
   return !why_not;
 }
 
-/// Where the optimization starts: at codes of the atlas, then at all candidates there are.
+/// Returns the starts of the optimization: atlas codes, then all other candidates.
 std::vector<CodeSet> starts_of(const std::vector<CodeSet>& atlas_codes,
                                const DesignResult& result) {
   std::vector<CodeSet> starts = atlas_codes;
@@ -61,8 +61,8 @@ std::vector<CodeSet> starts_of(const std::vector<CodeSet>& atlas_codes,
   return starts;
 }
 
-/// What to design: a code for every target, then for every number of exposures. Tasks refer to all
-/// five arguments.
+/// Returns the tasks: one for every target, then one for every number of exposures. They keep
+/// references to all five arguments.
 std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                             const std::vector<TargetSet>& targets,
                             const std::vector<CodeSet>& atlas_codes, DesignResult& result) {
@@ -107,7 +107,7 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
   return tasks;
 }
 
-/// The candidates of a task: kept from an earlier run, or made now.
+/// Loads the candidates of a task from an earlier run, or runs the task.
 std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
                                    const Progress& progress) {
   if (store.load)
@@ -148,7 +148,7 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
 
 namespace {
 
-/// More are rows, and of those a design needs some.
+/// Checks the numbers of exposures, or of rows on cameras that read rows.
 void require_exposures(const Camera& camera, const DesignOptions& options) {
   constexpr int max_exposures = 8;
   if (camera.sensor.readout == Readout::rows) {
@@ -173,7 +173,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   require_exposures(camera, options);
   DesignResult result;
 
-  // 1. What there is to factorize; baselines compete as they are.
+  // 1. Choose the targets of the factorization, and add the baselines.
   std::vector<TargetSet> targets;
   if (includes(options.method, DesignMethod::factorize) &&
       serves(DesignMethod::factorize, why_not_factorizable(camera, options), options, result))
@@ -182,7 +182,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   const Contenders atlas = contending_atlas_codes(camera, options);
   add_atlas_codes(atlas, result);
 
-  // 2. Design codes. What is there by then is where the direct optimization starts.
+  // 2. Design codes. The direct optimization starts at the candidates found before it.
   const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas.codes, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
