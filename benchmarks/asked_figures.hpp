@@ -9,7 +9,7 @@
 
 namespace tofsmith::benchmarks {
 
-/// Figures beside what is asked of them, collected while others are measured.
+/// Collects measured values with their targets and prints them.
 class AskedFigures {
  public:
   void at_least(const std::string& what, double measured, double asked) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Decoding throughput beside what bounds it from above and what others do, all in the same run and
-// in turns. Absolute speeds are those of the machine at that moment; the ratios are what counts.
+// Decoding throughput compared with an upper bound and with other decoders, measured alternately in
+// the same run. Absolute speeds depend on the machine and its load; compare the ratios.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -49,7 +49,7 @@ void print_throughput(const Options& options, AskedFigures& asked) {
     }
 }
 
-/// What is larger than the last cache of most processors.
+/// Measures frames that exceed the last-level cache of most processors.
 void print_from_memory(const Options& options) {
   fmt::print(
       "\nOne core, bins of 32 frames at medium noise, from memory to memory, Mpixel/s. share: of "
@@ -66,8 +66,8 @@ void print_from_memory(const Options& options) {
   }
 }
 
-/// One frame on one thread and on more, by the clock on the wall; beside them what the machine
-/// gives two threads at most: two halves of the pixels that know nothing of each other.
+/// Measures one frame on one and several threads by wall-clock time. For comparison: two
+/// independent halves of the pixels, the maximum that the machine can reach with two threads.
 void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
   const DecodingTable table = decoding_table(decode_code(code), 1000);
   const Decoder decoder(table);
@@ -87,7 +87,7 @@ void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
                               const ThreadLimit limit(threads);
                               decoder.decode(view, view_of(set, planes));
                             }});
-    constexpr int half = frame_pixels / 2, repetitions = 4;  // starting threads takes time too
+    constexpr int half = frame_pixels / 2, repetitions = 4;  // amortizes the start of threads
     const auto decode_half = [&](int first) {
       for (int i = 0; i < repetitions; ++i)
         decoder.decode_bins(raw.data() + first * k_count, half, planes.bin.data() + first);
@@ -122,7 +122,7 @@ void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
   }
 }
 
-/// Depths decoded in single precision from pixels without noise.
+/// Measures the error of depths that are decoded in single precision from noise-free pixels.
 void print_depth_error(const std::string& code, AskedFigures& asked) {
   const int samples = 240, pixels = 200000;
   const ForwardModel model = forward_model(decode_code(code), samples);

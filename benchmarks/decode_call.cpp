@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The C++ side of python_decode.py: decodes a frame on one thread whenever it reads a line, and
-// answers with the CPU time it took [s].
+// Counterpart of python_decode.py: decodes a frame on one thread for every line of input and prints
+// the CPU time [s].
 #include <fmt/format.h>
 
 #include <cstdio>

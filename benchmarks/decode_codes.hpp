@@ -11,19 +11,19 @@
 
 namespace tofsmith::benchmarks {
 
-/// A code the decoder is measured with, on the camera paper-10f0.
+/// A code for measuring the decoder, on the camera paper-10f0.
 struct DecodeCode {
-  std::string_view name;    ///< on the command line
-  std::string_view family;  ///< as build_family() takes it
+  std::string_view name;    ///< option value
+  std::string_view family;  ///< argument of build_family()
   int taps;
-  int built_samples;  ///< N at which every switching time falls on a sample
+  int built_samples;  ///< N for which every switching time is at a sample
 };
 inline constexpr std::array decode_codes = {
     DecodeCode{"k3", "hamiltonian-k3", 1, 240}, DecodeCode{"k4", "hamiltonian-k4", 1, 240},
     DecodeCode{"k5", "hamiltonian-k5", 1, 240}, DecodeCode{"two-bucket", "hamiltonian-k4", 2, 240},
     DecodeCode{"rank7", "hamiltonian-k8", 1, 252}};
 
-/// @throws std::invalid_argument for a name that is none of theirs
+/// @throws std::invalid_argument for unknown names
 inline const DecodeCode& decode_code(std::string_view name) {
   for (const DecodeCode& code : decode_codes)
     if (code.name == name) return code;
@@ -39,7 +39,7 @@ struct LightLevel {
 inline constexpr std::array light_levels = {
     LightLevel{"low", 1e5, 1e4}, LightLevel{"medium", 1e4, 1e4}, LightLevel{"high", 1e3, 1e4}};
 
-/// A code sampled at any N: built where that is exact, then resampled.
+/// Returns the model of a code with N samples: built where sampling is exact, then resampled.
 inline ForwardModel forward_model(const DecodeCode& code, int samples) {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = code.built_samples;

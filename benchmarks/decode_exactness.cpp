@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The decoder's bins against a double-precision reference, pixel by pixel, on every instruction set
-// of this machine: branch and bound at N = 240, brute force at finer N. Both references are held
-// against the definition read aloud on a sample. A pixel counts as a mismatch unless the two bins
-// tie to within the rounding of the reference itself; such ties are counted beside.
+// Compares the decoder's bins with a double-precision reference, pixel by pixel, on every
+// instruction set of this machine. The reference is branch and bound at N = 240 and brute force at
+// finer N; a sample of both is compared with the definition of the decoder. A pixel is a mismatch
+// unless both bins have equal scores within the rounding of the reference; such ties are counted
+// separately.
 #include <fmt/format.h>
 #include <hwy/targets.h>
 #include <unistd.h>
@@ -33,21 +34,21 @@ using namespace tofsmith::benchmarks;
 struct Options {
   std::vector<std::string> codes = {"k3", "k4", "k5", "two-bucket", "rank7"};
   std::vector<int> samples = {240, 1000, 10000};
-  double pixels = 1e9;              // decoded at N = 240, over all codes and targets
-  double brute_force_pixels = 1e7;  // of each code and target at finer N
+  double pixels = 1e9;              // number at N = 240, over all codes and targets
+  double brute_force_pixels = 1e7;  // number for each code and target at finer N
   std::uint64_t seed = 1;
 };
 
-/// N up to which the reference is branch and bound.
+/// Largest N for which the reference is branch and bound.
 constexpr int coarse_samples = 240;
 
 struct Counts {
   std::int64_t decoded = 0;
   std::int64_t mismatches = 0;
-  std::int64_t ties = 0;  // to within rounding
+  std::int64_t ties = 0;  // equal within rounding
 };
 
-/// A code's reference and decoder, and the pixels at hand.
+/// Reference and decoder of a code, with the current pixels.
 class Comparison {
  public:
   Comparison(const DecodeCode& code, int samples)
@@ -62,9 +63,9 @@ class Comparison {
   static constexpr int blocks = 16;
   static constexpr int chunk = blocks * block;
 
-  /// Makes `pixels` new ones, with what the reference says.
+  /// Generates `pixels` new pixels with their reference bins.
   void make(std::uint64_t seed, int pixels);
-  /// Decodes them with the instruction set that is chosen.
+  /// Decodes them with the currently selected instruction set.
   Counts compare() const;
   int rank() const { return curve_.rank(); }
   std::int64_t held_against_definition() const { return held_; }
@@ -106,7 +107,7 @@ void Comparison::make(std::uint64_t seed, int pixels) {
     for (std::size_t i = 0; i < count; ++i)
       if (!projected[i].is_number) expected_[first + i] = -1;
   });
-  for (std::size_t i = seed % 997; i < expected_.size(); i += 9973) {  // a sample, in full
+  for (std::size_t i = seed % 997; i < expected_.size(); i += 9973) {  // a sample
     if (expected_[i] < 0) continue;
     const int bin = definition_.bin(&raw_[i * k_count]);
     require(bin == expected_[i] || is_tie(i, bin), "reference bin", expected_[i],
@@ -115,7 +116,7 @@ void Comparison::make(std::uint64_t seed, int pixels) {
   }
 }
 
-/// Whether rounding may decide between the bin expected and the one found.
+/// Returns true if the expected and the found bin differ only because of rounding.
 bool Comparison::is_tie(std::size_t pixel, std::int32_t found) const {
   const std::int32_t expected = expected_[pixel];
   if (found < 0 || expected < 0) return false;
@@ -124,7 +125,7 @@ bool Comparison::is_tie(std::size_t pixel, std::int32_t found) const {
   double best = -1.0;
   for (int row = 0; row < curve_.samples(); ++row)
     best = std::max(best, curve_.score(reference, row));
-  // The lower one is right if it ties with the best, the higher one if it does not.
+  // The lower bin is correct if it ties with the best, otherwise the higher one is.
   const std::int32_t lower = std::min(found, expected), higher = std::max(found, expected);
   const double behind = best - curve_.score(reference, lower);
   return std::abs(behind - reference.tie) <= reference.rounding &&
@@ -145,7 +146,7 @@ Counts Comparison::compare() const {
   return {pixels_, mismatches, ties};
 }
 
-/// What is under way, on a terminal.
+/// Shows the progress on a terminal.
 void show(const std::string& text) {
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K{}", text);
 }
@@ -154,7 +155,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// @returns what was found wrong
+/// @returns the counts of differences
 Counts compare_all_targets(const DecodeCode& code, int samples, const Options& options) {
   std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   std::erase_if(targets, [with_kernels = dispatch_targets()](std::int64_t target) {

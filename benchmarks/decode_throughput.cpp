@@ -17,7 +17,8 @@ namespace tofsmith::benchmarks {
 
 namespace {
 
-/// What is asked of bins alone at N = 1000 and medium noise, as a share of the read-write limit.
+/// Returns the target for bins alone at N = 1000 and medium noise, as a fraction of the read-write
+/// limit.
 std::optional<double> asked_share(std::string_view code) {
   if (code == "k3") return 1.0 / 3.0;
   if (code == "k4") return 1.0 / 4.0;
@@ -25,7 +26,7 @@ std::optional<double> asked_share(std::string_view code) {
   return std::nullopt;
 }
 
-/// Pixels of a frame for those that take long, spread over it.
+/// Returns `count` pixels spread over a frame, for slow decoders.
 std::vector<float> some_pixels(const std::vector<float>& raw, int measurements, int count) {
   std::vector<float> some;
   for (int i = 0; i < count; ++i) {

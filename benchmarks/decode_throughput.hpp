@@ -11,16 +11,16 @@
 
 namespace tofsmith::benchmarks {
 
-/// One code at one N, decoded by all there are.
+/// Compares all decoders for one code at one N.
 class DecodeThroughput {
  public:
   DecodeThroughput(const DecodeCode& code, int samples);
 
-  /// Prints one line for a frame, on one core, and adds what is asked of it.
+  /// Measures one frame on one core, prints one line and adds the targets.
   void print(Scene scene, const LightLevel& light, int rounds, AskedFigures& asked) const;
   static void print_heading();
 
-  /// Prints one line for bins of frames that no cache holds, read from memory and written to it.
+  /// Prints one line for bins of frames that exceed the caches, including memory traffic.
   void print_from_memory(Scene scene, int rounds) const;
 
  private:

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that a device of OpenCL decodes per second, from its memory and from this computer's,
-// beside copies of the same bytes in the same run; and how many of them differ from the Decoder's.
-// Frames and recordings that it and the CPU filter per second, and from which size on it is faster.
+// Pixels per second decoded by an OpenCL device, from device and from host memory, compared with
+// copies of the same bytes in the same run; and the number of differences from Decoder. Also frames
+// and recordings filtered per second on device and CPU, and the frame size above which the device
+// is faster.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -19,7 +20,7 @@
 namespace tofsmith {
 namespace {
 
-/// The best of some runs [s].
+/// Returns the shortest time of several runs [s].
 double seconds_of(const std::function<void()>& work, int runs) {
   work();
   double best = 1e30;
@@ -32,7 +33,7 @@ double seconds_of(const std::function<void()>& work, int runs) {
   return best;
 }
 
-/// Bytes read and written per second by copies within the device.
+/// Returns the bytes read and written per second by copies within the device.
 double copy_rate(const Device& device, std::size_t bytes, int runs) {
   const DeviceQueue queue(device);
   const DeviceMemory from = queue.allocate(bytes), to = queue.allocate(bytes);
@@ -64,7 +65,7 @@ std::int64_t differences(const std::vector<Value>& a, const std::vector<Value>& 
   return count;
 }
 
-/// Tells how many bins, statuses and bits of other planes differ.
+/// Prints the number of different bins, statuses and bits of other planes.
 void tell_differences(const Planes& a, const Planes& b) {
   std::int64_t floats = 0;
   for_each_plane(
@@ -84,7 +85,7 @@ void report(const Device& device, const char* code, int pixels, double copy_byte
   camera.samples = 960;
   const DecodeSetup setup(code, camera);
   const int measurements = setup.decoder.measurements();
-  // Some noise, repeated: what is decoded beside it does not matter.
+  // Repeat some noisy pixels; their values do not affect the speed.
   const std::vector<float> some = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 1 << 19, 1);
   std::vector<float> raw;
   while (raw.size() < static_cast<std::size_t>(pixels) * static_cast<std::size_t>(measurements))
@@ -121,7 +122,7 @@ void report(const Device& device, const char* code, int pixels, double copy_byte
   tell_differences(on_it, planes);
 }
 
-/// A frame of a slanted wall with a box before it.
+/// Returns a frame of a slanted wall behind a box.
 std::vector<float> frame_of_a_box(const DecodingTable& table, int height, int width) {
   RandomStream random(7, 0);
   std::vector<float> raw;
@@ -169,7 +170,7 @@ void report_filters(const Device& device, int runs) {
   }
 }
 
-/// Frames of a recording per second, on the device and on the CPU.
+/// Measures recordings in frames per second, on the device and on the CPU.
 void report_recordings(const std::string& device, int runs) {
   constexpr int height = 480, width = 640, frames = 8;
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
@@ -204,7 +205,7 @@ void report_recordings(const std::string& device, int runs) {
        {.time_filter = TimeFilterOptions{.before_filter = true}, .filter = &normal});
 }
 
-/// The smallest of some sizes from which on `there` takes less time than `here`; in words.
+/// Describes the smallest size from which `there` is faster than `here`.
 std::string crossover(const std::function<double(int)>& there,
                       const std::function<double(int)>& here) {
   std::optional<int> from;
@@ -215,7 +216,8 @@ std::string crossover(const std::function<double(int)>& there,
   return from ? fmt::format("{} pixels", *from * *from) : "none up to 1048576 pixels";
 }
 
-/// From which size on the device is faster, copies included: as auto_min_pixels_to_filter.
+/// Measures the size from which the device is faster, including copies (see
+/// auto_min_pixels_to_filter).
 void report_crossovers(const Device& device, int runs) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();

@@ -15,7 +15,7 @@ namespace {
 
 enum class Kind { low, medium, high, ambient, any_light, half_way, whole, scaled, odd, mixed };
 
-/// Every 16 blocks: usual light most often, what is decided in double seldom.
+/// Kinds in a cycle of 16 blocks: common light is frequent, cases decided in double are rare.
 constexpr Kind kinds[] = {Kind::low,       Kind::medium, Kind::high,     Kind::ambient,
                           Kind::any_light, Kind::medium, Kind::half_way, Kind::high,
                           Kind::low,       Kind::whole,  Kind::ambient,  Kind::any_light,
@@ -72,7 +72,7 @@ class HardPixels {
     }
   }
 
-  /// Contrast of a bin without ambient light: what its score is divided by.
+  /// Returns the norm of a bin without its ambient component, which normalizes its score.
   double contrast(int bin) const {
     double along = 0.0, ambient = 0.0, square = 0.0;
     for (int k = 0; k < measurements(); ++k) {
@@ -85,7 +85,7 @@ class HardPixels {
     return std::sqrt(square - along * along / ambient);
   }
 
-  /// Between neighbours, or between any two: a tie, but for the rounding of the raw numbers.
+  /// Sets raw values half-way between two adjacent or arbitrary bins, a tie up to rounding.
   void half_way(float* raw) {
     const int n = random_.below(table_.samples());
     const int m =
@@ -121,24 +121,24 @@ class HardPixels {
   void odd(float* raw) {
     noisy(1e4, 1e4, raw);
     switch (random_.below(8)) {
-      case 0:  // no number
+      case 0:  // NaN
         raw[random_.below(measurements())] = std::numeric_limits<float>::quiet_NaN();
         return;
       case 1:
         raw[random_.below(measurements())] = -std::numeric_limits<float>::infinity();
         return;
-      case 2:  // nothing at all
+      case 2:  // all zero
         std::fill_n(raw, measurements(), 0.0f);
         return;
-      case 3:  // one number stands out of equal ones
+      case 3:  // one value differs from the others
         std::fill_n(raw, measurements(), static_cast<float>(random_.below(1000)));
         raw[random_.below(measurements())] += static_cast<float>(random_.below(1000));
         return;
-      case 4:  // one step of a float above equal ones
+      case 4:  // one value is the next float
         std::fill_n(raw, measurements(), static_cast<float>(random_.log_uniform(1.0, 1e6)));
         raw[0] = std::nextafter(raw[0], 1e9f);
         return;
-      default:  // the lowest and highest
+      default:  // extreme values
         for (int k = 0; k < measurements(); ++k)
           raw[k] = random_.below(2) != 0 ? 0.0f : static_cast<float>(random_.log_uniform(1.0, 1e5));
     }

@@ -10,12 +10,12 @@
 
 namespace tofsmith::benchmarks {
 
-inline constexpr int pixels_per_kind = 4096;  ///< that come one after another
+inline constexpr int pixels_per_kind = 4096;  ///< number of consecutive pixels of a kind
 
-/// Raw numbers (pixels, K) that a decoder may find hard, from a stream named by `seed`: the three
+/// Generates raw values (pixels, K) that are difficult to decode, from the stream `seed`: three
 /// noise levels, ambient light 100 times the signal, light over six powers of ten, exactly half-way
-/// between two bins, whole numbers, tiny and huge scales, ambient light alone, no numbers at all,
-/// and all of these mixed. Kinds change every pixels_per_kind pixels.
+/// between two bins, whole numbers, tiny and huge scales, ambient light only, NaN and infinity, and
+/// a mixture. The kind changes every pixels_per_kind pixels.
 /// @param raw  (pixels * K)
 void fill_hard_pixels(const DecodingTable& table, std::uint64_t seed, int pixels, float* raw);
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// How surely random starts alone find the best pair for the K = 3 Hamiltonian code: 50 seeds per
-// peak, without structured starts and without the naive pair. Also what feeding the projection back
-// into the iteration, as the paper words it, does to K = 4.
+// Reliability of random starts for the K = 3 Hamiltonian code: 50 seeds per peak, without
+// structured starts and without the naive pair. Also the effect of feeding the projection back into
+// the iteration (the formulation of the paper) for K = 4.
 
 #include <fmt/format.h>
 

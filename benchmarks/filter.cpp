@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames filtered per second in space and in time, VGA with four measurements, beside copying and
-// decoding the same frame.
+// Frames per second of the spatial and the temporal filter, VGA with four measurements, compared
+// with copying and decoding the same frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace tofsmith::benchmarks {
 namespace {
 
-/// The shortest of several runs, which least else interfered with.
+/// Returns the shortest time of several runs, which has the least interference [s].
 template <typename Work>
 double seconds_of(const Work& work) {
   constexpr int runs = 7;
@@ -43,7 +43,7 @@ const std::array time_filters = {
     NamedTimeFilter{"in time, looking 4 frames ahead", {.look_ahead = 4}},
     NamedTimeFilter{"in time, looking 16 frames ahead", {.look_ahead = 16}}};
 
-/// Of a filter in time, in frames of K floats a pixel.
+/// Returns the memory of a temporal filter, in frames of K floats per pixel.
 double frames_held(const TimeFilterOptions& options) {
   return static_cast<double>(TimeFilter::memory_bytes(options, frame_height, frame_width, 4, 1)) /
          (sizeof(float) * 4.0 * frame_pixels);
@@ -79,7 +79,7 @@ void measure(const LightLevel& light, AskedFigures& asked) {
     }
     for (const auto& [name, options] : time_filters) {
       TimeFilter filter(table, options);
-      for (int frame = 0; frame < options.look_ahead; ++frame) filter.add(view);  // they wait
+      for (int frame = 0; frame < options.look_ahead; ++frame) filter.add(view);  // pre-fill
       const double seconds = seconds_of([&] { filter.add(view); });
       fmt::print("  {:<34}{:>8.1f} frames/s, {:>6.1f} times decoding, {:>7.0f} times copying\n",
                  name, 1 / seconds, seconds / decoded, seconds / copied);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// How fast pixels of two returns are decoded, beside the single-path decoder: a two-bucket
-// Hamiltonian with five exposures, on one core.
+// Speed of two-return decoding compared with the single-path decoder: a two-bucket Hamiltonian code
+// with five exposures, on one core.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,7 +17,8 @@ namespace {
 
 constexpr int pixels = 32768;
 
-/// A frame of which a share of pixels holds a second return that one return does not explain.
+/// Returns a frame in which a fraction of the pixels has a second return that one return cannot
+/// explain.
 std::vector<float> frame(const DecodingTable& table, double share) {
   FastRandom random(11);
   std::vector<float> raw;

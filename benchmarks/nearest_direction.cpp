@@ -14,7 +14,7 @@ namespace tofsmith::benchmarks {
 
 namespace {
 
-/// Points as nanoflann reads them.
+/// Points with the interface of nanoflann.
 template <int Rank>
 struct Directions {
   std::vector<std::array<float, Rank>> points;

@@ -9,8 +9,8 @@
 
 namespace tofsmith::benchmarks {
 
-/// The peer: the nearest of all directions by nanoflann's k-d tree, in single precision. Where
-/// nanoflann was not there to build with, make() gives nothing.
+/// Peer for comparisons: nearest direction by nanoflann's k-d tree, in single precision. make()
+/// returns null if the benchmark was built without nanoflann.
 class NearestDirection {
  public:
   static std::unique_ptr<NearestDirection> make(const ReferenceCurve& curve);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What direct optimization reaches, beside the figures asked of it: geometric mean depth error over
-// the paper's 25 light levels (f0 = 15 MHz, T = 0.3 s, read noise 20 e), or at one level against
-// Hamiltonian K = 4, by fresh trials at N = 240; and the processor time of a design.
+// Results of direct optimization compared with targets: geometric mean depth error over the paper's
+// 25 light levels (f0 = 15 MHz, T = 0.3 s, read noise 20 e), or the gain over Hamiltonian K = 4 at
+// one level, with independent trials at N = 240; and the processor time of a design.
 //   benchmark_optimize [--only NAME] [--seed S] [--exposures E] [--history]
 
 #include <fmt/format.h>
@@ -22,10 +22,10 @@ using namespace tofsmith;
 
 struct Row {
   const char* name;
-  double peak_factor, band_multiple;  // 0: none, with a shortest pulse of 0.5 ns
+  double peak_factor, band_multiple;  // 0: no limit, with a shortest pulse of 0.5 ns
   DepthErrorKind error;
   int exposures, taps;
-  double asked;                    // mm, at most; or the gain over Hamiltonian K = 4, at least
+  double asked;                    // maximum [mm], or minimum gain over Hamiltonian K = 4
   double signal = 0, ambient = 0;  // e/s: one light level; 0: the paper's grid
 };
 
@@ -76,7 +76,7 @@ std::vector<CodeSet> baselines_for(const Camera& camera) {
 
 double seconds_of_processor() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Of a code by trials that nothing was chosen by [m].
+/// Returns the error of a code with trials that were not used in its selection [m].
 Estimate judged(const CodeSet& code, const Camera& camera) {
   EvaluateOptions options;
   options.seed = 987654321;

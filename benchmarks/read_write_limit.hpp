@@ -12,8 +12,8 @@
 
 namespace tofsmith::benchmarks {
 
-/// What every decoder has to do: reads every raw number of a frame and writes every value of the
-/// planes in view, a few thousand pixels at a time, and nothing else.
+/// Reads every raw value of a frame and writes every value of the requested planes, in blocks of a
+/// few thousand pixels: the minimum work of any decoder.
 inline void read_and_write(const std::vector<float>& raw, int measurements,
                            const DecodedView& planes) {
   constexpr int block = 4096;

@@ -11,15 +11,15 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reference_bins.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Highway requires its header after foreach_target.
 #include <hwy/highway.h>
 
 #ifndef TOFSMITH_BENCHMARKS_RUNS
 #define TOFSMITH_BENCHMARKS_RUNS
 namespace tofsmith::benchmarks {
-inline constexpr int run_blocks = 2;     // blocks of rows in a run
-inline constexpr int group_blocks = 16;  // blocks of rows whose best scores are kept together
-inline constexpr int max_groups = 128;   // hence N <= 16384
+inline constexpr int run_blocks = 2;     // blocks of rows per run
+inline constexpr int group_blocks = 16;  // blocks of rows with a common best score
+inline constexpr int max_groups = 128;   // so N <= 16384
 inline constexpr int max_run_blocks = 128;
 inline constexpr int pixels_at_once = 4;
 }  // namespace tofsmith::benchmarks
@@ -35,7 +35,7 @@ using Vector = hn::Vec<Doubles>;
 
 HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Doubles())); }
 
-/// Scores of the rows of a block from row i on.
+/// Returns the scores of the rows of a block, starting at row i.
 template <int Rank>
 HWY_INLINE Vector scores(const double* unit, const double* block, int i) {
   const Doubles d;
@@ -47,7 +47,7 @@ HWY_INLINE Vector scores(const double* unit, const double* block, int i) {
 
 HWY_INLINE double largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Doubles(), v)); }
 
-/// The first row of a block whose score is at least `least`, or -1.
+/// Returns the first row of a block whose score is at least `least`, or -1.
 template <int Rank>
 HWY_INLINE int first_row(const double* unit, const double* block, double least) {
   const Doubles d;
@@ -99,7 +99,8 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const ReferenceP
   const Doubles d;
   constexpr int stride = Rank * reference_block;
   const double* const unit = pixel.unit.data();
-  // A sine from a cosine near 1 has lost half of its digits; the slacks cover it.
+  // The sine of a small angle loses half of its digits when computed from the cosine; the
+  // tolerances account for it.
   const Vector one = hn::Set(d, 1.0), lost = hn::Set(d, 1e-14), slack = hn::Set(d, 1e-9);
   HWY_ALIGN double highest[max_run_blocks * reference_block];
   Vector most = hn::Set(d, -2.0);
@@ -113,7 +114,7 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const ReferenceP
       hn::Store(hn::IfThenElse(hn::Ge(c, cosine), hn::Add(one, slack), bound), d, highest + run);
       most = hn::Max(most, c);
     }
-  double best = largest(most);  // a centre is a direction
+  double best = largest(most);  // a centre is one of the directions
   int candidates[max_run_blocks * reference_block], count = 0;
   for (int run = 0; run < view.run_blocks * reference_block; ++run)
     if (highest[run] >= best) candidates[count++] = run;
@@ -198,7 +199,7 @@ BranchAndBound::BranchAndBound(const ReferenceCurve& curve) {
   const int runs = (curve.samples() + run_rows - 1) / run_rows;
   const int blocks = (runs + reference_block - 1) / reference_block;
   require(blocks <= max_run_blocks, "samples", curve.samples(), "must be at most 16384");
-  // Runs that fill the last block stand for the last one again, and have no rows.
+  // Padding of the last block repeats the last run and has no rows.
   const auto entries = static_cast<std::size_t>(blocks * reference_block);
   centre_.resize(entries * static_cast<std::size_t>(rank));
   cosine_.assign(entries, 1.0);

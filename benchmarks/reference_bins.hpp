@@ -9,31 +9,31 @@
 
 namespace tofsmith::benchmarks {
 
-/// The lowest bins whose scores are within reference_tie of the best, over all bins. Eight rows at
-/// a time and four pixels at a time, in double: what brute force can do.
-/// @param pixels  all of them numbers
+/// Finds the lowest bins whose scores are within reference_tie of the best, over all bins. Brute
+/// force in double, for eight rows and four pixels at a time.
+/// @param pixels  must have only finite values
 void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixels, int count,
                          std::int32_t* bin);
 
-/// The same by branch and bound: runs of neighbouring bins lie in cones, and a cone whose best
-/// thinkable score is behind is passed over.
+/// As bins_by_brute_force(), by branch and bound: runs of adjacent bins are enclosed in cones, and
+/// cones whose upper bound is below the best score are skipped.
 class BranchAndBound {
  public:
-  /// @param curve  outlives this and stays where it is
+  /// @param curve  must outlive this object and keep its address
   explicit BranchAndBound(const ReferenceCurve& curve);
 
   std::int32_t bin(const ReferencePixel& pixel) const;
 
-  /// What the search reads, as plain memory; runs stand in blocks like rows.
+  /// Arrays of the search; runs are stored in blocks like rows.
   struct View {
     int rank = 0;
     int run_blocks = 0;
     int row_blocks = 0;
     const double* centre =
-        nullptr;  ///< [run_blocks][rank][reference_block]: a direction of the run
-    const double* cosine = nullptr;  ///< [runs] of the angle between it and the farthest one
+        nullptr;  ///< [run_blocks][rank][reference_block]: central direction of the run
+    const double* cosine = nullptr;  ///< [runs] of the angle between centre and farthest row
     const double* sine = nullptr;    ///< [runs]
-    const double* row = nullptr;     ///< as ReferenceCurve::rows()
+    const double* row = nullptr;     ///< see ReferenceCurve::rows()
   };
 
  private:

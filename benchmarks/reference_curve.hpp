@@ -11,31 +11,31 @@
 
 namespace tofsmith::benchmarks {
 
-inline constexpr int reference_block = 8;  ///< rows whose components stand side by side
+inline constexpr int reference_block = 8;  ///< number of rows with interleaved components
 inline constexpr int max_rank = 8;
-inline constexpr double reference_tie = 1e-11;  ///< scores this close tie, in units of |P y'|
+inline constexpr double reference_tie = 1e-11;  ///< tolerance of ties, in units of |P y'|
 
-/// What ambient light does not explain of a pixel.
+/// A pixel with the ambient component projected out.
 struct ReferencePixel {
-  std::array<double, max_rank> unit{};  ///< of length 1; zero if nothing is left
-  double tie = reference_tie;           ///< scores of `unit` this close tie
-  double rounding = 0.0;                ///< by how much rounding may move a score of `unit`
-  bool is_number = false;               ///< all raw numbers are finite
+  std::array<double, max_rank> unit{};  ///< unit vector, or zero if no signal is left
+  double tie = reference_tie;           ///< scores of `unit` within this distance tie
+  double rounding = 0.0;                ///< bound on the rounding error of a score of `unit`
+  bool is_number = false;               ///< true if all raw values are finite
 };
 
-/// The decoder's definition in double: directions of the bins and of pixels, in coordinates of the
-/// space that the bins span once ambient light is taken off. Made apart from the library's tables.
+/// The decoder's definition in double: directions of bins and pixels, in coordinates of the space
+/// spanned by the bins without the ambient component. Independent of the library's tables.
 class ReferenceCurve {
  public:
-  /// @throws std::invalid_argument for a table of another rank than 2 .. max_rank, or with bins
-  ///         without contrast
+  /// @throws std::invalid_argument if the rank is not in [2, max_rank], or for bins without
+  ///   contrast
   explicit ReferenceCurve(const DecodingTable& table);
 
   int samples() const { return samples_; }
   int rank() const { return rank_; }
   int measurements() const { return static_cast<int>(coordinates_.cols()); }
   int blocks() const { return (samples_ + reference_block - 1) / reference_block; }
-  /// Directions [blocks][rank][reference_block]; the last row fills the last block.
+  /// Returns the directions [blocks][rank][reference_block]; padding repeats the last row.
   const double* rows() const { return rows_.data(); }
   double component(int row, int j) const {
     return rows_[static_cast<std::size_t>((row / reference_block * rank_ + j) * reference_block +
@@ -49,7 +49,7 @@ class ReferenceCurve {
   int samples_ = 0;
   int rank_ = 0;
   Eigen::VectorXd dark_raw_, gain_e_per_raw_;
-  Eigen::VectorXd ambient_;  // unit, or zero
+  Eigen::VectorXd ambient_;  // unit vector, or zero
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coordinates_;  // (rank, K)
   std::vector<double> rows_;
 };

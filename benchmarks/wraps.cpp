@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Wrong wraps of multi-frequency codes: without noise for random sets of frequencies, and in noise
-// compared with exact maximum likelihood on the continuous model.
+// Wrong wrap counts of multi-frequency codes: without noise for random sets of frequencies, and
+// with noise compared with exact maximum likelihood on the continuous model.
 //
 //   benchmark_wraps [SETS] [PIXELS PER SET] [SEED]     (default: 1000 sets of 10000 pixels)
 //   benchmark_wraps --noise [PIXELS PER LEVEL]         (default: 100000)
@@ -34,7 +34,7 @@ std::string name_of(const Frequencies& list) {
   return name;
 }
 
-/// Two buckets that are subtracted, f0 = 1 MHz, no impulse responses; else as by default.
+/// Returns a camera with differences of two buckets, f0 = 1 MHz and no impulse responses.
 Camera ideal_camera() {
   Camera camera;
   camera.operating = paper_operating_range();
@@ -50,7 +50,7 @@ double phase_of(const FrequencySteps& f, int step) {
   return turn * step / (f.steps == 2 ? 4 : f.steps);
 }
 
-/// Differences of the buckets by their formula, of unit amplitude, plus normal noise.
+/// Appends the differences of the buckets for unit amplitude, plus normal noise.
 void append_pixel(const Frequencies& list, double periods, double noise, RandomStream& random,
                   std::vector<float>& raw) {
   for (const FrequencySteps& f : list)
@@ -96,7 +96,7 @@ int without_noise(int sets, int pixels, std::uint64_t seed) {
     const Frequencies list = random_frequencies(random);
     const Decoder decoder = decoder_of(list);
     const double range_m = decoder.table().range_m;
-    // Closer than half a period of the highest frequency.
+    // Errors must be less than half a period of the highest frequency.
     int highest = 1;
     for (const FrequencySteps& f : list) highest = std::max(highest, f.frequency);
     std::vector<double> truth_m;
@@ -127,8 +127,8 @@ int without_noise(int sets, int pixels, std::uint64_t seed) {
   return wrong > 0 ? 1 : 0;
 }
 
-/// argmax_z Re sum_f phasor_f exp(-2 pi i f z): maximum likelihood for noise that is the same in
-/// all measurements, with unknown signal. By brute force and Newton steps [periods].
+/// Returns argmax_z Re sum_f phasor_f exp(-2 pi i f z) [periods]: maximum likelihood for equal
+/// noise in all measurements and unknown signal. Brute force, then Newton steps.
 double most_likely(const Frequencies& list, const float* raw) {
   std::vector<std::complex<double>> phasor;
   int highest = 1;
@@ -173,7 +173,7 @@ void in_noise(int pixels) {
         Frequencies{{83, 4}, {100, 4}}, Frequencies{{2, 3}, {10, 3}, {15, 3}},
         Frequencies{{29, 4}, {30, 4}, {31, 4}}}) {
     const Decoder decoder = decoder_of(list);
-    double spread = 0.0;  // of wraps: their distance falls with the root mean square frequency
+    double spread = 0.0;  // of wraps: their distance decreases with the RMS frequency
     for (const FrequencySteps& f : list) spread += f.frequency * f.frequency;
     const double scale = list.size() == 2 ? 1.0 / std::sqrt(spread) : 0.5 / std::pow(spread, 0.25);
     for (const double level : {1.0, 1.5, 2.5}) {
