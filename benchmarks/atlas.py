@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Cameras between those of the atlas: the code of `design --effort 0`, which searches nothing, against
-that of a full design (`--effort 1` without the atlas), both judged by other random numbers and at
-their best origins. Prints their errors and their ratio; exits 1 where one is above 1.03.
+"""Compares codes of `design --effort 0`, which only looks up known codes, with codes of a full
+design (`--effort 1` without the atlas), on cameras between those of the atlas. Both are
+evaluated with independent random numbers at their best origins. Prints the errors and their
+ratio; exits with 1 if a ratio exceeds 1.03.
 
-    atlas.py TOFSMITH [EFFORT]       EFFORT of the full design in place of 1
+    atlas.py TOFSMITH [EFFORT]       EFFORT of the full design instead of 1
 """
 
 import json

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How soon the lab's page shows something, in a headless Chromium without a GPU.
+"""Time until the lab page shows results, in a headless Chromium without a GPU.
 
     lab_page.py build-lab/lab.html [--moves 20]
 
-Times are by the time of day, of an idle machine. Beside each asked figure stands what was measured: the
-time from the page's address to its first waveforms; from a slider's move to new waveforms and to new
-errors of two codes, at 25 light levels, medians of the moves; one full evaluation in its worker."""
+Times are wall-clock times on an idle machine. Prints each measured value with its target: the time
+from opening the page to its first waveforms; the time from moving a slider to new waveforms and to
+new errors of two codes at 25 light levels (medians of the moves); and one full evaluation in the
+worker."""
 
 import argparse
 import statistics
@@ -20,7 +21,7 @@ from lab_browser import HELPERS, browser_test  # noqa: E402
 FIRST = """const done = arguments[0];
 settled().then(() => done(performance.getEntriesByName('tofsmith picture')[0].startTime));"""
 
-# Milliseconds to new waveforms and to new errors of both codes, for each move.
+# Times in ms from each move to new waveforms and to new errors of both codes.
 MOVES = """const [count, done] = arguments;
 (async () => {
   const slider = document.querySelector('[data-key="light.peak_factor"] input[type=range]'), times = [];
@@ -55,7 +56,7 @@ FULL = """const done = arguments[0], camera = tofsmithLab.lab.camera.toml, times
 
 
 def main():
-    """Measures, prints, and fails where an asked figure is missed."""
+    """Runs the measurements and exits with an error if a target is missed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=Path)
     parser.add_argument("--moves", type=int, default=20)

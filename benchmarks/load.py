@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Memory and rate of work that goes on for long: a recording larger than memory, a sweep of very
-many items, a stream that does not end.
+"""Memory and throughput of long runs: a recording larger than memory, a sweep with many items, an
+endless stream.
 
-    load.py TOFSMITH recording [--gb 8] [--mb 512]     decoded under a limit of memory
+    load.py TOFSMITH recording [--gb 8] [--mb 512]     decoded with a memory limit
     load.py TOFSMITH sweep [--items 1e6]
     load.py TOFSMITH stream [--minutes 10]
 
-Memory is the resident set of the process, rates are by the time of day: of one run on an idle
-machine, or of what other work leaves. Flat is what in the second half lies within 10 % (memory) and
-25 % (rate) of the first. Exit code 1 if it is not."""
+Memory is the resident set of the process; rates use wall-clock time, so run on an idle machine.
+Exits with 1 if the second half differs from the first by more than 10 % in memory or 25 % in rate.
+"""
 
 import argparse
 import os
@@ -30,7 +30,7 @@ CODE = ("--code", "sinusoid-k4", "--set", "fundamental_frequency_hz=15e6")
 
 
 class Watched:
-    """A process, with samples of time, work done and resident memory."""
+    """A process with samples of time, completed work and resident memory."""
 
     def __init__(self, command, done, limit_mb=None, period_s=2.0, **streams):
         def limit():
@@ -54,11 +54,11 @@ class Watched:
                 self.samples.append((time.monotonic() - self.begin, self.done(),
                                      self.resident_mb()))
             except (OSError, IndexError, sqlite3.Error):
-                pass  # not yet, or no more
+                pass  # not started yet, or already finished
             time.sleep(self.period_s)
 
     def finish(self):
-        """Waits for the end. @return exit code, seconds, and its peak of memory [MB]"""
+        """Waits for the end. @return exit code, seconds and peak memory [MB]"""
         _, status, usage = os.wait4(self.process.pid, 0)
         self.process.returncode = os.waitstatus_to_exitcode(status)
         seconds = time.monotonic() - self.begin
@@ -67,7 +67,7 @@ class Watched:
 
 
 def halves(samples, unit):
-    """Says memory and rate of each tenth and compares the halves. @return whether both are flat"""
+    """Prints memory and rate of each tenth. @return True if both halves agree"""
     at = np.array([s for s in samples if s[2] > 0])[1:]
     if len(at) < 8:
         print("too short to say how it goes on")

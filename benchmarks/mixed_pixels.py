@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How many of the pixels that fly at edges `decode --mixed` finds, and what it takes of surfaces.
+"""Fraction of flying pixels at edges that `decode --mixed` detects, and of valid pixels that it
+removes.
 
     /usr/bin/python3 benchmarks/mixed_pixels.py TOFSMITH CODE.code.json [S ..]
 
-The table-top scene of 320 x 240 pixels behind a lens that blurs by half a pixel. What a pixel sees
-is known from nine times as many rays. It flies if its depth is off the nearest of them, the
-farthest, and the one through its middle by more than 30 mm and three predicted standard deviations;
-it is of a true surface if what it sees differs by less than 30 mm. A pixel of a true surface that
-flies is far out in its noise: those at edges are counted alone, too. With a filter, one that is not
-marked may have its own depth once those beside it are: it is right after.
+Uses the table-top scene with 320 x 240 pixels and a lens blur of half a pixel. Nine times as many
+rays determine the visible depths of each pixel. A pixel flies if its depth differs from the
+nearest, the farthest and the central ray by more than 30 mm and three predicted standard
+deviations. A pixel shows a single surface if its rays differ by less than 30 mm. Such a pixel can
+still fly because of large noise; flying pixels at edges are also counted separately. With a filter,
+an unmarked flying pixel counts as `right after` if its depth is correct once marked neighbours are
+excluded from the average.
 """
 
 import subprocess
@@ -39,13 +41,13 @@ def run(program, *arguments):
 
 
 def rays_seen(program, code, directory):
-    """Nearest, farthest and middle depth that each pixel sees [m]."""
+    """Nearest, farthest and central depth within each pixel [m]."""
     size = ("--width", WIDTH * RAYS, "--height", HEIGHT * RAYS)
     run(program, "simulate", "table-top", *size, "--code", code, "-o", directory / "raw.npy",
         "--truth", directory / "truth.npy", "--reference-distance", REFERENCE_M)
     truth = np.load(directory / "truth.npy").reshape(HEIGHT * RAYS, WIDTH * RAYS)
     truth = np.where(truth > 0, truth, np.nan).astype(np.float64)
-    # The pixel itself and two standard deviations of blur on each side.
+    # The pixel and two standard deviations of blur on each side.
     windows = sliding_window_view(np.pad(truth, RAYS, mode="edge"), (3 * RAYS, 3 * RAYS))
     windows = windows[::RAYS, ::RAYS]
     return (np.nanmin(windows, (2, 3)), np.nanmax(windows, (2, 3)),

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The experiment of benchmark_montecarlo as one would first write it in numpy, on one core.
+"""Straightforward NumPy version of the experiment of benchmark_montecarlo, on one core.
 
-Draws depths, expected electrons, normal noise; decodes by the largest normalized correlation with
-the table. Prints "code samples trials-per-second" for each code and N, and on standard error the
-mean circular error, which `tofsmith evaluate --no-sub-bin` should agree with.
+Draws depths, expected electrons and normal noise; decodes by the largest normalized correlation
+with the table. Prints "code samples trials-per-second" for each code and N, and on standard error
+the mean circular error, which should agree with `tofsmith evaluate --no-sub-bin`.
 """
 import os
 
@@ -17,8 +17,7 @@ import time
 
 import numpy as np
 
-# Runs on, off, on, .. of each demodulation and its shift, and their length L: model of the ideal
-# codes.
+# Runs on, off, on, ... and shift of each demodulation of the ideal codes, and their length L.
 RUNS = {
     "k3": (6, [([3, 3], 0), ([3, 3], 2), ([3, 3], 4)]),
     "k4": (12, [([6, 6], 5), ([6, 6], 2), ([3, 4, 3, 2], 0), ([2, 3, 4, 3], 4)]),
@@ -30,7 +29,7 @@ SIGNAL, AMBIENT, TOTAL_S, READ_NOISE = 1e4, 1e4, 0.3, 20.0
 
 
 def correlation(code, samples, fine=240):
-    """chi (samples, K): by harmonics, as the two arms of the camera leave them."""
+    """chi (samples, K), from harmonics after both arms of the camera."""
     length, runs = RUNS[code]
     n = np.arange(0, fine // 2)
     x = n * 1.444 / BAND
@@ -58,7 +57,7 @@ def correlation(code, samples, fine=240):
 
 
 def trial_errors(table, trials, random):
-    """Circular errors [m] of random depths at one light level."""
+    """Circular errors [m] for random depths at one light level."""
     samples, count = table.shape
     exposure = TOTAL_S / count
     depth = random.uniform(0, samples, trials)

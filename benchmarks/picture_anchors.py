@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Filters of depth and of phasors that picture_filters.py compares, each over a small grid.
+"""Filters of depth and phasors for picture_filters.py, each with a small grid of parameters.
 
-Of depth: median and bilateral filter and non-local means (OpenCV). Of phasors, for sinusoids: the
-bilateral filter and the edge-aware filter of libfreenect2, and unwrapping by kernel density
-(Jaremo Lawin, Forssen and Ovren, "Efficient Multi-Frequency Phase Unwrapping using Kernel Density
-Estimation", ECCV 2016), re-implemented.
+Depth: median filter, bilateral filter and non-local means (OpenCV). Phasors, for sinusoids:
+re-implementations of libfreenect2's bilateral and edge-aware filters, and unwrapping by kernel
+density (Jaremo Lawin, Forssen and Ovren, "Efficient Multi-Frequency Phase Unwrapping using Kernel
+Density Estimation", ECCV 2016).
 """
 
 import itertools
@@ -13,8 +13,8 @@ import itertools
 import cv2
 import numpy as np
 
-RANGE_M = 299792458 / 2 / 15e6  # of paper-10f0
-# The frequencies of each code of sinusoids, in units of the fundamental.
+RANGE_M = 299792458 / 2 / 15e6  # range of paper-10f0
+# Frequencies of each sinusoid code, in units of the fundamental.
 HARMONICS = {"sinusoid-k4": (1,), "multifrequency-k5": (1, 7)}
 NAMES = ("median", "bilateral", "nlm", "phasors", "density")
 
@@ -29,7 +29,7 @@ def linear_image(path):
 
 
 def spread(image, kept):
-    """The image with the value of the nearest kept pixel where none is kept."""
+    """Replaces pixels that are not kept by the nearest kept pixel."""
     if kept.all() or not kept.any():
         return image
     _, labels = cv2.distanceTransformWithLabels((~kept).astype(np.uint8), cv2.DIST_L2, 5,
@@ -40,9 +40,9 @@ def spread(image, kept):
 
 
 def planes(z, clearance_px):
-    """Pixels that see one plane, as do all that are up to `clearance_px` away: 1 / z is linear."""
+    """Pixels whose neighbours up to `clearance_px` away are on the same plane: 1 / z is linear."""
     inverse = 1 / np.where(np.isfinite(z) & (z > 0), z, 1e3)
-    bent = np.ones(z.shape, np.uint8)  # and what is beyond the border
+    bent = np.ones(z.shape, np.uint8)  # including the region beyond the border
     inner = slice(2, -2)
     bends = [
         np.abs(np.roll(inverse, apart, axis) - 2 * inverse + np.roll(inverse, -apart, axis))
@@ -53,7 +53,7 @@ def planes(z, clearance_px):
 
 
 def of_depth(depth):
-    """Each filter's name, and parameters and depth over its grid."""
+    """Name of each filter, with parameters and depth for each point of its grid."""
     depth = depth.astype(np.float32)
     passes = [depth]
     for _ in range(16):
@@ -74,16 +74,17 @@ def of_depth(depth):
 
 
 def windows(radius, shape):
-    """Offsets but (0, 0), with the slices of an image padded by `radius` that lie there."""
+    """Offsets except (0, 0), with the corresponding slices of an image padded by `radius`."""
     for dy, dx in itertools.product(range(-radius, radius + 1), repeat=2):
         if dy or dx:
             yield dy, dx, tuple(slice(radius + d, radius + d + n) for d, n in zip((dy, dx), shape))
 
 
 def bilateral(phasor, radius, space_px, exponent, threshold):
-    """libfreenect2's filter of one frequency, and its sum of differences over a window of 9.
+    """libfreenect2's bilateral filter for one frequency, and the sum of differences (window of 9).
 
-    A pixel weaker than the threshold takes the mean of the window; others take none that is weaker.
+    A pixel below the threshold is replaced by the mean of the window; other pixels ignore
+    neighbours below the threshold.
     """
     strength = np.abs(phasor)
     direction = phasor / np.maximum(strength, 1e-30)
@@ -103,7 +104,7 @@ def bilateral(phasor, radius, space_px, exponent, threshold):
 
 
 def edges(depth, strength, differences):
-    """Pixels that libfreenect2's edge-aware filter keeps, with its thresholds."""
+    """Pixels kept by libfreenect2's edge-aware filter with its thresholds."""
     size = np.ones((3, 3), np.uint8)
     depth, strength = depth.astype(np.float32), strength.astype(np.float32)
     mean = cv2.blur(strength, (3, 3))
@@ -115,7 +116,7 @@ def edges(depth, strength, differences):
 
 
 class Phasors:
-    """A code of sinusoids: its phasors, and depth from their phases."""
+    """Phasors of a sinusoid code, and depth from their phases."""
 
     def __init__(self, table, harmonics):
         samples = len(table)
@@ -126,7 +127,7 @@ class Phasors:
         response, *_ = np.linalg.lstsq(np.stack(waves, 1), table, rcond=None)
         self.inverse = np.linalg.pinv(response)  # (K, 1 + 2 F)
         self.harmonics, self.depth_m = harmonics, np.arange(samples + 1) * RANGE_M / samples
-        # Phases of the table itself: what waveforms have beside sinusoids is no bias.
+        # Phases of the table: no bias from waveforms that are not sinusoidal.
         self.phase = []
         for harmonic, own in zip(harmonics, self.of(table)):
             unwrapped = np.unwrap(np.angle(own))
@@ -139,19 +140,19 @@ class Phasors:
         return [parts[..., w] + 1j * parts[..., w + 1] for w in waves]
 
     def deviation(self, measurements):
-        """Of each component, as shot noise and 20 e of read-out leave it, per frequency."""
+        """Standard deviation of each component [e], from shot noise and 20 e of read noise."""
         variance = np.maximum(measurements, 0) + 20.0**2
         return [np.sqrt((variance @ self.inverse[:, 1 + 2 * f: 3 + 2 * f] ** 2).mean(-1))
                 for f in range(len(self.harmonics))]
 
     def depth(self, phasor, f, lobe):
-        """Depth [m] that the phase of frequency f has in a lobe of its harmonic."""
+        """Depth [m] for the phase of frequency f in a given lobe of its harmonic."""
         h, known = self.harmonics[f], self.phase[f]
         turn = np.angle(phasor) - known[0] + 2 * np.pi * lobe
         return np.interp(turn % (2 * np.pi * h), known - known[0], self.depth_m)
 
     def hypotheses(self, phasors, deviations, count=1):
-        """Depth and cost (count, H, W), least cost first: frequencies' distance in variances."""
+        """Depth and cost (count, H, W), lowest cost first; cost: disagreement / variance."""
         coarse = self.depth(phasors[0], 0, 0)
         if len(phasors) == 1:
             return coarse[None], np.zeros_like(coarse)[None]
@@ -169,7 +170,7 @@ class Phasors:
         return np.stack(depths), np.stack(costs)
 
     def filters(self, measurements, seen):
-        """Each filter's name, and parameters and depth over its grid."""
+        """Name of each filter, with parameters and depth for each point of its grid."""
         deviations = self.deviation(measurements)
         raw = [spread(p, seen).astype(np.complex64) for p in self.of(measurements)]
         found, density = [], []
@@ -198,7 +199,7 @@ class Phasors:
 
 
 def by_density(depth, cost, kernel_m, radius=5):
-    """Of two depths a pixel the one with more density around, of both of 11 x 11 pixels."""
+    """Selects one of two depths per pixel by the density of depths in 11 x 11 pixels."""
     depth, cost = depth.astype(np.float32), cost.astype(np.float32)
     likely = np.exp(-(cost - cost[:1]) / 2)
     likely /= likely.sum(0)

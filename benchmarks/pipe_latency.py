@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How long `tofsmith decode - -o -` keeps a frame: from its last byte written to the last byte of its
-depth read, VGA, four measurements of 12 bits in 16. Beside it the time of the same bytes through
-`cat` and back as many of them: what pipes alone cost.
+"""Latency of `tofsmith decode - -o -`: time from the last byte written of a frame to the last byte
+read of its depth. VGA, four measurements of 12 bits stored in 16. For comparison, the time to
+send the same bytes through `cat` and read the same number back, the cost of the pipes.
 
     pipe_latency.py TOFSMITH [FRAMES]
 """
@@ -43,7 +43,7 @@ def read_exactly(descriptor, size):
 
 
 def latencies(command, answer_bytes, frames):
-    """(F) seconds, and the decoder's answer to one frame after another at rest."""
+    """Seconds from the last byte of a frame to that of its answer, for one frame at a time (F)."""
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                stderr=subprocess.DEVNULL, bufsize=0)
     content, waits, written = frame(), [], []

@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Judges codes of others beside what `design` finds for the same camera, and prints the table of
+"""Compares published codes with codes of `design` for the same camera, and prints the table of
 docs/comparison.md. Needs NumPy.
 
     published_codes.py TOFSMITH FOLDER .. [--camera paper-10f0] [--effort 1] [--store FILE.jsonl]
 
-Codes are .npz files with modfs and demodfs, and pairs NAME-light.npy, NAME-gates.npy. Where the
-second half of the columns is the complement of the first they are two taps of one exposure. Each
-code gets the camera with the peak that it needs, if that is more than the camera's; ours is designed
-for that camera with as many exposures and taps. Both are judged by the same 40000 fresh trials a
-light level: circular error, geometric mean over the levels. Codes of rows of one exposure are
-compared by rows.py.
+Codes are .npz files with modfs and demodfs, or pairs NAME-light.npy, NAME-gates.npy. If the second
+half of the columns is the complement of the first, they are two taps of one exposure. The peak of
+the camera is raised if a code needs it. Our code is designed for that camera with the same number
+of exposures and taps. Both are evaluated on the same 40000 new trials per light level: circular
+error, geometric mean over the levels. Codes of rows of one exposure are compared by rows.py.
 """
 
 import argparse
@@ -33,7 +32,7 @@ def run(*words):
 
 
 def codes_in(folder):
-    """What `tofsmith` calls each code, with its light and gates (N, K)."""
+    """Name of each code for `tofsmith`, with its light and gates (N, K)."""
     for path in sorted(folder.rglob("*.npz")):
         with np.load(path) as arrays:
             if {"modfs", "demodfs"} <= set(arrays):
@@ -46,13 +45,13 @@ def codes_in(folder):
 
 
 def judged(code, light, gates, arguments):
-    """Name, exposures, taps, peak factor, errors of theirs and ours and a standard error [mm]."""
+    """Name, exposures, taps, peak factor, both errors and a standard error [mm]."""
     columns = gates.shape[1]
     half = columns // 2
     taps = 2 if columns % 2 == 0 and np.allclose(gates[:, :half] + gates[:, half:], gates.max()) else 1
     exposures = columns // taps
     camera = run(arguments.tool, "cameras", arguments.camera)
-    # As `tofsmith` reads it: archives keep their scale, the brightest light of pairs has a mean of 1.
+    # `tofsmith` keeps the scale of archives and normalizes the brightest light of pairs to mean 1.
     peak = light.max() if code.endswith(".npz") else light.max() / light.mean(0).max()
     peak = max(camera["camera"]["light"]["peak_factor"], float(peak))
     words = ["--camera", arguments.camera, "--set", f"sensor.taps={taps}", "--set",

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Decoding through Python against the same call in C++, on VGA frames: asked is >= 0.95x.
+"""Speed of decoding from Python relative to the same call in C++, on VGA frames. Target: >= 0.95.
 
     PYTHONPATH=BUILD/python /usr/bin/python3 benchmarks/python_decode.py BUILD/benchmarks/benchmark_decode_call
 
-Both decode the same frame on one thread into planes of the caller, in turns; what counts is the
+Both decode the same frame alternately, on one thread, into planes of the caller. The result is the
 median over the rounds of the ratio of CPU times.
 """
 

@@ -33,7 +33,7 @@ def designed(camera, exposures):
 
 
 def measured(name, camera, samples):
-    """The table that a noise-free delay sweep of `samples` steps gives."""
+    """Table from a noise-free delay sweep of `samples` steps."""
     code = tofsmith.build_family(name, camera)
     correlation = tofsmith.ForwardModel(code, camera).correlation_table(samples)
     return DecodingTable.of_measured(correlation, camera)
@@ -61,8 +61,9 @@ def cases():
 
 
 def lobe_edges(table):
-    """Number of rows, and the first row of the lobe to the left and right of each [rows], by the
-    definition of `confidence`: as far as the code's own score falls, at most 5 % of the range."""
+    """Number of rows, and the width of the lobe to the left and right of each row [rows], by the
+    definition of `confidence`: as far as the code's own score decreases, at most 5 % of the
+    range."""
     correlation = np.asarray(table.correlation)
     gain = np.asarray(table.ambient_gain)
     if np.any(gain):
@@ -97,8 +98,8 @@ def random_scene(rng, pixels, range_m, signals, tiled):
 
 
 def signal_deviation(code, camera):
-    """Standard deviation of the signal in a dark scene [e/s], about: the noise of a measurement over
-    the change per signal that depth makes in all of them."""
+    """Approximate standard deviation of the signal in a dark scene [e/s]: noise of a measurement /
+    root sum of squares of the changes with depth per unit of signal."""
     level_e_per_s = 1e5
     depth = np.linspace(0.1, camera.range_m - 0.1, 64 * 64).reshape(64, 64)
     dark, lit = (tofsmith.capture(Scene(depth, albedo=albedo), code, camera, falloff=False,

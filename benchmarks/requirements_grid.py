@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `tofsmith require` finds, against a fine grid: for cameras, errors and quantities of several
-kinds, codes are designed anew at factors about what was found, and each is judged at factors 1 %
-apart together with the family codes and the one that was found. The grid's answer is where the
-error of the best of them crosses what is asked (a line through logarithms). Asked: within 2 %,
-each search in at most 2 minutes.
+"""Compares the results of `tofsmith require` with a fine grid, for several cameras, errors and
+quantities. New codes are designed at factors near the result; each is evaluated at factors 1 %
+apart, together with the family codes and the code of the result. The answer of the grid is the
+factor at which the smallest error equals the requested one (linear interpolation of logarithms).
+Targets: agreement within 2 %, at most 2 minutes for each search.
 
     PYTHONPATH=build-dev/python requirements_grid.py [CASE ..]
 """
@@ -32,7 +32,7 @@ SUNNY = ts.Camera(
             "filter_width_m": 30e-9})
 MEDIUM = {"signal_e_per_s": [1e4, 1e5], "ambient_e_per_s": [1e4]}
 BUCKETS = {"taps": 2, "readout": "difference", "drain": False}
-#: Camera, error that is asked for [m], quantity.
+#: Camera, requested error [m], quantity.
 CASES = {
     "paper-power": (ts.Camera("paper-10f0", operating=MEDIUM), 0.03, "power"),
     "paper-bandwidth": (ts.Camera("paper-10f0", operating=MEDIUM), 0.03, "bandwidth"),
@@ -42,7 +42,7 @@ CASES = {
 
 
 def scaled(camera, quantity, factor):
-    """As with_scaled() in design/design.hpp."""
+    """See with_scaled() in design/design.hpp."""
     if quantity == "power":
         levels = [factor * s for s in camera.operating.signal_e_per_s]
         return camera.replace(operating={"signal_e_per_s": levels})
@@ -62,7 +62,7 @@ def judged(code, camera):
 
 
 def grid_answer(camera, error_m, quantity, found):
-    """The factor where the best error crosses what is asked, and the least errors on the grid."""
+    """Factor at which the best error equals the requested one, and the best errors on the grid."""
     factors = [found.factor * (1 + percent / 100) for percent in PERCENT]
     codes = [found.code, *FAMILIES]
     for percent in DESIGNED_AT:

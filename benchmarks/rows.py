@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Designs rows of one exposure for the cameras on which learned codes were published, and says how
-they compare: N = 1024 time bins at 5 MHz, a photon total of 1000, a response exp(-(t / sigma)^2),
-no limit on the light or a peak of P of all photons in a bin (the response then twice).
+"""Designs rows of one exposure for the cameras of published learned codes and compares the errors:
+N = 1024 time bins at 5 MHz, 1000 photons in total, response exp(-(t / sigma)^2), and either no
+limit on the light or at most a fraction P of all photons per bin (then light and sensor both have
+the response).
 
     benchmarks/rows.py [--tofsmith build/apps/tofsmith] [--rows 8] [--trials 20000] [--cells 0,1,..]
                        [--codes FOLDER ..]
-    benchmarks/rows.py --gated          8 exposures of one tap in place of rows, 100 photons in all
-    benchmarks/rows.py --least SIGMA    the least Cramer-Rao bounds of 4, 5 and 6 tones; needs NumPy
+    benchmarks/rows.py --gated          8 exposures of one tap instead of rows, 100 photons in total
+    benchmarks/rows.py --least SIGMA    smallest Cramer-Rao bounds of 4, 5 and 6 tones; needs NumPy
 
-Circular errors [mm] by zero-mean normalized cross-correlation, mean absolute and, as rms, root mean
-square ones. `learned` and `gates` are mean absolute errors that others measured of learned codes and
-of codes of separate exposures turned into rows; `histogram` is the bound of all 1024 bins with our
-light; at a tenth of the light ours stand beside a truncated Fourier series. With --codes, codes of
-yours are judged on the same trials: FOLDER/SIGMA-P-RATIO/light.npy and rows.npy, as in 10-none-1 or
-5-.015-.1.
+Circular errors [mm] by zero-mean normalized cross-correlation: mean absolute errors and, in columns
+called rms, root mean square errors. `learned` and `gates` are published mean absolute errors of
+learned codes and of codes of separate exposures converted to rows. `histogram` is the bound of all
+1024 bins with our light. At a tenth of the light our codes are compared with a truncated Fourier
+series. With --codes, your codes are evaluated on the same trials: FOLDER/SIGMA-P-RATIO/light.npy
+and rows.npy, for example 10-none-1 or 5-.015-.1.
 """
 
 import argparse
@@ -27,7 +28,7 @@ import time
 from pathlib import Path
 
 SAMPLES, FREQUENCY_HZ = 1024, 5e6
-RATIOS = (1, .1)  # of signal to background
+RATIOS = (1, .1)  # signal / background
 # sigma [bins], P, then learned and gates at both ratios
 CELLS = [
     (10, None, (6.8, 14.5), (7.3, 16.8)),
@@ -43,11 +44,11 @@ CELLS = [
     (10, .015, (11.5, 24.2), (12.4, 28.9)),
     (10, .030, (10.6, 22.1), (12.7, 26.0)),
 ]
-ASKED = .93  # of the better of learned and gates
+ASKED = .93  # limit of the ratio to the better of learned and gates
 
 
 def camera_toml(sigma_bins, peak, signal_to_background, photons, readout="rows"):
-    """The response exp(-(t / sigma)^2) is a Gaussian that falls by 3 dB at its cut-off."""
+    """The response exp(-(t / sigma)^2) is a Gaussian with an attenuation of 3 dB at its cutoff."""
     sigma_s = sigma_bins / (SAMPLES * FREQUENCY_HZ)
     cutoff_hz = math.sqrt(.5 * math.log(2)) / (math.pi * sigma_s)
     response = f'{{ kind = "gaussian", cutoff_hz = {cutoff_hz!r} }}'
@@ -73,7 +74,7 @@ def errors_of(report):
 
 
 def judged(tool, codes, camera, arguments):
-    """The reports of codes, on the same trials."""
+    """Reports of the codes, on the same trials."""
     return run(tool, "evaluate", *codes, "--camera", str(camera), "--trials", str(arguments.trials),
                "--seed", "11", "--method", arguments.method)["codes"]
 
@@ -89,8 +90,8 @@ def codes_of(folders, name):
 
 
 def least_bounds(sigma_bins):
-    """Of all sets of tones up to the 16th, with the shortest pulse, which is best without a limit
-    on the light: what rows of cosines and sines cannot fall below, as a mean absolute error."""
+    """Smallest bounds of all sets of tones up to the 16th, as mean absolute errors. Uses the
+    shortest pulse, which is optimal without a limit on the light."""
     import itertools
 
     import numpy as np
@@ -158,8 +159,8 @@ def compare_rows(tool, chosen, photons, arguments):
 
 
 def compare_gated(tool, chosen, photons, arguments):
-    """Codes of eight exposures that share the light, on the cameras without a limit on it."""
-    hamiltonian = "hamiltonian-k5"  # switches at thirtieths of the period
+    """Compares codes of eight exposures that share the light, on cameras without peak limit."""
+    hamiltonian = "hamiltonian-k5"  # switching times are multiples of 1/30 of the period
     print("sigma  S/B    ours     rms  Hamiltonian K = 5     rms  best family      seconds")
     with tempfile.TemporaryDirectory() as folder:
         for cell in (c for c in chosen if CELLS[c][1] is None):

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Depth errors of the filter in time, on what stands still and on what moves.
+"""Depth errors of the temporal filter for static and moving scenes.
 
     /usr/bin/python3 benchmarks/time_filters.py BUILD/apps/tofsmith
     /usr/bin/python3 benchmarks/time_filters.py BUILD/apps/tofsmith \\
         --optimized OUT/codes/optimized-k5.code.json
 
-OUT is what `tofsmith demo -o OUT` has written. All ways decode the same raw frames: each frame
-alone, filtered in time, with a look ahead, and means of frames. Moving pixels are those whose true
-depth is not that of the frame before; asked is that they err at most 1.2 times as much as in frames
-alone, with and without a filter in space.
+OUT is the output of `tofsmith demo -o OUT`. All methods decode the same raw frames: individual
+frames, temporal filter without and with look-ahead, and means of frames. A pixel is moving if its
+true depth differs from the previous frame. Target: errors of moving pixels at most 1.2 times the
+errors of individual frames, with and without a spatial filter.
 """
 
 import argparse
@@ -39,7 +39,7 @@ centre_m = [{x}, 0, {z}]
 radius_m = 0.25
 velocity_m_per_s = [{vx}, 0, {vz}]
 """
-# Where the sphere is at first and how fast it moves; of the hand, what is built in.
+# Initial position and velocity of the sphere; the hand is built in.
 MOTIONS = {
     "across, 1 m/s": {"x": -0.15, "z": 1.25, "vx": 1.0, "vz": 0.0},
     "towards, 1 m/s": {"x": 0.0, "z": 1.4, "vx": 0.0, "vz": -1.0},
@@ -49,7 +49,7 @@ MOTIONS = {
 
 
 class Recordings:
-    """The command line in a folder of its own."""
+    """Runs the command line in a separate folder."""
 
     def __init__(self, program, code, folder):
         self.program, self.code, self.folder = program, code, folder
@@ -71,7 +71,7 @@ class Recordings:
         return truth if truth.ndim == 3 else np.broadcast_to(truth, (frames, *truth.shape))
 
     def moving(self, name, motion, signal, frames):
-        """True depth of each frame [m], and the pixels that moved since the one before."""
+        """True depth of each frame [m], and the pixels that moved since the previous frame."""
         scene = name
         if motion:
             scene = self.folder / "moving.toml"
@@ -83,7 +83,7 @@ class Recordings:
         return truth, moved
 
     def errors_m(self, truth, *options, read=()):
-        """Circular error of each frame that comes out [m]; NaN without truth."""
+        """Circular error of each output frame [m]; NaN without a true depth."""
         output = self.folder / "depth.npy"
         self.run("decode", self.folder / "raw.npy", "--code", self.code, *read, *options,
                  "--memory-mb", 1000, "--stack", "-o", output)
@@ -93,7 +93,7 @@ class Recordings:
 
 
 def static(recordings, signals, space):
-    """Mean / median error [mm] of a middle frame of a scene that stands still, and the gain."""
+    """Mean and median error [mm] of a middle frame of a static scene, and the gain."""
     ways = (("each frame alone", ()), ("--time-filter 64", ("--time-filter", 64)),
             ("--look-ahead 4", ("--time-filter", 64, "--look-ahead", 4)),
             (f"--look-ahead {STATIC_FRAMES}", ("--time-filter", 64, "--look-ahead", STATIC_FRAMES)),
@@ -113,7 +113,7 @@ def static(recordings, signals, space):
 
 
 def moving(recordings, signals, space):
-    """Errors of moving pixels over those of frames alone: median, mean."""
+    """Errors of moving pixels relative to individual frames: median, mean."""
     ways = {"--time-filter 64": ("--time-filter", 64),
             "--look-ahead 4": ("--time-filter", 64, "--look-ahead", 4),
             "mean of 3": None}
@@ -140,7 +140,7 @@ def moving(recordings, signals, space):
 
 
 def boxes(values, side):
-    """Sums over side x side pixels, cut off at the border."""
+    """Sums over side x side pixels, cropped at the border."""
     reach = side // 2
     padded = np.pad(values, ((reach + 1, reach), (reach + 1, reach)))
     sums = padded.cumsum(0).cumsum(1)
@@ -149,8 +149,8 @@ def boxes(values, side):
 
 
 def with_what_moved(raw, read_noise_e=20.0, reach=10, side=5):
-    """Each frame's mean with the pixels of the one before that look most alike, by chi^2 of patches
-    over all shifts of up to `reach` pixels; where none is like it within 3 sigma, as it is."""
+    """Averages each pixel with the most similar one of the previous frame, by chi^2 of patches over
+    all shifts of up to `reach` pixels. Pixels without a match within 3 sigma stay unchanged."""
     found = raw.copy()
     freedom = side * side * raw.shape[3]
     shifts = [(y, x) for y in range(-reach, reach + 1) for x in range(-reach, reach + 1)]
@@ -168,7 +168,7 @@ def with_what_moved(raw, read_noise_e=20.0, reach=10, side=5):
 
 
 def searched(recordings, signals):
-    """What a search across frames would do to moving pixels: errors over those of frames alone."""
+    """Errors of moving pixels with a search across frames, relative to individual frames."""
     print("\n## Moving pixels, each added to the most alike of 21 x 21 in the frame before")
     print("\nNot a part of tofsmith: error over that of frames alone, median, mean (ideal 0.71)")
     print("\n| motion | S at 1 m (e/s) | no filter in space | --filter normal |")
@@ -192,7 +192,7 @@ def searched(recordings, signals):
 
 
 def means_of_three(recordings, truth, space):
-    """Errors of each frame's mean with the one before and the one after [m]."""
+    """Errors of the mean of each frame with its two neighbours [m]."""
     raw_file = recordings.folder / "raw.npy"
     raw = np.load(raw_file)
     padded = np.concatenate([raw[:1], raw, raw[-1:]]).astype(np.float32)

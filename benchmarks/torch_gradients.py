@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""tofsmith.torch against the same written in plain torch, forward and backward: asked is >= 10x.
+"""Speed of tofsmith.torch relative to the same functions in plain PyTorch, forward and backward.
+Target: >= 10x.
 
     PYTHONPATH=BUILD/python /usr/bin/python3 benchmarks/torch_gradients.py [PIXELS]
 
-Both run on one thread, in turns, on the same inputs; what counts is the median over the rounds of
-the ratio of times. The plain versions are whole tensors at once: Fourier transforms for waveforms,
-one matrix of cosines and sines times the harmonics that the arms let through (to 1e-12) for depths
-between bins, matrix products and softmax for the decoder, Gram-Schmidt over all
-depths and 25 lights for the bound.
-Values and gradients of both are compared first.
+Both run alternately on one thread with the same inputs; the result is the median over the rounds of
+the ratio of times. The plain versions process whole tensors at once: Fourier transforms for
+waveforms, one matrix of cosines and sines times the harmonics within the bandwidth (to 1e-12) for
+depths between bins, matrix products and softmax for the decoder, Gram-Schmidt over all depths and
+25 light levels for the bound. Values and gradients of both are compared first.
 """
 
 import statistics
@@ -24,7 +24,7 @@ from tofsmith import torch as tst
 
 
 class Plain:
-    """What tofsmith.torch does for a camera of one tap with limited arms, in plain torch."""
+    """The steps of tofsmith.torch in plain PyTorch, for one tap and limited bandwidth."""
 
     def __init__(self, camera: tofsmith.Camera, samples: int, exposures: int, dtype) -> None:
         self.camera, self.samples = camera, samples
@@ -112,7 +112,7 @@ class Plain:
 
 
 def time_of(step) -> float:
-    start = time.process_time()  # of this process alone, on a machine that other work shares
+    start = time.process_time()  # CPU time: independent of other load
     step()
     return time.process_time() - start
 
