@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 """Compares codes of `design --effort 0`, which only looks up known codes, with codes of a full
-design (`--effort 1` without the atlas), on cameras between those of the atlas. Both are
+design (`--effort 1` without the atlas), on cameras that the atlas does not contain. Both are
 evaluated with independent random numbers at their best origins. Prints the errors and their
 ratio; exits with 1 if a ratio exceeds 1.03.
 

@@ -2,14 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Builds the component core for 64-bit Arm by Debian's cross compiler and runs its tests of how bins
-# are found here, by qemu-user: the kernels for NEON must find the bins that they find on x86.
-# Libraries for Arm come into a folder of the build; the system gets none of them.
+# Builds the component core for 64-bit Arm with Debian's cross compiler and runs its tests of the
+# decoder's bins with qemu-user: the NEON kernels must find the same bins as on x86. Libraries for Arm
+# are unpacked into the build folder; the system is not changed.
 #
-#   scripts/arm64.sh [--floors NAME,NAME ..] [DIR]     build there instead of in build-arm64
+#   scripts/arm64.sh [--floors NAME,NAME ..] [DIR]     build in DIR instead of build-arm64
 #
 #   --floors NAMES   all tests of these folders of core: core, code, camera, scene, decode, simulate;
-#                    they take fifteen times as long as on x86, or more
+#                    at least fifteen times slower than on x86
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

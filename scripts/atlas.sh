@@ -3,14 +3,14 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Makes the atlas of best codes, src/design/atlas/atlas.txt: designs a code for each of its cameras
-# by sweeps (scripts/atlas/*.toml) that keep what is finished, so stop it whenever you like and run
-# it again. Entries that are there stay where nothing better was found: another --seed is another
-# pass.
+# by sweeps (scripts/atlas/*.toml). Finished items are stored, so it can be stopped and run again at
+# any time. Existing entries are only replaced by better ones; run it with another --seed to improve
+# them.
 #
-#   scripts/atlas.sh [--shard 3/8] [--seed 2] [STORES]       a folder; build-atlas without one
-#   scripts/atlas.sh --collect [STORES]                      write what is finished, compute nothing
+#   scripts/atlas.sh [--shard 3/8] [--seed 2] [STORES]       a folder (build-atlas)
+#   scripts/atlas.sh --collect [STORES]                      write the finished items, compute nothing
 #
-# Shards have stores of their own; `tofsmith sweep merge` makes one of them.
+# Each shard has a separate store; `tofsmith sweep merge` combines them.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -37,7 +37,7 @@ exports=()
 for sweep in "$root"/scripts/atlas/*.toml; do
   name=$(basename "$sweep" .toml)-$seed
   store="$stores/$name${shard:+-${shard/\//-of-}}.sqlite"
-  # The seed is the sweep's: another one is another store.
+  # A sweep has one seed, so each seed has its own store.
   sed "1,/^trials/s/^trials.*/&\nseed = $seed/" "$sweep" >"$stores/$name.toml"
   how=()
   [[ -z "$shard" ]] || how+=(--shard "$shard")
@@ -46,5 +46,5 @@ for sweep in "$root"/scripts/atlas/*.toml; do
     --export "$stores/$name.json" --force
   exports+=("$stores/$name.json")
 done
-[[ -z "$shard" ]] || exit 0 # the atlas is made of all shards together
+[[ -z "$shard" ]] || exit 0 # the atlas needs all shards
 "$root/scripts/atlas/collect.py" "$root/src/design/atlas/atlas.txt" "${exports[@]}"

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks by readelf that programs and libraries are hardened as cmake/TofsmithDefaults.cmake says:
+"""Checks with readelf that programs and libraries are hardened (cmake/TofsmithDefaults.cmake):
 
     scripts/check_elf.py FILE ..
 
-position-independent, relocations read-only and resolved at start (RELRO, BIND_NOW), no stack and no
-segment both writable and executable, no text relocations, no search path but from $ORIGIN; stack
-protector; branch targets (CET, x86-64): every exported function begins with ENDBR64; and in one of
-the files at least, calls that _FORTIFY_SOURCE checks. Says what is missing where: exit code 1.
+Requirements: position-independent code; relocations read-only and resolved at start (RELRO,
+BIND_NOW); no executable stack and no segment that is both writable and executable; no text
+relocations; search paths only relative to $ORIGIN; stack protector; every exported function starts
+with ENDBR64 (CET, x86-64); and calls checked by _FORTIFY_SOURCE in at least one of the files. Prints
+what is missing and exits with 1.
 """
 
 import re
@@ -24,14 +25,14 @@ def readelf(file, *options):
 
 
 def exported_functions(symbols):
-    """Addresses of the functions that are defined here, by name."""
+    """Addresses of the functions defined in the file, by name."""
     found = re.findall(r"^ *\d+: ([0-9a-f]+) +\d+ FUNC +(?:GLOBAL|WEAK) +DEFAULT +\d+ (\S+)",
                        symbols, re.M)
     return {name: int(address, 16) for address, name in found}
 
 
 def bytes_at(file, segments, address, count):
-    """What is at an address once the file is loaded."""
+    """Bytes at an address of the loaded file."""
     for offset, begin, size in segments:
         if begin <= address < begin + size:
             with open(file, "rb") as content:

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the links of HTML pages: python3 check_links.py DIRECTORY
 
-Files and places within them must exist; addresses elsewhere must be well formed and https. Nothing is
-fetched.
+Linked files and anchors must exist; external addresses must be well-formed https. Nothing is
+downloaded.
 """
 
 import os
@@ -12,12 +12,12 @@ from functools import lru_cache
 from html.parser import HTMLParser
 from urllib.parse import unquote, urlsplit
 
-# Doxygen 1.9.4 links to this heading but leaves it out where all nested classes are private.
+# Doxygen 1.9.4 links to this heading but omits it if all nested classes are private.
 LEFT_OUT = "#nested-classes"
 
 
 class Page(HTMLParser):
-    """The places of a page, and where it leads."""
+    """Anchors and links of a page."""
 
     def __init__(self, path):
         super().__init__()
@@ -41,7 +41,7 @@ def page_at(path):
 
 
 def problem_with(link, path):
-    """What is wrong with a link from the page at a path, or None."""
+    """Problem with a link from the page at a path, or None."""
     parts = urlsplit(link)
     if link == LEFT_OUT or parts.scheme in ("data", "mailto", "javascript"):
         return None

@@ -2,14 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Compares the decoder's bins with brute force in NumPy, on random codes and raw numbers. What was
-# compared is kept in build-dev/differential.json, and the next run goes on behind it.
+# Compares the decoder's bins with brute force in NumPy, on random codes and raw values. Progress is
+# stored in build-dev/differential.json, and the next run continues from there.
 #
-#   scripts/differential.sh [--pixels N] [--seed S]     1e7 pixels more of seed 1, about a minute
+#   scripts/differential.sh [--pixels N] [--seed S]     1e7 more pixels of seed 1, about a minute
 #
-# NumPy multiplies six times faster where libopenblas0-serial is installed.
+# NumPy is six times faster if libopenblas0-serial is installed.
 #
-# A wrong bin ends it with its code and pixel: exit code 1.
+# Stops at a wrong bin, prints its code and pixel, and exits with 1.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -2,13 +2,13 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds tofsmith, makes the documentation and checks its links. Ends with
-# a line that says where the first page is; a warning is a failure.
+# Installs missing packages, builds tofsmith, makes the documentation and checks its links. Warnings
+# are errors. The last line is the path of the first page.
 #
 #   scripts/docs.sh [--build DIR] [--with-lab]
 #
-#   --build DIR   take tofsmith and its Python package from this build instead of build-docs
-#   --with-lab    compile the lab's page, too (scripts/lab.sh), and put it into the site
+#   --build DIR   use tofsmith and its Python package from this build instead of build-docs
+#   --with-lab    also compile the lab page (scripts/lab.sh) and add it to the site
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -2,12 +2,12 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Makes calls to the system fail, kills and interrupts every command that writes files, and looks at
-# what is left: see docs/reliability.md. Files go to /dev/shm, where no disk is worn.
+# Makes system calls of all commands that write files fail, kills and interrupts these commands, and
+# checks the remaining files: see docs/reliability.md. Files are in /dev/shm, to protect the disk.
 #
-#   scripts/faults.sh [--seconds N] [--seed S] [NAME ..]     600 s over all commands, or those named
+#   scripts/faults.sh [--seconds N] [--seed S] [NAME ..]     600 s for all commands, or the named ones
 #
-# It ends with counts of what was tried, and with every promise that was broken: exit code 1.
+# Prints the number of tests and all violations; exits with 1 if there are any.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -3,17 +3,17 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Runs libFuzzer (clang, with address and undefined-behaviour sanitizers) on the readers of files.
-# Seeds are made by the library; what is found new stays in build-fuzz/corpus and is where the next
-# run goes on. Executions are added up in build-fuzz/tally.
+# The library makes the seeds. New inputs are stored in build-fuzz/corpus, where the next run
+# continues, and the number of executions in build-fuzz/tally.
 #
-#   scripts/fuzz.sh [--seconds N] [READER ..]     10 s of each reader, unless named
-#   scripts/fuzz.sh --total 1e8                   in rounds, until all runs together have so many
-#                                                 executions; stopped and started again, it goes on
-#   scripts/fuzz.sh --list                        the readers' names
-#   scripts/fuzz.sh --tally                       what was done so far
+#   scripts/fuzz.sh [--seconds N] [READER ..]     10 s for each reader, or the named ones
+#   scripts/fuzz.sh --total 1e8                   in rounds, until all runs together have this
+#                                                 number of executions; can be stopped and restarted
+#   scripts/fuzz.sh --list                        print the names of the readers
+#   scripts/fuzz.sh --tally                       print the totals of all runs
 #
-# It ends with a table of this run, or of all. An input that crashes, hangs (10 s) or takes more than
-# 1 GB is kept in build-fuzz/found: exit code 1.
+# Prints a table of this run, or of all. Inputs that crash, hang (10 s) or need more than 1 GB are
+# stored in build-fuzz/found; the exit code is then 1.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,9 +21,9 @@ cd "$root"
 # shellcheck source=scripts/packages.sh
 source scripts/packages.sh
 
-tally=build-fuzz/tally # a line for each run of a reader: name, executions, seconds, coverage
+tally=build-fuzz/tally # one line per run of a reader: name, executions, seconds, coverage
 
-# The lines of standard input, added up by reader in the order in which they come first.
+# Sums the lines of standard input by reader, in the order of first occurrence.
 table() {
   awk '{ if (!($1 in runs)) names[++count] = $1; ++runs[$1]; done[$1] += $2; took[$1] += $3; all += $2; time += $3
          if ($4 > coverage[$1]) coverage[$1] = $4 }
@@ -64,8 +64,8 @@ fuzzer=build-fuzz/tests/fuzz/readers
 if [[ "${readers[*]:-}" == list ]]; then exec "$fuzzer" --reader=list; fi
 if ((${#readers[@]} == 0)); then mapfile -t readers < <("$fuzzer" --reader=list); fi
 
-# Readers that take files have them in memory, not on a disk. Backtraces of allocations cost a third
-# of the time: an input that fails is run again by hand.
+# Files for readers are in memory, not on a disk. Backtraces of allocations would cost a third of the
+# time; run a failing input again by hand to get one.
 scratch=$(mktemp -d "$([[ -w /dev/shm ]] && echo /dev/shm || echo /tmp)/tofsmith-fuzz-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 export TMPDIR=$scratch
@@ -73,7 +73,7 @@ export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0:malloc_context_si
 mkdir -p build-fuzz/found
 touch "$tally"
 
-# One reader for some seconds, on what is known of it; a line for the tally.
+# Runs one reader for some seconds, starting from its corpus, and adds a line to the tally.
 run_reader() {
   local reader=$1 corpus=build-fuzz/corpus/$1 log=build-fuzz/$1.log status=0
   mkdir -p "$corpus"

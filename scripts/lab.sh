@@ -2,11 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing (Debian's emscripten), compiles core and design to WebAssembly and packs
-# them with the page into one self-contained file, which `tofsmith lab` then copies out. The same
-# sources make the same bytes.
+# Installs missing packages (Debian's emscripten), compiles core and design to WebAssembly and packs
+# them with the page into one self-contained file, which `tofsmith lab` then copies. The build is
+# reproducible.
 #
-#   scripts/lab.sh [-o lab.html]     write it there, too; it stands in build-lab/lab.html
+#   scripts/lab.sh [-o lab.html]     also copy build-lab/lab.html there
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -35,7 +35,7 @@ cmake --log-level=WARNING --preset lab
 cmake --build --preset lab
 
 page="$root/build-lab/lab.html"
-licences=() # of what is compiled in: headers, and the C and C++ libraries of emscripten
+licences=() # of everything compiled in: headers, and emscripten's C and C++ libraries
 for package in emscripten libeigen3-dev libhwy-dev libfmt-dev librandom123-dev libtomlplusplus-dev nlohmann-json3-dev; do
   licences+=(--licence "/usr/share/doc/$package/copyright")
 done

@@ -2,19 +2,18 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds tofsmith as shared libraries and makes Debian packages of it:
-# libtofsmith-core0.1 and libtofsmith-core-dev, so for gpu, design, io, lab, report and sweep;
-# libtofsmith-dev for all of them, tofsmith and python3-tofsmith. The same commit makes the same bytes,
-# in whatever directory it is built (scripts/reproduce_build.sh). What is packed must be hardened
-# (scripts/check_elf.py).
+# Installs missing packages, builds tofsmith as shared libraries and makes Debian packages:
+# libtofsmith-core0.1 and libtofsmith-core-dev, the same for gpu, design, io, lab, report and sweep;
+# libtofsmith-dev for all of them, tofsmith and python3-tofsmith. The build is reproducible in any
+# directory (scripts/reproduce_build.sh). All binaries must be hardened (scripts/check_elf.py).
 #
 #   scripts/package.sh [--component NAME | --arch arm64] [--without-lab] [DIR]
-#                                                     build there instead of in build-package
+#                                                     build in DIR instead of build-package
 #
-#   --component NAME   only this one and what it stands on: no command line, no Python
-#   --arch arm64       core for 64-bit Arm, by Debian's cross compiler and libraries: adds arm64 to the
-#                      architectures that dpkg knows, if it is not there
-#   --without-lab      leave out the page of `tofsmith lab`, which needs emscripten
+#   --component NAME   only this one and its dependencies, without command line and Python
+#   --arch arm64       core for 64-bit Arm, with Debian's cross compiler and libraries; adds arm64 to the
+#                      architectures of dpkg if necessary
+#   --without-lab      omit the page of `tofsmith lab`, which needs emscripten
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -58,7 +57,7 @@ use_debian_tools
 mkdir -p "$build"
 [[ -n "$component" || -z "$lab" ]] || "$root/scripts/lab.sh" -o "$build/lab.html"
 echo "Building tofsmith in $build"
-# From nothing but the sources: settings of an earlier build there do not count.
+# Discard the settings of an earlier build.
 rm -f "$build/CMakeCache.txt"
 cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_SKIP_INSTALL_RPATH=ON -DBUILD_SHARED_LIBS=ON \
@@ -66,7 +65,7 @@ cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Rel
 cmake --build "$build"
 
 rm -f "$build"/*.deb
-# The archive in a package notes the permissions of its parts.
+# Packages contain the permissions of their files.
 (umask 022 && cd "$build" && cpack --config CPackConfig.cmake)
 mapfile -t packages < <(compgen -G "$build/*.deb")
 ((${#packages[@]})) || tofsmith_die "cpack made no packages in $build"

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
-# installs the missing packages of the groups named:
+# The Debian packages of the project. Sourced by the other scripts; when run directly, it installs the
+# missing packages of the named groups:
 #
 #   scripts/packages.sh GROUP ...       install what is missing
 #   scripts/packages.sh --list GROUP    print the names, one per line
@@ -11,7 +11,7 @@
 # A group is an array packages_GROUP below.
 # shellcheck disable=SC2034  # groups are looked up by name
 
-# Debian releases on which tofsmith is tested, the newest last.
+# Debian releases on which tofsmith is tested, newest last.
 tofsmith_releases='bookworm trixie'
 # Packages whose names differ between them. The lists below use the names of the first column.
 packages_by_release='
@@ -20,29 +20,29 @@ libclang-rt    libclang-rt-14-dev libclang-rt-19-dev
 libstdc++      libstdc++-12-dev   libstdc++-14-dev
 '
 
-# The component core alone: codes, cameras, decoding and simulation.
+# Only the component core: codes, cameras, decoding and simulation.
 packages_core=(
   g++ cmake ninja-build pkgconf
   libeigen3-dev       # linear algebra, FFT
-  libtbb-dev          # threads; can be left out
+  libtbb-dev          # threads; optional
   libhwy-dev          # SIMD
   libfmt-dev
   librandom123-dev    # random streams
 )
-packages_opencl=(ocl-icd-opencl-dev opencl-c-headers)  # its loader; can be left out
+packages_opencl=(ocl-icd-opencl-dev opencl-c-headers)  # OpenCL loader; optional
 # core and gpu.
 packages_gpu=("${packages_core[@]}" "${packages_opencl[@]}")
-# core and design: nothing more.
+# core and design; no further packages.
 packages_design=("${packages_core[@]}")
 # The component report and `tofsmith demo`.
 packages_demo=(
   "${packages_core[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
-  libyaml-cpp-dev     # calibrations of lenses
+  libyaml-cpp-dev     # lens calibrations
   libembree-dev       # ray casting
-  python3             # packs the viewer of reports
-  zlib1g-dev          # unpacks TIFF images, packs the pictures of reports
+  python3             # packs the report viewer
+  zlib1g-dev          # decompresses TIFF images, compresses images in reports
 )
 # All components and the command line.
 packages_build=(
@@ -57,16 +57,16 @@ packages_python=(
   python3-matplotlib                          # tofsmith.plot
   python3-setuptools python3-wheel python3-pip python3-venv  # pip install
 )
-# The lab's page: core and design for browsers.
+# The lab page: core and design for browsers.
 packages_lab=(
   cmake ninja-build python3
   emscripten          # core and design for browsers
   libeigen3-dev libhwy-dev libfmt-dev librandom123-dev libtomlplusplus-dev nlohmann-json3-dev
 )
-# Debian packages of all of it, with every optional feature.
+# Debian packages of all components, with every optional feature.
 packages_package=(
   "${packages_python[@]}"
-  dpkg-dev file              # what a package depends on
+  dpkg-dev file              # dependencies of packages
 )
 # scripts/wheel.sh: a wheel without OpenCL.
 packages_wheel=(
@@ -80,10 +80,10 @@ packages_test=(
   python3-pytest mypy                        # the Python package
   python3-pyvisa python3-pyvisa-py           # uploads to generators
   patchelf                                   # wheels
-  python3-h5py                               # writes what .h5 readers must read
-  python3-opencv                             # distorts as lenses must
+  python3-h5py                               # writes test input for .h5 readers
+  python3-opencv                             # reference for lens distortion
   chromium chromium-driver python3-selenium  # the report, in a browser
-  locales                                    # one with a decimal comma
+  locales                                    # with a decimal comma
 )
 # The documentation.
 packages_docs=(
@@ -94,10 +94,10 @@ packages_docs=(
 )
 packages_benchmark=(
   "${packages_build[@]}"
-  libnanoflann-dev  # a peer of the decoder
-  python3-opencv    # filters of depth beside ours
+  libnanoflann-dev  # alternative decoder
+  python3-opencv    # depth filters for comparison
 )
-# Format and lint, on top of the tests: what .ci/run needs.
+# Requirements of .ci/run: the tests, format and lint.
 packages_check=(
   "${packages_test[@]}"
   clang-format clang-tidy shellcheck
@@ -114,8 +114,8 @@ packages_fuzz=(
   clang libclang-rt
 )
 
-# scripts/arm64.sh: what compiles and runs for Arm here; and, from Debian for arm64, what core and its
-# tests use.
+# scripts/arm64.sh: cross compiler and emulator; and, from Debian for arm64, the dependencies of core
+# and its tests.
 packages_arm64=(
   crossbuild-essential-arm64 qemu-user-static cmake ninja-build dpkg-dev
 )
@@ -134,10 +134,10 @@ tofsmith_die() {
   exit 1
 }
 
-# Where scripts/test_release.sh keeps the Debian root of a release.
+# Prints the path of the Debian root of a release for scripts/test_release.sh.
 release_root() { printf '%s' "${TOFSMITH_ROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/tofsmith-roots}/$1"; }
 
-# The code name of this system if tofsmith is tested on it, otherwise nothing.
+# Prints the code name of this system if tofsmith is tested on it, otherwise nothing.
 debian_release() (
   # shellcheck source=/dev/null
   source /etc/os-release 2>/dev/null || return 0

@@ -2,17 +2,17 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Builds the Debian packages of the last commit twice, where all that should not count differs: folders,
-# dates of the sources, time, time zone, locale, home, permissions of new files, numbers of jobs and,
-# as root, the user. Nothing is taken from a compiler cache. The packages must be the same bytes.
+# Builds the Debian packages of the last commit twice, with different folders, dates of the sources,
+# times, time zones, locales, homes, permissions of new files, numbers of jobs and, as root, users. No
+# compiler cache is used. Both builds must give identical packages.
 #
-#   scripts/reproduce_build.sh [--component NAME] [--keep DIR] [--quick]    some 20 minutes on two cores
+#   scripts/reproduce_build.sh [--component NAME] [--keep DIR] [--quick]    about 20 minutes on two cores
 #
-#   --component NAME   as of scripts/package.sh: core takes 6 minutes
-#   --keep DIR         both builds stay there
-#   --quick            the first build may take objects from ccache, which others made, elsewhere
+#   --component NAME   as for scripts/package.sh; core takes 6 minutes
+#   --keep DIR         keep both builds in DIR
+#   --quick            the first build may use ccache
 #
-# Where they differ, it says in which file of which package: exit code 1.
+# Prints the packages and files that differ, if any, and then exits with 1.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -40,7 +40,7 @@ fi
 install_packages package
 chmod 755 "$place"
 
-# The first as in a clone, which ccache may know; the second elsewhere, and not within the sources.
+# The first build is like in a clone, where ccache has entries; the second is outside the sources.
 first=$place/one second=$place/another/folder/of/a-longer-name
 rm -rf "$first" "$second"
 mkdir -p "$first" "$second/source" "$second/home"
@@ -78,7 +78,7 @@ for package in "$first"/build-package/*.deb; do
     dpkg-deb -R "$side" "$side.unpacked"
   done
   diff -rq "$package.unpacked" "$twin.unpacked" || true
-  # Names, owners, permissions and dates as they are packed.
+  # Compare names, owners, permissions and dates in the archives.
   diff <(dpkg-deb -c "$package") <(dpkg-deb -c "$twin") || true
 done
 ((failed == 0)) || tofsmith_die "the two builds differ"

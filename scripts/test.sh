@@ -2,14 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds tofsmith and runs its tests. Ends with a line
-# `N passed, N failed, N skipped`, and fails unless some ran and none failed.
+# Installs missing packages, builds tofsmith and runs its tests. The last line is
+# `N passed, N failed, N skipped`; the exit code is 0 if at least one test ran and none failed.
 #
 #   scripts/test.sh [--preset NAME] [--floors core,io,..] [--locale NAME] [options of ctest]
 #
 #   --preset NAME   a preset of CMakePresets.json: dev (default), asan, tsan
-#   --floors LIST   build and run the unit tests of these folders only
-#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in tests and in Python as a host may do
+#   --floors LIST   build and run only the unit tests of these folders
+#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in tests and in Python as by a host program
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -34,7 +34,7 @@ done
 
 install_packages test
 use_debian_tools
-cd "$root" # presets are looked up here
+cd "$root" # location of the presets
 build="$root/build-$preset"
 results="$build/test-results.xml"
 
@@ -42,7 +42,7 @@ targets=(all)
 components=
 if ((${#floors[@]})); then
   targets=()
-  # No other floor stands on these; without them nothing of the paper is built, either.
+  # Only report, paper and house need more components than these.
   [[ " ${floors[*]} " =~ \ (report|paper|house)\  ]] || components='sweep;lab;gpu'
   for floor in "${floors[@]}"; do
     compgen -G "tests/$floor/*.cpp" >/dev/null || tofsmith_die "there are no tests in tests/$floor"
@@ -52,7 +52,7 @@ if ((${#floors[@]})); then
 fi
 echo "Building tofsmith and its tests in $build"
 settings=(-DTOFSMITH_COMPONENTS="$components")
-[[ "$preset" == dev ]] || settings+=(-DTOFSMITH_TARGETS="$(own_target)") # the others take too long
+[[ "$preset" == dev ]] || settings+=(-DTOFSMITH_TARGETS="$(own_target)") # all targets would take too long
 [[ -z "$components" ]] || settings+=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
 cmake --log-level=WARNING --preset "$preset" "${settings[@]}"
 cmake --build "$build" --target "${targets[@]}"
@@ -66,7 +66,7 @@ if [[ -n "$locale" ]]; then
     LD_PRELOAD="$build/tests/liblocale_shim.so")
 fi
 
-failures="$build/Testing/Temporary/LastTestsFailed.log" # one a line, with those that could not run
+failures="$build/Testing/Temporary/LastTestsFailed.log" # one test per line, including tests that could not run
 rm -f "$results" "$failures"
 status=0
 "${in_locale[@]}" ctest --preset "$preset" --parallel "$(nproc)" --output-on-failure --output-junit "$results" "$@" \

@@ -2,13 +2,13 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Configures, builds, tests and consumes core, and core with design, each where only its packages are
-# installed: in a fresh Debian root made by debootstrap, which needs to be root.
+# Configures, builds, tests and consumes core, and core with design, with only the required packages
+# installed: in a new Debian root made by debootstrap, which requires root permissions.
 #
-#   scripts/test_components.sh [--here] [COMPONENT ..]   core and design, unless named
+#   scripts/test_components.sh [--here] [COMPONENT ..]   (core design)
 #
-# With --here, or without debootstrap or its rights, it builds here, where CMake is kept from finding
-# anything else, and leaves the unit tests, which other checks run, out.
+# With --here, or without debootstrap or root permissions, it builds on this system, where CMake is
+# prevented from finding other packages, and skips the unit tests, which other checks run.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -28,8 +28,8 @@ components=("$@")
 mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
 release=$(this_or_newest_release)
 
-# Built, tested, installed and consumed by a project of its own; $1 is the sources, $2 the build, $3
-# the component, $4 the label of the tests to run, or all.
+# Builds, tests and installs a component and uses it in a separate project. $1: sources, $2: build
+# folder, $3: component, $4: label of the tests to run, or all.
 # shellcheck disable=SC2016  # $1 belongs to the inner shell
 steps='set -euo pipefail
 cmake --log-level=WARNING -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFSMITH_UNITY=ON \
@@ -41,12 +41,12 @@ echo "$3 alone was built in $((SECONDS - start)) s"
 if [[ "$4" == all ]]; then cmake --build "$2"; fi
 ctest --test-dir "$2" --output-on-failure --no-tests=error --parallel "$(nproc)" -L "${4/#all/.}"'
 
-# Packages that a component must do without.
+# Packages that a component must not use.
 forbidden=(tomlplusplus OpenEXR PNG embree OpenCL SQLite3 CLI11 pybind11)
 
 for component in "${components[@]}"; do
   mapfile -t packages < <(packages_of "$component")
-  packages+=(libgtest-dev libgmock-dev nlohmann-json3-dev) # of the tests
+  packages+=(libgtest-dev libgmock-dev nlohmann-json3-dev) # for the tests
   if [[ -z "$here" ]] && ((EUID == 0)) && command -v debootstrap >/dev/null; then
     place=$(mktemp -d)
     trap 'umount "$place/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' EXIT
@@ -66,7 +66,7 @@ for component in "${components[@]}"; do
     use_debian_tools
     settings=(-DTOFSMITH_TARGETS="$(own_target)" -DTOFSMITH_OPTIMIZE_KERNELS_ONLY=ON)
     for package in "${forbidden[@]}"; do settings+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"); done
-    # One build folder for all components: a component reuses the objects of those below it.
+    # One build folder for all components, so that a component reuses the objects of its dependencies.
     bash -c "$steps" steps "$root" "$root/build-components" "$component" install "${settings[@]}"
   fi
 done

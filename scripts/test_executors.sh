@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Runs the examples of docs/scaling.md on real engines and compares their results with a sweep in
-# one process: a process pool, Dask with four workers of which one is killed, mpi4py.futures, and
-# Slurm on this machine alone. Installs the engines; needs a build with the command line and the
+# one process: a process pool, Dask with four workers (one of them is killed), mpi4py.futures, and
+# Slurm on this machine only. Installs the engines; requires a build with the command line and the
 # Python package.
 #
-#   scripts/test_executors.sh [BUILD]       a folder; build-dev without one
+#   scripts/test_executors.sh [BUILD]       a folder (build-dev)
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -33,7 +33,7 @@ stop_all() {
 trap stop_all EXIT
 cd "$work"
 
-# The blocks of the page whose first lines name a file.
+# Writes the code blocks of the page whose first line is a file name.
 python3 - "$root/docs/scaling.md" <<'PYTHON'
 import re, sys
 page = open(sys.argv[1], encoding="utf-8").read()
@@ -52,9 +52,9 @@ wait_for() {
   done
   tofsmith_die "no success within 60 s: $*$(tail -n 5 ./*.log)"
 }
-# The sweep's finished items in a store.
+# Prints the number of finished items in a store.
 finished() { tofsmith sweep sweep.toml --store "$1" --status --json | sed -n 's/.*"finished": *\([0-9]*\).*/\1/p'; }
-# Fails unless the store's export has the bytes of the sweep in one process.
+# Fails unless the export of a store is identical to that of the sweep in one process.
 compare() {
   tofsmith sweep sweep.toml --store "$1" --status --quiet --export "$1.json" >/dev/null
   cmp expected.sqlite.json "$1.json"
@@ -86,7 +86,7 @@ test_dask() {
   started+=("${workers[@]}")
   for worker in 1 2 3 4; do wait_for grep -q Registered "worker-$worker.log"; done
 
-  # More trials, so that the worker is killed during the work.
+  # More trials, so that the worker is killed while it is busy.
   sed -i 's/^trials = .*/trials = 40000/' sweep.toml
   compute_expected
   python3 dask_client.py "$(sed -n 's/.*"address": "\(.*\)".*/\1/p' scheduler.json)" &
@@ -108,7 +108,7 @@ test_mpi() {
   compare mpi.sqlite 'mpi4py.futures, two workers'
 }
 
-# Starts munged, slurmctld and slurmd with files in this folder. They refuse other users' folders.
+# Starts munged, slurmctld and slurmd with files in this folder. They reject other users' folders.
 start_slurm() {
   local host user
   host=$(hostname -s) user=$(id -un)

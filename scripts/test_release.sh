@@ -70,7 +70,7 @@ mkdir -p "$(dirname "$place")"
 exec 9>"$place.lock"
 flock --nonblock 9 || tofsmith_die "another run uses $place"
 
-# Mounts are made in mount namespaces of their own (see enter), so that none can be left here.
+# Mounts exist only in separate mount namespaces (see enter), so none can remain in this one.
 remove_root() { rm -rf --one-file-system "$place" "$place.part"; }
 [[ -z "$fresh$remove" ]] || remove_root
 [[ -z "$remove" ]] || exit 0
@@ -85,9 +85,9 @@ if [[ ! -d "$place" ]]; then
     tofsmith_die "debootstrap failed; its messages are in $log"
   mv "$place.part" "$place"
 fi
-# As the installer of Debian writes it: browsers and their drivers talk to each other by this name.
+# As written by Debian's installer: browsers and their drivers communicate by this name.
 [[ -e "$place/etc/hosts" ]] || printf '127.0.0.1\tlocalhost\n::1\tlocalhost\n' >"$place/etc/hosts"
-# How this system reaches the mirror.
+# Network settings for reaching the mirror.
 cp /etc/resolv.conf "$place/etc/resolv.conf"
 apt-config dump 2>/dev/null | grep -E '^Acquire::(https?::|Check-|Retries|ForceIPv)' \
   >"$place/etc/apt/apt.conf.d/90host" || true

@@ -75,7 +75,7 @@ for entry in "${releases[@]}"; do
     options+=("-DTOFSMITH_PYTHON_ROOT=$headers")
     bundle=(--python-root "$headers")
   fi
-  # From nothing but the sources: neither settings nor files of an earlier build count.
+  # Discard settings and files of an earlier build.
   rm -rf "$build"/{CMakeCache.txt,python/tofsmith,setuptools,plain}
   (cd "$root" && TOFSMITH_CMAKE_BUILD="$build" TOFSMITH_CMAKE_OPTIONS="${options[*]@Q}" \
     python3 -B setup.py -q egg_info --egg-base "$build" build --build-base "$build/setuptools" \

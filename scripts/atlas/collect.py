@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Puts codes that sweeps designed into an atlas, where they are better than what is there.
+"""Adds codes designed by sweeps to an atlas, if they are better than the existing ones.
 
     collect.py ATLAS.txt SWEEP.json ..      exports of `tofsmith sweep` of scripts/atlas/*.toml
 """
@@ -20,7 +20,7 @@ def short(number):
 
 
 def intervals(waveform):
-    """Switching times in parts of the period; what vanishes so is left out, what meets is joined."""
+    """Switching times in parts of the period. Drops empty intervals and joins adjacent ones."""
     if waveform["kind"] != "binary":
         sys.exit("a waveform that is not binary; the cameras of the atlas switch on and off")
     on = []
@@ -90,14 +90,14 @@ def read_atlas(path):
 
 
 def error_in(lines, kind):
-    """The error of a kind that an entry states."""
+    """Error of a kind in the lines of an entry."""
     words = lines[0].split()
     return float(words[words.index(f"{kind}_m") + 1])
 
 
 def shared(entries):
-    """Each camera with the best code that is there for as many taps and exposures, the same bandwidth and
-    no more peak, which it can play as well, with the same errors."""
+    """Each camera with the best code of all cameras with the same taps, exposures and bandwidth and
+    at most the same peak. It supports these codes with the same errors."""
     best = {}
     for camera, (error, lines) in entries.items():
         taps, exposures, peak, band, shortest, kind = camera
@@ -126,7 +126,7 @@ def main():
             new, better = new + (camera not in entries), better + (camera in entries)
             entries[camera] = (error, lines)
     entries = shared(entries)
-    # Light as much as the mean allows, switching times in 1/100000 of the period: see atlas_text.cpp.
+    # The format is described in atlas_text.cpp.
     text = "\n".join([HEAD, *(line for camera in sorted(entries) for line in entries[camera][1])]) + "\n"
     with open(path + ".new", "w", encoding="utf-8") as file:
         file.write(text)

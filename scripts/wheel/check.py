@@ -5,10 +5,10 @@
 
     scripts/wheel/check.py --source SOURCE --build BUILD WHEEL ...
 
-at most 25 MB; all shared libraries inside except the C library's, found by paths relative to $ORIGIN;
-no path of this build in any file; a licence text for every library; no unique symbols; a tag that
-claims no older C library than the files need; and pip rejects the wheel for an older one. Exit code 1
-with a list of what is wrong.
+Requirements: at most 25 MB; all shared libraries included except the C library's, with search paths
+relative to $ORIGIN; no path of this build in any file; a licence text for every library; no unique
+symbols; a tag for a C library at least as new as the files need; and pip rejects the wheel for an
+older one. Prints all problems and exits with 1.
 """
 
 import argparse
@@ -61,7 +61,7 @@ def problems_of_tag(wheel, newest):
 
 
 def problems_of_tree(tree, build_paths):
-    """Of an unpacked wheel."""
+    """Problems of an unpacked wheel."""
     for name in REQUIRED:
         if not (tree / name).exists():
             yield f"has no file {name}"

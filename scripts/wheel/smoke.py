@@ -9,14 +9,14 @@ import importlib.util
 import pathlib
 import zlib
 
-# The system's own C++ library, if there is one, must not get in the way of the wheel's.
+# The system's C++ library must not conflict with the wheel's.
 try:
     ctypes.CDLL("libstdc++.so.6")
 except OSError:
     print("This system has no libstdc++.so.6")
 
 has_matplotlib = importlib.util.find_spec("matplotlib") is not None
-if has_matplotlib:  # its own extensions use the system's libraries
+if has_matplotlib:  # its extensions use the system's libraries
     import matplotlib
 
     matplotlib.use("agg")
