@@ -27,9 +27,8 @@ namespace {
 constexpr int samples_of_standard_codes = 360;
 constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pulse_s";
 
-/// Screening of families: trials per operating point, maximum ratio to the smallest error, and
-/// maximum number of codes. A first evaluation with a fraction of the trials excludes codes with
-/// large errors.
+/// Screening: trials per operating point, maximum ratio to the smallest error, and maximum number
+/// of codes. A first evaluation with fewer trials excludes poor codes.
 constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000, share_looked_at = 5;
 constexpr double contending = 1.12, far = 1.5;
 constexpr std::size_t max_contenders = 8, max_atlas_codes = 4;
@@ -39,7 +38,6 @@ int trials_per_point(const Camera& camera) {
   return std::max(min_trials_per_point, trials_of_all_points / std::max(1, points));
 }
 
-/// Returns the error selected by the camera, at the best origin [m].
 double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
   const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
   if (!rotates(camera, {}))
@@ -49,7 +47,7 @@ double first_error_m(const CodeSet& code, const Camera& camera, int trials, std:
   return *std::min_element(of_rotation.begin(), of_rotation.end());
 }
 
-/// Returns the error of each code; infinite for null pointers.
+/// Infinite for null pointers.
 std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, const Camera& camera,
                                    int trials, std::uint64_t seed) {
   std::vector<double> errors_m(codes.size(), infinity);
@@ -61,8 +59,7 @@ std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, con
   return errors_m;
 }
 
-/// Returns the screening errors of codes, with all trials for codes that may be among the best and
-/// a fraction of them for others. Infinite for null pointers.
+/// Uses fewer trials for poor codes. Infinite for null pointers.
 std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, const Camera& camera,
                                            std::uint64_t seed) {
   const int trials = trials_per_point(camera);
@@ -78,14 +75,13 @@ std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, co
   return errors_m;
 }
 
-/// Returns why a code cannot compete on a camera, or nothing if it can.
 std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera& camera) {
   if (auto reason = why_not_playable(code, camera)) return reason;
   if (!keeps_shortest_run(code, camera)) return short_runs;
   return why_no_depth(code, camera);
 }
 
-/// Returns the index of the first code with the same waveforms as code i. Atlas entries share some.
+/// Atlas entries share some waveforms.
 std::size_t first_like(const std::vector<CodeSet>& codes, std::size_t i) {
   const auto alike = [&](const CodeSet& code) {
     if (code.taps() != codes[i].taps() || code.exposures() != codes[i].exposures()) return false;
@@ -98,7 +94,7 @@ std::size_t first_like(const std::vector<CodeSet>& codes, std::size_t i) {
   return static_cast<std::size_t>(std::find_if(codes.begin(), codes.end(), alike) - codes.begin());
 }
 
-/// Adds a code if the camera supports it. judge() excludes codes that do not determine depth.
+/// judge() later excludes codes that do not determine depth.
 void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
                   DesignResult& result) {
   if (const auto reason = why_not_playable(code, camera))
@@ -107,7 +103,6 @@ void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
   result.candidates.push_back({.code = std::move(code), .method = method});
 }
 
-/// Lists the first few names, followed by the number of the others of this `kind`.
 std::string brief_list(const std::vector<std::string>& names, const char* kind) {
   constexpr std::size_t listed = 4;
   if (names.size() <= listed + 1) return fmt::format("{}", fmt::join(names, ", "));
@@ -115,7 +110,6 @@ std::string brief_list(const std::vector<std::string>& names, const char* kind) 
                      names.size() - listed, kind);
 }
 
-/// Records the contenders that cannot compete, grouped by reason.
 void leave_out(DesignResult& result, const Contenders& contenders, const char* kind) {
   for (const auto& [reason, names] : contenders.left_out)
     leave_out(result, brief_list(names, kind), reason);

@@ -11,17 +11,16 @@
 
 namespace tofsmith {
 
-/// Records why a code does not compete; codes with the same reason share one entry.
+/// Records why a code does not compete, in one line per reason.
 void leave_out(DesignResult& result, const std::string& name, const std::string& reason);
 
-/// Adds codes that need no design: families, standard codes for exclusive taps, and the naive code
-/// of every target. Without explicit baselines all families are considered (other_families()), but
-/// only the best of a quick screening are added.
+/// Adds families, standard codes for exclusive taps, and the naive code of every target. Without
+/// explicit baselines the best of all families by a quick screening are added.
 void add_baselines(const Camera& camera, const DesignOptions& options,
                    const std::vector<TargetSet>& targets, DesignResult& result);
 
-/// Returns the names of all built-in codes except suggested_baselines(), with up to 10 measurements
-/// and frequencies within the bandwidth, at most 30 f0. Empty for three or more taps.
+/// Returns all built-in codes except suggested_baselines() with up to 10 measurements and
+/// frequencies within the bandwidth, at most 30 f0. Empty for three or more taps.
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options);
 
 /// Codes that may be the best on a camera, and why others are not among them.
@@ -30,15 +29,15 @@ struct Contenders {
   std::map<std::string, std::vector<std::string>> left_out;  ///< names, grouped by reason
 };
 
-/// Returns up to eight families that are not clearly worse than the best in a quick screening.
+/// Returns up to eight families that a quick screening does not find clearly worse.
 Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,
                                std::uint64_t seed);
 
 /// Returns the best codes of the nearest atlas cameras by a quick screening, best first, up to
-/// three for each number of exposures. Empty if the options disable the atlas.
+/// three per number of exposures. Empty if the options disable the atlas.
 Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options);
 
-/// Adds the best four contenders as candidates, and records which codes cannot compete.
+/// Adds the best four as candidates and records which codes cannot compete.
 void add_atlas_codes(const Contenders& contenders, DesignResult& result);
 
 }  // namespace tofsmith

@@ -12,16 +12,15 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/design.hpp"
 
-// An atlas is a text file. The first line is the version. Each code has a line `code` with its
-// camera and errors, and for each exposure a line `light` and lines `gate` with switching times in
-// units of 1/100000 of the period: rise, fall, rise, ... Comments start with #.
+// File format: version, then for each code a line `code` with camera and errors, and for each
+// exposure a line `light` and lines `gate` with switching times (rise, fall, ...) in 1/100000 of
+// the period. Comments start with #.
 namespace tofsmith {
 namespace {
 
 constexpr double parts_per_period = 100'000.0;
 constexpr std::string_view atlas_head = "tofsmith atlas ";
 
-/// Formats a number such as "10" or "0.0075".
 std::string short_number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string entry_name(const AtlasCamera& of) {
@@ -32,12 +31,11 @@ std::string entry_name(const AtlasCamera& of) {
   return name + "-" + std::string(name_of(of.error));
 }
 
-/// Reads the lines of an atlas, word by word.
 class AtlasLines {
  public:
   AtlasLines(std::string_view text, std::string_view file) : rest_(text), file_(file) {}
 
-  /// Advances to the next line that is neither empty nor a comment. Returns false at the end.
+  /// Advances to the next line with content. Returns false at the end.
   bool next() {
     do {
       if (rest_.empty()) {
@@ -52,7 +50,6 @@ class AtlasLines {
     } while (words_.empty() || words_.front() == '#');
     return true;
   }
-  /// Returns the rest of the line.
   std::string_view rest_of_line() const { return words_; }
   bool at_end_of_line() const { return words_.empty(); }
 
@@ -114,7 +111,7 @@ std::vector<OnInterval> read_intervals(AtlasLines& lines, std::string_view kind)
   return on;
 }
 
-/// Reads a modulation; its level is the smaller of 1 / duty and the peak.
+/// The level is the smaller of 1 / duty and the peak.
 Waveform read_light(AtlasLines& lines, double peak_factor) {
   std::vector<OnInterval> on = read_intervals(lines, "light");
   if (on.empty()) lines.refuse("found light that is never on; expected a pulse");
@@ -156,7 +153,7 @@ Estimate read_estimate(AtlasLines& lines, std::string_view kind) {
   return {value, standard_error};
 }
 
-/// Reads a code; the word `code` has already been read.
+/// Reads the rest of a code after the word `code`.
 AtlasEntry read_entry(AtlasLines& lines) {
   const AtlasCamera of = read_camera(lines);
   const Estimate linear_m = read_estimate(lines, "linear_m");

@@ -16,11 +16,9 @@
 namespace tofsmith {
 namespace {
 
-/// Half the width of a Hann response with f_max = 1: the full width is 1.444 / f_max, and the width
-/// at half height is half of it.
+/// Half the width of a Hann response with f_max = 1, and its width at half height.
 constexpr double hann_half_width = 0.722;
 
-/// Position of a camera among atlas cameras with the same taps and exposures.
 struct AtlasPlace {
   double log_peak, log_bandwidth;
 };
@@ -39,7 +37,6 @@ double place_distance(const AtlasPlace& a, const AtlasPlace& b) {
   return std::hypot(a.log_peak - b.log_peak, a.log_bandwidth - b.log_bandwidth);
 }
 
-/// Clamps a position to the range of the entries.
 AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace place) {
   AtlasPlace low{infinity, infinity}, high{-infinity, -infinity};
   for (const AtlasEntry* entry : entries) {
@@ -51,7 +48,7 @@ AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace 
           std::clamp(place.log_bandwidth, low.log_bandwidth, high.log_bandwidth)};
 }
 
-/// Returns the entries of the nearest cameras for one number of exposures, nearest first.
+/// Nearest entries first; all must have the same number of exposures.
 std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> entries,
                                                const AtlasPlace& camera, int cameras) {
   const AtlasPlace place = clamped_to(entries, camera);

@@ -9,7 +9,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the sorted correlation functions of one exposure after a delay or mirror image.
 std::string exposure_key(const ChipCode& code, int exposure, int shift, bool is_mirror) {
   std::vector<std::string> rows;
   for (int i = 0; i < code.taps; ++i) {

@@ -9,31 +9,29 @@
 
 namespace tofsmith {
 
-/// Returns a canonical string: two codes have the same key exactly if their correlation functions
-/// are equal up to delay, time reversal, and the order of taps and exposures.
+/// Returns a string that is equal exactly for codes whose correlation functions are equal up to
+/// delay, time reversal and order of taps and exposures.
 std::string symmetry_key(const ChipCode& code);
 
-/// A code and its score.
 struct ScoredCode {
   ChipCode code;
   double score = 0.0;
-  double share = 0.0;  ///< fraction of the search completed when the code was found
+  double share = 0.0;  ///< fraction of the search completed at that time
   std::string key;
 };
 
-/// Keeps the best distinct codes; codes that differ only by symmetry count as one.
+/// The best codes, distinct up to symmetry.
 class BestCodes {
  public:
   explicit BestCodes(int count) : count_(static_cast<std::size_t>(count)) {}
 
-  /// Upper limit of the score of new codes: the worst kept score, or infinity if there is room.
+  /// Returns the worst kept score, or infinity if there is room.
   double limit() const;
   /// @return true if the code is now the best
   bool offer(const ChipCode& code, double score, double share);
-  /// Adds the codes of `other`, in their order.
   void merge(const BestCodes& other);
   const std::vector<ScoredCode>& codes() const { return codes_; }
-  /// Returns every code that was the best at the time it was added.
+  /// Returns every code that was the best when added.
   const std::vector<ScoredCode>& improvements() const { return improvements_; }
 
  private:

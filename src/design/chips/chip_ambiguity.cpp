@@ -15,14 +15,14 @@ namespace tofsmith {
 
 namespace {
 
-/// Integer vector for one depth, with the ambient component projected out; unused entries are 0.
+/// Integer vector of one depth without the ambient component; unused entries are 0.
 using Direction = std::array<std::int64_t, 16>;
 
-/// Computes the directions at the corners s in [0, n) of the correlation functions. With a
-/// reference tap r that is open for at least one chip, the null space of the map
+/// Directions at the corners s in [0, n) of the correlation functions. For a reference tap r that
+/// is not always closed, the null space of the map
 ///   q_i = kappa_r C_i - C_r kappa_i,  i != r,
-/// is the ambient vector kappa. So the measurements of two depths differ only by light levels
-/// exactly if their q have the same direction.
+/// is the ambient vector kappa. So two depths can have equal measurements exactly if their q have
+/// the same direction.
 std::vector<Direction> corner_directions(const ChipCode& code) {
   std::vector<std::int64_t> open;
   for (const ChipWord word : code.demodulation) open.push_back(std::popcount(word));
@@ -37,11 +37,11 @@ std::vector<Direction> corner_directions(const ChipCode& code) {
   return corners;
 }
 
-/// Returns the relation x with sum_j x_j columns_j = 0 if it is unique up to scale. Uses
-/// fraction-free elimination (Bareiss).
+/// Returns the relation sum_j x_j columns_j = 0, if unique up to scale, by fraction-free
+/// elimination (Bareiss).
 std::optional<std::array<std::int64_t, 4>> only_relation(std::span<const Direction> columns) {
   const std::size_t width = columns.size(), height = Direction().size();
-  std::array<Direction, 4> rows{};  // rows of the transposed matrix
+  std::array<Direction, 4> rows{};  // of the transposed matrix
   std::array<std::array<std::int64_t, 4>, 4> combination{};
   for (std::size_t j = 0; j < width; ++j) {
     rows[j] = columns[j];
@@ -70,8 +70,8 @@ std::optional<std::array<std::int64_t, 4>> only_relation(std::span<const Directi
   return combination[width - 1];
 }
 
-/// Returns true if sum_j x_j columns_j = 0 for some x >= 0, x != 0. In that case such an x exists
-/// whose support has a unique relation, so it is sufficient to test all supports.
+/// Returns true if sum_j x_j columns_j = 0 for some x >= 0, x != 0. One such x then has a support
+/// with a unique relation, so it is sufficient to test all supports.
 bool have_positive_relation(std::span<const Direction> columns) {
   for (unsigned support = 1; support < 1U << columns.size(); ++support) {
     std::array<Direction, 4> chosen{};
@@ -114,7 +114,7 @@ bool is_ambiguous(const ChipCode& code) {
   if (std::all_of(code.demodulation.begin(), code.demodulation.end(),
                   [](ChipWord word) { return word == 0; }))
     return true;
-  if (code.measurements() < 3) return true;  // no more measurements than unknowns
+  if (code.measurements() < 3) return true;  // at least as many unknowns
   const std::vector<Direction> corners = corner_directions(code);
   const std::size_t n = corners.size();
   const auto corner = [&](std::size_t s) -> const Direction& { return corners[s % n]; };

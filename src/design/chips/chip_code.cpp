@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Converts a word to a waveform; runs of chips are joined across the end of the period.
+/// Joins runs of chips across the end of the period.
 Waveform chip_waveform(ChipWord word, int chips, double level) {
   if (word == 0) return Waveform::constant(0.0);
   if (word == all_chips(chips)) return Waveform::constant(level);

@@ -22,7 +22,7 @@ constexpr std::array<double, nodes_per_chip> node_position = {
 constexpr std::array<double, nodes_per_chip> node_weight = {
     0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
 
-/// Returns true if two depths at whole chips have identical measurements.
+/// Returns true if two whole-chip depths have identical measurements.
 bool repeats(const ChipCode& code) {
   std::array<std::array<int, max_chip_measurements>, max_chips> corners{};
   for (int s = 0; s < code.chips; ++s) {
@@ -48,7 +48,7 @@ FisherMatrix& FisherMatrix::operator+=(const FisherMatrix& other) {
 }
 
 double FisherMatrix::depth_variance() const {
-  // Schur complements: eliminate ambient light, then the signal.
+  // Schur complements: eliminate ambient light, then signal.
   const double per_ambient = 1.0 / aa;
   const double signal = ss - sa * sa * per_ambient;
   constexpr double rounding = 1e-12;
@@ -217,7 +217,7 @@ double ChipJudge::proven_margin_sigma(const ChipCode& code) const {
 }
 
 void ChipJudge::ask_no_more_than(const std::vector<ChipCode>& codes) {
-  std::vector<double> asked;  // margins of the best standard code at every point
+  std::vector<double> asked;  // margins of the best standard code
   double largest_share = 0.0;
   for (const ChipCode& code : codes) {
     if (largest_share == 1.0) return;
@@ -234,7 +234,7 @@ void ChipJudge::ask_no_more_than(const std::vector<ChipCode>& codes) {
     largest_share = share;
     asked = std::move(kept);
   }
-  // Without a usable standard code the requested margin remains, because it may be achievable.
+  // Without a usable standard code the requested margin remains.
   if (!asked.empty()) asked_sigma_ = std::move(asked);
 }
 

@@ -12,38 +12,35 @@
 namespace tofsmith {
 
 /// Fisher matrix at one depth over (depth in chips, log S, ambient light in electrons per open
-/// chip). Matrices of independent exposures add.
+/// chip). Exposures add.
 struct FisherMatrix {
   double zz = 0.0, zs = 0.0, ss = 0.0, za = 0.0, sa = 0.0, aa = 0.0;
 
   FisherMatrix& operator+=(const FisherMatrix& other);
-  /// Returns [inverse]_zz; infinite if depth cannot be separated from signal and ambient light.
+  /// Returns [inverse]_zz; infinite if depth cannot be separated from the light levels.
   double depth_variance() const;
 };
 
-/// Quadrature nodes per chip.
 inline constexpr int nodes_per_chip = 4;
 
-/// Adds the Fisher matrices of one exposure to `nodes`, in order of depth (4 n).
+/// Adds the Fisher matrices of one exposure at all nodes (4 n).
 void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, const ChipLight& light,
                   FisherMatrix* nodes);
 
-/// Returns gamma [chips^2], the mean over depth of depth_variance(). Returns early if it exceeds
-/// `limit`.
+/// Returns gamma [chips^2], the mean of depth_variance() over depth; stops above `limit`.
 double mean_depth_variance(const FisherMatrix* nodes, int chips,
                            double limit = std::numeric_limits<double>::infinity());
 
-/// Returns gamma of a code [chips^2]. Returns early if it exceeds `limit`.
+/// Returns gamma of a code [chips^2]; stops above `limit`.
 double chip_gamma(const ChipCode& code, const ChipLight& light,
                   double limit = std::numeric_limits<double>::infinity());
 
-/// Returns an upper bound on the weight of one tap between two adjacent depths: the Fisher matrix
-/// at the first depth, with the largest weight 1 / variance in between, which occurs at the darker
-/// end.
+/// Returns the Fisher matrix of one tap at the first of two adjacent depths, with the largest
+/// weight 1 / variance between them (at the darker end).
 FisherMatrix largest_tap_fisher(int correlation, int next, int open_chips,
                                 double electrons_per_chip, const ChipLight& light);
 
-/// Evaluates codes at all operating points of a camera, with the cheapest tests first.
+/// Evaluates codes at all operating points, cheapest tests first.
 class ChipJudge {
  public:
   ChipJudge(const Camera& camera, const ChipSearchOptions& options);
@@ -52,32 +49,27 @@ class ChipJudge {
   int taps() const { return taps_; }
   const std::vector<ChipLight>& lights() const { return lights_; }
 
-  /// Returns the geometric mean over the operating points of gamma [chips^2].
+  /// Returns the geometric mean of gamma over the operating points [chips^2].
   double score(const ChipCode& code) const;
-  /// As score(), but may return any value above `limit` if the score exceeds `limit`. `nodes`
-  /// contains the Fisher matrices at every point (points x 4 n), summed over all exposures but the
-  /// last one.
+  /// As score(), but any value above `limit` may replace a larger one. `nodes` contains the Fisher
+  /// matrices (points x 4 n) of all exposures but the last one.
   double score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
                          double limit) const;
   std::vector<FisherMatrix> nodes_of(const ChipCode& code, int exposures) const;
 
-  /// Returns true if the code is unambiguous and keeps the margin at every point; counts failures.
+  /// Returns true for unambiguous codes that keep the margin at every point; counts failures.
   bool is_safe(const ChipCode& code, ChipSearchCounts& counts) const;
-  /// Returns the smallest ratio of margin to required margin over the points. Sampled, so it is an
-  /// upper bound.
+  /// Returns the smallest ratio of margin to required margin, as a sampled upper bound.
   double sampled_margin_share(const ChipCode& code) const;
-  /// Returns the proven margin at the point with the smallest ratio to the required margin [sigma].
+  /// Returns the proven margin at the point with the smallest such ratio [sigma].
   double proven_margin_sigma(const ChipCode& code) const;
-  /// Returns the required margin at every point [sigma].
   const std::vector<double>& asked_sigma() const { return asked_sigma_; }
-  /// Lowers the required margins to the margins of the best of these codes, which has the largest
-  /// minimum ratio of margin to required margin. No change if a code keeps all required margins.
+  /// Lowers the required margins to those that the best of these codes keeps.
   void ask_no_more_than(const std::vector<ChipCode>& codes);
 
-  /// Converts a score to an RMS depth error [m].
+  /// Converts a score to an RMS error [m].
   double rms_m(double score) const;
-  /// Returns true if the words form a valid code: modulation and taps are not constant, and duties
-  /// follow the options.
+  /// Returns true if neither modulation nor taps are constant and duties follow the options.
   bool is_allowed(const ChipCode& code) const;
 
  private:

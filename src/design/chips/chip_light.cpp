@@ -51,7 +51,7 @@ ChipLight::ChipLight(const Camera& camera, const OperatingPoint& point, int code
   const double time_s = camera.exposure_s.of(0, exposures);
   signal_e = time_s * point.signal_e_per_s / chips;
   ambient_e = time_s * point.ambient_e_per_s / chips;
-  constexpr double min_e2 = 1e-9;  // avoids a division by zero without light and noise
+  constexpr double min_e2 = 1e-9;  // avoids division by zero
   constant_e2 = std::max(
       min_e2, constant_variance_e2_of(camera.sensor) + time_s * camera.sensor.dark_current_e_per_s);
 }

@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// Electrons at one operating point, per chip. A tap that is open for d chips and receives light of
+/// Electrons at one operating point, per chip: a tap that is open for d chips and receives light of
 /// level L during c chips has
 ///   mean      signal_e L c + ambient_e d
 ///   variance  mean + constant_e2.
@@ -16,21 +16,21 @@ struct ChipLight {
   double constant_e2 = 0.0;
   double peak_factor = 1.0;
   int chips = 0;
-  double chip_m = 0.0;  ///< depth per chip [m]
+  double chip_m = 0.0;  ///< depth per chip
 
-  /// @throws std::invalid_argument if require_plain() does
+  /// @throws std::invalid_argument as require_plain()
   ChipLight(const Camera& camera, const OperatingPoint& point, int chips, int exposures);
 
-  /// Returns the signal electrons per chip for a modulation that is on for `on_chips`.
+  /// Returns the signal electrons per chip.
   double electrons_of(int on_chips) const {
     return signal_e * chip_level(on_chips, chips, peak_factor);
   }
 };
 
-/// Returns the property of a valid camera that the chip model does not support, if any.
+/// Returns what the chip model does not support of a valid camera, if anything.
 std::optional<BrokenRule> why_not_plain(const Camera& camera);
 
-/// @throws std::invalid_argument for an invalid camera, or if why_not_plain() returns a reason
+/// @throws std::invalid_argument for an invalid camera or as why_not_plain()
 void require_plain(const Camera& camera);
 
 }  // namespace tofsmith

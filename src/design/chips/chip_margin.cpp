@@ -14,12 +14,11 @@
 namespace tofsmith {
 
 namespace {
-/// Minimum length of an interval of true depths [chips]. If the bound is not proven there, the test
-/// fails.
+/// Intervals of true depths are not bisected below this length [chips]; the proof then fails.
 constexpr double shortest_stretch = 1e-7;
 }  // namespace
 
-/// Inner products weighted by 1 / variance, with the ambient component projected out.
+/// Inner products weighted by 1 / variance, without the ambient component.
 struct ChipMargin::Whitening {
   int size;
   Values weight, weighted_open;
@@ -81,8 +80,7 @@ ChipMargin::Whitening ChipMargin::whitening(const Values& variance) const {
   return whitening;
 }
 
-/// Returns the parts of `chip` whose distance from some true depth in [first, last] is at least the
-/// separation.
+/// Returns the parts of `chip` at least the separation away from some depth in [first, last].
 ChipMargin::Stretches ChipMargin::alternatives(double first, double last, int chip) const {
   Stretches stretches;
   stretches.add({chip, 0.0, 1.0});
@@ -112,9 +110,9 @@ double ChipMargin::squared_distance(int chip, double place, const Stretch& alter
   return w.product(truth, truth) + 2.0 * minimize_bounded(quadratic, 2).value;
 }
 
-/// Bounds the squared distance between the measurements of two intervals from below. With the
-/// largest variances on the interval, the distance from the line segment of its measurements to the
-/// cone of the alternative's is a convex problem in three unknowns.
+/// Lower bound of the squared distance of two intervals: with the largest variances, the distance
+/// from the line segment of the measurements to the cone of the alternative is a convex problem in
+/// three unknowns.
 double ChipMargin::lower_bound(int chip, double begin, double end,
                                const Stretch& alternative) const {
   Values variance = variance_at(chip, begin);
@@ -137,7 +135,7 @@ double ChipMargin::lower_bound(int chip, double begin, double end,
   quadratic.g = {w.product(step, first), w.product(a, first), w.product(b, first)};
   const BoundedMinimum least = minimize_bounded(quadratic, 3);
   if (least.x[0] <= 1.0) return w.product(first, first) + 2.0 * least.value;
-  // The minimum lies outside the interval, so by convexity it is at its end.
+  // By convexity, the minimum is at the end of the interval.
   Quadratic at_end;
   at_end.h[0] = {aa, ab, 0.0};
   at_end.h[1] = {ab, bb, 0.0};
@@ -153,9 +151,8 @@ double ChipMargin::nearest(int chip, double place) const {
   return least;
 }
 
-/// Returns true if the distance from every true depth in the interval to all alternatives on
-/// `alternative_chip` is at least sqrt(factor least). Bounds are refined by bisection. A smaller
-/// exact distance that is found on the way lowers `least`.
+/// Returns true if the squared distance between the interval and `alternative_chip` is proven to be
+/// at least factor x least, by bisection. Smaller exact distances lower `least`.
 bool ChipMargin::clears(int chip, double begin, double end, int alternative_chip, double& least,
                         double factor) const {
   double bound = infinity;

@@ -9,20 +9,18 @@
 
 namespace tofsmith {
 
-/// Maximum number of measurements of a code on a chip clock.
 inline constexpr int max_chip_measurements = 16;
 
-/// Whitened distances between the measurements of different depths of one code.
+/// Whitened distances between the measurements of different depths.
 class ChipMargin {
  public:
   ChipMargin(const ChipCode& code, const ChipLight& light, double separation_periods);
 
-  /// Returns true if the smallest distance is proven to be at least `sigma` [standard deviations].
+  /// Returns true if the smallest distance is proven to be at least `sigma`.
   bool reaches(double sigma) const;
-  /// Returns a proven lower bound on the smallest distance, at most 0.1 % below it; 0 below 1e-3.
+  /// Returns a lower bound of the smallest distance, tight to 0.1 %; 0 below 1e-3.
   double proven_sigma() const;
-  /// Returns the smallest distance over `per_chip` true depths per chip, an upper bound on the
-  /// minimum.
+  /// Returns an upper bound of the smallest distance, from `per_chip` true depths per chip.
   double sampled_sigma(int per_chip, double stop_below_sigma = 0.0) const;
 
  private:
@@ -54,8 +52,8 @@ class ChipMargin {
   int chips_, measurements_;
   double separation_chips_;
   double constant_e2_;
-  std::vector<Values> signal_e_;  // at the corners 0, ..., n
-  Values ambient_e_{};            // expected electrons from ambient light
+  std::vector<Values> signal_e_;  // at the corners [0, n]
+  Values ambient_e_{};            // from ambient light
   Values open_{};                 // direction of ambient light
 };
 

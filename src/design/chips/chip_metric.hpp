@@ -6,29 +6,27 @@
 
 namespace tofsmith {
 
-/// Computes the RMS over depth of the smallest standard deviation of unbiased depth estimates [m],
+/// Computes the RMS over depth of the standard deviation of the best unbiased depth estimate [m],
 /// with unknown signal and ambient light:
 ///   sqrt(gamma), gamma = mean over z of [inverse Fisher matrix over (z, S, A)]_zz,
 /// with variances v_i = T_e (S chi_i + A kappa_i + dark) + constant. chi is linear within a chip;
-/// the mean over a chip is computed by Gauss-Legendre quadrature with four nodes. Infinite if depth
-/// cannot be separated from signal and ambient light.
-/// @throws std::invalid_argument if code or camera are invalid, or the camera has a property that
-///   the metric does not model: impulse responses, generators, contrast below 1, differences of
-///   taps, exposures of different lengths
+/// the mean over a chip is a Gauss-Legendre quadrature with four nodes. Infinite if depth cannot be
+/// separated from signal and ambient light.
+/// @throws std::invalid_argument for an invalid code or camera, or for properties that are not
+///   modelled: impulse responses, generators, contrast below 1, differences of taps, unequal
+///   exposures
 double chip_metric_rms_m(const ChipCode& code, const Camera& camera, const OperatingPoint& point);
 
-/// Returns true if two real depths can have equal measurements at suitable light levels. This is
-/// the case if the directions of chi(z), with the ambient component projected out, coincide or
-/// vanish. Decided in integer arithmetic, without rounding.
+/// Returns true if two real depths can have equal measurements at suitable light levels: the
+/// directions of chi(z), without the ambient component, coincide or vanish. Exact (integers).
 /// @throws std::invalid_argument if the code is invalid
 bool is_ambiguous(const ChipCode& code);
 
-/// Computes a lower bound on the noise-normalized distance between depths: the minimum, over all
-/// pairs of real depths (z, z') with a circular distance of at least `separation_periods` and over
-/// all S' >= 0 and A', of
+/// Computes the smallest noise-normalized distance between depths: the minimum over all pairs of
+/// real depths (z, z') with a circular distance of at least `separation_periods`, and over all S'
+/// >= 0 and A', of
 ///   | mu(z, S, A) - mu(z', S', A') |, whitened by the variances at (z, S, A).
-/// @return a proven lower bound, at most 0.1 % below the minimum [standard deviations]; 0 if the
-///   minimum is below 1e-3
+/// @return a proven lower bound, tight to 0.1 % [standard deviations]; 0 below 1e-3
 /// @throws std::invalid_argument as chip_metric_rms_m(), or unless the separation is in (0, 1/2)
 double ambiguity_margin_sigma(const ChipCode& code, const Camera& camera,
                               const OperatingPoint& point, double separation_periods = 1.0 / 36.0);

@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// Returns the bits of a mask, shifted to the position of the lanes of this vector.
+/// Returns the bits of a mask at the position of its lanes.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t first_lane) {
   alignas(8) std::uint8_t bytes[8] = {};
@@ -25,7 +25,7 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t first_lane) 
   return bits << first_lane;
 }
 
-/// Measurements of taps a and b minus that of tap c: coordinates in a plane without ambient light.
+/// Taps a and b minus tap c: coordinates of a plane without ambient light.
 template <class D>
 struct Direction {
   hn::Vec<D> x, y;
@@ -54,7 +54,7 @@ void turning(const std::int16_t* counts, std::span<const ScanAssignment> assignm
         const Direction<decltype(d)> next(d, counts + lane, assignments[j],
                                           static_cast<std::size_t>(s));
         const auto cross = hn::Sub(hn::Mul(here.x, next.y), hn::Mul(next.x, here.y));
-        // A direction that turns once in one sense changes the sign of y twice.
+        // One turn in one sense changes the sign of y twice.
         const auto next_below = hn::BroadcastSignBit(next.y);
         halves = hn::Sub(halves, hn::Xor(below, next_below));
         const auto once = hn::Lt(halves, three);
@@ -69,11 +69,11 @@ void turning(const std::int16_t* counts, std::span<const ScanAssignment> assignm
   }
 }
 
-/// Tolerance of single precision, so that codes equal to the limit are kept.
+/// Keeps codes equal to the limit despite single precision.
 constexpr float limit_slack = 1.0001F;
 constexpr std::size_t entry_floats = scan_lanes, row_floats = fisher_entries * entry_floats;
 
-/// Returns the sum over depths of 1 / zz, with one division for two terms.
+/// Sum over depths of 1 / zz, with one division per two terms.
 template <class D, class Matrices>
 HWY_INLINE hn::Vec<D> known_light_bound(D d, int chips, const Matrices& entry) {
   const auto tiny = hn::Set(d, 1e-30F);
@@ -88,11 +88,11 @@ HWY_INLINE hn::Vec<D> known_light_bound(D d, int chips, const Matrices& entry) {
   return sum;
 }
 
-/// Returns the sum over depths of (m0 + m1 + m2 / 3) / det. Rounding is subtracted from the
-/// numerator and added to the denominator, so the result is a lower bound. Matrix entries are sums
-/// of up to 8 products with an error below 10 u (u = 2^-24) relative to the root of the product of
-/// the diagonal entries. The minors have an error below 64 u and the determinant below 256 u,
-/// relative to the products of diagonal entries.
+/// Sum over depths of (m0 + m1 + m2 / 3) / det, rounded down: rounding errors are subtracted from
+/// the numerator and added to the denominator. Entries are sums of up to 8 products with errors
+/// below 10 u (u = 2^-24), relative to the root of the product of their diagonal entries; errors of
+/// minors are below 64 u and of the determinant below 256 u, relative to products of diagonal
+/// entries.
 template <class D, class Matrices>
 HWY_INLINE hn::Vec<D> unknown_light_bound(D d, int chips, const Matrices& entry) {
   const auto minor_error = hn::Set(d, 128.0F / 16777216.0F);
@@ -116,8 +116,8 @@ HWY_INLINE hn::Vec<D> unknown_light_bound(D d, int chips, const Matrices& entry)
   return sum;
 }
 
-/// Returns the bits of the lanes whose bounds, multiplied over the points, do not exceed the limit.
-/// NaN counts as not exceeding. The cheaper bound is tested first.
+/// Returns the lanes whose bounds, multiplied over the points, do not exceed the limit or are NaN.
+/// Tests the cheaper bound first.
 template <class D, class EntriesOfPoint>
 HWY_INLINE std::uint32_t within_limit(D d, const InformationRows& rows, int chips, std::size_t lane,
                                       const EntriesOfPoint& entries) {

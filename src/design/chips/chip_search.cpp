@@ -26,11 +26,9 @@
 namespace tofsmith {
 namespace {
 
-constexpr double hottest = 0.15, coldest = 0.005;  // initial and final temperature, in units of log
-                                                   // RMS
+constexpr double hottest = 0.15, coldest = 0.005;  // temperatures [log RMS]
 constexpr double margin_penalty = 2.5;
 
-/// A single annealing chain.
 class Annealing {
  public:
   Annealing(const ChipJudge& judge, const ChipCode& start, std::uint64_t seed, std::uint64_t chain,
@@ -42,7 +40,7 @@ class Annealing {
         cost_(cost(start, infinity)) {}
 
   void run(std::int64_t steps, ChipSearchCounts& counts, SharedProgress& progress) {
-    constexpr std::int64_t steps_reported = 64;  // per update of the progress
+    constexpr std::int64_t steps_reported = 64;  // per progress update
     for (std::int64_t step = 0; step < steps; ++step) {
       if (step % steps_reported == 0) progress.add(steps_reported);
       const double share = static_cast<double>(step) / static_cast<double>(steps);
@@ -66,8 +64,7 @@ class Annealing {
   const BestCodes& best() const { return best_; }
 
  private:
-  /// log RMS error plus a penalty for insufficient margin. If the log RMS alone exceeds `limit`, it
-  /// is returned without the penalty.
+  /// log RMS error plus a penalty for insufficient margin, which is omitted above `limit`.
   double cost(const ChipCode& code, double limit) const {
     const double score = judge_.score(code);
     if (!std::isfinite(score)) return infinity;
@@ -77,7 +74,7 @@ class Annealing {
   }
 
   void keep(double share, ChipSearchCounts& counts) {
-    const double score = std::exp(2.0 * cost_);  // the score, if there is no penalty
+    const double score = std::exp(2.0 * cost_);  // without penalty
     if (!(score < best_.limit()) || !asked_.insert(code_.text()).second) return;
     if (!judge_.is_safe(code_, counts)) return;
     ++counts.kept;
@@ -87,7 +84,6 @@ class Annealing {
   int below(int count) { return static_cast<int>(random_.uniform() * count); }
   ChipWord chip() { return ChipWord{1} << below(judge_.chips()); }
 
-  /// Applies a random change to one exposure.
   void change(ChipCode& code) {
     const int exposure = below(code.exposures());
     ChipWord& light = code.modulation[static_cast<std::size_t>(exposure)];
@@ -119,14 +115,13 @@ class Annealing {
     }
   }
 
-  /// Adds one chip to every tap, or removes one.
   void change_duties(ChipWord* taps) {
     const bool grow = below(2) == 0;
     ChipWord taken = 0;
     for (int i = 0; i < judge_.taps(); ++i) taken |= taps[i];
     for (int i = 0; i < judge_.taps(); ++i) {
       const ChipWord from = grow ? all_chips(judge_.chips()) & ~taken : taps[i];
-      if (from == 0) return;  // invalid; rejected by is_allowed()
+      if (from == 0) return;  // rejected by is_allowed()
       ChipWord picked = 0;
       while (picked == 0) picked = chip() & from;
       taps[i] ^= picked;
@@ -137,14 +132,14 @@ class Annealing {
   const ChipJudge& judge_;
   RandomStream random_;
   ChipCode code_;
-  std::unordered_set<std::string> asked_;  // codes that were already tested for safety
+  std::unordered_set<std::string> asked_;  // safety already tested
   BestCodes best_;
   double cost_;
 };
 
-/// Simulated annealing from the best of the given codes. The cost is the log RMS error plus a
-/// penalty for insufficient margin. All returned codes are safe; none is proven to be optimal.
-/// @note independent of the number of threads, because every start has its own random numbers
+/// Simulated annealing from the best of the given codes, with cost(). All results are safe; none is
+/// proven optimal.
+/// @note independent of the number of threads, because every start has its own random stream
 BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>& seeds,
                             const ChipSearchOptions& options, ChipSearchCounts& counts,
                             const Progress& progress) {
@@ -183,7 +178,6 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
   return best;
 }
 
-/// Returns true if the number of codes permits an exhaustive search.
 bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
   const bool is_enumerated = rules.taps >= 2 && rules.taps <= max_assigned_taps &&
                              options.exposures <= 2 && (options.exposures == 2 || rules.taps >= 3);
@@ -257,19 +251,19 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
                               .drain = camera.sensor.drain};
   ChipSearchResult result;
 
-  // 1. Standard codes determine the achievable margin and provide starting points.
+  // 1. Standard codes determine the achievable margin and the starting points.
   ChipJudge judge(camera, options);
   std::vector<ChipCode> seeds = multi_phase_codes(rules.chips, rules.taps, options.exposures);
   std::erase_if(seeds, [&](const ChipCode& code) { return !judge.is_allowed(code); });
   judge.ask_no_more_than(seeds);
   result.log.margin_sigma = judge.asked_sigma();
 
-  // 2. Annealing finds good codes: the result, or the limit for pruning an exhaustive search.
+  // 2. Annealing finds good codes: the result, or the limit for an exhaustive search.
   const bool is_exhaustive = can_be_exhaustive(rules, options);
   ChipSearchOptions annealing = options;
   if (is_exhaustive) {
-    // An exhaustive search of one exposure is faster than annealing. For pairs, a limit that is 7 %
-    // higher takes 20 times as long, so fewer starts would save nothing.
+    // One exposure is searched faster than annealed. For pairs, a limit 7 % higher takes 20 times
+    // as long, so fewer starts would save nothing.
     annealing.annealing_starts = options.exposures == 1 ? 0 : 8;
     annealing.annealing_steps = 2000;
   }
@@ -277,7 +271,7 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
   ChipSearchCounts annealed;
   BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed, parts[0]);
 
-  // 3. Exhaustive search, if the number of codes permits.
+  // 3. Exhaustive search, if possible.
   if (is_exhaustive) {
     const ExhaustiveTask task{.judge = &judge,
                               .rules = rules,

@@ -21,9 +21,9 @@ struct Motion {
   }
 };
 
-/// Lists all assignments whose first tap is a given word and has the smallest class representative
-/// of all taps. Every equivalence class has a member of this form: transform it so that the tap
-/// with the smallest representative equals that representative, and sort the other taps.
+/// Lists the assignments whose first tap is a given word and has the smallest class of all taps.
+/// Every equivalence class has such a member: transform the tap with the smallest class to its
+/// representative, and sort the others.
 class FirstTapLister {
  public:
   FirstTapLister(const AssignmentRules& rules, const std::vector<ChipWord>& kind, ChipWord first)
@@ -38,7 +38,7 @@ class FirstTapLister {
   std::vector<TapAssignment> take() { return std::move(found_); }
 
  private:
-  /// Selects the next tap, greater than the previous one, from the free chips.
+  /// The next tap must exceed the previous one.
   void choose(int tap, ChipWord free, ChipWord previous) {
     if (tap == rules_.taps) {
       if (!rules_.drain && free != 0) return;
@@ -47,7 +47,7 @@ class FirstTapLister {
     }
     const ChipWord first = current_.taps[0];
     const int duty = std::popcount(first);
-    // Iterates over all subsets of the free chips, in descending order.
+    // All subsets of the free chips, in descending order.
     for (ChipWord word = free; word > previous; word = (word - 1) & free) {
       if (rules_.equal_duty && std::popcount(word) != duty) continue;
       if (kind_[word] < first) continue;
@@ -56,7 +56,7 @@ class FirstTapLister {
     }
   }
 
-  /// Returns true if no motion that maps a tap to the first position makes the other taps smaller.
+  /// Returns true if no motion with a tap in first position makes the others smaller.
   bool is_least() {
     current_.is_achiral = false;
     const ChipWord first = current_.taps[0];
@@ -99,7 +99,7 @@ double binomial(int n, int k) {
 }
 
 double raw_with_unequal_duties(int chips, int taps, bool drain) {
-  // Number of surjections onto the taps, by inclusion-exclusion.
+  // Surjections onto the taps, by inclusion-exclusion.
   double count = 0.0;
   for (int shut = 0; shut <= taps; ++shut)
     count += (shut % 2 == 0 ? 1.0 : -1.0) * binomial(taps, shut) *
@@ -107,7 +107,7 @@ double raw_with_unequal_duties(int chips, int taps, bool drain) {
   return count;
 }
 
-/// Tolerance that keeps codes with equal metric despite rounding.
+/// Keeps codes of equal metric despite rounding.
 constexpr double rounding = 1.0 + 1e-9;
 
 }  // namespace
@@ -215,8 +215,8 @@ double exhaustive_size(const AssignmentRules& rules, int exposures) {
   for (int tap = 2; tap <= rules.taps; ++tap) reorderings *= tap;
   const double modulations = std::exp2(rules.chips) - 2;
   const double n = rules.chips, assignments = raw_tap_assignments(rules) / reorderings;
-  // Symmetries of the first exposure: independent delays of modulation and taps, and mirror images.
-  // For the other exposures: delays of the taps. Finally, the order of the exposures.
+  // Symmetries: independent delays of modulation and taps, and mirror images, of the first
+  // exposure; delays of the taps of others; the order of exposures.
   const double first = modulations * assignments / (2 * n * n);
   return exposures == 1
              ? first

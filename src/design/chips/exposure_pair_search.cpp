@@ -16,36 +16,34 @@ namespace {
 
 constexpr std::int64_t firsts_at_once = 4;
 
-/// Modulation and taps of one exposure.
 struct Exposure {
   ChipWord light = 0;
   std::array<ChipWord, max_assigned_taps> taps{};
-  std::int32_t orbit = 0;  ///< class under delay and mirror image
-  bool is_first = false;   ///< true for the representative of the class
+  std::int32_t orbit = 0;  ///< class up to delay and mirror image
+  bool is_first = false;   ///< representative of the class
 };
 
-/// Returns the sorted correlation functions of an exposure after a delay or mirror image, as a key
-/// that is equal for equivalent exposures.
+/// Key that is equal for equivalent exposures: the sorted correlation functions after a delay or
+/// mirror image.
 std::string functions_of(const Exposure& exposure, const AssignmentRules& rules, int shift,
                          bool is_mirror) {
   std::array<std::string, max_assigned_taps> rows;
   for (std::size_t tap = 0; tap < static_cast<std::size_t>(rules.taps); ++tap) {
-    // The duty of the tap determines the response to ambient light.
+    // The duty determines the response to ambient light.
     rows[tap] += static_cast<char>(std::popcount(exposure.taps[tap]));
     for (int s = 0; s < rules.chips; ++s)
       rows[tap] += static_cast<char>(std::popcount(
           exposure.taps[tap] &
           delayed_chips(exposure.light, is_mirror ? shift - s : shift + s, rules.chips)));
   }
-  std::sort(rows.begin(), rows.end());  // unused entries are empty
+  std::sort(rows.begin(), rows.end());  // unused ones are empty
   std::string all;
   for (const std::string& row : rows) all += row;
   return all;
 }
 
-/// Returns all exposures with distinct measurements. A common delay of taps and modulation has no
-/// effect, so one assignment of each class, combined with every delay of every modulation, is
-/// sufficient.
+/// A common delay of taps and modulation has no effect, so combine one assignment per class with
+/// all delays of all modulations.
 std::vector<Exposure> distinct_exposures(const AssignmentRules& rules) {
   AssignmentRules all = rules;
   all.up_to_mirror = false;
@@ -73,13 +71,12 @@ std::vector<Exposure> distinct_exposures(const AssignmentRules& rules) {
   return exposures;
 }
 
-/// Search over all pairs of exposures. The first exposure is the representative of its orbit; the
-/// second belongs to the same or a later orbit.
+/// Search over pairs of exposures: a representative of an orbit, and one of the same or a later
+/// orbit.
 class ExposurePairSearch {
  public:
   explicit ExposurePairSearch(const ExhaustiveTask& task)
       : task_(task), n_(task.rules.chips), exposures_(distinct_exposures(task.rules)) {
-    // Group exposures by orbit, in ascending order.
     std::stable_sort(exposures_.begin(), exposures_.end(),
                      [](const auto& a, const auto& b) { return a.orbit < b.orbit; });
     for (std::size_t i = 0; i < exposures_.size(); ++i)
@@ -116,8 +113,7 @@ class ExposurePairSearch {
   }
 
  private:
-  /// Returns an upper bound on the Fisher matrix of an exposure between depths s and s + 1 [chips];
-  /// see largest_tap_fisher().
+  /// Upper bound of the Fisher matrix between depths s and s + 1 [chips].
   FisherMatrix information(const Exposure& exposure, int s, const ChipLight& light) const {
     FisherMatrix sum;
     const double electrons = light.electrons_of(std::popcount(exposure.light));
@@ -142,7 +138,6 @@ class ExposurePairSearch {
     return code;
   }
 
-  /// Searches all pairs with one first exposure.
   void search_with(std::size_t first, double share, BestCodes& best,
                    ChipSearchCounts& counts) const {
     const Exposure& own = exposures_[first];

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::uint32_t random_choices = 8;
 
-/// Returns the linear or circular depth error of a code, as selected by the camera, optionally at
-/// the best origin. Infinite if the combination of pairs does not determine depth.
+/// Depth error selected by the camera, optionally at the best origin. Infinite if the pairs
+/// together do not determine depth.
 double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                       bool at_best_rotation) {
   if (why_no_depth(code, camera)) return std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateO
   return geometric_mean_error_m(evaluate(code, camera, options), kind);
 }
 
-/// Improves a choice by changes of single pairs until no change reduces the error.
+/// Changes single pairs until no change reduces the error.
 template <typename Error>
 PairChoice bettered(PairChoice best, const std::vector<Factorization>& factorizations,
                     const Error& error_of, const Progress& progress) {
@@ -51,7 +51,7 @@ PairChoice bettered(PairChoice best, const std::vector<Factorization>& factoriza
   return best;
 }
 
-/// Returns the index of the naive pair, or 0 if there is none.
+/// Returns 0 if there is no naive pair.
 std::size_t naive_index(const Factorization& factorization) {
   for (std::size_t i = 0; i < factorization.candidates.size(); ++i)
     if (factorization.candidates[i].start == "naive") return i;
@@ -85,8 +85,7 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
     return entry->second;
   };
 
-  // Coordinate descent from several choices, because pairs with small individual errors need not be
-  // the best combination.
+  // Start from several choices: individually good pairs need not be the best combination.
   std::vector<PairChoice> starts{PairChoice(factorizations.size(), 0), {}};
   for (const Factorization& f : factorizations) starts[1].push_back(naive_index(f));
   for (std::uint32_t i = 0; i < random_choices; ++i) {

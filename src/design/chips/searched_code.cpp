@@ -31,7 +31,6 @@ SearchRecord record_of(const ChipSearchResult& found) {
   return record;
 }
 
-/// Returns the optimality statement of a finalist.
 std::string proof_of(const ChipSearchResult& found, std::size_t place) {
   if (!found.proved) return "not proven";
   return place == 0 ? "proven optimal" : fmt::format("proven number {} of all codes", place + 1);

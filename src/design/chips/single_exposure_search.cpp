@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t assignments_at_once = 4096;
 
-/// Rows of the scan's tables: every necklace that occurs as a tap, over two periods, so that the
-/// depths of any delayed version are consecutive.
+/// Table rows of the scan: every necklace used by a tap, over two periods, so that all delays have
+/// consecutive rows.
 class ScanRows {
  public:
   ScanRows(const std::vector<TapAssignment>& assignments, const AssignmentRules& rules)
@@ -28,7 +28,7 @@ class ScanRows {
         is_used[necklace[assignment.taps[static_cast<std::size_t>(tap)]]] = 1;
     for (ChipWord word = 1; word < necklace.size(); ++word) {
       if (is_used[word] == 0) continue;
-      // A tap that opens r chips later has the values at depth s that the necklace has at s - r.
+      // At depth s, a tap that opens r chips later is the necklace at s - r.
       for (int delay = chips_ - 1; delay >= 0; --delay)
         row_[delayed_chips(word, delay, chips_)] =
             static_cast<std::uint32_t>(necklaces_.size()) * rows_of_word() +
@@ -45,8 +45,8 @@ class ScanRows {
 
   std::span<const ScanAssignment> scans() const { return scans_; }
 
-  /// Calls `set(value, necklace, light, s)` for all modulations of a block. `value` points to the
-  /// first of `entries` values with a stride of scan_lanes.
+  /// Calls `set(value, necklace, light, s)` for a block of modulations; the `entries` values at
+  /// `value` have a stride of scan_lanes.
   template <typename Number, typename Set>
   void fill(std::span<const ChipWord> lights, int entries, std::vector<Number>& table,
             const Set& set) const {
@@ -67,7 +67,7 @@ class ScanRows {
   std::vector<ScanAssignment> scans_;
 };
 
-/// Sorts assignments by duty, so that the rows of their words stay in the cache.
+/// Sorting by duty keeps rows in the cache.
 std::vector<TapAssignment> by_duty(std::vector<TapAssignment> assignments) {
   std::stable_sort(assignments.begin(), assignments.end(),
                    [](const TapAssignment& a, const TapAssignment& b) {
@@ -76,7 +76,7 @@ std::vector<TapAssignment> by_duty(std::vector<TapAssignment> assignments) {
   return assignments;
 }
 
-/// Search over all modulations, in blocks, and all assignments.
+/// Search over blocks of modulations and all assignments.
 class SingleExposureSearch {
  public:
   explicit SingleExposureSearch(const ExhaustiveTask& task)
@@ -95,7 +95,7 @@ class SingleExposureSearch {
   ChipSearchCounts sizes() const {
     ChipSearchCounts counts;
     const std::vector<ChipWord> necklace = necklace_table(n_), all = modulation_necklaces(n_);
-    double mirrored = 0.0;  // number of modulations up to delay and mirror image
+    double mirrored = 0.0;  // up to delay and mirror image
     for (const ChipWord word : all)
       mirrored += word <= necklace[reversed_chips(word, n_)] ? 1.0 : 0.0;
     for (const TapAssignment& assignment : assignments_)
@@ -119,7 +119,7 @@ class SingleExposureSearch {
     return {n_, task_.rules.taps, {light}, {taps.begin(), taps.begin() + task_.rules.taps}};
   }
 
-  /// Calls `look(light, assignment)` for every bit set by `scan`.
+  /// Calls `look(light, assignment)` for every bit found by `scan`.
   template <typename Scan, typename Look>
   void for_found(std::span<const ChipWord> lights, const Scan& scan, const Look& look) const {
     std::array<std::uint32_t, assignments_at_once> found{};
@@ -134,9 +134,8 @@ class SingleExposureSearch {
     }
   }
 
-  /// The complement of a modulation rotates all directions by half a turn, so the test for one
-  /// modulation decides for both. Only modulations that are on for up to half the period are
-  /// scanned.
+  /// A complement rotates all directions by half a turn, so scan only modulations that are on for
+  /// up to half the period.
   void search_turning(std::span<const ChipWord> lights, double share, BestCodes& best,
                       ChipSearchCounts& counts) const {
     std::vector<std::int16_t> table;

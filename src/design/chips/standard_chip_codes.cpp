@@ -12,7 +12,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Pulses of `width` chips that start at `begin` and repeat with `period`, a divisor of `chips`.
 ChipWord repeated_pulse(int begin, int width, int period, int chips) {
   ChipWord word = 0;
   for (int k = 0; k < chips; ++k)
@@ -42,7 +41,6 @@ std::vector<MultiPhase> multi_phase_exposures(int chips, int taps) {
   return all;
 }
 
-/// Adds `left` more exposures, with indices of at least `from`.
 void add_combinations(const std::vector<MultiPhase>& exposures, std::size_t from, int left,
                       ChipCode& code, std::vector<ChipCode>& all) {
   if (left == 0) {
@@ -59,7 +57,6 @@ void add_combinations(const std::vector<MultiPhase>& exposures, std::size_t from
   }
 }
 
-/// Returns a single pulse at peak light.
 Waveform pulse_of(double duty) { return Waveform::binary({{0.0, duty}}, 1.0); }
 
 Waveform gate(double rise, double duty) { return Waveform::binary({{rise, rise + duty}}); }
@@ -98,7 +95,7 @@ std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples)
     pair.modulation.push_back(repeated_pulse(0, (period + 1) / 2, period, 12));
     for (int i = 0; i < 3; ++i) pair.demodulation.push_back(repeated_pulse(i, 1, period, 12));
   }
-  // For a period of three chips the light is on for one chip.
+  // The light is on for one of three chips.
   pair.modulation.front() = repeated_pulse(0, 1, 3, 12);
   return {{"hamiltonian-k3-in-turn", hamiltonian_in_turn(samples)},
           {"three-phase-square", to_code_set(square, three_taps, "three-phase-square")},

@@ -9,13 +9,11 @@
 
 namespace tofsmith {
 
-/// Returns multi-phase square codes for exclusive taps. In every exposure the taps open one after
-/// the other for equal times, with a period that divides the number of chips. Light is on for part
-/// of this period: as long as one tap, or half the period. All combinations of periods are included
-/// (coprime ones among them), except ambiguous codes.
+/// Returns multi-phase square codes for exclusive taps: taps open in turn for equal times, with a
+/// period that divides the number of chips; light is on as long as one tap, or half of that period.
+/// All unambiguous combinations of periods.
 std::vector<ChipCode> multi_phase_codes(int chips, int taps, int exposures);
 
-/// A named code for comparisons.
 struct StandardCode {
   std::string name;
   CodeSet code;

@@ -10,8 +10,8 @@ namespace tofsmith {
 namespace {
 
 struct Excess {
-  double value = 0;  // sum of clip(x - price) minus budget
-  int moving = 0;    // number of samples strictly inside the box: minus the slope of value
+  double value = 0;  // sum of clip(x - price), minus budget
+  int moving = 0;    // samples inside the box: minus the slope of value
 };
 
 Excess excess_at(const Eigen::VectorXd& x, double price, double upper_bound, double budget) {
@@ -30,8 +30,7 @@ Excess excess_at(const Eigen::VectorXd& x, double price, double upper_bound, dou
   return excess;
 }
 
-// The excess decreases with the price and is piecewise linear: Newton's method, safeguarded by a
-// bracket.
+// The excess is piecewise linear and decreasing: safeguarded Newton.
 double price_of_budget(const Eigen::VectorXd& x, double upper_bound, double budget) {
   double low = 0, high = std::max(x.maxCoeff(), 0.0);
   double price = 0;

@@ -17,8 +17,7 @@ namespace {
 
 constexpr double over_relaxation = 1.7;
 constexpr int steps_per_check = 10;
-// The penalty is doubled or halved if one residual exceeds the other by this factor. Convergence
-// requires that it stays constant after some step.
+// Ratio of the residuals that doubles or halves the penalty; convergence requires a final value.
 constexpr double imbalance = 5;
 constexpr int steps_per_adaptation = 50;
 constexpr int last_adaptation = 2000;

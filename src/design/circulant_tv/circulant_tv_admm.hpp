@@ -10,18 +10,18 @@
 namespace tofsmith {
 
 struct CirculantTvAdmmOptions {
-  int max_iterations = 20000;           ///< splitting steps, >= 1
-  double tolerance = 1e-11;             ///< RMS of both residuals / upper bound, > 0
-  double certificate_tolerance = 1e-7;  ///< converged if the certificate is at most this, > 0
+  int max_iterations = 20000;
+  double tolerance = 1e-11;  ///< RMS of both residuals / upper bound, > 0
+  double certificate_tolerance = 1e-7;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
 
-/// Solves the problem by ADMM with one split: x minimizes the data term (a division of spectra),
-/// and z satisfies everything else by the exact proximal map
+/// ADMM with one split: x minimizes the data term (a division of spectra); z satisfies the rest by
+/// the exact proximal map
 ///   prox(v) = clip(prox_TV(v) - mu, 0, upper_bound),  mu >= 0 the price of the budget.
-/// Hundreds of times slower than the active set, but independent of it.
+/// Hundreds of times slower than the active set, and independent of it.
 /// @param warm_start  initial x (N, finite), or empty
 /// @return z, feasible, with its certificate; stalled if the residuals vanish but the certificate
 ///   exceeds its tolerance

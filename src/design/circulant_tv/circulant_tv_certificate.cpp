@@ -12,12 +12,12 @@
 namespace tofsmith {
 namespace {
 
-// Conditions for the dual path at each sample, rotated so that a jump (if any) precedes sample 0.
+// Conditions for the dual path, rotated so that a jump (if any) precedes sample 0.
 struct DualConditions {
   Eigen::VectorXd gradient;  // of the least-squares term
   Eigen::VectorXi bound;     // -1 at the lower, +1 at the upper bound, 0 inside
   Eigen::VectorXi jump;      // sign of the jump after the sample
-  bool constant = true;      // true if there are no jumps
+  bool constant = true;      // no jumps
   double weight = 0;
 };
 
@@ -48,11 +48,11 @@ DualConditions conditions_at(const CirculantTvProblem& problem, const Eigen::Vec
   return conditions;
 }
 
-// Interval of admissible values of the dual between two samples.
+// Admissible values of the dual between two samples.
 struct DualInterval {
   double low, high;
 
-  // Clips the interval to [floor, ceiling]; returns the distance if they are disjoint.
+  // Clips to [floor, ceiling]; returns the distance if disjoint.
   double confine(double floor, double ceiling) {
     const double miss = std::max({0.0, floor - high, low - ceiling});
     low = std::clamp(low, floor, ceiling);
@@ -61,7 +61,7 @@ struct DualInterval {
   }
 };
 
-// Traverses the ring once; returns the largest violation of a piece.
+// One lap; returns the largest violation of a piece.
 double walk(const DualConditions& conditions, double price, DualInterval& dual) {
   const double weight = conditions.weight;
   double worst = 0, of_this_piece = 0;
@@ -91,8 +91,7 @@ double violation_at(const DualConditions& conditions, double price) {
     DualInterval dual{at_jump, at_jump};
     return walk(conditions, price, dual);
   }
-  // Without a jump as a start, the first pass determines the start interval and the second must
-  // reproduce it.
+  // Without jumps, the first lap finds the start and the second must reproduce it.
   DualInterval dual{-weight, weight};
   walk(conditions, price, dual);
   const DualInterval start = dual;
@@ -125,7 +124,7 @@ OptimalityCertificate certificate(const CirculantTvProblem& problem, const Eigen
   result.violation = violation(0);
   if (!budget_binds) return result;
 
-  // Above this price, lowering any interval decreases the objective.
+  // Above this price, every interval would be lowered.
   constexpr double inverse_golden_ratio = 0.61803398874989485;
   double low = 0;
   double high = conditions.gradient.cwiseAbs().maxCoeff() + 2 * conditions.weight;

@@ -8,27 +8,26 @@
 
 namespace tofsmith {
 
-/// Violation of the optimality conditions of a CirculantTvProblem by a signal.
+/// Violation of the optimality conditions.
 struct OptimalityCertificate {
-  /// Smallest violation of the dual conditions, in units of the total-variation weight.
+  /// Of the dual conditions, in units of the total-variation weight.
   double violation = 0;
-  /// Largest violation of a bound (in units of the upper bound) or of the budget (relative).
+  /// Of a bound (relative to the upper bound) or of the budget (relative).
   double infeasibility = 0;
   double budget_multiplier = 0;  ///< price of the budget for this violation
 
   double worst() const { return violation > infeasibility ? violation : infeasibility; }
 };
 
-/// Computes the certificate of any x by constructing the dual path, without knowledge of the
-/// solver.
+/// Computes the certificate of any x by constructing the dual path.
 ///
-/// x is optimal if and only if there are a price nu >= 0 of the budget (0 if the budget is
-/// inactive) and a path u[n] between samples n and n + 1 with |u| <= w, u = w sign(jump) at every
-/// jump, and u[n] - u[n - 1] = g[n] + nu at samples inside the bounds, <= at samples on the lower
-/// bound and >= at samples on the upper bound. g is the gradient of the least-squares term. The
-/// interval of all admissible u[n] is propagated around the ring from a jump. If it becomes empty,
-/// it is shifted back; the sum of the shifts between two jumps is the violation of that piece. The
-/// violation is convex in nu and minimized by golden-section search. O(N log N).
+/// x is optimal if and only if there are a price nu >= 0 of the budget (0 if inactive) and a path
+/// u[n] between samples n and n + 1 with |u| <= w, u = w sign(jump) at every jump, and u[n] - u[n -
+/// 1] = g[n] + nu inside the bounds, <= at the lower and >= at the upper bound; g is the gradient
+/// of the least-squares term. The interval of admissible u[n] is propagated around the ring from a
+/// jump. If it becomes empty it is shifted back; the shifts between two jumps add up to the
+/// violation of that piece. The violation is convex in nu and minimized by golden-section search.
+/// O(N log N).
 /// @param x  (N), finite; jumps below 1e-12 of the upper bound are ignored
 /// @throws std::invalid_argument if the problem is invalid or the length of x differs
 OptimalityCertificate certificate(const CirculantTvProblem& problem, const Eigen::VectorXd& x);

@@ -15,9 +15,9 @@
 namespace tofsmith {
 namespace {
 
-// A round makes the best move of each piece if its gain is at least this share of the largest one.
+// Moves with at least this share of the largest gain are made.
 constexpr double worthwhile_share = 0.15;
-// Rounds without a significant decrease of the objective: first make one move at a time, then stop.
+// Rounds without progress: first make one move at a time, then stop.
 constexpr int rounds_before_caution = 4;
 constexpr int rounds_before_stall = 24;
 
@@ -35,11 +35,11 @@ struct CirculantTvSolver::Workspace {
   SignalLimits limits;
   FaceMinimizer face;
   OptimalityScan scan;
-  Eigen::VectorXd sums;         // prefix sums of the gradient around the ring, from sums_origin
-  int sums_origin = 0;          // start of piece 0 when the sums were computed
-  Eigen::VectorXd priced_sums;  // sums plus the price of the budget
-  bool by_transform = false;  // true if the gradient is computed by FFT, without accumulated error
-  double squares = 0;         // value of the least-squares term, if by_transform
+  Eigen::VectorXd sums;         // prefix sums of the gradient, from sums_origin
+  int sums_origin = 0;          // start of piece 0 at that time
+  Eigen::VectorXd priced_sums;  // with the price of the budget
+  bool by_transform = false;    // gradient by FFT, without accumulated error
+  double squares = 0;           // least-squares term, if by_transform
   int problem_samples;
 
   void prepare(const CirculantTvProblem& problem, const CirculantTvOptions& options);
@@ -47,7 +47,7 @@ struct CirculantTvSolver::Workspace {
   void update_gradient();
   void update_scan();
   void update_slopes();
-  // Factor 2: a dual path may be violated at both ends of an interval that lowers the objective.
+  // A dual path may be violated at both ends of an interval.
   double violation() const { return 2 * scan.violation; }
   void make_moves(bool one_at_a_time);
   CirculantTvResult report(Termination termination, int iterations) const;
@@ -104,7 +104,7 @@ CirculantTvResult CirculantTvSolver::Workspace::run(const CirculantTvOptions& op
   double total_decrease = 0;
   update_gradient();
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
-    // Optimize the values of the current pieces, then search for better pieces.
+    // Optimize the values of the pieces, then search for better pieces.
     const double decrease = face.minimize(x, budget, limits);
     update_gradient();
     update_scan();
@@ -116,7 +116,7 @@ CirculantTvResult CirculantTvSolver::Workspace::run(const CirculantTvOptions& op
     if (violation() <= options.certificate_tolerance)
       return report(Termination::converged, iteration);
 
-    // If rounding prevents progress, compute the gradient by FFT and make one move at a time.
+    // Against rounding, use FFT gradients and single moves.
     total_decrease += decrease;
     idle_rounds = decrease > 1e-15 * total_decrease ? 0 : idle_rounds + 1;
     if (idle_rounds >= rounds_before_stall) return report(Termination::stalled, iteration);
@@ -167,7 +167,7 @@ void CirculantTvSolver::Workspace::make_moves(bool one_at_a_time) {
   double best = 0;
   for (const IntervalMove& move : scan.moves) best = std::min(best, move.slope);
   const double min_slope = (one_at_a_time ? 1.0 : worthwhile_share) * best;
-  // In descending order, so that a split does not change the indices of the remaining moves.
+  // In descending order, so that splits keep the remaining indices.
   for (auto move = scan.moves.rbegin(); move != scan.moves.rend(); ++move)
     if (move->slope <= min_slope) x.split(move->piece, move->first, move->last, move->direction);
   update_slopes();

@@ -9,9 +9,9 @@
 namespace tofsmith {
 namespace {
 
-// Newton steps that are repeated on one face to compensate for rounding in the reduced Hessian.
+// Repeated Newton steps on one face against rounding in the reduced Hessian.
 constexpr int max_refinements = 3;
-// Tolerance of the gradient on a face, in units of the total-variation weight.
+// Relative to the total-variation weight.
 constexpr double face_tolerance = 1e-10;
 
 using Factor = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
@@ -91,8 +91,7 @@ void FaceMinimizer::factorize() {
   scale_.resize(count);
   for (int a = 0; a < count; ++a)
     scale_[a] = hessian_(a, a) > 0 ? 1 / std::sqrt(hessian_(a, a)) : 1.0;
-  // A band-limited kernel has directions without curvature. Small damping makes steps along them
-  // finite; the limits then stop them, or refinement corrects them.
+  // Damp directions without curvature (band-limited kernels); limits or refinement stop them.
   for (double damping = 0;; damping = std::max(1e-15, 8 * damping)) {
     for (int a = 0; a < count; ++a) {
       for (int b = a; b < count; ++b) factor_(b, a) = hessian_(b, a) * scale_[a] * scale_[b];
@@ -182,8 +181,8 @@ double FaceMinimizer::residual(const PiecewiseConstant& x, const BudgetState& bu
   return largest;
 }
 
-// With an active budget and one free piece, only rounding errors can be corrected. The piece
-// remains free even at a bound because it determines the price of the budget.
+// Only rounding errors can be corrected. The piece stays free even at a bound, because it
+// determines the price of the budget.
 void FaceMinimizer::settle_last_free_piece(PiecewiseConstant& x, int j, BudgetState& budget,
                                            const SignalLimits& limits) {
   const double length = x[j].length;

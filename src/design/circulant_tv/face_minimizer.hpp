@@ -10,31 +10,28 @@
 
 namespace tofsmith {
 
-/// Constraints of a piecewise constant signal and its total-variation weight.
 struct SignalLimits {
   double total_variation_weight = 0;
   double upper_bound = 0;
   double budget = 0;  ///< infinity without a budget
 };
 
-/// State of the budget constraint and its multiplier per sample.
 struct BudgetState {
   bool active = false;
   double multiplier = 0;
 };
 
-/// Optimizes the values of the free pieces. Jumps, their signs, pieces fixed at a bound and an
-/// active budget are kept until a step reaches a limit, which is then added to the constraints.
+/// Optimizes the free pieces. Jumps and their signs, fixed pieces and an active budget are kept
+/// until a step reaches a limit, which is then added.
 class FaceMinimizer {
  public:
   explicit FaceMinimizer(const LeastSquaresTerm& term) : term_(term) {}
 
-  /// Moves `x` to the minimum on its face, and on the smaller faces that are reached on the way.
-  /// Slopes of x must be up to date. Releases the budget when its multiplier becomes negative.
+  /// Moves `x`, with current slopes, to the minimum on its face and on smaller faces reached on the
+  /// way. Releases the budget if its multiplier becomes negative.
   /// @return decrease of the objective
   double minimize(PiecewiseConstant& x, BudgetState& budget, const SignalLimits& limits);
 
-  /// Returns the number of linear systems solved since the last reset.
   int newton_steps() const { return newton_steps_; }
   void reset_count() { newton_steps_ = 0; }
 
@@ -59,15 +56,15 @@ class FaceMinimizer {
   static void hold_at_bound(PiecewiseConstant& x, int j, PieceState state, double value);
 
   const LeastSquaresTerm& term_;
-  std::vector<int> free_;       // indices of the free pieces
-  Eigen::MatrixXd hessian_;     // of the free pieces, lower triangle; never shrinks
-  Eigen::MatrixXd factor_;      // Cholesky factor after scaling to unit diagonal; never shrinks
-  Eigen::VectorXd scale_;       // 1 / sqrt of the diagonal
-  Eigen::VectorXd gradient_;    // of the objective with respect to the free values
-  Eigen::VectorXd direction_;   // Newton step of the free values
+  std::vector<int> free_;
+  Eigen::MatrixXd hessian_;     // lower triangle; never shrinks
+  Eigen::MatrixXd factor_;      // Cholesky factor at unit diagonal; never shrinks
+  Eigen::VectorXd scale_;       // 1 / sqrt(diagonal)
+  Eigen::VectorXd gradient_;    // of the objective
+  Eigen::VectorXd direction_;   // Newton step
   Eigen::VectorXd pull_;        // Hessian^-1 lengths, for the budget
   Eigen::VectorXd bend_;        // Hessian * direction
-  std::vector<double> motion_;  // direction of every piece, 0 if fixed
+  std::vector<double> motion_;  // of every piece
   int newton_steps_ = 0;
 };
 

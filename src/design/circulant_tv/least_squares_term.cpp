@@ -14,7 +14,7 @@ namespace tofsmith {
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start) {
   constexpr int max_steps = 500;
-  constexpr double still = 1e-7;  // largest change of a sample, in units of the upper bound
+  constexpr double still = 1e-7;  // relative to the upper bound
   const PeriodicTransform transform(problem.samples());
   Eigen::VectorXcd kernel, target, half;
   transform.forward(problem.kernel, kernel);
@@ -34,7 +34,7 @@ Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
     project_on_box_and_budget(next, problem.upper_bound, problem.budget);
     const Eigen::VectorXd move = next - x;
     if (move.cwiseAbs().maxCoeff() < still * problem.upper_bound) return next;
-    // Reset momentum that points uphill, so that the objective decreases eventually.
+    // Reset momentum that points uphill.
     if ((ahead - next).dot(move) > 0.0) momentum = 1.0;
     const double grown = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
     ahead = next + (momentum - 1.0) / grown * move;

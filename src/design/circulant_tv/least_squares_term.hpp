@@ -12,14 +12,13 @@ namespace tofsmith {
 
 /// Solves the subproblem without total variation (its weight is ignored):
 ///   minimize 1/2 |A x - b|^2  subject to  0 <= x <= upper_bound,  sum x <= budget
-/// by accelerated projected gradients. If A attenuates strongly, there are many solutions; x keeps
-/// the components of `start` (N) that the data do not determine. For comparison with regularized
-/// designs.
+/// by accelerated projected gradients. x keeps the components of `start` (N) that the data do not
+/// determine. For comparison with regularized designs.
 /// @return feasible (N); the objective does not exceed that of the projected start
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start);
 
-/// A x = kernel * x (circular) and its adjoint on half spectra. Stores the spectrum of the kernel.
+/// A x = kernel * x (circular) and its adjoint on half spectra.
 class CirculantOperator {
  public:
   explicit CirculantOperator(int samples) : transform_(samples) {}
@@ -51,18 +50,17 @@ class CirculantOperator {
 
 /// The term 1/2 |A x - b|^2 for piecewise constant x.
 ///
-/// Let W be the zero-mean, doubly integrated autocorrelation R of the kernel (W[n + 1] - 2 W[n] +
-/// W[n - 1] = R[n] - mean R). A jump of height h at sample s adds h W[n - s] to the prefix sum
-/// G[n] = sum_{i < n} gradient[i], so no transform is needed for few pieces. W is computed by
-/// division of spectra, because summing twice would be too inaccurate for small total-variation
-/// weights.
+/// Let W be the zero-mean, doubly integrated autocorrelation R of the kernel: W[n + 1] - 2 W[n] +
+/// W[n - 1] = R[n] - mean R. A jump of height h at sample s adds h W[n - s] to the prefix sum G[n]
+/// = sum_{i < n} gradient[i], so few pieces need no transform. W is computed by division of
+/// spectra, because summing twice is too inaccurate for small total-variation weights.
 class LeastSquaresTerm {
  public:
   explicit LeastSquaresTerm(int samples);
 
   void set(const Eigen::VectorXd& kernel, const Eigen::VectorXd& target);
 
-  /// Returns the second derivative of the term with respect to the values of pieces j and k: O(1).
+  /// Second derivative with respect to the values of pieces j and k: O(1).
   double curvature(const PiecewiseConstant& x, int j, int k) const {
     const int j0 = x[j].start + samples_, j1 = x.end_of(j) + samples_;
     const int k0 = x[k].start, k1 = x.end_of(k);
@@ -74,8 +72,7 @@ class LeastSquaresTerm {
   /// sums[k] (N + 1) is the sum over the first k samples, up to a constant. O(N J).
   void prefix_gradient(const PiecewiseConstant& x, Eigen::VectorXd& sums) const;
 
-  /// As prefix_gradient(), but by FFT of the residual: rounding errors are relative to the
-  /// residual, not to x.
+  /// As prefix_gradient(), but by FFT: rounding errors are relative to the residual, not to x.
   /// @return the value of the term
   double prefix_gradient_by_transform(const PiecewiseConstant& x, Eigen::VectorXd& sums);
 
@@ -88,8 +85,8 @@ class LeastSquaresTerm {
   Eigen::VectorXcd target_spectrum_;  // of b
   double mean_curvature_ = 0;         // mean of R
   double mean_pull_ = 0;              // mean of A^T b
-  Eigen::VectorXd curve_;             // W over two periods, n in [-N, N] at index n + N
-  Eigen::VectorXd pull_;              // zero-mean prefix sums of A^T b over two periods
+  Eigen::VectorXd curve_;             // W, n in [-N, N] at index n + N
+  Eigen::VectorXd pull_;              // zero-mean prefix sums of A^T b, two periods
   Eigen::VectorXd signal_;            // scratch
   Eigen::VectorXcd half_;             // scratch
 };

@@ -7,14 +7,12 @@
 namespace tofsmith {
 namespace {
 
-// Finds the interval with the smallest slope within a piece that has neighbours. sums[0..length]
-// are the prefix sums of the piece.
+// Finds the interval of a piece with the smallest slope; sums[0..length] are its prefix sums.
 IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, double weight,
                        int direction) {
   const Piece& piece = x[j];
   const double sign = direction;
-  // Total variation changes by +weight at a new edge, and by the sign of the edge at an existing
-  // one.
+  // Total variation changes by +weight at a new edge, and by the sign of an existing one.
   const double left_edge = sign * piece.rise * weight;
   const double right_edge = -sign * x[x.next(j)].rise * weight;
   IntervalMove best{j, 0, 0, direction, 0};
@@ -45,7 +43,7 @@ IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, do
   return best;
 }
 
-// As best_move() for a constant ring. If an interval crosses the origin, its complement does not.
+// For a constant ring: the complement of an interval across the origin does not cross it.
 IntervalMove best_move_on_ring(const PiecewiseConstant& x, const double* sums, double weight,
                                int direction) {
   const int samples = x.samples();
@@ -86,7 +84,7 @@ void scan_for_moves(const PiecewiseConstant& x, const Eigen::VectorXd& sums, dou
                                     : best_move_on_ring(x, sums.data(), weight, direction);
       scan.violation = std::max(scan.violation, -move.slope / weight);
       const bool whole = move.last - move.first + 1 == x[j].length;
-      // A free piece that would move as a whole is handled by FaceMinimizer.
+      // FaceMinimizer moves free pieces as a whole.
       if (whole && x[j].state == PieceState::free) continue;
       if (move.slope < best.slope) best = move;
     }

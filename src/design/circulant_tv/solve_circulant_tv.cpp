@@ -6,7 +6,7 @@
 namespace tofsmith {
 namespace {
 
-// Sufficient to determine the pieces; the active set does the rest.
+// Sufficient to find the pieces.
 constexpr int fallback_steps = 3000;
 
 }  // namespace

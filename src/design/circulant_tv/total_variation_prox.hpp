@@ -8,8 +8,8 @@
 namespace tofsmith {
 
 /// Proximal maps of total variation, x = argmin 1/2 |x - y|^2 + weight TV(x), by dynamic
-/// programming over the knots of the derivative of the cost-to-go: O(N) for any data. Keeps its
-/// buffers between calls; use an object from one thread at a time.
+/// programming over the knots of the derivative of the cost-to-go: O(N). Not thread-safe: keeps
+/// buffers.
 /// @see Johnson, "A dynamic programming algorithm for the fused lasso and L0-segmentation", 2013
 class TotalVariationProx {
  public:
@@ -17,10 +17,10 @@ class TotalVariationProx {
   /// @param weight  >= 0
   void linear(const Eigen::VectorXd& y, double weight, Eigen::VectorXd& x);
 
-  /// Closed ring: includes the jump from the last sample to the first. Its dual variable u in
-  /// [-weight, weight] is added to the two ends of an open chain with opposite signs.
-  /// x[0] - x[N - 1] decreases with u, so u is found by a root search that starts at `ring_dual`.
-  /// @param ring_dual  initial value of the search; on return u, a good start for a similar y
+  /// Closed ring. The dual variable u of the jump from the last to the first sample is added to the
+  /// ends of an open chain with opposite signs; x[0] - x[N - 1] decreases with u, which is found by
+  /// a root search.
+  /// @param ring_dual  initial u; on return its final value, a good start for a similar y
   void circular(const Eigen::VectorXd& y, double weight, double& ring_dual, Eigen::VectorXd& x);
 
  private:
@@ -30,7 +30,7 @@ class TotalVariationProx {
     double position, slope_change, offset_change;
   };
   std::vector<Knot> knots_;
-  std::vector<double> lower_, upper_;  // clipping points of x[n], given x[n + 1]
+  std::vector<double> lower_, upper_;  // clips of x[n], given x[n + 1]
   Eigen::VectorXd tilted_;
 };
 
