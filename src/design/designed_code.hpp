@@ -10,11 +10,10 @@
 
 namespace tofsmith {
 
-/// Returns the code with its provenance: method, camera and seed.
+/// Returns the code with its provenance.
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
                   std::uint64_t seed);
 
-/// Returns the measurement reports of a code without target.
 std::vector<MeasurementReport> reports_of(const CodeSet& code, const std::string& start);
 
 }  // namespace tofsmith

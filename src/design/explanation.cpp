@@ -16,8 +16,8 @@ namespace {
 
 std::string length_mm(const Estimate& e) { return estimate_mm_text(e) + " mm"; }
 
-/// Returns the baseline with the smallest error that is not the winner, or null. Atlas codes do not
-/// count as baselines because they were designed.
+/// Returns the best baseline other than the winner, or null. Atlas codes are no baselines because
+/// they were designed.
 const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
   for (const Candidate* c : by_geometric_mean_error(result, kind))
     if (c != &result.winner() && !c->is_designed() && c->method != "atlas") return c;
@@ -44,7 +44,6 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
                                          : "and nothing was designed");
 }
 
-/// Returns the smallest error for each number of exposures.
 std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorKind kind) {
   std::map<int, double> errors;
   for (const Candidate& c : result.candidates) {
@@ -89,7 +88,7 @@ std::string what_limits_it(const DesignResult& result) {
   const bool is_rows = result.winner().code.is_rows();
   const auto describe = [is_rows](const PointDepthError& p) {
     std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
-    // Errors are limited by the range and the bound is not, so a few depths can dominate its mean.
+    // Errors are limited by the range, the bound is not: a few depths can dominate its mean.
     if (p.cramer_rao_mae_m > exceeds * p.circular_mde_m.value)
       text +=
           " (its Cramer-Rao bound says nothing there: its correlation functions are nearly flat at "

@@ -22,7 +22,7 @@ double sinc_squared(double x) {
 Eigen::VectorXcd grid_transfer(const Camera& camera, int samples) {
   const int coefficients = samples / 2 + 1;
   if (!camera.band_limited()) return Eigen::VectorXcd::Ones(coefficients);
-  constexpr int images = 8;  // sinc^2 and the responses are negligible beyond
+  constexpr int images = 8;  // negligible beyond
   const Eigen::VectorXcd response = camera.transfer((images + 1) * samples);
   Eigen::VectorXcd transfer = Eigen::VectorXcd::Zero(coefficients);
   for (int k = 0; k < coefficients; ++k)

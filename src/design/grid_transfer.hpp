@@ -16,8 +16,8 @@ Eigen::VectorXcd grid_transfer(const Camera& camera, int samples);
 /// Returns the ratio of harmonic n of a correlation function to coefficient n mod N of its samples
 /// at the N bins:
 ///   chi_n = shares[n] chi[n mod N] / N,  shares[n] = H(n) sinc^2(n / N) / G[n mod N],
-/// for n = 0, 1, ... as long as it exceeds 1e-12. Only for cameras with impulse responses; without
-/// them functions are linear between bins.
+/// for n = 0, 1, ... while above 1e-12. Only with impulse responses; otherwise functions are linear
+/// between bins.
 Eigen::VectorXcd harmonic_shares(const Camera& camera, int samples);
 
 }  // namespace tofsmith

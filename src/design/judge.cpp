@@ -20,13 +20,11 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the number of measurements per exposure.
 int measurements_per_exposure(const Sensor& sensor) {
   return sensor.readout == Readout::difference ? 1 : sensor.taps;
 }
 
-/// Returns why no candidate is usable on a camera: a property of the camera if known, otherwise the
-/// reasons of the first candidates.
+/// Returns a property of the camera if known, otherwise the reasons of the first candidates.
 BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                             const std::vector<std::string>& left_out) {
   if (camera.light.peak_factor <= 1.0)
@@ -67,8 +65,7 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                 fmt::format("no candidate can be used on this camera: {}", reasons));
 }
 
-/// Excludes candidates that do not determine depth. This can happen for some targets and is not an
-/// error unless no candidate is left.
+/// Some targets have no code that determines depth; this is an error only if no candidate is left.
 void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& options,
                                    DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {
@@ -81,8 +78,7 @@ void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& op
   if (result.candidates.empty()) require(why_no_candidate(camera, options, result.left_out));
 }
 
-/// Evaluates a candidate with random numbers that were not used to select it, at its best origin if
-/// requested.
+/// Evaluates a candidate with new random numbers, at its best origin if requested.
 void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                CameraBounds& bounds, const Progress& progress) {
   EvaluateOptions judging;
@@ -106,17 +102,15 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
       geometric_mean_error_m(candidate.error, camera.operating.error);
 }
 
-/// Evaluates the candidate on the perturbed cameras.
 void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
-  constexpr int max_trials = 4000;  // ratios need few trials, because all cameras share them
+  constexpr int max_trials = 4000;  // sufficient for ratios with common trials
   candidate.robustness =
       robustness(candidate.code, camera,
                  {.trials = std::min(options.trials, max_trials), .seed = options.seed}, progress);
 }
 
-/// Returns the ranking errors of all candidates [m], multiplied by the penalty for two-return
-/// errors.
+/// Ranking errors [m], including the penalty for two-return errors.
 std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const Camera& camera,
                                const DesignOptions& options) {
   TwoReturnLimit two_returns(options.optimize.max_two_return_loss);

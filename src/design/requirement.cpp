@@ -26,7 +26,6 @@ void scale_bandwidth(ImpulseResponse& response, double factor) {
   response.time_step_s /= factor;
 }
 
-/// A code and its error on a camera.
 struct BestCode {
   double error_m = infinity;
   const CodeSet* code = nullptr;
@@ -34,7 +33,7 @@ struct BestCode {
 
 using Codes = std::vector<const CodeSet*>;
 
-/// Builds a family for a camera, at the best origin if depths are weighted.
+/// Uses the best origin if depths are weighted.
 CodeSet family_for(const std::string& name, const Camera& camera, const DesignOptions& options) {
   CodeSet code = build_family(name, camera);
   if (!rotates(camera, options) || why_no_depth(code, camera)) return code;
@@ -42,7 +41,7 @@ CodeSet family_for(const std::string& name, const Camera& camera, const DesignOp
   return code.rotated(best_rotation(code, camera, search).rotation_bin);
 }
 
-/// All codes found during the search. Every one is evaluated on every modified camera.
+/// All codes found; each is evaluated on every modified camera.
 class CodePool {
  public:
   CodePool(const Camera& camera, const RequirementOptions& options)
@@ -54,9 +53,9 @@ class CodePool {
       if (!why_no_family(name, camera)) codes_.push_back(family_for(name, camera, design_));
   }
 
-  /// Designs codes for a camera and adds the winner.
-  /// @param exposures  numbers of exposures; empty: suggested_exposures()
-  /// @param again      number of earlier designs for a similar camera, which selects the seed
+  /// Adds the winner of a design.
+  /// @param exposures  empty: suggested_exposures()
+  /// @param again  earlier designs for a similar camera; selects the seed
   void design_for(const Camera& camera, const std::vector<int>& exposures, const Progress& progress,
                   int again = 0) {
     design_.exposures = exposures;
@@ -64,8 +63,7 @@ class CodePool {
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
-  /// Returns the number of exposures of the best code on a camera, and up to `beside` fewer and
-  /// more.
+  /// Exposures of the best code on a camera, and up to `beside` fewer and more.
   std::vector<int> exposures_near(const Camera& camera, int beside) const {
     const int best = best_on(camera, all()).code->exposures();
     std::vector<int> near;
@@ -80,7 +78,7 @@ class CodePool {
     return codes;
   }
 
-  /// Returns the codes that may be best on one of the cameras or on a camera between them.
+  /// Codes that may be best on one of the cameras or between them.
   Codes contenders(const Camera& a, const Camera& b) const {
     const std::vector<double> on_a = first_errors(a, all()), on_b = first_errors(b, all());
     const double least_a = *std::min_element(on_a.begin(), on_a.end());
@@ -91,7 +89,7 @@ class CodePool {
     return codes;
   }
 
-  /// Returns the best code on a camera, after a screening with a tenth of the trials.
+  /// Screens with a tenth of the trials.
   BestCode best_on(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first = first_errors(camera, codes);
     const double least_m = *std::min_element(first.begin(), first.end());
@@ -104,8 +102,8 @@ class CodePool {
     return best;
   }
 
-  /// Returns true if the best code on a camera reaches the requested error. A tenth of the trials
-  /// decides clear cases.
+  /// Returns true if the best code reaches the requested error; a tenth of the trials decides clear
+  /// cases.
   bool suffice_on(const Camera& camera, const Codes& codes) const {
     constexpr double far = 1.25;
     const double least_m = least_first_error_m(camera, codes);
@@ -114,15 +112,14 @@ class CodePool {
     return best_on(camera, codes).error_m <= options_.error_m;
   }
 
-  /// Returns the smallest error on a camera, with a tenth of the trials.
+  /// By a tenth of the trials.
   double least_first_error_m(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first_m = first_errors(camera, codes);
     return *std::min_element(first_m.begin(), first_m.end());
   }
 
  private:
-  /// Evaluates the codes in parallel with a tenth of the trials. (Few trials of one code do not use
-  /// several threads.)
+  /// By a tenth of the trials, with codes in parallel, because few trials use only one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
@@ -142,10 +139,10 @@ class CodePool {
 
   RequirementOptions options_;
   DesignOptions design_;
-  std::deque<CodeSet> codes_;  // a deque, so that pointers stay valid
+  std::deque<CodeSet> codes_;  // keeps pointers valid
 };
 
-/// Returns the receiver bound: geometric mean over the operating points [m]; 0: no bound.
+/// Geometric mean over the operating points [m]; 0: no bound.
 double bound_m(const Camera& given) {
   const Camera camera = judged_camera(given);
   double log_sum = 0.0;
@@ -168,7 +165,7 @@ double bound_m(const Camera& given) {
 
 constexpr double relative_step = 0.005;
 
-/// Returns the smallest factor in [low, high] that suffices; high must suffice and low must not.
+/// `suffices` must hold at high and not at low.
 template <typename Suffices>
 double least_between(double low, double high, Suffices&& suffices) {
   while (high / low > 1.0 + relative_step) {
@@ -189,12 +186,12 @@ double excluded_below(const Camera& camera, CameraQuantity quantity,
   return least_between(least, options.max_factor, may_suffice);
 }
 
-constexpr double stride = 4.0;  ///< factor between two designs
-/// Maximum number of designs at the end of the search; each one's error is random by a few percent.
+constexpr double stride = 4.0;  ///< factor between designs
+/// The error of each design is random by a few percent.
 constexpr int end_designs = 3;
 
-/// Multiplies or divides the quantity by the stride, with a design at each step, until the
-/// requested error is bracketed, and then bisects.
+/// Scales the quantity by strides, with a design at each, until the requested error is bracketed;
+/// then bisects.
 Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
                            const RequirementOptions& options, CodePool& pool,
                            const Progress& progress) {
@@ -222,7 +219,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   for (int step = 1; step <= most_steps && !bracketed; ++step) {
     const double factor = std::clamp(upwards ? high * stride : low / stride,
                                      1.0 / options.max_factor, options.max_factor);
-    // The best number of exposures depends on bandwidth, and less on light.
+    // The best number of exposures depends mainly on bandwidth.
     design_at(factor, quantity == CameraQuantity::bandwidth ? 1 : 0, part++);
     const bool met = suffices(factor);
     if (upwards) {
@@ -250,7 +247,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
     return finish(*least);
   }
 
-  // 2. Bisection, with new designs at the result until they no longer lower it.
+  // 2. Bisection, with new designs at the result while they lower it.
   least = least_within(low, high);
   for (int round = 0; round < end_designs; ++round) {
     design_at(*least, 1, part++, round);
@@ -262,7 +259,6 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   return finish(*least);
 }
 
-/// Returns factors from `least` to `most` in steps of sqrt(2).
 std::vector<double> map_factors(double least, double most) {
   std::vector<double> factors;
   for (double factor = least; factor <= most * 1.01; factor *= std::sqrt(2.0))

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Computes a softmax of the entries first, first + stride, ... and its derivatives in place.
+/// Softmax of the entries first, first + stride, ... with derivatives, in place.
 void softmax(const Eigen::VectorXd& logits, Eigen::Index first, Eigen::Index stride,
              Eigen::VectorXd& shares, Eigen::MatrixXd& derivatives) {
   double largest = -1e300, sum = 0.0;
@@ -27,7 +27,7 @@ void softmax(const Eigen::VectorXd& logits, Eigen::Index first, Eigen::Index str
       derivatives(i, j) = shares[i] * ((i == j ? 1.0 : 0.0) - shares[j]);
 }
 
-/// Removes short pulses and merges pulses with short gaps.
+/// Removes short pulses, then joins pulses with short gaps.
 std::vector<OnInterval> without_short_runs(std::vector<OnInterval> on, double shortest_run) {
   std::erase_if(on, [&](const OnInterval& i) { return i.fall - i.rise < shortest_run; });
   std::vector<OnInterval> merged;
@@ -49,7 +49,7 @@ std::vector<OnInterval> without_short_runs(std::vector<OnInterval> on, double sh
 RunLengths::RunLengths(const Waveform& waveform, double shortest_duty)
     : shortest_duty_(shortest_duty), runs_(2 * std::ssize(waveform.on_intervals())) {
   const std::vector<OnInterval>& on = waveform.on_intervals();
-  constexpr double tiny = 1e-6;  // keeps logits of zero-length gaps finite
+  constexpr double tiny = 1e-6;  // keeps logits finite
   parameters_ = Eigen::VectorXd::Zero(1 + runs_ + (shortest_duty > 0.0 ? 1 : 0));
   parameters_[0] = on.front().rise;
   for (std::size_t i = 0; i < on.size(); ++i) {
@@ -59,7 +59,7 @@ RunLengths::RunLengths(const Waveform& waveform, double shortest_duty)
     parameters_[2 + run] = std::log(std::max(tiny, next - on[i].fall));
   }
   if (shortest_duty > 0.0) {
-    // t = 0 would be a stationary point, so start slightly inside the limit.
+    // t = 0 is stationary, so start slightly inside.
     const double excess =
         (waveform.duty() - shortest_duty) / (1.0 - std::min(shortest_duty, 0.999));
     parameters_[1 + runs_] = std::sqrt(std::clamp(excess, 1e-3, 0.98));
@@ -122,7 +122,7 @@ Waveform RunLengths::waveform(const Eigen::VectorXd& parameters, double shortest
     interval.rise = wrap(interval.rise, 1.0);
     interval.fall = interval.rise + width;
   }
-  // After removing a short pulse, the remaining light must not exceed the peak.
+  // Without a removed pulse the light must not exceed the peak.
   const double level = shortest_duty_ > 0.0 ? 1.0 / std::max(duty, shortest_duty_) : 1.0;
   return Waveform::binary(within_period(std::move(on)), level);
 }

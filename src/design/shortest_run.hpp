@@ -6,14 +6,13 @@
 
 namespace tofsmith {
 
-/// Returns the camera's shortest pulse or gap [periods]; 0 without a limit.
+/// Returns the camera's shortest pulse or gap [periods], or 0.
 double shortest_run_periods(const Camera& camera);
 
-/// Returns true if every pulse and gap of a binary waveform is at least `shortest_run` long, up to
-/// rounding. Always true for sampled waveforms.
+/// Returns true if all pulses and gaps are at least this long, up to rounding; always for sampled
+/// waveforms.
 bool keeps_shortest_run(const Waveform& waveform, double shortest_run);
 
-/// Returns true if all waveforms of a code keep the shortest run of the camera.
 bool keeps_shortest_run(const CodeSet& code, const Camera& camera);
 
 }  // namespace tofsmith

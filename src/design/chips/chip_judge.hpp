@@ -64,7 +64,7 @@ class ChipJudge {
   /// Returns the proven margin at the point with the smallest such ratio [sigma].
   double proven_margin_sigma(const ChipCode& code) const;
   const std::vector<double>& asked_sigma() const { return asked_sigma_; }
-  /// Lowers the required margins to those that the best of these codes keeps.
+  /// Lowers the required margins to the margins of the best of these codes.
   void ask_no_more_than(const std::vector<ChipCode>& codes);
 
   /// Converts a score to an RMS error [m].

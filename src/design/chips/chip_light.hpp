@@ -27,7 +27,7 @@ struct ChipLight {
   }
 };
 
-/// Returns what the chip model does not support of a valid camera, if anything.
+/// Returns the unsupported property of a valid camera, if any.
 std::optional<BrokenRule> why_not_plain(const Camera& camera);
 
 /// @throws std::invalid_argument for an invalid camera or as why_not_plain()

@@ -10,9 +10,9 @@ namespace tofsmith {
 
 /// Violation of the optimality conditions.
 struct OptimalityCertificate {
-  /// Of the dual conditions, in units of the total-variation weight.
+  /// Violation of the dual conditions, in units of the total-variation weight.
   double violation = 0;
-  /// Of a bound (relative to the upper bound) or of the budget (relative).
+  /// Relative violation of a bound or of the budget.
   double infeasibility = 0;
   double budget_multiplier = 0;  ///< price of the budget for this violation
 

@@ -52,7 +52,7 @@ class CirculantOperator {
 ///
 /// Let W be the zero-mean, doubly integrated autocorrelation R of the kernel: W[n + 1] - 2 W[n] +
 /// W[n - 1] = R[n] - mean R. A jump of height h at sample s adds h W[n - s] to the prefix sum G[n]
-/// = sum_{i < n} gradient[i], so few pieces need no transform. W is computed by division of
+/// = sum_{i < n} gradient[i], hence few pieces need no transform. W is computed by division of
 /// spectra, because summing twice is too inaccurate for small total-variation weights.
 class LeastSquaresTerm {
  public:

@@ -11,20 +11,19 @@
 namespace tofsmith {
 
 struct AlternationResult {
-  SampledPair relaxed;   ///< last iterate of the convex steps
+  SampledPair relaxed;   ///< last iterate
   SampledPair playable;  ///< best projection of all iterates
   double playable_residual_rms = 0.0;
   std::vector<FactorizeIteration> history;
 };
 
-/// Alternates the two convex steps of problem (6) / (7) from `start`: optimizes the demodulation
-/// with the modulation fixed, then vice versa.
+/// Alternates the convex steps of problem (6) / (7) from `start`: optimizes demodulation and
+/// modulation in turn.
 ///
-/// The norm of the residual is not squared. With c the current rms, rms <= rms^2 / (2 c) + c / 2
-/// converts each step to 1/2 |A x - b|^2 + lambda N c TV(x), which does not increase the true
-/// objective.
-/// @param total_variation_weight  lambda >= 0; 0 omits total variation, for comparison. Each step
-///   then starts from the previous waveforms, because the solution is not unique.
+/// With c the current rms, rms <= rms^2 / (2 c) + c / 2 converts each step to 1/2 |A x - b|^2 +
+/// lambda N c TV(x), which does not increase the objective.
+/// @param total_variation_weight  lambda >= 0; 0 omits total variation, for comparison: each step
+///   then starts from the previous waveforms, because the solution is not unique
 AlternationResult alternate(const PairModel& model, SampledPair start,
                             double total_variation_weight, const FactorizeOptions& options,
                             CirculantTvSolver& solver);

@@ -8,17 +8,14 @@
 
 namespace tofsmith {
 
-/// Sampled waveforms of one measurement.
 struct SampledPair {
   Eigen::VectorXd modulation;    // (N), in [0, p], mean <= 1
   Eigen::VectorXd demodulation;  // (N), in [0, 1]
 };
 
-/// Returns 1 where x > threshold, else 0.
 Eigen::VectorXd binary_demodulation(const Eigen::VectorXd& x, double threshold);
 
-/// Returns a waveform that is on where x > threshold * max(x), with unit mean power, or at the peak
-/// if that is lower.
+/// On where x > threshold * max(x), with unit mean power, or at the peak if lower.
 Eigen::VectorXd binary_modulation(const Eigen::VectorXd& x, double threshold, double peak_factor);
 
 struct BinaryProjection {
@@ -26,8 +23,8 @@ struct BinaryProjection {
   double residual_rms;
 };
 
-/// Projects to the nearest feasible pair. Each binary arm is thresholded at the level (of 19) with
-/// the smallest residual while the other arm is fixed; two passes.
+/// Projects to the nearest feasible pair: each binary arm is thresholded at the best of 19 levels
+/// with the other arm fixed, twice.
 BinaryProjection project_to_binary(const PairModel& model, const SampledPair& relaxed);
 
 }  // namespace tofsmith

@@ -15,13 +15,12 @@ namespace tofsmith {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double duty_weight = 2.0;  // of (mean d - mean of the target), relative to the harmonics
-constexpr double fading_run = 2e-3;  // in periods; shorter runs vanish during the fit
+constexpr double duty_weight = 2.0;  // of (mean d - target mean), relative to the harmonics
+constexpr double fading_run = 2e-3;  // in periods; shorter runs vanish in the fit
 constexpr int max_rounds = 4;        // of fitting and removing short runs
 
-/// Computes the Fourier coefficients of a binary waveform with level 1 from its switching times,
-/// and their derivatives: X[n] = sum_j s_j exp(-2 pi i n e_j) / (2 pi i n), s = +1 at rises, -1 at
-/// falls.
+/// Fourier coefficients of a binary waveform with level 1, and their derivatives:
+///   X[n] = sum_j s_j exp(-2 pi i n e_j) / (2 pi i n), s = +1 at rises, -1 at falls.
 void harmonics_of_edges(const Eigen::VectorXd& times, int highest, Eigen::VectorXcd& harmonics,
                         Eigen::MatrixXcd& derivatives) {
   using namespace std::complex_literals;
@@ -41,8 +40,8 @@ void harmonics_of_edges(const Eigen::VectorXd& times, int highest, Eigen::Vector
   }
 }
 
-/// Residuals Z[n] = D[n] conj(M[n]) H[n] - T[n] as real numbers, weighted by Parseval, and one for
-/// the duty of d. Has the interface of Eigen's Levenberg-Marquardt.
+/// Residuals Z[n] = D[n] conj(M[n]) H[n] - T[n], weighted by Parseval, and one for the duty of d,
+/// with the interface of Eigen's Levenberg-Marquardt.
 class HarmonicFit {
  public:
   using Scalar = double;
@@ -58,14 +57,14 @@ class HarmonicFit {
         shortest_run_(std::max(fading_run, model.shortest_run())) {
     const int samples = model.samples();
     const Eigen::VectorXcd response = model.transfer(samples / 2);
-    // Harmonics outside the bandwidth cannot be fitted, so skip them.
+    // Skip harmonics outside the bandwidth.
     highest_ = samples / 2;
     while (highest_ > 8 && std::abs(response[highest_]) < 1e-5) --highest_;
     transfer_ = response.head(highest_ + 1);
     const Eigen::VectorXcd spectrum = model.spectrum(model.target_samples());
     target_.resize(highest_ + 1);
     for (int n = 0; n <= highest_; ++n) {
-      // Linear interpolation between bins multiplies the transform of the samples by sinc^2.
+      // Linear interpolation multiplies the transform of the samples by sinc^2.
       const double x = pi * n / samples;
       const double sinc = n == 0 ? 1.0 : std::sin(x) / x;
       target_[n] = spectrum[n] / static_cast<double>(samples) * sinc * sinc;
@@ -110,7 +109,7 @@ class HarmonicFit {
     Eigen::MatrixXcd m_derivatives, d_derivatives;
     harmonics_of_edges(m_times, highest_, m, m_derivatives);
     harmonics_of_edges(d_times, highest_, d, d_derivatives);
-    // For unit mean power, M = U / duty, where the duty also depends on the edges.
+    // Unit mean power: M = U / duty, where the duty depends on the edges.
     const double duty = m[0].real();
     const Eigen::RowVectorXcd duty_derivatives = m_derivatives.row(0);
     m /= duty;

@@ -8,10 +8,10 @@
 
 namespace tofsmith {
 
-/// Fits the harmonics of the target by moving the switching times of a binary pair continuously
-/// (least squares). The number of edges does not increase. The light keeps its full energy
-/// (level = 1 / duty, duty >= 1 / p), and mean d is kept near that of the target.
-/// @return none if a waveform is not binary or is constant
+/// Fits the harmonics of the target by moving the switching times of a binary pair (least squares).
+/// The number of edges does not increase. Light keeps its full energy (level = 1 / duty,
+/// duty >= 1 / p), and mean d stays near that of the target.
+/// @return none if a waveform is constant or not binary
 std::optional<WaveformPair> refine_edges(const PairModel& model, const WaveformPair& start);
 
 }  // namespace tofsmith

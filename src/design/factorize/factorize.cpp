@@ -20,13 +20,11 @@ namespace tofsmith {
 
 namespace {
 
-/// Converts samples to a feasible waveform: switching times if the arm is binary.
 Waveform as_waveform(const Eigen::VectorXd& samples, bool binary, double level) {
   if (!binary) return Waveform::sampled(samples);
   return Waveform::binary_from_samples(samples, level > 0.0 ? level : 1.0);
 }
 
-/// Converts a projection to waveforms.
 WaveformPair playable_pair(const PairModel& model, const SampledPair& p) {
   return {as_waveform(p.modulation, model.binary_modulation(), p.modulation.maxCoeff()),
           as_waveform(p.demodulation, model.binary_demodulation(), 1.0)};
@@ -53,7 +51,7 @@ bool by_residual(const PairCandidate& a, const PairCandidate& b) {
   return a.residual_rms < b.residual_rms;
 }
 
-/// Optimizes the switching times of the best candidates; keeps the better version of each.
+/// Optimizes the switching times of the best candidates, if that improves them.
 void refine_best(const PairModel& model, const FactorizeOptions& options,
                  std::vector<PairCandidate>& candidates, const Progress& progress) {
   const auto count = std::min<std::int64_t>(options.refined, std::ssize(candidates));
@@ -73,7 +71,7 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
   });
 }
 
-/// Removes repeated designs: waveforms with equal residuals are delayed versions of one another.
+/// Removes repeats: waveforms with equal residuals are delayed versions of one another.
 void drop_repeats(std::vector<PairCandidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), by_residual);
   const auto last = std::unique(
@@ -84,8 +82,7 @@ void drop_repeats(std::vector<PairCandidate>& candidates) {
   candidates.erase(last, candidates.end());
 }
 
-/// Removes pairs that violate the shortest pulse, unless all do.
-/// @return true if some remain
+/// Removes pairs that violate the shortest pulse, unless all do. @return true if some remain
 bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candidates) {
   const auto too_short = [&](const PairCandidate& c) {
     return !keeps_shortest_run(c.pair.modulation, model.shortest_run()) ||
@@ -130,7 +127,6 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   options.validate();
   check_target(target, camera);
 
-  // 1. Model the correlation function of a pair and its residual.
   const PairModel model(target, camera);
   Factorization result;
   result.target_variation_rms =

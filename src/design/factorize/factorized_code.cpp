@@ -21,13 +21,12 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int min_exposures = 3, max_exposures = 6;  // of the Hamiltonian targets
+constexpr int min_exposures = 3, max_exposures = 6;  // of Hamiltonian targets
 
-/// Returns the numbers of exposures of the Hamiltonian targets.
 std::vector<int> factorizable_exposures(const Camera& camera, const DesignOptions& options) {
   std::vector<int> exposures = options.exposures;
   if (exposures.empty()) exposures = suggested_exposures(camera, DesignMethod::factorize);
-  std::erase_if(exposures, [](int count) {  // other numbers are for other methods
+  std::erase_if(exposures, [](int count) {  // others are for other methods
     return count < min_exposures || count > max_exposures;
   });
   return exposures;
@@ -35,7 +34,7 @@ std::vector<int> factorizable_exposures(const Camera& camera, const DesignOption
 
 FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
 
-/// Returns why the camera cannot support codes for these targets, to fail before the search starts.
+/// Finds unsupported targets before the search starts.
 std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& on) {
   if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
     return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
@@ -67,8 +66,8 @@ Eigen::MatrixXd target_table(const TargetSet& targets) {
   return table;
 }
 
-/// Summarizes the residuals in one line. Reachability of a target depends on the pair with the
-/// smallest residual, not on the pair with the smallest depth error.
+/// Reachability of a target depends on the pair with the smallest residual, not on the one
+/// with the smallest depth error.
 std::string describe_residuals(const std::vector<MeasurementReport>& reports,
                                const std::vector<Factorization>& factorizations) {
   std::string residuals, smallest, unreachable;
@@ -140,7 +139,7 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
   const Camera camera = in_buckets(on);
   const ProgressParts parts(progress, {40, 60});  // factorization, selection of pairs
   const auto begin = std::chrono::steady_clock::now();
-  // 1. Factorize each measurement individually.
+  // 1. Factorize each measurement.
   FactorizeOptions factorizing_options = options.factorize;
   factorizing_options.seed = options.seed;
   std::vector<Factorization> factorizations;

@@ -51,7 +51,7 @@ double PairModel::residual_rms(const Eigen::VectorXcd& modulation,
       (demodulation.cwiseProduct(modulation.conjugate()).cwiseProduct(grid_transfer_) -
        target_spectrum_)
           .cwiseAbs2();
-  // Parseval over the half spectrum: coefficients other than k = 0 (and N/2) count twice.
+  // Parseval: coefficients other than k = 0 (and N/2) count twice.
   double sum = 2.0 * energy.sum() - energy[0];
   if (samples() % 2 == 0) sum -= energy[energy.size() - 1];
   return std::sqrt(sum) / samples();

@@ -13,23 +13,22 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int delays_per_point = 4;     // delays of the pair that are tried before rounding
-constexpr int max_settling_rounds = 8;  // maximum number of passes over all switching times
-constexpr int fine_points = 4;          // per bin; a finer grid is not rounded
+constexpr int delays_per_point = 4;     // tried before rounding
+constexpr int max_settling_rounds = 8;  // passes over all switching times
+constexpr int fine_points = 4;          // per bin; finer grids are not rounded
 
-/// Returns the points per period of a generator, or 0 if rounding to them is negligible or absent.
+/// Points per period of a generator; 0 if rounding is negligible.
 int coarse_points(const std::optional<Generator>& generator, const PairModel& model) {
   if (!generator) return 0;
   const int points = generator->points_per_period(model.camera().fundamental_frequency_hz);
   return points < fine_points * model.samples() ? points : 0;
 }
 
-/// One arm of the pair: on or off at every point of its generator, or unrounded without a
-/// generator.
+/// One arm, on or off at every point of its generator, or unrounded without a generator.
 struct RoundedArm {
   Waveform waveform;
   std::vector<char> on = {};  ///< empty: not rounded
-  double most_level = 1.0;    ///< maximum of the level 1 / duty for light; 1 for gates
+  double most_level = 1.0;    ///< maximum of 1 / duty for light; 1 for gates
 
   RoundedArm(const Waveform& nominal, int points, double most_level_)
       : waveform(nominal), most_level(most_level_) {
@@ -42,7 +41,7 @@ struct RoundedArm {
 
   std::ptrdiff_t points_on() const { return std::count(on.begin(), on.end(), 1); }
 
-  /// Returns true if the points are a valid waveform: not constant, and light within the peak.
+  /// Returns true if the waveform is not constant and light is within the peak.
   bool is_playable() const {
     const auto count = points_on();
     return count > 0 && count < std::ssize(on) &&
@@ -89,16 +88,15 @@ bool is_valid(const Settled& one, const PairModel& model) {
   return true;
 }
 
-/// Moves each switching time of an arm by one point, earlier and later, if that reduces the
-/// residual.
-/// @return true if the residual was reduced
+/// Moves each switching time by one point in both directions if that reduces the residual.
+/// @return true if it was reduced
 bool move_edges(RoundedArm Settled::*which, const PairModel& model, Settled& best) {
   bool is_better = false;
   const std::size_t points = (best.*which).on.size();
   for (std::size_t i = 0; i < points; ++i)
     for (const std::size_t flipped : {i, (i + points - 1) % points}) {
       const std::vector<char>& on = (best.*which).on;
-      if (on[i] == on[(i + points - 1) % points]) break;  // no edge before point i
+      if (on[i] == on[(i + points - 1) % points]) break;  // no edge
       Settled moved = best;
       RoundedArm& arm = moved.*which;
       arm.on[flipped] = arm.on[flipped] == 0;

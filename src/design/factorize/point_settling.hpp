@@ -8,11 +8,10 @@
 
 namespace tofsmith {
 
-/// Rounds the switching times of a binary pair to points of the camera's generators, so that these
-/// reproduce it exactly. The common delay with the smallest residual is chosen; then each switching
-/// time is moved by single points as long as the residual decreases. The light keeps its full
-/// energy.
-/// @return none without generators that are coarse compared with the bins, or without edges
+/// Rounds the switching times of a binary pair to points of the camera's generators, which then
+/// reproduce it exactly. Uses the best of several common delays, then moves single switching times
+/// while the residual decreases. Light keeps its full energy.
+/// @return none without edges, or if the generators are not coarse compared with the bins
 std::optional<WaveformPair> settle_on_points(const PairModel& model, const WaveformPair& pair);
 
 }  // namespace tofsmith

@@ -15,8 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns `count` equal pulses centred at zero with distance `spacing` [periods] and total duty
-/// `duty`.
+/// `count` equal pulses centred at zero, `spacing` apart [periods], of total duty `duty`.
 Waveform centred_pulses(int count, double spacing, double duty) {
   std::vector<OnInterval> on;
   for (int i = 0; i < count; ++i) {
@@ -64,7 +63,7 @@ std::vector<PairCandidate> structured_starts(const PairModel& model) {
     for (int count = 1; count <= pulses + 1; ++count)
       for (const int per_period : {pulses, pulses + 1}) {
         if (count > per_period || duty * per_period / count > 0.95) continue;
-        if (count == 1 && per_period > 1 && per_period != pulses) continue;  // same pulse as before
+        if (count == 1 && per_period > 1 && per_period != pulses) continue;  // same pulse
         const Waveform m = centred_pulses(count, 1.0 / per_period, duty);
         starts.push_back(
             candidate(model, {m, d},

@@ -12,14 +12,14 @@ namespace tofsmith {
 
 namespace {
 
-/// Converts positions to periods; unused entries are 0.
+/// Converts to periods; unused entries are 0.
 std::array<double, harmonic_block> in_periods(std::span<const double> depth_bin, int samples) {
   std::array<double, harmonic_block> periods{};
   for (std::size_t p = 0; p < depth_bin.size(); ++p) periods[p] = wrap(depth_bin[p] / samples, 1.0);
   return periods;
 }
 
-/// Weight of harmonic n: harmonics n and -n of a real function are combined, except for the mean.
+/// Harmonics n and -n of a real function are combined.
 double times(int n) { return n == 0 ? 1.0 : 2.0; }
 
 }  // namespace
@@ -113,7 +113,7 @@ void BetweenBins::fold(int points, const Visit& visit) const {
   for (int n = 0; n < shares_.size(); ++n) {
     const int k = n % points;
     if (2 * k <= points) visit(n, k, false);
-    // The negative harmonic, if it is also in the half spectrum.
+    // The negative harmonic, if in the half spectrum.
     if (2 * k >= points || (k == 0 && n > 0)) visit(n, (points - k) % points, true);
   }
 }
@@ -167,8 +167,7 @@ BetweenBins::Functions BetweenBins::pull_back_fine(const Eigen::MatrixXd& by_fin
   for (int f = 0; f < gradient.count(); ++f) {
     values = by_fine.col(f);
     transform.forward(values, spectrum);
-    // Adjoint of a cos - b sin of harmonic n: sums of values cos and of -values sin over all
-    // points.
+    // Adjoint of a cos - b sin: sums of values cos and -values sin.
     for (int n = 0; n < shares_.size(); ++n) {
       const int k = n % points;
       const std::complex<double> sum =
@@ -198,8 +197,7 @@ Eigen::MatrixXd BetweenBins::pull_back(const Functions& gradient) const {
       else
         spectrum[samples_ - k] += std::conj(by_coefficient);
     }
-    // The inverse transform adds the conjugate of each coefficient, so halve those with a
-    // conjugate.
+    // The inverse transform adds conjugates, so halve coefficients that have one.
     for (Eigen::Index k = 1; k < spectrum.size(); ++k)
       if (2 * k != samples_) spectrum[k] *= 0.5;
     transform_.inverse(spectrum, samples);

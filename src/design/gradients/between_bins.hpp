@@ -11,14 +11,13 @@
 
 namespace tofsmith {
 
-/// Correlation functions at any real depth, from samples at the N bins of waveforms that are
-/// constant within each of N cells. Exact, as in ForwardModel: linear between bins without impulse
-/// responses, otherwise by the harmonics within the bandwidth.
+/// Exact correlation functions at any depth, from samples at N bins of waveforms constant within N
+/// cells: linear between bins without impulse responses, otherwise by harmonics (as ForwardModel).
 class BetweenBins {
  public:
   BetweenBins(const Camera& camera, int samples);
 
-  /// Functions from the columns of a table (N, F), prepared for evaluation.
+  /// Columns of a table (N, F), prepared for evaluation.
   struct Functions {
     HarmonicFunctions harmonics;
     Eigen::MatrixXd chords;  ///< (F, N); empty if harmonics are used
@@ -28,28 +27,27 @@ class BetweenBins {
   Functions of(const Eigen::MatrixXd& table) const;
   Functions zeros(int functions) const;
 
-  /// Computes the values (F, harmonic_block) at up to harmonic_block positions [bin], and the
-  /// slopes per bin unless `slopes` is null.
+  /// Computes values (F, harmonic_block) at up to harmonic_block positions [bin], and slopes per
+  /// bin unless null.
   void evaluate(const Functions& functions, std::span<const double> depth_bin, double* values,
                 double* slopes) const;
-  /// Adds to `gradient` the gradient of sum weights[f][p] f(depth_bin[p]). weights (F,
-  /// harmonic_block) must be zero for unused positions.
+  /// Adds the gradient of sum weights[f][p] f(depth_bin[p]); weights (F, harmonic_block), zero if
+  /// unused.
   void add(std::span<const double> depth_bin, const double* weights, Functions& gradient) const;
-  /// Returns the values at `finer` equidistant positions per bin, (finer N, F).
+  /// Returns the values at `finer` positions per bin, (finer N, F).
   Eigen::MatrixXd fine_table(const Functions& functions, int finer) const;
   /// Adjoint of fine_table().
   Functions pull_back_fine(const Eigen::MatrixXd& by_fine, int finer) const;
-  /// Converts a gradient with respect to the functions to one with respect to the table.
+  /// Converts a gradient w.r.t. the functions to one w.r.t. the table.
   Eigen::MatrixXd pull_back(const Functions& gradient) const;
 
  private:
-  /// Chord that contains a position.
   struct Chord {
     Eigen::Index bin, next;
     double fraction;
   };
   Chord chord_at(double depth_bin) const;
-  /// Visits the harmonics on a grid of `points` samples; high harmonics are aliased to lower ones.
+  /// Visits harmonics on a grid of `points` samples, with aliasing.
   template <typename Visit>
   void fold(int points, const Visit& visit) const;
 

@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Rounds the number of rows up to a multiple of depth_block; the new rows are zero.
+/// Pads with zero rows to a multiple of depth_block.
 void round_up(Eigen::MatrixXd& table) {
   const Eigen::Index depths = table.rows();
   const Eigen::Index rows = (depths + depth_block - 1) / depth_block * depth_block;

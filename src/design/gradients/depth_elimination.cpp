@@ -20,8 +20,8 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A vector of depths at one light level: weights w = 1 / variance of the measurements and, with
-/// inner products weighted by w, the component of the depth column of the Jacobian orthogonal to
+/// A vector of depths at one light level: weights w = 1 / variance, and the component of the depth
+/// column of the Jacobian that is orthogonal (by w) to the other two,
 /// the signal and ambient columns:
 ///   across = depth - signal_share signal - ambient_share ambient.
 class Elimination {
@@ -33,7 +33,6 @@ class Elimination {
         depths_(electrons.signal.rows()),
         weights_(static_cast<std::size_t>(measurements_) * depth_block) {}
 
-  /// Loads a vector of depths, starting at `first`.
   HWY_INLINE void at(Eigen::Index first, const OperatingPoint& light) {
     first_ = first;
     const Doubles d;
@@ -54,7 +53,7 @@ class Elimination {
       ss = hn::MulAdd(hn::Mul(weight, s), s, ss);
       dd = hn::MulAdd(weighed_d, depth, dd);
     }
-    // Eliminate ambient light (if visible) from signal and depth, then the signal from depth.
+    // Eliminate ambient light (if visible), then the signal.
     const auto per_aa = inverse_or_zero(aa, hn::Zero(d));
     const auto signal_along = hn::Mul(as, per_aa), depth_along = hn::Mul(ad, per_aa);
     auto ss_across = hn::Zero(d), sd_across = hn::Zero(d);
@@ -94,7 +93,7 @@ class Elimination {
   hn::Mask<Doubles> is_told;
 
  private:
-  static constexpr double rounding = 1e-20;  // of squares: smaller values are rounding errors
+  static constexpr double rounding = 1e-20;  // smaller squares are rounding errors
 
   HWY_INLINE DoubleVector inverse_or_zero(DoubleVector value, DoubleVector least) const {
     return hn::IfThenElseZero(hn::Gt(value, least), hn::Div(all(1.0), value));
@@ -162,7 +161,7 @@ void add_gradient_of(const DepthElectrons& electrons, const Eigen::VectorXd& con
         add_lanes(by_ambient.data() + i * depth_block,
                   hn::Neg(hn::Mul(by_mean, depths.ambient_share)));
         by_signal_e = hn::MulAdd(by_mean, depths.row(electrons.slope, i), by_signal_e);
-        // Without light and noise the variance is clipped to its minimum, so its gradient is zero.
+        // At its minimum the variance is clipped and has no gradient.
         const auto by_variance =
             hn::IfThenElseZero(hn::Lt(weight, all(1.0 / min_e2)),
                                hn::Mul(hn::Mul(all(-0.5), by_mean), hn::Mul(weight, across)));

@@ -10,25 +10,25 @@
 
 namespace tofsmith {
 
-/// Number of depths per block; tables of depths have a multiple of this number of rows.
+/// Depths per block; tables are padded to whole blocks.
 constexpr int depth_block = widest_vector / 2;
 
-/// Electrons of the measurements, and of the light that contributes shot noise, per unit of signal
-/// (depths, K) and of ambient light (K). Slopes are per period. As in CramerRaoBound.
+/// Electrons of the measurements and of their shot noise, per unit of signal (depths, K) and of
+/// ambient light (K); slopes per period. As in CramerRaoBound.
 struct DepthElectrons {
   Eigen::MatrixXd signal, slope, shot;
   Eigen::VectorXd ambient, shot_ambient;
 };
 
-/// Computes Cramer-Rao bounds of depth with unknown signal and ambient light for many depths at
-/// once, as DepthPart (simulate/shared/depth_information.hpp): deviations [m] (depths, lights),
-/// infinite if depth cannot be separated from signal and ambient light.
+/// Computes Cramer-Rao bounds of depth with unknown light levels, as DepthPart
+/// (simulate/shared/depth_information.hpp), for many depths: deviations [m] (depths, lights),
+/// infinite if depth cannot be separated.
 void eliminate_light(const DepthElectrons& electrons, const Eigen::VectorXd& constant_e2,
                      std::span<const OperatingPoint> lights, double range_m,
                      Eigen::MatrixXd& deviation_m);
 
-/// Computes the gradient of sum by_deviation deviation_m. Adds the gradient with respect to the
-/// electrons to `by_electrons` and overwrites `by_lights`. Infinite deviations do not contribute.
+/// Computes the gradient of sum by_deviation deviation_m: adds to `by_electrons`, overwrites
+/// `by_lights`. Infinite deviations do not contribute.
 ///
 /// sigma = range / |across|, and |across| is minimal over the shares of the other two columns:
 ///   d |across|^2 / 2 = <across, w (d depth - share d signal - share d ambient)>

@@ -10,13 +10,11 @@
 
 namespace tofsmith {
 
-/// Shared state of the steps of CodeGradients.
 struct CodeGradients::Steps {
   Steps(const Camera& its, int samples, int exposures);
 
   bool has_shot() const { return sampled.subtracts(); }
-  /// Returns the functions of all measurements (K), followed for differences by the total light of
-  /// each (2 K).
+  /// Functions of all measurements (K), then for differences of their total light (2 K).
   BetweenBins::Functions functions_of(const MeasurementTable& table) const;
   void pull_back_functions(const BetweenBins::Functions& gradient,
                            MeasurementTable& by_table) const;
@@ -27,8 +25,8 @@ struct CodeGradients::Steps {
   int exposures;
 };
 
-/// Returns the number of pixels whose gradients are summed together: whole blocks, at most 64
-/// groups. Independent of the number of threads.
+/// Pixels whose gradients are summed together: whole blocks, at most 64 groups, for any number of
+/// threads.
 std::int64_t pixels_in_a_group(std::int64_t pixels);
 
 }  // namespace tofsmith

@@ -19,9 +19,9 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int tile = 16;  // harmonics whose cosines and sines stay in the L1 cache
+constexpr int tile = 16;  // harmonics in the L1 cache
 
-/// Cosines and sines of consecutive harmonics at the points of a block.
+/// Cosines and sines of consecutive harmonics at a block of points.
 struct Turns {
   alignas(64) double cosine[tile * harmonic_block];
   alignas(64) double sine[tile * harmonic_block];
@@ -41,7 +41,7 @@ struct Turns {
     }
   }
 
-  /// Computes the next `count` harmonics, starting at harmonic 1.
+  /// Computes the next `count` harmonics, first from 1.
   HWY_INLINE void advance(int count) {
     const Doubles d;
     const int lanes = lanes_of(d);
@@ -61,7 +61,7 @@ struct Turns {
   }
 };
 
-/// Adds a[k] cos_k - b[k] sin_k to two vectors of sums at once.
+/// Adds a[k] cos_k - b[k] sin_k, two vectors at a time.
 HWY_INLINE void add_tile(const Turns& turns, const double* HWY_RESTRICT a,
                          const double* HWY_RESTRICT b, int count, double* HWY_RESTRICT sums) {
   const Doubles d;

@@ -24,15 +24,15 @@ struct HarmonicFunctions {
   std::vector<double> real, imag;  ///< (harmonics, functions)
 };
 
-/// Number of points per block: a multiple of the vector length for all instruction sets.
+/// Points per block: whole vectors of any instruction set.
 constexpr int harmonic_block = 64;
 
-/// Computes the values of all functions (functions, harmonic_block) at harmonic_block positions
-/// [periods], and the slopes per period unless `slopes` is null.
+/// Computes all functions (functions, harmonic_block) at harmonic_block positions [periods], and
+/// slopes per period unless null.
 void sum_harmonics(const HarmonicFunctions& functions, const double* periods, double* values,
                    double* slopes);
 
-/// Adjoint of the values: adds to `gradient` the gradient of sum weights[f][p] f(periods[p]).
+/// Adjoint: adds the gradient of sum weights[f][p] f(periods[p]).
 void add_harmonics(const double* periods, const double* weights, HarmonicFunctions& gradient);
 
 }  // namespace tofsmith

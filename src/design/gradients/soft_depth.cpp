@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Decodes the pixels of a table sequentially; each thread has its own object.
+/// Decodes pixels; one per thread.
 template <typename Value>
 class PixelDecoder {
  public:
@@ -42,8 +42,8 @@ class PixelDecoder {
   const Value* electrons_of(std::size_t pixel) const {
     return electrons_.data() + pixel * static_cast<std::size_t>(curve_->measurements);
   }
-  /// Depth is computed as the error relative to bin 0. Circular depth is relative to the best
-  /// match, where chords with significant weight rarely wrap.
+  /// Depth is the error relative to bin 0, circular depth relative to the best match, where
+  /// relevant chords rarely wrap.
   SoftQuestion question_of(std::size_t pixel) {
     SoftQuestion question{0.0, 1.0 / decoding_->temperature_e2[pixel], decoding_->circular,
                           true_bin_.empty()};

@@ -10,14 +10,13 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the value of every cell, taken from its first sample.
 Eigen::VectorXd cell_values(const WaveformSpace& space, const Eigen::VectorXd& samples) {
   Eigen::VectorXd cells(space.cells);
   for (int c = 0; c < space.cells; ++c) cells[c] = samples[c * space.repeat];
   return cells;
 }
 
-/// Returns the cells sorted by value, largest first.
+/// Indices of the cells, largest value first.
 std::vector<int> ranked(const Eigen::VectorXd& cells) {
   std::vector<int> order(static_cast<std::size_t>(cells.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -25,7 +24,6 @@ std::vector<int> ranked(const Eigen::VectorXd& cells) {
   return order;
 }
 
-/// Sets the first `count` cells of the order to 1.
 SwitchedLabels first_of(const std::vector<int>& order, int count) {
   std::vector<int> cells(order.size(), 0);
   for (int i = 0; i < count; ++i)
@@ -54,7 +52,7 @@ SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int
   return SwitchedLabels::from_cells(cells);
 }
 
-/// Returns the number of brightest cells that, at uniform level, approximate the waveform best.
+/// Number of brightest cells that approximate the waveform best at uniform level.
 int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int min_on) {
   const auto total = static_cast<double>(order.size());
   int best = min_on;
@@ -62,7 +60,7 @@ int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, i
   for (int on = 1; on < static_cast<int>(order.size()); ++on) {
     lit += cells[order[static_cast<std::size_t>(on - 1)]];
     if (on < min_on) continue;
-    // Squared distance to level total / on, without terms that do not depend on `on`.
+    // Squared distance to level total / on, up to a constant.
     const double distance = total * total / on - 2.0 * total / on * lit;
     if (distance < smallest) {
       smallest = distance;

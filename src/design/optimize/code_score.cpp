@@ -13,7 +13,6 @@ namespace {
 
 constexpr double min_error_bin = 1e-9;  // avoids log(0)
 
-/// Resamples waveforms to the grid of the judge.
 SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
   const int repeat = judge.samples() / code.samples();
   if (repeat == 1) return code;
@@ -26,7 +25,7 @@ SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
   return fine;
 }
 
-/// Delays the modulation: correlation'(z) = correlation(z + rotation_bin).
+/// correlation'(z) = correlation(z + rotation_bin)
 SampledCode rotated(const SampledCode& code, int rotation_bin) {
   SampledCode result = code;
   const int samples = code.samples();
@@ -52,7 +51,7 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
   return batches;
 }
 
-/// Returns the mean error over the trials [bin]; always circular for two-return decoding.
+/// Mean error [bin]; always circular for two-return decoding.
 double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
                       bool linear) {
   linear = linear && !batch.two_returns;
@@ -64,7 +63,7 @@ double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decode
   return sum / static_cast<double>(decoded_bin.size());
 }
 
-/// Returns the errors of a batch at every rotation [bin].
+/// Errors at every rotation [bin].
 template <typename Errors>
 std::vector<double> sums_of(Errors errors, const TrialBatch& batch,
                             const std::vector<double>& decoded_bin) {

@@ -10,15 +10,15 @@ namespace tofsmith {
 
 namespace {
 
-/// Whole vectors for N + 1 points, plus one vector for loads that start one point ahead.
+/// Room for loads that start one point ahead.
 int padded_stride(int samples) { return whole_vectors(samples + 1) + widest_vector; }
 
-/// Returns g_i of DecodingCurve.
+/// g_i of DecodingCurve.
 Eigen::VectorXd relative_exposure(const SampledCamera& camera) {
   return camera.exposure_s() / camera.exposure_s().mean();
 }
 
-/// Returns the unit vector along g o kappa, or zeros if ambient light need not be estimated.
+/// Unit vector along g o kappa, or zeros if ambient light is not estimated.
 Eigen::VectorXd ambient_direction(const SampledCamera& camera, const MeasurementTable& table) {
   const Eigen::VectorXd ambient = relative_exposure(camera).cwiseProduct(table.ambient_gain);
   const double length = ambient.norm();
@@ -78,8 +78,8 @@ void CurveGradientOf<Value>::pull_back(const SampledCamera& camera, const Measur
           2.0 * by_square * curve.exact_points(j, r) + products[at] * curve.exact_points(next, r) +
           products[static_cast<std::size_t>(last)] * curve.exact_points(last, r);
   }
-  // p_j = x_j - a (a . x_j) / |a|^2, with a / |a| = n. The gradient with respect to x_j is P G_j;
-  // with respect to a it is -sum_j [P G_j (n . x_j) + p_j (n . G_j)] / |a|.
+  // p_j = x_j - a (a . x_j) / |a|^2, with a / |a| = n. The gradient w.r.t. x_j is P G_j; w.r.t. a
+  // it is -sum_j [P G_j (n . x_j) + p_j (n . G_j)] / |a|.
   const Eigen::VectorXd exposure = relative_exposure(camera);
   const Eigen::VectorXd direction = ambient_direction(camera, table);
   const Eigen::VectorXd along = by_points * direction;

@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// Allocates memory aligned to cache lines, for aligned vector loads.
+/// Allocates on cache lines, for aligned vector loads.
 template <typename Value>
 struct CacheLineAllocator {
   using value_type = Value;
@@ -40,11 +40,11 @@ template <typename Value>
 struct DecodingCurveOf {
   DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table);
 
-  /// Returns component r of the curve, j in [0, N] plus padding.
+  /// Component r, j in [0, N] plus padding.
   const Value* component(int r) const { return points.data() + r * stride; }
 
   int samples, measurements;
-  int stride;                    ///< distance between components: whole vectors, plus one
+  int stride;                    ///< between components: whole vectors, plus one
   Aligned<Value> points;         ///< (R, stride)
   Aligned<Value> squares;        ///< Q_jj, j in [0, N]
   Aligned<Value> products;       ///< Q_j,j+1, j in [0, N)
@@ -52,17 +52,17 @@ struct DecodingCurveOf {
 };
 using DecodingCurve = DecodingCurveOf<float>;
 
-/// Gradient with respect to the contents of a decoding curve, summed over trials.
+/// Gradient w.r.t. a decoding curve, summed over trials.
 template <typename Value>
 struct CurveGradientOf {
   explicit CurveGradientOf(const DecodingCurveOf<Value>& curve);
   void clear();
-  /// Adds the gradient with respect to the table of the curve.
+  /// Adds the gradient w.r.t. the table of the curve.
   void pull_back(const SampledCamera& camera, const MeasurementTable& table,
                  const DecodingCurveOf<Value>& curve, MeasurementTable& gradient) const;
 
   Aligned<Value> points;                 ///< (R, stride)
-  Aligned<Value> squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 through chord j
+  Aligned<Value> squares, next_squares;  ///< w.r.t. Q_jj and Q_j+1,j+1, through chord j
   Aligned<Value> products;
 };
 using CurveGradient = CurveGradientOf<float>;

@@ -11,29 +11,28 @@
 
 namespace tofsmith {
 
-/// Depth error of a code on a grid, and its gradient with respect to the correlation functions.
-/// Measurements y_i = mu_i + sigma_i e_i with random e_i are decoded by a soft decoder, so the
-/// error is differentiable:
+/// Depth error of a code on a grid, and its gradient w.r.t. the correlation functions. Random
+/// measurements y_i = mu_i + sigma_i e_i are decoded by a soft decoder, so the error is
+/// differentiable:
 ///   mu_i = T_i (S chi_i(z) + A kappa_i),
 ///   sigma_i^2 = T_i (S shot_i(z) + A shot_kappa_i) + constant.
-/// The gradient includes the dependence of the noise on the code. A trial may have a second return,
-/// which adds S2 chi_i(z2) to S chi_i(z). The error is that of z, decoded as the only return or as
-/// the first of two, depending on the batch. chi is linear between the bins of the grid.
+/// The gradient includes the dependence of the noise on the code. A second return adds S2 chi_i(z2)
+/// to S chi_i(z); z is decoded as the only return or as the first of two, depending on the batch.
+/// chi is linear between bins.
 class DepthErrorLoss {
  public:
   DepthErrorLoss(const SampledCamera& camera, MeasurementTable table, DepthErrorKind kind);
 
-  /// Returns the variance of a measurement [e^2], averaged over depths and measurements.
+  /// Returns the mean variance over depths and measurements [e^2].
   double mean_variance_e2(const OperatingPoint& point) const;
 
-  /// Returns the mean error [bin] of the soft decoder over the trials.
-  /// @param sharpness  of decisions, per unit of log likelihood, divided by the mean variance
-  ///   [1/e^2]
+  /// Returns the mean error of the soft decoder [bin].
+  /// @param sharpness  of decisions, per log likelihood, divided by the mean variance [1/e^2]
   double soft_error(const OperatingPoint& point, const TrialBatch& batch, double sharpness);
   /// Returns the same error and adds `weight` times its gradient at fixed sharpness.
   double soft_error(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
                     double weight);
-  /// Decodes the position [bin] of each trial by the hard decoder.
+  /// Decodes each trial by the hard decoder [bin].
   void decode(const OperatingPoint& point, const TrialBatch& batch,
               std::vector<double>& decoded_bin);
 
@@ -41,7 +40,6 @@ class DepthErrorLoss {
   MeasurementTable gradient() const;
 
  private:
-  /// Position of a return on the chords of the table.
   struct Place {
     int bin = 0, next = 0;
     double fraction = 0.0;
@@ -51,17 +49,15 @@ class DepthErrorLoss {
       return (1.0 - fraction) * values(bin, i) + fraction * values(next, i);
     }
   };
-  /// Measurements of one trial, with values for their gradient.
   struct Reading {
-    std::vector<Place> places;  ///< direct return and, optionally, a later one
+    std::vector<Place> places;  ///< direct and, optionally, later return
     std::vector<float> electrons;
     std::vector<double> deviation_e;
   };
   Place place_at(double depth_periods, double signal_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
-  /// Returns the two-return decoder, which is created on first use; null if the batch is decoded as
-  /// one return.
+  /// Created on first use; null if the batch is decoded as one return.
   SoftTwoReturnDecoder* two_return_decoder(const TrialBatch& batch);
   double sum_errors(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
                     double weight, bool with_gradient);
@@ -73,7 +69,7 @@ class DepthErrorLoss {
   SoftDecoder decoder_;
   std::optional<SoftTwoReturnDecoder> two_returns_;
   CurveGradient curve_gradient_;
-  MeasurementTable reading_gradient_;  // with respect to the table, through the electrons
+  MeasurementTable reading_gradient_;  // w.r.t. the table, through the electrons
   Reading reading_;
   std::vector<float> by_electrons_;
 };

@@ -17,7 +17,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int min_samples = 96;  // minimum number of samples of the correlation functions
+constexpr int min_samples = 96;  // for any length of the cells
 constexpr int min_cells = 4;
 
 /// Returns true for lengths with a fast Fourier transform.
@@ -27,7 +27,7 @@ bool factors_are_small(int count) {
   return count == 1;
 }
 
-/// Returns the fraction of the peak that pulses of whole cells can use.
+/// Fraction of the peak that pulses of whole cells can use.
 double usable_peak(int cells, double peak_factor) {
   return cells / std::ceil(cells / peak_factor - 1e-9) / peak_factor;
 }
@@ -45,8 +45,7 @@ int cells_within(int most, double peak_factor) {
   return most;
 }
 
-/// Returns `count` values that interpolate the sorted list: uniform in rank, and logarithmic above
-/// `floor`.
+/// `count` values that interpolate the sorted list: uniform in rank, logarithmic above `floor`.
 std::vector<double> in_between(std::vector<double> levels, int count, double floor) {
   std::sort(levels.begin(), levels.end());
   if (std::ssize(levels) <= count) return levels;
@@ -62,20 +61,18 @@ std::vector<double> in_between(std::vector<double> levels, int count, double flo
   return result;
 }
 
-/// Returns the number of shortest pulses that fit into a period.
 int runs_per_period(double shortest) { return static_cast<int>(std::floor(1.0 / shortest + 1e-9)); }
 
-/// Returns true if there are enough measurements to separate two returns. Required are two
-/// strengths, two depths, ambient light (if visible) and one more.
+/// Two returns need two strengths, two depths, ambient light (if visible) and one more mean.
 bool may_tell_two_returns(const Camera& camera, int exposures) {
   const int taps = camera.sensor.taps;
   if (camera.sensor.readout == Readout::difference) return exposures >= 5;
-  // The sum of taps that share all charge is the same in every exposure.
+  // Taps that share all charge have a constant sum.
   const bool share_all = taps > 1 && !(taps > 2 && camera.sensor.drain);
   return (share_all ? exposures * (taps - 1) + 1 : exposures * taps) >= 6;
 }
 
-/// Restricts second returns to a grid that is coarse enough to test all pairs of bins.
+/// Moves second returns to a grid that is coarse enough to test all pairs of bins.
 MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
   constexpr int max_bins = 160;
   int step = (samples + max_bins - 1) / max_bins;
@@ -90,8 +87,7 @@ MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
   return later;
 }
 
-/// Returns the operating points of the camera, and copies with second returns if they have a
-/// weight.
+/// The operating points, and copies with second returns if these have a weight.
 std::vector<LightLevel> levels_of(const Camera& camera,
                                   const std::optional<OperatingMultipath>& later,
                                   double two_return_weight) {

@@ -15,48 +15,47 @@
 
 namespace tofsmith {
 
-/// Returns in every trial, and the number of returns assumed by the decoder.
+/// Returns in every trial, and the number that the decoder assumes.
 enum class TrialReturns { one, two_taken_for_one, two };
 
-/// Light conditions for the evaluation of a code.
 struct LightLevel {
   OperatingPoint point;
   TrialReturns returns = TrialReturns::one;
-  double weight = 1.0;  ///< weight of the log error in the mean over all levels
+  double weight = 1.0;  ///< of the log error in the mean over all levels
 };
 
-/// Model of a camera for the optimizer: a grid and the light levels of the training.
+/// Camera model of the optimizer: a grid and its training light levels.
 struct CameraVariant {
   SampledCamera camera;
-  /// The model for evaluating codes. Without a bandwidth limit it has the grid of the camera,
-  /// because more bins reduce the errors of the decoder.
+  /// The model for evaluating codes. Without band limit it has the grid of the camera, since more
+  /// bins reduce the errors of the decoder.
   SampledCamera judge;
   std::vector<LightLevel> levels;
 
   double total_weight() const;
-  /// Returns the number of levels that are not decoded as two returns.
+  /// Number of levels that are not decoded as two returns.
   std::size_t usual_levels() const;
 };
 
-/// Optimization problem: waveforms of a space, to minimize the error on the worst variant of a
-/// camera. The error of a variant is the weighted geometric mean over its light levels.
+/// Optimization problem: minimize the error on the worst variant of a camera, by weighted geometric
+/// means over light levels.
 struct DesignProblem {
   WaveformSpace space;
-  std::vector<CameraVariant> variants;              ///< the camera itself first; never empty
-  OperatingRange operating;                         ///< kind of error and albedo
-  DepthPrior depths;                                ///< prior of the depths
+  std::vector<CameraVariant> variants;  ///< the camera itself first; never empty
+  OperatingRange operating;             ///< kind of error and albedo
+  DepthPrior depths;
   double shortest_run_periods = 0.0;                ///< of binary waveforms
-  std::optional<MultipathTrials> later;             ///< second returns of levels that have them
+  std::optional<MultipathTrials> later;             ///< second returns, if any
   std::optional<MultipathTrials> multipath_as_two;  ///< second returns decoded as two returns
   bool binary_modulation = true, binary_demodulation = true;
 
-  /// Returns the second returns of the trials at a level, or null.
+  /// Second returns of the trials at a level, or null.
   const MultipathTrials* multipath_of(const LightLevel& level) const {
     if (level.returns == TrialReturns::one) return nullptr;
     return level.returns == TrialReturns::two ? &*multipath_as_two : &*later;
   }
   int measurements() const { return variants.front().camera.measurements(); }
-  /// Returns the number of trials for a level; decoding two returns is expensive and has fewer.
+  /// Returns fewer trials for levels that are decoded as two returns, which is expensive.
   static int trials_of(const LightLevel& level, int trials) {
     constexpr int min_trials = 8;
     return std::max(min_trials, level.returns == TrialReturns::two ? trials / 4 : trials);
@@ -64,25 +63,22 @@ struct DesignProblem {
   bool linear() const { return operating.error == DepthErrorKind::linear; }
 };
 
-/// Chooses the grid for a camera: the requested number of cells, or the number of shortest pulses
-/// that fit into a period. It is reduced slightly if then a pulse at the peak fills whole cells.
+/// Chooses the grid: the requested number of cells, or of shortest pulses per period, slightly
+/// reduced if a pulse at the peak then fills whole cells.
 WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 
-/// Returns the points of the camera's operating range. If there are more than 40, returns 6 signal
-/// x 6 ambient levels instead, evenly spaced in the logarithm of signal, and of ambient light above
-/// the floor set by read noise.
+/// Returns the operating points; if more than 40, 6 signal x 6 ambient levels, spaced evenly in the
+/// logarithm of signal, and of ambient light above the floor of read noise.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
-/// Returns why codes with this number of exposures cannot be optimized for a valid camera, or
-/// nothing: too few measurements, constant light, neither bandwidth limit nor shortest pulse, or a
-/// shortest pulse that is too long for the period.
+/// Returns why codes of a valid camera cannot be optimized, if so: too few measurements, constant
+/// light, neither band limit nor shortest pulse, or a shortest pulse too long for the period.
 std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures);
 
-/// Creates the optimization problem. With operating.multipath, levels with second returns are
-/// added, decoded as one return and, if there are enough measurements, as two returns.
+/// With operating.multipath, adds levels with second returns, decoded as one return and, with
+/// enough measurements, as two.
 /// @param two_return_weight  OptimizeOptions::two_return_weight
-/// @throws std::invalid_argument as why_not_optimizable(), or if the variants support different
-///   codes
+/// @throws std::invalid_argument as why_not_optimizable(), or if variants support different codes
 DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
                                   double two_return_weight = 0.0);
 

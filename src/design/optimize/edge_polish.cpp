@@ -14,20 +14,19 @@ namespace {
 
 using EdgeGradient = std::vector<std::vector<std::vector<double>>>;
 
-/// Returns the sample that contains a switching time.
 Eigen::Index sample_at(double time, int samples) {
   return std::min<Eigen::Index>(samples - 1, static_cast<Eigen::Index>(wrap(time, 1.0) * samples));
 }
 
 std::size_t before(std::size_t i, std::size_t count) { return (i + count - 1) % count; }
 
-/// Gradient with respect to the edges of the light. Delaying an edge by t changes its sample by N t
-/// times the level. A longer pulse also lowers the level of the whole waveform.
+/// Delaying an edge by t changes its sample by N t times the level; a longer pulse lowers the level
+/// of the whole waveform.
 std::vector<double> pull_back_light(const SwitchedLabels& light, const Eigen::VectorXd& gradient,
                                     const Eigen::VectorXd& modulation) {
   const auto samples = static_cast<int>(gradient.size());
   const double level = 1.0 / light.share(1);
-  const double by_level = gradient.dot(modulation) * level;  // change of the level, per duty
+  const double by_level = gradient.dot(modulation) * level;  // by the level, per duty
   std::vector<double> result;
   for (std::size_t i = 0; i < light.runs(); ++i) {
     const double longer = light.label[i] == 1 ? -1.0 : 1.0;  // a falling edge, when delayed
@@ -52,7 +51,7 @@ std::vector<double> pull_back_gates(const WaveformSpace& space, const SwitchedLa
   return result;
 }
 
-/// Lengthens runs shorter than `shortest` on both sides. @return true if all are long enough
+/// Lengthens short runs on both sides. @return true if all are long enough
 bool lengthen_short_runs(SwitchedLabels& labels, double shortest) {
   constexpr int rounds = 20;
   const std::size_t count = labels.runs();
@@ -70,7 +69,7 @@ bool lengthen_short_runs(SwitchedLabels& labels, double shortest) {
   return false;
 }
 
-/// Lengthens all pulses equally until the light does not exceed the peak.
+/// Lengthens all pulses equally until the light is within the peak.
 void lengthen_pulses(SwitchedLabels& light, double peak_factor) {
   const double missing = 1.0 / peak_factor - light.share(1);
   if (missing <= 0.0) return;
@@ -86,7 +85,7 @@ bool is_playable(const SwitchedLabels& labels, double shortest) {
   return true;
 }
 
-/// Moves edges along the gradient and restores feasibility; leaves them unchanged if that fails.
+/// Moves edges along the gradient and restores feasibility, if possible.
 void step_edges(SwitchedLabels& labels, const std::vector<double>& gradient, double rate,
                 double shortest, double light_peak, Adam& adam) {
   if (labels.runs() == 0) return;
@@ -126,8 +125,8 @@ EdgeGradient pull_back_to_edges(const WaveformSpace& space, const SwitchedCode& 
 SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int steps,
                           int trials_per_step, std::uint64_t seed, std::uint64_t work_item,
                           SharedProgress* progress) {
-  constexpr double min_run = 1e-3;     // in periods; prevents edges from crossing
-  constexpr double first_rate = 0.15;  // in cells per step
+  constexpr double min_run = 1e-3;     // in periods; keeps edges apart
+  constexpr double first_rate = 0.15;  // cells per step
   const WaveformSpace& space = problem.space;
   const double shortest = std::max(min_run, problem.shortest_run_periods);
   if (space.equal_duties && code.light.empty()) return code;

@@ -29,14 +29,13 @@ namespace {
 
 constexpr std::uint64_t polish_key = 103;
 
-/// Returns true if two returns can be separated.
 bool tells_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
       make_decoding_table(ForwardModel(code, camera), camera));
 }
 
-/// Selects the entries of the pool to convert to feasible codes: the best ones and, on cameras with
-/// operating multipath, the best few others for which two returns can be decoded.
+/// Selects the best entries and, with operating multipath, the best few others for which two
+/// returns can be decoded.
 std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const OptimizePool& pool,
                                         const Camera& camera, const OptimizeOptions& options,
                                         const Sharpness& sharpness) {
@@ -54,8 +53,8 @@ std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const Opti
   return chosen;
 }
 
-/// Returns the stages of a search. A search with twice the default effort starts with all of the
-/// default search, and so on by factors of two, so more effort never gives a worse code.
+/// A search with twice the default effort starts with all of the default search, and so on, so more
+/// effort never gives a worse code.
 std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   const OptimizeOptions usual;
   std::vector<PoolStage> stages;
@@ -68,7 +67,6 @@ std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   return stages;
 }
 
-/// Returns the record of the search.
 SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
   return {.work_unit = "descents",
           .error_name = "smallest depth error so far, by the search's own trials",
@@ -76,8 +74,8 @@ SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
           .account = fmt::format("{} gradient steps", steps)};
 }
 
-/// Converts the best of the pool to feasible codes: binarized, and also with optimized edges.
-/// @param before  number of codes with edges optimized by earlier stages
+/// Converts the best entries to feasible codes, with and without optimized edges.
+/// @param before  number of codes from earlier stages
 std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
                                            const Camera& camera, const OptimizeOptions& options,
                                            std::uint64_t before, const Progress& progress) {
@@ -125,14 +123,13 @@ void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"
 
 namespace {
 
-/// Runs the complete search for the given arms.
 std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
                                     const OptimizeOptions& options, std::span<const CodeSet> also,
                                     const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
-  const Camera camera = in_buckets(variants.front());  // the camera for which codes are searched
+  const Camera camera = in_buckets(variants.front());  // whose codes are searched
 
   // For every stage:
   // 1. Descend from many codes, from perturbed copies of the best, and again from the best.
@@ -167,8 +164,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   return candidates;
 }
 
-/// Search for arms that are not binary. The codes for binary arms compete and provide one more
-/// start.
+/// Search for analog arms. Codes for binary arms compete and provide one more start.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
                                      const Progress& progress) {

@@ -25,7 +25,6 @@ int below(int count, RandomStream& random) {
   return std::min(count - 1, static_cast<int>(random.uniform() * count));
 }
 
-/// Delays the gates of an exposure by `cells`.
 void rotate_gates(const WaveformSpace& space, int exposure, int cells,
                   WaveformParameters& parameters) {
   auto gates = parameters.demodulation.middleCols(exposure * space.columns(), space.columns());
@@ -33,9 +32,9 @@ void rotate_gates(const WaveformSpace& space, int exposure, int cells,
   for (int c = 0; c < space.cells; ++c) gates.row((c + cells) % space.cells) = before.row(c);
 }
 
-// Phases are keys of random streams, so no two phases share random numbers.
+// Keys of random streams that differ between phases.
 enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
-constexpr std::size_t together = 10;  // number of descents between two sorts of the pool
+constexpr std::size_t together = 10;  // descents between sorts of the pool
 constexpr std::size_t hops_together = 5;
 constexpr std::size_t max_pool = 24;
 constexpr double refinement_softness = 1.5;
@@ -69,15 +68,14 @@ void Adam::step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double
 }
 
 namespace {
-// Key that differs from all step numbers of the stream.
+// Stream key that differs from all step numbers.
 constexpr std::uint32_t noise_in_store = 0xffffffffu;
 }  // namespace
 
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress) {
-  // Sharpened waveforms are nearly binary far inside these limits; others become so only at the
-  // limits.
+  // Limits; sharpened waveforms are nearly binary well inside.
   const double largest_modulation = schedule.final_sharpness.modulation > 1.0 ? 4.0 : 8.0;
   const double largest_demodulation = schedule.final_sharpness.demodulation > 1.0 ? 3.0 : 6.0;
   StochasticGradient objective(problem, schedule.trials_per_step,
@@ -94,7 +92,7 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
     const SampledCode code = render(problem.space, parameters, sharpness);
     const WaveformParameters gradient =
         pull_back(problem.space, code, sharpness, objective.at(code, decision_sharpness, random));
-    // Sharper waveforms change more for the same change of the parameters.
+    // Sharper waveforms change more per parameter.
     const double rate = schedule.rate * (done < 0.7 ? 1.0 : std::max(0.05, (1.0 - done) / 0.3));
     modulation.step(parameters.modulation, gradient.modulation,
                     rate / std::sqrt(sharpness.modulation));
@@ -157,7 +155,7 @@ void OptimizePool::record(double log_error_bin) {
   history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
 }
 
-/// Replaces every entry by the result of a descent, with the origin at the best rotation.
+/// Replaces entries by the results of descents, with the origin at the best rotation.
 void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
                                std::uint64_t phase, std::size_t first_item,
                                SharedProgress& progress) const {

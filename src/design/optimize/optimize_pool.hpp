@@ -21,8 +21,7 @@ namespace tofsmith {
 /// @see Kingma and Ba, "Adam: a method for stochastic optimization", ICLR 2015
 class Adam {
  public:
-  /// Updates `values` against `gradient`, which must have the same shape in all calls. Non-finite
-  /// entries count as 0.
+  /// Updates `values` against `gradient`; non-finite entries count as 0.
   void step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate);
 
  private:
@@ -31,67 +30,63 @@ class Adam {
   double mean_power_ = 1.0, square_power_ = 1.0;
 };
 
-/// Schedule of a descent. Waveforms and decoder start soft and become sharper.
+/// Waveforms and decoder start soft and become sharper.
 struct DescentSchedule {
   int steps = 300;
   int trials_per_step = 360;  ///< over all light levels
   double rate = 0.08;         ///< of the parameters, while waveforms are soft
   Sharpness final_sharpness{6.0, 8.0};
-  double soft_share = 0.4;  ///< fraction of the steps before waveforms become sharper
+  double soft_share = 0.4;  ///< of the steps, before waveforms sharpen
   double decision_sharpness_begin = 1.0,
          decision_sharpness_end = 3.0;  ///< sharpness of decisions per log likelihood
 };
 
-/// Returns parameters with a lower error. Uses the random streams (seed, work item, step).
-/// @param progress  updated at every step
+/// Returns parameters with a lower error; uses random streams (seed, work item, step).
+/// @param progress  called at every step
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress = nullptr);
 
-/// A code found by a descent.
 struct PoolEntry {
   WaveformParameters parameters;
   CodeScore score;
-  std::string start;  ///< name of the start
+  std::string start;
 };
 
-/// Jumps out of a local minimum. Takes one of the best entries, softens it, replaces one pair of
-/// waveforms (by a random pair or by one of another entry) or rotates its gates relative to its
-/// light, and adds noise.
+/// Jumps out of a local minimum: softens one of the best entries, replaces one pair of waveforms
+/// (randomly or from another entry) or rotates its gates against its light, and adds noise.
 /// @param pool  best first, not empty
-/// @return parameters of the start, and the name of its origin
+/// @return parameters and name of the start
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
               RandomStream& random);
 
-/// Clips parameters to [-limit, limit], so that a descent can change them again.
+/// Clips parameters to [-limit, limit], so that a descent can change them.
 WaveformParameters softened(WaveformParameters parameters, double limit);
 
-/// Work of one stage of a search; starts and hops include those of earlier stages.
+/// Work of a stage; starts and hops include earlier stages.
 struct PoolStage {
   int starts = 0, hops = 0;
   int refinement_steps = 0;  ///< of this stage only
 };
 
-/// Codes found by descents from many starts, best first, with the history of the search. Every
-/// stage continues from the previous one.
+/// Codes from descents, best first, with the history of the search. Stages continue from one
+/// another.
 class OptimizePool {
  public:
   OptimizePool(const DesignProblem& problem, const OptimizeOptions& options, double bin_m);
 
-  /// Descends from all starts.
   void run_starts(const PoolStage& stage, std::span<const CodeSet> also, const Progress& progress);
-  /// Descends from perturbed copies of the best, until the hops or the patience are used up.
+  /// Descends from perturbed copies of the best, until hops or patience are used up.
   void run_hops(const PoolStage& stage, const Progress& progress);
-  /// Descends again from softened copies of the best; keeps the better code of each pair.
+  /// Descends from softened copies of the best; keeps the better of each.
   void refine(const PoolStage& stage, const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
-  /// Returns the smallest error after every descent.
+  /// Smallest error after every descent.
   const std::vector<SearchStep>& history() const { return history_; }
   std::int64_t steps() const { return steps_; }
   bool ended_early() const { return ended_early_; }
   const CodeJudge& judge() const { return judge_; }
-  /// Adds a descent to the history.
   void record(double log_error_bin);
 
  private:

@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a sum of harmonics 1 to `highest_frequency` with normal coefficients.
+/// Harmonics 1 to `highest_frequency` with normal coefficients.
 Eigen::VectorXd smooth_function(int samples, int highest_frequency, RandomStream& random) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(samples);
   for (int f = 1; f <= highest_frequency; ++f) {
@@ -30,13 +30,11 @@ Eigen::VectorXd smooth_function(int samples, int highest_frequency, RandomStream
   return values;
 }
 
-/// Returns a code of zeros, to be filled by exposure.
 SampledCode empty_code(const WaveformSpace& space) {
   return {Eigen::MatrixXd::Zero(space.samples(), space.exposures),
           Eigen::MatrixXd::Zero(space.samples(), space.exposures * space.taps)};
 }
 
-/// Returns the highest harmonic with a useful amplitude after both arms.
 int highest_useful_frequency(const DesignProblem& problem) {
   constexpr double useful = 0.02;  // fraction of the amplitude
   constexpr int max_frequency = 14;
@@ -46,14 +44,13 @@ int highest_useful_frequency(const DesignProblem& problem) {
   return highest;
 }
 
-/// Writes `count` equal pulses with total duty `duty`.
 void write_pulses(const WaveformSpace& space, int count, double duty, int exposure,
                   SampledCode& code) {
   code.modulation.col(exposure) =
       pulse_train(count, std::min(1.0, duty)).cell_averages(space.samples());
 }
 
-/// Opens the taps in turn, `frequency` times per period; a single tap for half the time.
+/// Opens the taps in turn; a single tap for half the time.
 void write_turns(const WaveformSpace& space, int frequency, double phase, int exposure,
                  SampledCode& code) {
   const int turns = std::max(2, space.taps), samples = space.samples();
@@ -64,7 +61,7 @@ void write_turns(const WaveformSpace& space, int frequency, double phase, int ex
   }
 }
 
-/// Opens the tap whose random smooth function is the largest.
+/// Opens the tap with the largest random smooth function.
 void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int exposure,
                         RandomStream& random, SampledCode& code) {
   const int choices = std::max(2, space.taps), samples = space.samples();
@@ -78,7 +75,7 @@ void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int e
   }
 }
 
-/// Turns on the light where a random smooth function is largest, for the duty at the peak.
+/// Turns on the light where a random smooth function is largest, for the shortest duty.
 void write_smooth_light(const WaveformSpace& space, int highest_frequency, int exposure,
                         RandomStream& random, SampledCode& code) {
   const int samples = space.samples();
@@ -102,7 +99,6 @@ void add_noise(WaveformParameters& parameters, double deviation, RandomStream& r
     for (double& value : values->reshaped()) value += deviation * random.normal();
 }
 
-/// Returns families with the exposures of the space, built for its peak.
 std::vector<CodeSet> families_of(const WaveformSpace& space) {
   std::vector<CodeSet> codes;
   if (space.taps > 2) return codes;
@@ -113,14 +109,14 @@ std::vector<CodeSet> families_of(const WaveformSpace& space) {
     names.push_back(fmt::format("pulsed-multifrequency-k{}-q5", space.exposures));
   const FamilyOptions options{.samples = 240, .peak_factor = space.peak_factor};
   for (const std::string& name : names) {
-    if (why_no_family(name, options)) continue;  // no such member of the family
+    if (why_no_family(name, options)) continue;  // no such member
     const CodeSet code = make_family(name, options);
     codes.push_back(space.taps == 2 ? code.with_two_buckets() : code);
   }
   return codes;
 }
 
-/// Returns a start near the code. Waveforms that stay soft start closer to it.
+/// Waveforms that stay soft start closer to the code.
 OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double noise,
                        RandomStream& random) {
   constexpr double nearer = 2.0;
@@ -132,9 +128,8 @@ OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double
   return start;
 }
 
-/// Exposures at several frequencies. The first exposures have the lowest one, so that depth is
-/// unique. The others have frequency `high` with evenly spaced phases, or random frequencies and
-/// phases if `high` is 0.
+/// The first exposures have the lowest frequency, so that depth is unique; the others `high` with
+/// evenly spaced phases, or random frequencies and phases if `high` is 0.
 SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);

@@ -11,8 +11,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the camera and, with DesignOptions::robust, variants with other bandwidths. Other
-/// perturbations affect the code or the taps, which the gradients do not model.
+/// With DesignOptions::robust, includes other bandwidths. Other perturbations affect the code or
+/// the taps, which gradients do not model.
 std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& options) {
   std::vector<Camera> variants{camera};
   if (options.robust)

@@ -9,13 +9,12 @@
 
 namespace tofsmith {
 
-/// Returns the numbers of exposures to optimize: those in the options, or else the suggested ones.
+/// Returns the listed numbers of exposures, or else the suggested ones.
 std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options);
 
-/// Returns a name such as "optimized-k5".
 std::string optimized_name(int exposures);
 
-/// Returns the candidates of optimize() for a number of exposures, with all matching starts.
+/// Returns the candidates of optimize(), with all matching starts.
 /// @throws std::invalid_argument as optimize(); Interrupted
 std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
                                             const DesignOptions& options,

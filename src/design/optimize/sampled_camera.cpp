@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Mixing of the taps of an exposure by a contrast below 1: C x_j + (1 - C) / t sum_k x_k.
+/// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.
 Eigen::MatrixXd mixing_matrix(int exposures, int taps, const Sensor& sensor) {
   const std::vector<double>& each = sensor.modulation_contrasts;
   require(each.empty() || each.size() == static_cast<std::size_t>(exposures),
@@ -33,7 +33,7 @@ Eigen::MatrixXd mixing_matrix(int exposures, int taps, const Sensor& sensor) {
   return mixing;
 }
 
-/// Returns the sensitivity of every tap relative to the mean of its pixel.
+/// Sensitivities of the taps relative to the mean of their pixel.
 Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
   Eigen::VectorXd sensitivity = Eigen::VectorXd::Ones(exposures * taps);
   for (int i = 0; i < exposures * taps; ++i)
@@ -47,7 +47,7 @@ bool sees_ambient(const Camera& camera, int exposures) {
   if (camera.sensor.readout != Readout::difference) return true;
   if (camera.sensor.tap_mismatch == 0.0) return false;
   const double leak = 0.5 * std::abs(camera.sensor.tap_mismatch);  // at duty 1/2
-  // Use the longest exposure: light grows with time, its noise with the square root.
+  // The longest exposure: light grows with time, noise with its root.
   const std::vector<double>& each_s = camera.exposure_s.each_s;
   const double exposure_s = each_s.empty() ? camera.exposure_s.total_s / exposures
                                            : *std::max_element(each_s.begin(), each_s.end());
@@ -162,7 +162,7 @@ SampledCode SampledCamera::pull_back(const Measured& measured,
     const Eigen::VectorXcd& m = measured.modulation[static_cast<std::size_t>(e)];
     Eigen::VectorXcd by_modulation = Eigen::VectorXcd::Zero(transfer_.size());
     for (int i = e * taps_; i < (e + 1) * taps_; ++i) {
-      // chi = F^-1 (D conj(M) G / N). The adjoint for d multiplies by M conj(G). The adjoint for m
+      // chi = F^-1 (D conj(M) G / N). The adjoint w.r.t. d multiplies by M conj(G); w.r.t. m it
       // takes conj(gradient) D G, because m is conjugated.
       signal = by_tap.col(i);
       transform_.forward(signal, spectrum);

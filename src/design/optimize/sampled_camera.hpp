@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Waveforms of a code, constant within each of N cells of a grid.
+/// Waveforms constant within N cells of a grid.
 struct SampledCode {
   Eigen::MatrixXd modulation;    ///< (N, E)
   Eigen::MatrixXd demodulation;  ///< (N, E x taps)
@@ -20,52 +20,49 @@ struct SampledCode {
   int samples() const { return static_cast<int>(modulation.rows()); }
 };
 
-/// Returns true if a decoder must estimate ambient light. Not for differences of buckets that are
-/// open half the time, unless their sensitivities differ by more than unknown_ambient_gain()
-/// ignores.
+/// Returns true if a decoder must estimate ambient light: not for differences of buckets at duty
+/// 1/2, unless their sensitivities differ by more than unknown_ambient_gain() ignores.
 bool sees_ambient(const Camera& camera, int exposures);
 
-/// Camera on a grid: computes correlation functions of waveforms, and gradients with respect to the
-/// waveforms. Includes the band limit of both arms, contrast, mismatch and the readout of taps.
+/// Camera on a grid: correlation functions of waveforms, and gradients w.r.t. the waveforms.
+/// Includes band limits, contrast, mismatch and readout of taps.
 class SampledCamera {
  public:
-  /// A table, with the spectra of its waveforms.
+  /// A table and the spectra of its waveforms.
   struct Measured {
     MeasurementTable table;
     std::vector<Eigen::VectorXcd> modulation, demodulation;
-    std::vector<Eigen::VectorXcd> square;  ///< of the squared weights of a mixer, if needed
-    Eigen::MatrixXd weight;                ///< weights of a mixer (N, E)
+    std::vector<Eigen::VectorXcd> square;  ///< of squared weights, if needed
+    Eigen::MatrixXd weight;                ///< of a mixer (N, E)
   };
 
-  /// A mixer is modelled as two buckets (in_buckets()) whose difference is its weight. If weights
-  /// need not be binary, its shot noise depends on the squared weight.
+  /// A mixer is two buckets (in_buckets()) whose difference is its weight. If weights need not be
+  /// binary, its shot noise depends on their square.
   /// @param samples  N of the grid
   SampledCamera(const Camera& camera, int samples, int exposures);
 
   int samples() const { return transform_.samples(); }
   int measurements() const { return static_cast<int>(combination_.rows()); }
-  /// Returns the integration time of every measurement [s] (R).
+  /// Integration time of every measurement [s] (R).
   const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
-  /// Returns the variance without light [e^2] (R): read noise, quantization and dark current.
+  /// Variance without light [e^2] (R): read noise, quantization, dark current.
   const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
-  /// Returns the electrons of dark current in every measurement (R).
+  /// Electrons of dark current (R).
   const Eigen::VectorXd& dark_electrons() const { return dark_electrons_; }
-  /// Returns true if buckets are subtracted, so that shot noise comes from their sum.
+  /// True if buckets are subtracted, so that shot noise comes from their sum.
   bool subtracts() const { return difference_; }
-  /// Returns sees_ambient() of the camera.
   bool ambient_unknown() const { return ambient_unknown_; }
 
-  /// Returns the gain of harmonic n in [0, N/2] through both arms, for waveforms constant within
-  /// cells.
+  /// Gain of harmonic n in [0, N/2] through both arms, for waveforms constant within cells.
   std::complex<double> transfer(int harmonic) const {
     return transfer_[harmonic] * static_cast<double>(samples());
   }
 
   Measured measure(const SampledCode& code) const;
-  /// As measure(), but without the table, which pull_back() does not need. Not for mixers.
+  /// Without the table, which pull_back() does not need. Not for mixers.
   Measured transformed(const SampledCode& code) const;
 
-  /// Converts a gradient with respect to the table to one with respect to the waveforms.
+  /// Converts a gradient w.r.t. the table to one w.r.t. the waveforms.
   SampledCode pull_back(const Measured& measured, const MeasurementTable& gradient) const;
 
  private:
@@ -75,14 +72,14 @@ class SampledCamera {
   PeriodicTransform transform_;
   int exposures_, taps_;
   bool difference_, ambient_unknown_;
-  bool squares_;                 // true if shot noise depends on squared weights
+  bool squares_;                 // shot noise depends on squared weights
   Eigen::VectorXcd transfer_;    // G / N
-  Eigen::MatrixXd combination_;  // (R, taps of all exposures): contrast, mismatch, then readout
+  Eigen::MatrixXd combination_;  // (R, all taps): contrast, mismatch, readout
   Eigen::MatrixXd shot_combination_;
   Eigen::VectorXd exposure_s_, constant_variance_e2_, dark_electrons_;
 };
 
-/// Returns a zero table with the shape of another one, for accumulating gradients.
+/// Returns a zero table of the same shape.
 MeasurementTable zeros_like(const MeasurementTable& table);
 
 }  // namespace tofsmith

@@ -19,7 +19,7 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Vectors of the same width as Floats and Doubles.
+/// As wide as Floats and Doubles.
 template <typename Value>
 using Tag = hn::CappedTag<Value, widest_vector * sizeof(float) / sizeof(Value)>;
 
@@ -86,7 +86,7 @@ HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Returns the bin with the largest correlation. Uses scratch.ratio.
+/// Uses scratch.ratio.
 template <typename Value>
 HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
                         typename SoftDecoderOf<Value>::Scratch& scratch) {
@@ -121,7 +121,6 @@ Value best_place(const DecodingCurveOf<Value>& curve, const Value* electrons,
   return static_cast<Value>(chord) + scratch.place[chord];
 }
 
-/// Returns the errors of a vector of chords.
 template <typename D, typename V, typename Value>
 HWY_INLINE V chord_error(D d, V place, Value true_bin, Value samples,
                          const SoftQuestion& question) {
@@ -136,8 +135,8 @@ HWY_INLINE V chord_error(D d, V place, Value true_bin, Value samples,
   return hn::Min(distance, hn::Sub(whole, distance));
 }
 
-/// Computes the unnormalized weights of the chords and their errors. Writes {sum of weights, sum of
-/// weights times errors}.
+/// Unnormalized weights of the chords and their errors. Writes {sum of weights, sum of weighted
+/// errors}.
 template <typename Value>
 HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQuestion& question,
                              Value largest, typename SoftDecoderOf<Value>::Scratch& scratch,
@@ -166,9 +165,8 @@ HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQues
   sums[1] = sum_of_lanes(d, error_total);
 }
 
-/// Computes the gradient of the expected error with respect to the matches b_j at both ends of
-/// every chord (scratch), and adds the weighted gradient with respect to the squares and products
-/// of the curve.
+/// Gradient of the expected error w.r.t. the matches b_j at both ends of every chord (scratch);
+/// adds the weighted gradient w.r.t. the squares and products of the curve.
 template <typename Value>
 HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
                                      const SoftQuestion& question, Value weight,
@@ -192,7 +190,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     const auto s = hn::Sub(one, t);
     const auto share = hn::Mul(hn::Load(d, scratch.share.data() + j), hn::Set(d, normalization));
 
-    // Through the score S = match^2 / (2 square), which is stationary in t if t is free.
+    // Through the score S = match^2 / (2 square), stationary in free t.
     const auto by_score =
         hn::Mul(hn::Mul(hn::Set(d, static_cast<Value>(question.sharpness)), share),
                 hn::Sub(hn::Load(d, scratch.error.data() + j), hn::Set(d, expected)));
@@ -205,7 +203,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     auto by_q11 = hn::Mul(hn::Mul(by_square, t), t);
     auto by_q01 = hn::Mul(hn::Mul(hn::Add(by_square, by_square), s), t);
 
-    // Through the position of the best point, t = v / (u + v).
+    // Through the position t = v / (u + v).
     const auto from_truth = hn::Sub(hn::Add(hn::Iota(d, static_cast<Value>(j)), t), truth);
     auto sign = hn::IfThenElse(hn::Gt(from_truth, zero), one, hn::Set(d, -1.0f));
     if (question.is_signed) sign = one;
@@ -231,11 +229,11 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     hn::Store(by_b0, d, scratch.by_match.data() + j);
     hn::StoreU(by_b1, d, scratch.by_next_match.data() + j + 1);
   }
-  // Weights are zero in padding lanes. Point N is point 0.
+  // Padding lanes are zero. Point N is point 0.
   scratch.by_next_match[0] = scratch.by_next_match[static_cast<std::size_t>(curve.samples)];
 }
 
-/// Propagates the gradient from the matches b_j = <y, p_j> to the points (weighted) and to y.
+/// From the matches b_j = <y, p_j> to the points (weighted) and to y.
 template <typename Value>
 HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const Value* electrons,
                                       Value weight, CurveGradientOf<Value>& gradient,
@@ -264,7 +262,7 @@ HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const
   }
 }
 
-/// @param gradient  null: computes only the error
+/// @param gradient  null: only the error
 template <typename Value>
 Value expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
                      const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,

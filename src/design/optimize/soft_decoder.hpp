@@ -6,36 +6,33 @@
 
 namespace tofsmith {
 
-/// Input of the soft decoder, which weights chord j of the curve by
+/// The soft decoder weights chord j of the curve by
 ///   exp(sharpness S_j) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the best point of the chord.
 struct SoftQuestion {
   double true_bin = 0.0;
   double sharpness = 1.0;  ///< divided by the variance of y [1/e^2]
   bool circular = false;   ///< errors wrap around the period
-  bool is_signed = false;  ///< compute the signed error, > 0 beyond true_bin, instead of its
-                           ///< absolute value
+  bool is_signed = false;  ///< signed error, > 0 beyond true_bin
 };
 
-/// Decodes measurements by zero-mean normalized cross-correlation on all chords of the curve.
-/// Contains scratch memory; use one object per thread.
+/// Decodes by zero-mean normalized cross-correlation on all chords. Use one object per thread.
 template <typename Value>
 class SoftDecoderOf {
  public:
   explicit SoftDecoderOf(const DecodingCurveOf<Value>& curve);
 
-  /// Returns the position of the best point for the electrons (R), on the two chords at the best
-  /// bin [bin].
+  /// Returns the best position on the two chords at the best bin [bin], for electrons (R).
   double decode(const DecodingCurveOf<Value>& curve, const Value* electrons);
 
-  /// Returns the expected error [bin]. The second overload adds `weight` times its gradient with
-  /// respect to the curve, and writes the unweighted gradient with respect to the electrons (R).
+  /// Returns the expected error [bin]. The second overload adds `weight` times the gradient w.r.t.
+  /// the curve, and writes the unweighted gradient w.r.t. the electrons (R).
   double expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
                         const SoftQuestion& question);
   double expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
                         const SoftQuestion& question, Value weight,
                         CurveGradientOf<Value>& gradient, Value* by_electrons);
 
-  /// Scratch arrays with one value per chord.
+  /// One value per chord.
   struct Scratch {
     explicit Scratch(int stride);
     Aligned<Value> match, ratio, score, place, free, share, error, by_match, by_next_match;

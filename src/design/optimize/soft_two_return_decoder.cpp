@@ -20,10 +20,10 @@ namespace HWY_NAMESPACE {
 namespace {
 using Pairs = SoftTwoReturnDecoder::Pairs;
 
-/// Computes strengths and scores of all pairs; scores are -1 in the padding. @return the largest
+/// Strengths and scores of all pairs; -1 in the padding. @return the largest score
 float score_all_pairs(Pairs& pairs) {
-  constexpr float min_square = 1e-10f;      // of a pair whose points cancel
-  constexpr float min_determinant = 1e-6f;  // relative; closer pairs count as one return
+  constexpr float min_square = 1e-10f;      // of pairs whose points cancel
+  constexpr float min_determinant = 1e-6f;  // relative; closer pairs are one return
   const Floats d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
@@ -44,7 +44,7 @@ float score_all_pairs(Pairs& pairs) {
                                                            hn::Set(d, min_square * min_square))));
       const auto free1 = hn::Mul(inverse, hn::NegMulAdd(q12, b2, hn::Mul(q22, b1)));
       const auto free2 = hn::Mul(inverse, hn::NegMulAdd(q12, b1, hn::Mul(q11, b2)));
-      // If the free strengths violate s1 >= s2 >= 0, the optimum is at s2 = 0 or at s1 = s2.
+      // If free strengths violate s1 >= s2 >= 0, the optimum has s2 = 0 or s1 = s2.
       const auto match = hn::Max(hn::Add(b1, b2), zero), match1 = hn::Max(b1, zero);
       const auto alone = hn::Div(match1, q11);
       const auto equal = hn::Div(
@@ -67,7 +67,7 @@ float score_all_pairs(Pairs& pairs) {
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Computes unnormalized weights of all pairs and, per bin, their sums over delays.
+/// Unnormalized weights of all pairs and, per bin, their sums over delays.
 void weigh_all_pairs(float sharpness, float largest, Pairs& pairs) {
   const Floats d;
   const int lanes = lanes_of(d);
@@ -89,15 +89,13 @@ void weigh_all_pairs(float sharpness, float largest, Pairs& pairs) {
   }
 }
 
-/// Adds `value` to the lanes that start at `values`.
 template <typename V>
 HWY_INLINE void add_to(Floats d, V value, float* values) {
   hn::StoreU(hn::Add(hn::LoadU(d, values), value), d, values);
 }
 
-/// Computes the gradient with respect to the matches and, weighted, with respect to squares and
-/// products. pairs.row contains the derivative of the expected error with respect to the scores of
-/// each bin, divided by the weight of the pair.
+/// Gradient w.r.t. matches and, weighted, w.r.t. squares and products. pairs.row is the derivative
+/// of the expected error w.r.t. the scores of each bin, divided by the weight of the pair.
 void differentiate_all_pairs(float weight, Pairs& pairs) {
   const Floats d;
   const int lanes = lanes_of(d);
@@ -109,7 +107,7 @@ void differentiate_all_pairs(float weight, Pairs& pairs) {
       const std::size_t pair = at + static_cast<std::size_t>(j);
       const auto s1 = hn::Load(d, pairs.strength.data() + pair);
       const auto s2 = hn::Load(d, pairs.later.data() + pair);
-      // A score is stationary in free strengths, and fixed strengths are constant.
+      // Scores are stationary in free strengths; others are constant.
       const auto by_score =
           hn::Mul(hn::Load(d, pairs.share.data() + pair), hn::Load(d, pairs.row.data() + j));
       const auto direct = hn::Mul(by_score, s1), later = hn::Mul(by_score, s2);
@@ -143,7 +141,7 @@ Eigen::MatrixXf points_on_grid(const DecodingCurve& curve, int step) {
   return points;
 }
 
-/// Writes two periods of the values, one per bin.
+/// Two periods of the values, one per bin.
 void repeat(const Eigen::VectorXf& values, AlignedFloats& twice) {
   std::copy(values.begin(), values.end(), twice.begin());
   std::copy(values.begin(), values.end(), twice.begin() + values.size());

@@ -9,34 +9,34 @@
 
 namespace tofsmith {
 
-/// Range of delays of a second return that a decoder considers, in bins of its grid.
+/// Delays of a second return that a decoder considers, in bins of its grid.
 struct DelayBins {
   int shortest = 1, longest = 2;
 };
 
-/// Decodes measurements as two returns, s1 p_j + s2 p_k with s1 >= s2 >= 0, where k is later than j
-/// by one of the delays. The score of a pair is half the explained sum of squares,
+/// Decodes two returns, s1 p_j + s2 p_k with s1 >= s2 >= 0, where k is later than j by one of the
+/// delays. The score of a pair is half the explained sum of squares,
 ///   S_jk = max over s1, s2 of s1 <y, p_j> + s2 <y, p_k> - |s1 p_j + s2 p_k|^2 / 2.
-/// Positions are limited to the bins of a grid. This shows whether pairs of returns can be
-/// confused, but not their precision. Contains scratch memory; use one object per thread.
+/// Positions are bins of a grid: this shows which pairs can be confused, but not their precision.
+/// Use one object per thread.
 class SoftTwoReturnDecoder {
  public:
-  /// @param step  the grid has every step-th bin of the curve; must divide its samples
+  /// @param step  every step-th bin of the curve; divides its samples
   SoftTwoReturnDecoder(const DecodingCurve& curve, int step, DelayBins delays);
 
-  /// Returns the position of the direct return for the electrons (R) [bins of the curve].
+  /// Returns the position of the direct return [bins of the curve], for electrons (R).
   double decode(const float* electrons);
-  /// Returns the expected circular |error| of the direct return [bins of the curve], if a pair has
+  /// Returns the expected circular |error| of the direct return [bins of the curve], for pairs with
   /// probability exp(sharpness S_jk) / sum.
   double expected_error(const float* electrons, const SoftQuestion& question);
-  /// Returns the same error, accumulates `weight` times its gradient with respect to the curve for
-  /// pull_back(), and writes the unweighted gradient with respect to the electrons (R).
+  /// Accumulates `weight` times the gradient w.r.t. the curve for pull_back(), and writes the
+  /// unweighted gradient w.r.t. the electrons (R).
   double expected_error(const float* electrons, const SoftQuestion& question, float weight,
                         float* by_electrons);
-  /// Adds the accumulated gradient with respect to the curve.
+  /// Adds the accumulated gradient.
   void pull_back(CurveGradient& gradient) const;
 
-  /// Arrays with one value per bin, over two periods, or one per pair, (delays, stride).
+  /// One value per bin, over two periods, or one per pair, (delays, stride).
   struct Pairs {
     Pairs(int bin_count, DelayBins delay_bins);
     std::size_t of(int delay) const {
@@ -60,7 +60,7 @@ class SoftTwoReturnDecoder {
   };
 
   void set_match(const float* electrons);
-  /// Computes the weights of all pairs and the expected error.
+  /// Weights of all pairs and the expected error.
   Shares weigh(const float* electrons, const SoftQuestion& question);
 
   int step_, curve_stride_;

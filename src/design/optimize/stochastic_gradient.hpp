@@ -8,17 +8,16 @@
 
 namespace tofsmith {
 
-/// Stochastic gradient of the objective with respect to the waveforms, from new trials in every
-/// call. The objective is the smooth maximum, over the variants of the camera, of the mean log
-/// error over the light levels. The weights of the levels follow from running means of their
-/// errors.
+/// Stochastic gradient of the objective w.r.t. the waveforms, from new trials in every call. The
+/// objective is the smooth maximum over the camera variants of the mean log error over light
+/// levels. The weights of the levels follow from running means of their errors.
 class StochasticGradient {
  public:
-  /// @param trials  per call, over all light levels and variants
-  /// @param random  for the stored noise
+  /// @param trials  per call, in total
+  /// @param random  for stored noise
   StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
 
-  /// @param decision_sharpness  sharpness of decisions per log likelihood
+  /// @param decision_sharpness  per log likelihood
   SampledCode at(const SampledCode& code, double decision_sharpness, RandomStream& random);
 
  private:

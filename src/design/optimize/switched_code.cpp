@@ -59,7 +59,6 @@ SampledCode sampled_on(const WaveformSpace& space, const SwitchedCode& code) {
 
 namespace {
 
-/// Resamples a sampled waveform to the samples of the code.
 Waveform resampled(const Eigen::VectorXd& values, int samples) {
   return Waveform::sampled(Waveform::sampled(values).cell_averages(samples));
 }

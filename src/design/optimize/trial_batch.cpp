@@ -9,16 +9,16 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double closest = 1e-4;  // to an end of the range, in half periods
+constexpr double closest = 1e-4;  // to an end, in half periods
 const double decades = -std::log(closest);
 
-/// Returns a depth near one of the ends; `quantile` in [0, 1).
+/// `quantile` in [0, 1).
 double depth_near_end(double quantile, bool upper) {
   const double distance = 0.5 * std::exp(-decades * quantile);
   return upper ? std::nextafter(1.0, 0.0) * (1.0 - distance) : distance;
 }
 
-/// Moves the returns of a trial to the grid, because the decoder only has those positions.
+/// The decoder only has positions on the grid.
 void move_to(const TwoReturnGrid& grid, DepthTrial& trial) {
   const auto bin_of = [&](double periods) { return std::round(periods * grid.bins); };
   const double bin = bin_of(trial.depth_periods);
@@ -28,8 +28,7 @@ void move_to(const TwoReturnGrid& grid, DepthTrial& trial) {
                               grid.bins;
 }
 
-/// Returns the ratio of the prior density to the density of an equal mixture with depths near the
-/// ends.
+/// Prior density / density of its equal mixture with depths near the ends.
 double weight_in_mixture(double depth_periods, const DepthPrior& depths) {
   const double distance = std::min(depth_periods, 1.0 - depth_periods);
   const double near_ends = distance > 0.5 * closest ? 0.5 / (distance * decades) : 0.0;
@@ -60,8 +59,8 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
   batch.measurements = measurements;
   if (later) batch.two_returns = later->decoded_as_two;
   batch.trials.resize(static_cast<std::size_t>(count));
-  if (batch.two_returns) ends_matter = false;  // two returns are evaluated by circular errors
-  // If no depths are near the ends, there is no wrap-around.
+  if (batch.two_returns) ends_matter = false;  // always circular errors
+  // No wrap-around without depths near the ends.
   if (depths.density(0.0) == 0.0 && depths.density(1.0) == 0.0) ends_matter = false;
   const int uniform = ends_matter ? count / 2 : count;
   for (int t = 0; t < count; ++t) {

@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// Limit of the two-return error of a code, relative to the best of the initial codes.
+/// Limit of two-return errors, relative to the best initial code.
 class TwoReturnLimit {
  public:
   /// @param max_loss  OptimizeOptions::max_two_return_loss
@@ -21,9 +21,8 @@ class TwoReturnLimit {
     if (report && report->two_return)
       min_m_ = std::min(min_m_, report->two_return->circular_m.value);
   }
-  /// Returns the factor by which the error of a code is multiplied: the ratio of its two-return
-  /// error to the limit, clipped to [1, 1.25], or 1.25 if two returns cannot be decoded. Always 1
-  /// if no initial code permits two-return decoding.
+  /// Returns a factor on the ranking error: two-return error / limit, clipped to [1, 1.25]; 1.25 if
+  /// two returns cannot be decoded; 1 if this is true of all initial codes.
   double excess(const std::optional<OperatingMultipathReport>& report) const {
     if (!report || std::isinf(min_m_)) return 1.0;
     constexpr double max_excess = 1.25;

@@ -9,13 +9,12 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns s(x) = 1 / (1 + exp(-x)).
+/// s(x) = 1 / (1 + exp(-x)).
 Eigen::ArrayXd logistic_of(const Eigen::ArrayXd& x) {
   return 1.0 / (1.0 + (-x.max(-500.0).min(500.0)).exp());
 }
 
-/// Returns s(k (x - lambda)), with lambda such that the mean is `mean` in (0, 1). Uses Newton's
-/// method within a bracket.
+/// s(k (x - lambda)) with lambda such that the mean is `mean` in (0, 1), by safeguarded Newton.
 Eigen::ArrayXd logistic_of_mean(const Eigen::ArrayXd& x, double steepness, double mean) {
   const double margin = (std::abs(std::log(mean / (1.0 - mean))) + 1.0) / steepness;
   double low = x.minCoeff() - margin, high = x.maxCoeff() + margin;
@@ -35,7 +34,6 @@ Eigen::ArrayXd logistic_of_mean(const Eigen::ArrayXd& x, double steepness, doubl
   return value;
 }
 
-/// Expands cells to samples.
 Eigen::VectorXd on_samples(const Eigen::ArrayXd& cells, int repeat) {
   Eigen::VectorXd samples(cells.size() * repeat);
   for (Eigen::Index c = 0; c < cells.size(); ++c)
@@ -43,7 +41,6 @@ Eigen::VectorXd on_samples(const Eigen::ArrayXd& cells, int repeat) {
   return samples;
 }
 
-/// Returns the first sample of each cell.
 Eigen::ArrayXd first_samples(const Eigen::VectorXd& samples, int repeat) {
   Eigen::ArrayXd cells(samples.size() / repeat);
   for (Eigen::Index c = 0; c < cells.size(); ++c) cells[c] = samples[c * repeat];
@@ -70,14 +67,14 @@ Eigen::ArrayXd pull_back_of_mean(const Eigen::ArrayXd& value, double steepness,
   return steepness * slope * (gradient - mean);
 }
 
-/// Returns the shares of all classes (cells, classes).
+/// (cells, classes)
 Eigen::ArrayXXd softmax(const Eigen::ArrayXXd& logits) {
   Eigen::ArrayXXd shares = (logits.colwise() - logits.rowwise().maxCoeff()).exp();
   const Eigen::ArrayXd sum = shares.rowwise().sum();
   return shares.colwise() / sum;
 }
 
-/// Returns the shares of the classes of exposure e; the drain gets the remainder of the taps.
+/// The drain gets the remainder of the taps.
 Eigen::ArrayXXd class_shares(const WaveformSpace& space, const SampledCode& code, int e) {
   Eigen::ArrayXXd shares(space.cells, space.classes());
   for (int t = 0; t < space.taps; ++t)
@@ -153,7 +150,7 @@ WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code
 WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode& code,
                                    double scale) {
   const int columns = space.columns();
-  // With one column per class, only differences of columns matter.
+  // Only differences of columns matter.
   const double gate_scale = columns == 1 ? scale : 0.5 * scale;
   WaveformParameters result{Eigen::MatrixXd(space.cells, space.exposures),
                             Eigen::MatrixXd(space.cells, space.exposures * columns)};

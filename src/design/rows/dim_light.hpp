@@ -9,15 +9,13 @@
 
 namespace tofsmith {
 
-/// Light level, relative to the nominal one, at which rows should also work.
+/// Light level, relative to the nominal one, at which rows should still work.
 inline constexpr double dim_share = 0.1;
 
-/// Returns the camera with light scaled by `share`.
 Camera in_share_of_light(Camera camera, double share);
 
-/// Returns a note if, on a camera that reads rows, the winner has a larger error than a standard
-/// code at a tenth of the smallest signal, significantly beyond noise. The note describes how to
-/// design rows for that light.
+/// Returns a note if the winner on a camera that reads rows is significantly worse than a standard
+/// code at a tenth of the smallest signal, and how to design for that light.
 std::optional<std::string> dim_light_note(const Camera& camera, const DesignResult& result,
                                           const DesignOptions& options);
 

@@ -29,18 +29,17 @@ namespace {
 
 using std::numbers::pi;
 
-/// Minimum number of bins per period of a tone, because depth is interpolated linearly between
-/// bins.
+/// Minimum, because depth is interpolated linearly between bins.
 constexpr int min_bins_per_period = 6;
 constexpr int drawn_sets = 400, bettered_sets = 12, steps_per_set = 60, judged_sets = 8;
 constexpr int rounds_of_light = 12;
 
-/// Tone sets should also work in dimmer light, where more side lobes matter. An increase of the
-/// error by 1 % is accepted for a decrease by 40 % at a tenth of the light, up to 3 % in total.
+/// More side lobes matter in dimmer light. 1 % more error is accepted for 40 % less at a tenth of
+/// the light, up to 3 % in total.
 constexpr double dim_weight = 0.02, max_loss = 1.03;
 
-/// Trials of the Monte Carlo selection, in units of DesignOptions::search_trials and for all
-/// operating points together: first for all sets, then for the best.
+/// Monte Carlo trials in units of DesignOptions::search_trials, for all operating points together:
+/// first for all sets, then for the best.
 constexpr int first_trials = 5, dim_trials = 2;
 constexpr std::int64_t most_trials = 4'000'000'000;  // limit of evaluate()
 struct FinalRound {
@@ -49,10 +48,8 @@ struct FinalRound {
 };
 constexpr std::array final_rounds = {FinalRound{6, 30}, FinalRound{3, 100}};
 
-/// Distinct harmonics of the period, in ascending order.
 using Tones = std::vector<int>;
 
-/// A set of tones with its modulation.
 struct ToneCode {
   Tones tones;
   Eigen::VectorXd light;  // (N)
@@ -63,7 +60,7 @@ struct ToneCode {
   double score(double weight) const { return foreseen_m * std::pow(dim_foreseen_m, weight); }
 };
 
-/// Predicts the errors of tone sets at the camera's operating points, and finds their modulation.
+/// Predicts errors of tone sets and finds their light.
 class ToneSearch {
  public:
   ToneSearch(const Camera& camera, int rows)
@@ -95,7 +92,7 @@ class ToneSearch {
 
   int tones() const { return (rows_ + 1) / 2; }
 
-  /// Draws random tones around or below the best one, with a random spread.
+  /// Draws tones around or below the best one.
   Tones draw(RandomStream& random) const {
     const double centre = -1.0 + 1.1 * random.uniform(), spread = 0.1 + 0.7 * random.uniform();
     std::set<int> drawn;
@@ -109,7 +106,7 @@ class ToneSearch {
     return tones_drawn;
   }
 
-  /// Moves one tone by a small or an arbitrary step; returns the same set if the new tone is taken.
+  /// Moves one tone by a small or arbitrary step, unless the new one is taken.
   Tones stepped(const Tones& from, RandomStream& random) const {
     Tones tones = from;
     const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(tones.size()));
@@ -148,7 +145,7 @@ class ToneSearch {
     for (int k = 0; k < rows_; ++k) {
       const std::int64_t tone = tones[static_cast<std::size_t>(k / 2)];
       for (int n = 0; n < samples_; ++n) {
-        // At the centre of the bin, in half samples of the period.
+        // Centre of the bin, in half samples.
         const int at = static_cast<int>(tone * (2 * n + 1) % (2 * samples_));
         weights(n, k) = k % 2 == 0 ? std::cos(pi * at / samples_) : std::sin(pi * at / samples_);
       }
@@ -204,11 +201,11 @@ class ToneSearch {
           is_on[static_cast<std::size_t>(n)] != 0 ? static_cast<double>(samples_) / on_bins_ : 0.0;
   }
 
-  /// Predicts geometric mean errors over the operating points, and at dimmer light.
+  /// Predicts geometric mean errors at nominal and dimmer light.
   void foresee(ToneCode& code) const {
     const double exposure_s = camera_.exposure_s.of(0, 1), range_m = camera_.range_m();
     const Sensor& sensor = camera_.sensor;
-    // Fraction of the signal photons per bin, after both arms.
+    // Signal photons per bin, after both arms.
     Eigen::VectorXcd spectrum(transform_.coefficients());
     transform_.forward(code.light / code.light.sum(), spectrum);
     spectrum.array() *= response_.array();
@@ -251,7 +248,7 @@ class ToneSearch {
     code.dim_foreseen_m = mean_m(dim_);
   }
 
-  /// Returns the derivative of the rows per period of depth, from their mean (K) at depth 0.
+  /// Derivative of the rows per period of depth, from their mean (K) at depth 0.
   Eigen::VectorXd slope_of(const Tones& tones, const Eigen::VectorXd& mean) const {
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_);
     for (int k = 0; k < rows_; ++k) {
@@ -262,10 +259,9 @@ class ToneSearch {
     return slope;
   }
 
-  /// Returns the error caused by side lobes mistaken for the main lobe, summed over all side lobes.
+  /// Error by side lobes mistaken for the main lobe.
   double lobes_m(const Tones& tones, const Eigen::VectorXd& power) const {
-    // At u = j / points, 8 points per period of the highest tone; minima by parabolic
-    // interpolation.
+    // At u = j / points, 8 per period of the highest tone; minima by parabolas.
     const int points = std::min(samples_, 8 * tones.back());
     const int half = points / 2;
     std::vector<double> apart(static_cast<std::size_t>(half) + 2, 0.0);
@@ -297,7 +293,7 @@ class ToneSearch {
   Camera dim_;  // camera_ in dimmer light
   int rows_, samples_, highest_;
   PeriodicTransform transform_;
-  Eigen::VectorXcd response_;  // H_n of both arms, for all harmonics of the bins
+  Eigen::VectorXcd response_;  // of both arms, all harmonics of the bins
   Eigen::VectorXd transfer_;   // |H_n| of arms and bins
   Eigen::VectorXd cosine_, sine_;
   int best_ = 1, on_bins_ = 1;
@@ -307,7 +303,7 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
   std::stable_sort(codes.begin(), codes.end(), [weight](const ToneCode& a, const ToneCode& b) {
     return a.score(weight) < b.score(weight);
   });
-  // Sets with the same tones differ only in their modulation; keep the best one.
+  // Keep only the best light of each set.
   std::vector<ToneCode> kept;
   for (ToneCode& code : codes) {
     if (static_cast<int>(kept.size()) == count) break;
@@ -319,13 +315,13 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
 }
 
 std::int64_t by_effort(double count, const DesignOptions& options) {
-  // The number of starts represents the effort of the search.
+  // Starts represent the effort.
   const double effort =
       static_cast<double>(options.optimize.starts) / static_cast<double>(OptimizeOptions().starts);
   return std::max<std::int64_t>(1, std::llround(count * effort));
 }
 
-/// Returns the index of the best set, by successive rounds with fewer sets and more trials.
+/// Selects by rounds with fewer sets and more trials.
 std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& codes,
                       const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
@@ -351,7 +347,7 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
   const ProgressParts parts(progress, {20, 30, 50});
   std::vector<Judged> judged;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    // For similar sets, the prediction is as accurate as a few trials.
+    // For similar sets, the prediction is as good as a few trials.
     judged.push_back({i, std::sqrt(codes[i].foreseen_m * error_m(i, camera, first_trials)),
                       error_m(i, dim, dim_trials)});
     report(parts[0], static_cast<double>(i + 1) / static_cast<double>(codes.size()), "rows");
@@ -401,7 +397,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   const ProgressParts parts(progress, {20, 40, 40});
   const std::uint64_t seed = search_seed(options);
 
-  // 1. Draw random sets of tones, each with its modulation.
+  // 1. Draw sets of tones, each with its light.
   std::vector<ToneCode> codes;
   const auto drawn = static_cast<int>(by_effort(drawn_sets, options)),
              bettered = static_cast<int>(by_effort(bettered_sets, options));
@@ -411,7 +407,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
     report(parts[0], static_cast<double>(i + 1) / drawn, "rows");
   }
 
-  // 2. Improve the best sets tone by tone, for the nominal light and including dimmer light.
+  // 2. Improve the best sets tone by tone, for nominal and for dimmer light.
   const std::vector<ToneCode> at_random = std::move(codes);
   codes.clear();
   for (std::uint32_t turn = 0; turn < 2; ++turn) {
@@ -433,7 +429,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   }
   keep_best(codes, 2 * judged_sets, dim_weight);
 
-  // 3. Select one set, with random numbers that judge() does not use.
+  // 3. Select one set, with other random numbers than judge().
   const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   CodeSet code = search.code_set(tones);
