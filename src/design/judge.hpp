@@ -17,8 +17,8 @@ std::uint64_t search_seed(const DesignOptions& options);
 /// error without weighted depths.
 bool rotates(const Camera& camera, const DesignOptions& options);
 
-/// Returns why a code measures no depth, if so: the camera does not support it, or its measurements
-/// do not determine depth.
+/// Returns why a code measures no depth, or nothing: the camera does not support it, or its
+/// measurements do not determine depth.
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
 /// @throws std::invalid_argument for invalid options or camera, or robust codes with

@@ -14,15 +14,15 @@
 
 namespace tofsmith {
 
-/// One measurement of a designed code, with the residual to its target if it has one.
+/// One measurement of a designed code.
 struct MeasurementReport {
-  double residual_rms = 0.0;           ///< RMS residual of the selected pair; 0 without a target
-  double smallest_residual_rms = 0.0;  ///< RMS residual of the pair nearest to the target
+  double residual_rms = 0.0;           ///< of the selected pair; 0 without a target
+  double smallest_residual_rms = 0.0;  ///< of the pair nearest to the target
   double demodulation_duty = 0.0;
   double modulation_duty = 0.0;
   double peak = 0.0;
-  int edges = 0;                            ///< total of modulation and demodulation
-  std::string start;                        ///< name of the start in the pool that led to the pair
+  int edges = 0;                            ///< of modulation and demodulation
+  std::string start;                        ///< name of its start in the pool
   std::vector<FactorizeIteration> history;  ///< see Factorization::history
 };
 /// Describes the fields (core/fields.hpp).
@@ -35,10 +35,10 @@ auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
       Field("history", m.history, FieldMark::apart));
 }
 
-/// Progress of a search after a given amount of work.
+/// Progress of a search.
 struct SearchStep {
   double work = 0.0;     ///< in SearchRecord::work_unit
-  double error_m = 0.0;  ///< smallest error so far, as measured by the search
+  double error_m = 0.0;  ///< smallest error so far
 };
 /// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SearchStep> auto& s) {
@@ -48,10 +48,10 @@ auto fields_of(ConstOrNot<SearchStep> auto& s) {
 /// How a code was found.
 struct SearchRecord {
   std::string work_unit;   ///< "gradient steps" or "candidates"
-  std::string error_name;  ///< error measure of the steps
+  std::string error_name;  ///< error measure
   std::vector<SearchStep> steps;
-  bool proved = false;  ///< true if no other code of the searched kind is better
-  std::string account;  ///< summary of the search: space, counts and pruning tests
+  bool proved = false;  ///< no other code of the searched kind is better
+  std::string account;  ///< search space, counts and pruning tests
 };
 /// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SearchRecord> auto& s) {
@@ -60,29 +60,28 @@ auto fields_of(ConstOrNot<SearchRecord> auto& s) {
                     Field("account", s.account));
 }
 
-/// A code that competes for a camera. The method that proposes a candidate sets the code and how it
-/// was made; judge() (design/design.hpp) sets the rotation, the errors and the robustness.
+/// A code that competes for a camera. Methods set the code and its origin; judge()
+/// (design/design.hpp) sets rotation, errors and robustness.
 struct Candidate {
   CodeSet code;
   /// "family", "naive", "reference", "atlas", "factorize", "optimize" or "search".
   std::string method;
-  DepthErrorReport error;  ///< from evaluate() with the seed and the trials of DesignOptions
-  int rotation_bin = 0;    ///< rotation of the origin of depth
-  int iterations = 0;      ///< convex or gradient steps, over all starts that led to the code
-  double seconds = 0.0;    ///< time used to design the code
-  Eigen::MatrixXd target;  ///< target of the factorization (N, K); empty for other methods
-  std::vector<MeasurementReport> per_measurement;  ///< one entry per demodulation; empty unless
-                                                   ///< designed
-  std::optional<SearchRecord> search;              ///< only for optimized and searched codes
-  std::string message;                             ///< summary of the outcome in one line
-  /// Errors on perturbed cameras: for the winner, or for all candidates with DesignOptions::robust.
+  DepthErrorReport error;  ///< by evaluate() with the seed and trials of DesignOptions
+  int rotation_bin = 0;    ///< of the origin of depth
+  int iterations = 0;      ///< convex or gradient steps, over all starts
+  double seconds = 0.0;    ///< design time
+  Eigen::MatrixXd target;  ///< of the factorization (N, K); else empty
+  std::vector<MeasurementReport> per_measurement;  ///< per demodulation; empty unless designed
+  std::optional<SearchRecord> search;              ///< of optimized and searched codes
+  std::string message;                             ///< outcome in one line
+  /// Errors on perturbed cameras; for the winner, or for all with DesignOptions::robust.
   std::optional<RobustnessReport> robustness;
 
-  /// Error in the operating multipath, on cameras with operating.multipath.
+  /// Error in operating.multipath, if the camera has it.
   std::optional<OperatingMultipathReport> multipath;
 
-  /// Returns true if the code was designed for this camera. Families, reference, naive and atlas
-  /// codes are not.
+  /// Returns true if the code was designed for this camera, and is not a family, reference, naive
+  /// or atlas code.
   bool is_designed() const { return !per_measurement.empty(); }
 };
 

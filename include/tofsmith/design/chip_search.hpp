@@ -16,26 +16,23 @@
 
 namespace tofsmith {
 
-/// A binary waveform on a chip clock: bit k is set if the waveform is on during chip k.
+/// A binary waveform on a chip clock: bit k is set if it is on during chip k.
 using ChipWord = std::uint32_t;
 
 /// Maximum number of chips per period.
 inline constexpr int max_chips = 24;
 
-/// Returns the word delayed by `shift` chips, cyclically. `shift` can be negative or exceed
-/// `chips`.
+/// Returns the word delayed cyclically by any number of chips.
 ChipWord delayed_chips(ChipWord word, int shift, int chips);
-/// Returns the word reversed in time: chip k becomes chip -k, modulo `chips`.
+/// Returns the word reversed in time: chip k becomes chip -k.
 ChipWord reversed_chips(ChipWord word, int chips);
-/// Returns the word with all chips on.
 constexpr ChipWord all_chips(int chips) { return (ChipWord{1} << chips) - 1; }
-/// Returns the chips as text: "110" for a word of three chips that is on during the first two.
+/// Returns text such as "110" for three chips, on during the first two.
 std::string chip_text(ChipWord word, int chips);
 /// Inverse of chip_text(). @throws std::invalid_argument for other characters or lengths
 ChipWord chip_word(std::string_view text);
 
-/// A code for a camera with a chip clock: every waveform is on or off for whole chips, and at most
-/// one tap of an exposure is open at a time.
+/// A code of binary waveforms on a chip clock; at most one tap of an exposure is open at a time.
 struct ChipCode {
   int chips = 0;                       ///< n, chips per period
   int taps = 0;                        ///< t, taps per exposure
@@ -44,35 +41,34 @@ struct ChipCode {
 
   int exposures() const { return static_cast<int>(modulation.size()); }
   int measurements() const { return static_cast<int>(demodulation.size()); }
-  /// Returns a pointer to the `taps` words of an exposure.
+  /// Returns the words of the taps of an exposure.
   const ChipWord* taps_of(int exposure) const;
-  /// Returns chi of a measurement at a depth of `shift` chips: the number of chips during which
-  /// light arrives while the tap is open.
+  /// Returns chi at a depth of `shift` chips: the number of chips with light on the open tap.
   int correlation(int measurement, int shift) const;
-  /// Returns text such as "M 110000 D 110000/001100/000011", with exposures separated by ", ".
+  /// Returns text such as "M 110000 D 110000/001100/000011", with ", " between exposures.
   std::string text() const;
 
-  /// @throws std::invalid_argument naming the word and the rule it breaks
+  /// @throws std::invalid_argument naming the word and the rule
   void validate() const;
 
   friend bool operator==(const ChipCode&, const ChipCode&) = default;
 };
 
-/// Returns why a camera has no chip clock, or nothing if it has one. A chip clock requires a
-/// shortest pulse whose length divides the period into 3 to max_chips chips.
+/// Returns why a camera has no chip clock, or nothing: its period must be 3 to max_chips times its
+/// shortest pulse.
 std::optional<BrokenRule> why_no_chip_clock(const Camera& camera);
 
-/// Returns the chips per period of a camera's clock: period / sensor.shortest_pulse_s.
-/// @throws std::invalid_argument if why_no_chip_clock() returns a reason
+/// Returns the chips per period: period / sensor.shortest_pulse_s.
+/// @throws std::invalid_argument as why_no_chip_clock()
 int chips_of(const Camera& camera);
 
-/// Returns the level, relative to average power, of a modulation that is on for `on_chips`: the
-/// smaller of the peak factor and the level that the average power allows. With light.peak_factor =
-/// 1 the level is 1, so the *peak* power is fixed and S is the rate at peak light. With larger
-/// factors the mean power is fixed as soon as the peak allows it.
+/// Returns the level of a modulation that is on for `on_chips`, over average power: the peak
+/// factor, or less if the average power requires it. With light.peak_factor = 1 the level is 1, the
+/// *peak* power is fixed and S is the rate at peak light; with larger factors the mean power is
+/// fixed as soon as the peak allows it.
 double chip_level(int on_chips, int chips, double peak_factor);
 
-/// Converts the code to waveforms with the levels and the number of samples of the camera.
+/// Converts the code to waveforms with the levels and samples of the camera.
 CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::string& name);
 
 /// Options of the search for codes on a chip clock.
@@ -81,8 +77,8 @@ struct ChipSearchOptions {
   double margin_sigma = 8.0;
   double separation_periods = 1.0 / 36.0;  ///< a quarter of a chip at 9 chips per period
   bool equal_duty = true;
-  /// Largest search that is exhaustive. Each code counts as 1 with one exposure and three taps of
-  /// equal duty, and as 20 otherwise because it takes 20 times as long.
+  /// Size of the largest exhaustive search. Codes count as 1 with one exposure and three taps of
+  /// equal duty, and otherwise as 20 because they take 20 times as long.
   double max_exhaustive = 3e11;
   int finalists = 4;
   int annealing_starts = 24;
@@ -110,18 +106,18 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of annealing"}));
 }
 
-/// Statistics of a search. A code that is dropped counts for the first test that it failed.
+/// Statistics of a search. Dropped codes count for the first test that they failed.
 struct ChipSearchCounts {
-  double raw = 0.0;                    ///< all combinations of modulation and tap words
-  double after_symmetry = 0.0;         ///< distinct up to delay, mirror image and order
-  std::int64_t examined = 0;           ///< examined individually; a few symmetric codes twice
-  std::int64_t pruned_by_turning = 0;  ///< three taps: does not turn once, in one direction (exact)
-  std::int64_t pruned_by_bound = 0;    ///< a lower bound on the metric exceeds the best
+  double raw = 0.0;                    ///< all words of light and taps
+  double after_symmetry = 0.0;         ///< distinct up to symmetry
+  std::int64_t examined = 0;           ///< individually; a few symmetric codes twice
+  std::int64_t pruned_by_turning = 0;  ///< three taps: not one turn in one sense (exact)
+  std::int64_t pruned_by_bound = 0;    ///< by a lower bound on the metric
   std::int64_t metric_evaluations = 0;
   std::int64_t pruned_by_metric = 0;
-  std::int64_t ambiguous = 0;     ///< by the exact integer test
+  std::int64_t ambiguous = 0;     ///< by an exact integer test
   std::int64_t below_margin = 0;  ///< depths closer than margin_sigma
-  std::int64_t kept = 0;          ///< better than the best codes at that time
+  std::int64_t kept = 0;          ///< among the best at that time
 
   ChipSearchCounts& operator+=(const ChipSearchCounts& other);
 };
@@ -133,44 +129,42 @@ struct ChipImprovement {
   double share = 0.0;  ///< fraction of the search completed at that time
 };
 
-/// A resulting code of the search.
+/// A resulting code.
 struct ChipFinalist {
   ChipCode code;
-  double rms_m = 0.0;  ///< geometric mean over the operating points of chip_metric_rms_m()
+  double rms_m = 0.0;  ///< geometric mean of chip_metric_rms_m() over the operating points
   double margin_sigma =
-      0.0;  ///< proven; at the operating point with the smallest ratio to the required margin
+      0.0;  ///< proven, at the point where it is smallest relative to the requirement
 };
 
 /// Log of a search.
 struct ChipSearchLog {
   ChipSearchCounts counts;
   std::vector<ChipImprovement> improvements;
-  std::vector<double> margin_sigma;  ///< required at each operating point
+  std::vector<double> margin_sigma;  ///< required per operating point
   double seconds = 0.0;
 };
 
-/// Result of a search for codes on a chip clock.
+/// Result of search_chip_codes().
 struct ChipSearchResult {
   std::vector<ChipFinalist>
-      finalists;        ///< by the metric, best first; judge() ranks them by depth error
-  bool proved = false;  ///< true if no code has a better metric than the finalists
+      finalists;        ///< best first by the metric; judge() ranks them by depth error
+  bool proved = false;  ///< no code has a better metric
   std::string proof;    ///< statement of the proof, or why there is none
   ChipSearchLog log;
 };
 
-/// Returns why codes with this number of exposures cannot be searched for a valid camera, or
-/// nothing: no chip clock, too few or too many measurements, or a property that chip_metric_rms_m()
-/// does not model.
+/// Returns why codes of a valid camera cannot be searched, or nothing: no chip clock, too few or
+/// too many measurements, or a property that chip_metric_rms_m() does not model.
 std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures);
 
 /// Searches modulations and tap assignments on the camera's chip clock. Minimizes the geometric
-/// mean over the operating points of chip_metric_rms_m() among unambiguous codes that keep the
-/// required margin at every point. If no standard code keeps the margin, it is lowered to that of
-/// the best standard code. The search is exhaustive, up to symmetry, and its result proven if the
-/// number of codes permits. Otherwise codes are found by simulated annealing from multi-phase
-/// squares, without proof.
-/// @throws std::invalid_argument for invalid options or camera, or if why_not_searchable() returns
-///   a reason; Interrupted
+/// mean of chip_metric_rms_m() over the operating points, among unambiguous codes that keep the
+/// required margin at every point. (If no standard code keeps it, the margin of the best one is
+/// required.) If possible, the search is exhaustive up to symmetry and its result proven; otherwise
+/// codes are annealed from multi-phase squares, without proof.
+/// @throws std::invalid_argument for invalid options or camera, or as why_not_searchable();
+///   Interrupted
 /// @note results and counts do not depend on the number of threads
 /// @see docs/exhaustive_search.md
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options = {},

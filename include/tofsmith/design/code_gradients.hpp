@@ -20,11 +20,11 @@ struct PixelLight {
 
 /// Gradient of a function of the measurements of P pixels.
 struct PixelGradient {
-  MeasurementTable table;                                      ///< with respect to the code's table
+  MeasurementTable table;                                      ///< w.r.t. the code's table
   Eigen::VectorXd depth_bin, signal_e_per_s, ambient_e_per_s;  ///< (P)
 };
 
-/// Selects the gradients to compute.
+/// Selects gradients.
 struct WantedGradients {
   bool table = true;
   bool light = true;  ///< signal and ambient
@@ -38,29 +38,27 @@ struct DecodedGradient {
   std::vector<Value> electrons;  ///< (P, K)
 };
 
-/// Options of the soft decoder. It weights chord j between adjacent bins by
-///   exp(S_j / temperature_e2) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the best point p of
-///   the chord,
-/// with the ambient component projected out of the correlation functions.
+/// Options of the soft decoder, which weights chord j between adjacent bins by
+///   exp(S_j / temperature_e2) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at its best point p,
+/// on correlation functions without the ambient component.
 struct SoftDecoding {
-  std::span<const double> temperature_e2;  ///< (P), > 0; the noise variance of y is a natural
-                                           ///< choice
-  bool circular = false;                   ///< depths and errors are circular
+  std::span<const double> temperature_e2;  ///< (P), > 0; such as the variance of y
+  bool circular = false;                   ///< depths and errors wrap around
 };
 
 /// Differentiable steps from waveforms to depth, each with its adjoint, for learning codes: tables,
-/// electrons, soft decoding and the Cramer-Rao bound, for waveforms that are constant within each
-/// of N cells. optimize() uses the same tables and soft decoder. Waveforms may have any real
-/// values, even if the camera does not support them. Impulse responses, contrast, readout of taps,
-/// dark current and exposures are those of the camera. Variances exclude clipping.
+/// electrons, soft decoding and the Cramer-Rao bound of waveforms constant within N cells.
+/// optimize() uses the same tables and soft decoder. Waveforms may have any real values, even
+/// unsupported ones. Impulse responses, contrast, readout, dark current and exposures are those of
+/// the camera. Variances ignore clipping.
 /// @note thread-safe; bit-identical for any number of threads
 class CodeGradients {
  public:
   /// Matrix with one row per pixel.
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// @throws std::invalid_argument if the camera is invalid, or has rows or any of generator,
-  ///   playback, temperature and tap_mismatch, because those depend on the waveforms
+  /// @throws std::invalid_argument for an invalid camera, or one with rows, generator, playback,
+  ///   temperature or tap_mismatch, which depend on the waveforms
   CodeGradients(const Camera& camera, int samples, int exposures);
   ~CodeGradients();
   CodeGradients(const CodeGradients&) = delete;
@@ -75,24 +73,23 @@ class CodeGradients {
   /// Computes the correlation functions of waveforms (N, E) and (N, E x taps) at the bins.
   MeasurementTable measure(const Eigen::MatrixXd& modulation,
                            const Eigen::MatrixXd& demodulation) const;
-  /// Computes the gradient with respect to {modulation, demodulation} from that with respect to the
-  /// table.
+  /// Computes the gradient w.r.t. {modulation, demodulation} from the gradient w.r.t. the table.
   std::pair<Eigen::MatrixXd, Eigen::MatrixXd> pull_back(const Eigen::MatrixXd& modulation,
                                                         const Eigen::MatrixXd& demodulation,
                                                         const MeasurementTable& by_table) const;
 
-  /// Computes the expected electrons [e] and the variance [e^2] of the measurements (P, K) as in
+  /// Computes expected electrons [e] and variance [e^2] of the measurements (P, K), as
   /// ForwardModel.
   void electrons(const MeasurementTable& table, const PixelLight& light, Rows& mean,
                  Rows& variance) const;
-  /// @param by_mean, by_variance  gradients with respect to mean and variance (P, K)
+  /// @param by_mean, by_variance  gradients w.r.t. both (P, K)
   /// @param wanted  gradients to compute; others are zero
   PixelGradient pull_back_electrons(const MeasurementTable& table, const PixelLight& light,
                                     const Rows& by_mean, const Rows& by_variance,
                                     WantedGradients wanted = {}) const;
 
-  /// Computes the expected depth [bin] (P) from electrons (P, K) without dark current. If circular,
-  /// this is the circular mean around the best match, in [0, N).
+  /// Computes the expected depth [bin] (P) from electrons (P, K) without dark current. Circular:
+  /// the circular mean around the best match, in [0, N).
   template <typename Value>
   std::vector<double> soft_decode(const MeasurementTable& table, std::span<const Value> electrons,
                                   const SoftDecoding& decoding) const;
@@ -102,8 +99,8 @@ class CodeGradients {
                                  const SoftDecoding& decoding,
                                  std::span<const double> true_bin) const;
   /// Computes the gradient of sum weight[p] soft_decode()[p], or of soft_error() if true_bin is not
-  /// empty. The gradient with respect to a temperature is -<y, gradient with respect to y> / (2
-  /// temperature), because S is quadratic in y.
+  /// empty. The gradient w.r.t. a temperature is -<y, gradient w.r.t. y> / (2 temperature), because
+  /// S is quadratic in y.
   template <typename Value>
   DecodedGradient<Value> pull_back_decoded(const MeasurementTable& table,
                                            std::span<const Value> electrons,
@@ -111,12 +108,11 @@ class CodeGradients {
                                            std::span<const double> true_bin,
                                            std::span<const double> weight) const;
 
-  /// Computes CramerRaoBound::sigma_m() [m] (4 N, points) of a table, at 4 cells per bin.
+  /// Computes CramerRaoBound::sigma_m() of a table at 4 cells per bin [m] (4 N, points).
   Eigen::MatrixXd depth_deviation_m(const MeasurementTable& table,
                                     std::span<const OperatingPoint> points) const;
-  /// Computes the gradient of sum by_deviation o depth_deviation_m() (o: elementwise product) with
-  /// respect to the table, signal_e_per_s and ambient_e_per_s (points). Infinite deviations do not
-  /// contribute.
+  /// Computes the gradient of sum by_deviation o depth_deviation_m() (elementwise) w.r.t. the
+  /// table, signal_e_per_s and ambient_e_per_s (points). Infinite deviations do not contribute.
   PixelGradient pull_back_depth_deviation(const MeasurementTable& table,
                                           std::span<const OperatingPoint> points,
                                           const Eigen::MatrixXd& by_deviation) const;

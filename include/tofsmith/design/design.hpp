@@ -46,22 +46,22 @@ DesignMethod parse_design_method(std::string_view name);
 /// Options for designing and ranking codes for a camera.
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
-  /// Distinct numbers of exposures; for cameras that read rows of one exposure, numbers of rows.
-  /// Factorization approximates Hamiltonian codes, which have 3 to 6 exposures.
+  /// Distinct numbers of exposures, or of rows for cameras that read rows of one exposure.
+  /// Factorization approximates Hamiltonian codes with 3 to 6 exposures.
   std::vector<int> exposures;
-  /// Target of the factorization; replaces the Hamiltonian codes.
+  /// Replaces the Hamiltonian targets of the factorization.
   std::optional<TargetSet> target;
-  FactorizeOptions factorize;  ///< seed is replaced by the one below
-  OptimizeOptions optimize;    ///< seed is replaced by the one below
-  ChipSearchOptions search;    ///< seed and exposures are replaced by those of this struct
-  /// If true, gradients include other bandwidths and edge jitter, and candidates are ranked by the
-  /// worst of all perturbations (simulate/robustness.hpp).
+  FactorizeOptions factorize;  ///< its seed is replaced by `seed`
+  OptimizeOptions optimize;    ///< its seed is replaced by `seed`
+  ChipSearchOptions search;    ///< its seed and exposures are replaced
+  /// If true, gradients include other bandwidths and edge jitter, and candidates are ranked by
+  /// their worst perturbation (simulate/robustness.hpp).
   bool robust = false;
-  /// If absent: suggested_baselines() and, unless the method is factorize, up to eight of the other
-  /// built-in codes, chosen by a quick screening.
+  /// If absent: suggested_baselines() and, unless the method is factorize, up to eight other
+  /// built-in codes from a quick screening.
   std::optional<std::vector<std::string>> baselines;
-  /// Number of similar cameras of code_atlas() whose best codes compete, adapted to the peak of
-  /// this camera. Not used by the methods factorize and search.
+  /// Number of similar cameras of code_atlas() whose codes compete, adapted to the peak of this
+  /// camera; not used by factorize and search.
   int atlas_cameras = 4;
   bool best_rotation = true;
   int search_trials = 600;
@@ -106,95 +106,87 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
       Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 
-/// Scales the work of all searches by the factor `effort`: 0.1 for a quick look, 3 for the last
-/// percent. 0 skips the search (DesignMethod::atlas).
-/// @throws std::invalid_argument unless effort is 0 or in [0.01, 100], or if effort is 0 and the
-///   method is neither best nor atlas
+/// Scales the work of all searches: 0.1 for a quick look, 3 for the last percent, 0 for no search
+/// (DesignMethod::atlas).
+/// @throws std::invalid_argument unless effort is in [0.01, 100], or 0 with method best or atlas
 DesignOptions with_effort(DesignOptions options, double effort);
 
-/// All candidates of a camera, with distinct names, and the index of the best one.
+/// Candidates with distinct names, and the index of the best one.
 struct DesignResult {
   std::vector<Candidate> candidates;
   std::size_t best = 0;
-  std::vector<std::string> left_out;     ///< unusable codes and methods, with the reason
-  std::vector<std::string> explanation;  ///< why the winner is best, in a few sentences
+  std::vector<std::string> left_out;     ///< unusable codes and methods with reasons
+  std::vector<std::string> explanation;  ///< why the winner is best
 
   const Candidate& winner() const { return candidates[best]; }
   /// Returns the candidate with this name, or null.
   const Candidate* find(std::string_view name) const;
 };
 
-/// Returns the error by which candidates are ranked [m]: the linear or circular depth error, as
-/// selected by the camera. With DesignOptions::robust it is the error on the worst perturbed camera
-/// with a calibrated decoder. On cameras with operating.multipath the error in that multipath is
-/// included, with a penalty for large two-return errors (see OptimizeOptions::max_two_return_loss).
+/// Returns the error by which candidates are ranked [m]: linear or circular, as selected by the
+/// camera; with DesignOptions::robust on the worst perturbed camera, with a calibrated decoder. On
+/// cameras with operating.multipath it includes the error in that multipath and a penalty for large
+/// two-return errors (OptimizeOptions::max_two_return_loss).
 double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options);
 
-/// Returns the depth error of the given kind: geometric mean over the operating points [m].
+/// Returns the geometric mean over the operating points [m].
 double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind);
 
-/// Callbacks to save and restore finished designs. `load` returns the candidates that were saved
-/// earlier under `name` for the same inputs; if it returns none, the code is designed and then
-/// passed to `save`. Candidates with the same name are alternatives, of which judge() keeps the
-/// best.
+/// Callbacks for finished designs. `load` returns candidates saved earlier under `name` for the
+/// same inputs; if none, the code is designed and passed to `save`. Candidates of one name are
+/// alternatives, of which judge() keeps the best.
 struct DesignStore {
   std::function<std::vector<Candidate>(const std::string& name)> load;
   std::function<void(const std::string& name, const std::vector<Candidate>& candidates)> save;
 };
 
-/// Returns all candidates, sorted by ascending geometric_mean_error_m().
+/// Returns all candidates by ascending geometric_mean_error_m().
 std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result,
                                                       DepthErrorKind kind);
 
-/// Returns the ratio of another candidate's geometric_mean_error_m() to that of the winner, from
-/// the same trials. The standard error treats the two as independent, so it is an overestimate.
+/// Returns the ratio of another candidate's geometric_mean_error_m() to the winner's, from the same
+/// trials. The standard error ignores their correlation, so it is an overestimate.
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind);
 
-/// Returns numbers of exposures that suit a method on a camera: fewer with more taps, more with
-/// larger bandwidth.
+/// Returns suitable numbers of exposures: fewer with more taps, more with larger bandwidth.
 std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);
 
-/// Returns the default of DesignOptions::baselines. For factorization: the Hamiltonian codes that
-/// are approximated or, with a custom target, those with the listed numbers of exposures.
-/// Otherwise: sinusoids, squares, multi-frequency and Hamiltonian codes.
+/// Returns the default of DesignOptions::baselines: for factorization the Hamiltonian targets (with
+/// a custom target, those with the listed exposures); otherwise sinusoids, squares, multi-frequency
+/// and Hamiltonian codes.
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options);
 
-/// Ranks candidates. Rotates each candidate to its best origin if requested (best_rotation()),
-/// evaluates all by evaluate() with DesignOptions::seed and trials, whose random numbers no method
-/// used, keeps the best of candidates with the same name, and ranks the rest by ranking_error_m().
-/// Candidates from which depth cannot be decoded are listed in DesignResult::left_out.
-/// @param candidates  codes that the camera supports, with their origin
+/// Ranks candidates by ranking_error_m(): evaluates all, at their best origins if requested
+/// (best_rotation()), with new random numbers (DesignOptions::seed and trials), and keeps the best
+/// of each name. Candidates without decodable depth are listed in DesignResult::left_out.
+/// @param candidates  supported codes with their origin
 /// @return the winner is never worse than any given candidate
-/// @throws std::invalid_argument for invalid options or camera, an unsupported code, or if no
-///   usable candidate is left; Interrupted
+/// @throws std::invalid_argument for invalid options or camera, an unsupported code, or no usable
+///   candidate; Interrupted
 DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
                    const DesignOptions& options = {}, const Progress& progress = {});
 
-/// Designs codes for `camera` by the requested methods and ranks them with all baselines by
-/// judge(). factorize(), optimize() and search_chip_codes() only propose candidates. The naive code
-/// of each target (its ideal demodulation with a single pulse, if known and supported by the
-/// camera) also competes, so the winner is never worse than it.
+/// Designs codes by the requested methods and ranks them with all baselines by judge(). The naive
+/// code of each target (its ideal demodulation with one pulse, if known and supported) competes,
+/// too, so the winner is never worse.
 /// @throws std::invalid_argument for invalid options or camera, or unsupported targets: more than
-///   two taps, exposure times for a different number of exposures, or a number of samples that
-///   cannot represent a Hamiltonian code; Interrupted
+///   two taps, exposure times for another number of exposures, or a number of samples that cannot
+///   represent a Hamiltonian code; Interrupted
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4 and 5
 DesignResult design(const Camera& camera, const DesignOptions& options = {},
                     const Progress& progress = {}, const DesignStore& store = {});
 
-/// Camera of the atlas of best codes, independent of its frequency. All other properties are those
-/// of the paper's simulations: 15 MHz, total exposure of 0.3 s, read noise of 20 e and 5 x 5 light
-/// levels.
+/// Camera of the atlas of best codes, independent of frequency. Everything else is as in the
+/// paper's simulations: 15 MHz, 0.3 s in total, read noise of 20 e, 5 x 5 light levels.
 struct AtlasCamera {
   double peak_factor = 15.0;
-  double bandwidth_f0 = 0.0;            ///< f_max of the Hann response of both arms [f0]; 0:
-                                        ///< unlimited
-  double shortest_pulse_periods = 0.0;  ///< shortest pulse or gap / period; 0: no limit
+  double bandwidth_f0 = 0.0;            ///< f_max of both arms' Hann responses [f0]; 0: no limit
+  double shortest_pulse_periods = 0.0;  ///< pulses and gaps / period; 0: no limit
   int taps = 1;
   int exposures = 4;
   DepthErrorKind error = DepthErrorKind::linear;
 
-  /// Returns the complete camera.
   Camera camera() const;
 
   friend bool operator==(const AtlasCamera&, const AtlasCamera&) = default;
@@ -204,7 +196,7 @@ struct AtlasCamera {
 struct AtlasEntry {
   AtlasCamera of;
   CodeSet code;  ///< "atlas-t1-k4-p15-b10-linear": taps, exposures, peak, bandwidth
-  Estimate linear_m, circular_m;  ///< errors on that camera: geometric means over the light levels
+  Estimate linear_m, circular_m;  ///< on that camera, geometric means over the light levels
   const Estimate& error_m() const {
     return of.error == DepthErrorKind::linear ? linear_m : circular_m;
   }
@@ -223,26 +215,26 @@ const AtlasEntry* find_atlas_entry(std::string_view code);
 /// @throws IoError "file:line: ..." if the version is not supported or the file is damaged
 std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file = "atlas.txt");
 
-/// Returns the entry with the smallest error of each set that differs only in exposures.
+/// Returns the entries with the best number of exposures, all else being equal.
 std::vector<AtlasEntry> best_by_exposures(const std::vector<AtlasEntry>& entries);
 
-/// A power law fitted to errors of the atlas: error = at_ones_m bandwidth^-a peak^-b.
+/// A power law of atlas errors: error = at_ones_m bandwidth^-a peak^-b.
 struct AtlasLaw {
   double at_ones_m = 0.0;
   double bandwidth_power = 0.0, peak_power = 0.0;  ///< a and b
   double rms_residual = 0.0, max_residual = 0.0;   ///< of log error
-  int entries = 0;                                 ///< number of fitted entries
-  /// Returns the predicted error for a camera with limited bandwidth [m].
+  int entries = 0;                                 ///< that were fitted
+  /// Returns the predicted error of a camera with limited bandwidth [m].
   double error_m(const AtlasCamera& camera) const;
 };
 
-/// Fits a power law to the entries with limited bandwidth. Returns nothing if there are fewer than
-/// 6, or if all have the same bandwidth or peak.
+/// Fits the entries with limited bandwidth. Returns nothing for fewer than 6, or for a single
+/// bandwidth or peak.
 std::optional<AtlasLaw> fit_atlas_law(const std::vector<AtlasEntry>& entries);
 
-/// Property of a camera that find_requirements() can vary.
+/// Quantity that find_requirements() can vary.
 enum class CameraQuantity {
-  bandwidth,  ///< of both arms: scales the cutoffs and shortens pulses
+  bandwidth,  ///< of both arms: cutoffs and shortest pulse
   power,      ///< of the modulated light
   exposure,   ///< integration time
 };
@@ -252,7 +244,7 @@ std::string_view name_of(CameraQuantity quantity);
 CameraQuantity parse_camera_quantity(std::string_view name);
 
 /// Returns the camera with a quantity scaled by `factor`, > 0.
-/// @throws InvalidArgument for bandwidth if neither arm is bandwidth-limited
+/// @throws InvalidArgument for bandwidth without a band limit
 Camera with_scaled(Camera camera, CameraQuantity quantity, double factor);
 
 /// Options of find_requirements().
@@ -267,7 +259,7 @@ struct RequirementOptions {
   bool map = true;
   std::uint64_t seed = 1;
 
-  /// Returns the quantities to vary, in the order of the enumeration.
+  /// Returns the varied quantities in the order of the enumeration.
   std::vector<CameraQuantity> varied() const;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -289,18 +281,18 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 
-/// Required value of one quantity if all others stay the same.
+/// Required amount of one quantity, all others being equal.
 struct Sufficiency {
   CameraQuantity quantity = CameraQuantity::power;
-  /// Smallest sufficient factor; none if max_factor is not sufficient.
+  /// Smallest sufficient factor; none: max_factor is insufficient.
   std::optional<double> factor;
   double error_m = 0.0;  ///< at that factor, or at max_factor
-  CodeSet code;          ///< code that has this error
-  /// Factors below this one are impossible for any code, by ReceiverBound; 0: none are excluded.
+  CodeSet code;          ///< with this error
+  /// No code is sufficient below this factor, by ReceiverBound; 0: no such factor.
   double excluded_below = 0.0;
 };
 
-/// Error of the best code found for each bandwidth and power, with a tenth of the trials.
+/// Error of the best code at each bandwidth and power, by a tenth of the trials.
 struct RequirementMap {
   std::vector<double> bandwidth, power;  ///< factors, ascending
   Eigen::MatrixXd error_m;               ///< (bandwidth, power)
@@ -308,21 +300,20 @@ struct RequirementMap {
 
 /// Result of find_requirements().
 struct Requirements {
-  double error_m = 0.0;             ///< error of the unmodified camera
-  CodeSet code;                     ///< code that has this error
-  double bound_m = 0.0;             ///< ReceiverBound of the unmodified camera; 0: none
+  double error_m = 0.0;             ///< of the unmodified camera
+  CodeSet code;                     ///< with this error
+  double bound_m = 0.0;             ///< ReceiverBound; 0: none
   std::vector<Sufficiency> varied;  ///< in the order of the enumeration
   std::optional<RequirementMap> map;
 };
 
-/// Finds the smallest value of each quantity, varied separately, for which some code has at most
-/// the requested error. Codes are designed at factors of four and at the end of the bisection; all
-/// codes found are evaluated with the baselines on the same random numbers. Since the error
-/// decreases with each quantity, the smallest factor is found by bisection, to 0.5 %. The circular
-/// error is used regardless of the camera's choice, because there is no wrap-around at a given
-/// distance.
-/// @throws std::invalid_argument as design(), for invalid options, or for bandwidth if neither arm
-///   is bandwidth-limited; Interrupted
+/// Finds the smallest amount of each quantity, varied separately, for which a code has at most the
+/// requested error. Codes are designed at factors of four and where the search ends; all are
+/// evaluated with the baselines on the same random numbers. The error decreases with each quantity,
+/// so bisection finds the factor to 0.5 %. The error is always circular, because there is no
+/// wrap-around at a given distance.
+/// @throws std::invalid_argument as design(), for invalid options, or for bandwidth without a band
+///   limit; Interrupted
 Requirements find_requirements(const Camera& camera, const RequirementOptions& options,
                                const Progress& progress = {});
 

@@ -15,7 +15,7 @@
 
 namespace tofsmith {
 
-/// Modulation and demodulation of one measurement.
+/// Waveforms of one measurement.
 struct WaveformPair {
   Waveform modulation;
   Waveform demodulation;
@@ -28,8 +28,8 @@ auto fields_of(ConstOrNot<WaveformPair> auto& p) {
 /// Desired correlation function of one measurement.
 struct CorrelationTarget {
   Eigen::VectorXd samples;         ///< chi at the N bins, linear in between
-  double demodulation_mean = 0.5;  ///< mean gain, which sets the response to ambient light
-  /// Waveforms with this correlation function on a camera without limits, if known.
+  double demodulation_mean = 0.5;  ///< mean gain for ambient light
+  /// Waveforms with this correlation function on an unlimited camera, if known.
   std::optional<WaveformPair> ideal;
 };
 /// Describes the fields (core/fields.hpp).
@@ -38,7 +38,7 @@ auto fields_of(ConstOrNot<CorrelationTarget> auto& t) {
                     Field("ideal", t.ideal));
 }
 
-/// Desired correlation functions of all measurements of a code.
+/// Desired correlation functions of a code.
 struct TargetSet {
   std::string name;
   std::vector<CorrelationTarget> measurements;
@@ -50,29 +50,29 @@ auto fields_of(ConstOrNot<TargetSet> auto& t) {
   return std::tuple(Field("name", t.name), Field("measurements", t.measurements));
 }
 
-/// Returns the correlation functions of a one-tap code without impulse responses. For a family
-/// built without a peak limit these are the ideal ones.
+/// Returns the correlation functions of a one-tap code without impulse responses; ideal ones for a
+/// family built without a peak limit.
 TargetSet targets_of(const CodeSet& code);
 
-/// Returns the camera without the limits that prevent ideal codes: one tap with individual readout,
-/// full contrast and unlimited peak. Build a family for this camera to pass it to targets_of().
+/// Returns the camera without the limits that prevent ideal codes: one tap, read separately, full
+/// contrast and any peak. Pass families for this camera to targets_of().
 Camera ideal_camera(const Camera& camera);
 
 /// Creates targets from a table of correlation functions.
-/// @param table  (rows, K), values at equal steps of depth over one period without the end point;
-///   resampled linearly to `samples` bins
+/// @param table  (rows, K), equal steps of depth over one period without the end point; resampled
+///   linearly to `samples` bins
 /// @param normalize  rescales every column to minimum 0 and maximum 1
-/// @throws std::invalid_argument with column and row of a value that is not finite
+/// @throws std::invalid_argument with column and row of a non-finite value
 TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int samples,
                              bool normalize);
 
-/// Options of the factorization of one correlation function into a feasible pair of waveforms.
+/// Options of factorize().
 struct FactorizeOptions {
   /// lambda of problem (6). At 1e-2 the iteration collapses to constants.
   std::vector<double> total_variation_weights = {3e-4, 1e-5};
   int max_iterations = 12;
   double objective_tolerance = 1e-4;
-  /// The formulation of the paper. In tests it reached zero error less often.
+  /// As in the paper. In tests it reached zero error less often.
   bool feed_back_projection = false;
   int random_starts = 30;
   bool structured_starts = true;
@@ -109,11 +109,11 @@ auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of the random starts"}));
 }
 
-/// Progress after one pair of convex steps.
+/// One pair of convex steps.
 struct FactorizeIteration {
   double objective = 0.0;              ///< rms + lambda (TV(d) + TV(m) / p)
   double relaxed_residual_rms = 0.0;   ///< before projection
-  double playable_residual_rms = 0.0;  ///< after projection to feasible waveforms
+  double playable_residual_rms = 0.0;  ///< after projection
 };
 /// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FactorizeIteration> auto& i) {
@@ -122,21 +122,21 @@ auto fields_of(ConstOrNot<FactorizeIteration> auto& i) {
                     Field("playable_residual_rms", i.playable_residual_rms));
 }
 
-/// A feasible pair of waveforms and its residual to the target.
+/// A feasible pair of waveforms and its residual.
 struct PairCandidate {
   WaveformPair pair;
   double residual_rms = 0.0;  ///< RMS over depth; the target is linear between bins
   std::string start;          ///< e.g. "random 3", "2 pulses 1/3 apart, duty 0.2", "naive"
-  int iterations = 0;         ///< number of pairs of convex steps
+  int iterations = 0;         ///< pairs of convex steps
 };
 
-/// Result of the factorization of one correlation function.
+/// Result of factorize().
 struct Factorization {
   std::vector<PairCandidate> candidates;    ///< distinct, smallest residual first; never empty
   std::vector<FactorizeIteration> history;  ///< of the best random start, if any
-  std::vector<int> iterations_per_start;    ///< of all starts that ran the alternation
-  double target_variation_rms = 0.0;        ///< RMS of the target minus its mean
-  std::string message;                      ///< in one line: reached, approached or out of reach
+  std::vector<int> iterations_per_start;    ///< of all starts with alternation
+  double target_variation_rms = 0.0;        ///< RMS of target minus mean
+  std::string message;                      ///< reached, approached or out of reach
 
   const PairCandidate& best() const { return candidates.front(); }
   bool exact() const { return best().residual_rms < 1e-6; }
@@ -145,28 +145,29 @@ struct Factorization {
 /// Finds waveforms whose correlation function on `camera` approximates `target`:
 ///   min over m, d of  rms(chi - (h_m * m) corr (h_d * d)) + lambda (TV(d) + TV(m) / p)
 ///   s.t.  mean m <= 1,  0 <= m <= p,  0 <= d <= 1
-/// with m and d binary if the camera requires it. A target that cannot be reached yields a result
-/// with its residual and a message, not an exception.
-/// @throws std::invalid_argument for invalid options or camera, or a target whose length is not N
+/// with m and d binary if the camera requires it. Unreachable targets yield a result with residual
+/// and message, not an exception.
+/// @throws std::invalid_argument for invalid options or camera, or a target of length other than N
 /// @throws Interrupted if `progress` requests it
-/// @see Gutierrez-Barragan et al., CVPR 2019, problems (6) and (7); differs: does not feed the
-///   projection back into the iteration by default, and refines switching times
+/// @see Gutierrez-Barragan et al., CVPR 2019, problems (6) and (7); differs: no feedback of the
+///   projection by default, and refined switching times
 Factorization factorize(const CorrelationTarget& target, const Camera& camera,
                         const FactorizeOptions& options = {}, const Progress& progress = {});
 
-/// Result of one run of the alternation of convex steps.
+/// One run of the alternation.
 struct Alternation {
-  WaveformPair relaxed;                     ///< last iterate of the convex steps (N samples)
-  WaveformPair playable;                    ///< best projection to feasible waveforms
-  std::vector<FactorizeIteration> history;  ///< one entry per pair of convex steps
+  WaveformPair relaxed;                     ///< last iterate (N samples)
+  WaveformPair playable;                    ///< best projection
+  std::vector<FactorizeIteration> history;  ///< per pair of convex steps
 };
 
-/// Runs the alternation of factorize() once, without refining switching times afterwards.
-/// @param start  index of the random start, >= 0; start waveforms depend on it, options.seed and N
+/// Runs the alternation of factorize() once, without refinement of switching times.
+/// @param start  index of the random start, >= 0; waveforms depend on it, options.seed and N
 /// @param total_variation_weight  lambda >= 0, replaces options.total_variation_weights; 0 omits
 ///   total variation
-/// @param options  only max_iterations, objective_tolerance, feed_back_projection and seed are used
-/// @throws std::invalid_argument for invalid arguments or camera, or a target whose length is not N
+/// @param options  only max_iterations, objective_tolerance, feed_back_projection and seed
+/// @throws std::invalid_argument for invalid arguments or camera, or a target of length other than
+///   N
 Alternation alternate(const CorrelationTarget& target, const Camera& camera, int start,
                       double total_variation_weight, const FactorizeOptions& options = {});
 

@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-/// Options of the direct minimization of depth error.
+/// Options of optimize().
 struct OptimizeOptions {
   int samples = 120;
   int starts = 20;
@@ -29,11 +29,11 @@ struct OptimizeOptions {
   bool polish = true;
   int polish_steps = 250;
   std::uint64_t seed = 1;
-  /// Weight v of log E3 in the loss, which also contains log E1 and log E2 with weights 1 - w and w
+  /// Weight of log E3 in the loss, next to weights 1 - w of log E1 and w of log E2
   /// (OperatingMultipath::weight). E3 is the error of the direct depth if pairs of returns are
-  /// searched on a grid of bins. The term keeps pairs distinguishable from one another.
+  /// searched on a grid of bins; the term keeps pairs distinguishable.
   double two_return_weight = 0.02;
-  /// Above this limit, judge() multiplies the error by the ratio to the limit, by at most 1.25.
+  /// Above it, judge() multiplies the error by the ratio to this limit, at most by 1.25.
   double max_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -72,28 +72,26 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
             multipath));
 }
 
-/// Optimizes all modulations and demodulations jointly for the depth error on a camera: geometric
-/// mean over its operating points, linear or circular as specified by the camera.
+/// Optimizes all modulations and demodulations jointly for the depth error of a camera: geometric
+/// mean over its operating points, linear or circular as selected by the camera.
 ///
 /// Waveforms follow stochastic gradients through band limit, correlation, noise and a soft decoder,
-/// from a pool of starts (all families, random codes and the codes in `also`). The best are
-/// perturbed and descend again. The best of all are refined and, if the arms are binary, binarized,
-/// followed by optimization of the edges. The light source may stay below its peak. Supported
-/// receivers: one tap; two buckets that share all charge; more exclusive taps, with a drain if the
-/// camera has one; a mixer. Every pulse and gap of binary waveforms is at least
-/// sensor.shortest_pulse_s long.
+/// from a pool of starts (families, random codes and the codes in `also`). The best are perturbed
+/// and descend again; the best of all are refined, binarized for binary arms, and their edges
+/// optimized. Light may stay below its peak. Receivers: one tap; two buckets that share all charge;
+/// more exclusive taps, with drain if the camera has one; a mixer. Pulses and gaps of binary
+/// waveforms are at least sensor.shortest_pulse_s long.
 ///
-/// If an arm is not binary, the search also runs for binary arms first and then starts from those
-/// results. From twice the default effort on (see with_effort()), a search starts from all results
-/// of a search with half the effort. The candidates of both searches are returned, so more freedom
-/// or effort never gives a worse code.
-/// @param exposures  1 to 8, with at least 3 measurements in total (2 differences)
-/// @param also  additional starting codes; those with other numbers of exposures are ignored
+/// For analog arms, the search also runs for binary arms first and then starts from those results.
+/// From twice the default effort on (with_effort()), it starts with all of a search of half the
+/// effort. The candidates of both are returned, so more freedom or effort never gives a worse code.
+/// @param exposures  1 to 8, with at least 3 measurements (2 differences)
+/// @param also  further starts, if they have the same number of exposures
 /// @return feasible codes named "optimized-k<exposures>", best first by the error of the search:
-///   the best of the pool with switching times on the grid, then with optimized edges, then the
-///   results for binary arms and lower effort. They are not ranked: Candidate::error is empty. Pass
-///   them to judge() (design/design.hpp), which compares them, at their best origins, with the
-///   initial codes using independent random numbers; design() does this.
+///   with switching times on the grid, with optimized edges, then of binary arms and of lower
+///   effort. They are not ranked: Candidate::error is empty. judge() (design/design.hpp) compares
+///   them, at their best origins, with the initial codes on independent random numbers, as design()
+///   does.
 /// @throws std::invalid_argument for invalid options or camera, too few measurements, or a camera
 ///   without band limit and without sensor.shortest_pulse_s; Interrupted
 /// @note bit-identical for any number of threads
@@ -101,8 +99,8 @@ std::vector<Candidate> optimize(const Camera& camera, int exposures,
                                 const OptimizeOptions& options = {},
                                 std::span<const CodeSet> also = {}, const Progress& progress = {});
 
-/// Optimizes for the worst of several variants of a camera. The first variant is the camera itself,
-/// which must support the code. All variants must have the same taps and readout.
+/// Optimizes for the worst of several variants of a camera with the same taps and readout. The
+/// first is the camera itself, which must support the code.
 std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options = {},
                                 std::span<const CodeSet> also = {}, const Progress& progress = {});

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// Returns why there is nothing to search, if so: no chip clock, or too few taps for the default
+/// Returns why codes cannot be searched, or nothing: no chip clock, or too few taps for the default
 /// numbers of exposures.
 std::optional<BrokenRule> why_nothing_to_search(const Camera& camera, const DesignOptions& options);
 

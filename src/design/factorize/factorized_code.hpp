@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Returns why there is nothing to factorize, if so: a target that the camera does not support, or
-/// samples that cannot represent a Hamiltonian code.
+/// Returns why factorization is impossible, or nothing: a target that the camera does not support,
+/// or samples that cannot represent a Hamiltonian code.
 std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options);
 
 /// Returns the custom target, or Hamiltonian ones with the requested numbers of exposures.

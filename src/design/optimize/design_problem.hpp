@@ -71,8 +71,9 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 /// logarithm of signal, and of ambient light above the floor of read noise.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
-/// Returns why codes of a valid camera cannot be optimized, if so: too few measurements, constant
-/// light, neither band limit nor shortest pulse, or a shortest pulse too long for the period.
+/// Returns why codes of a valid camera cannot be optimized, or nothing: too few measurements,
+/// constant light, neither band limit nor shortest pulse, or a shortest pulse too long for the
+/// period.
 std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures);
 
 /// With operating.multipath, adds levels with second returns, decoded as one return and, with

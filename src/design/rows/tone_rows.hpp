@@ -19,7 +19,7 @@ constexpr int min_designed_rows = 3;
 std::vector<int> designable_rows(const DesignOptions& options);
 std::string rows_name(int rows);
 
-/// Returns why row_candidates() cannot design rows, if so.
+/// Returns why row_candidates() cannot design rows, or nothing.
 std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows);
 
 /// Designs rows and light jointly for a camera that reads rows; returns one code to be ranked.
