@@ -9,7 +9,7 @@
 
 namespace tofsmith::benchmarks {
 
-/// Collects measured values with their targets and prints them.
+/// Collects measured values with their targets.
 class AskedFigures {
  public:
   void at_least(const std::string& what, double measured, double asked) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Decoding throughput compared with an upper bound and with other decoders, measured alternately in
-// the same run. Absolute speeds depend on the machine and its load; compare the ratios.
+// Decoding throughput compared with an upper bound and with other decoders, in alternation. Only
+// ratios are meaningful.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -49,7 +49,7 @@ void print_throughput(const Options& options, AskedFigures& asked) {
     }
 }
 
-/// Measures frames that exceed the last-level cache of most processors.
+/// Frames that exceed the last-level cache of most processors.
 void print_from_memory(const Options& options) {
   fmt::print(
       "\nOne core, bins of 32 frames at medium noise, from memory to memory, Mpixel/s. share: of "
@@ -66,8 +66,8 @@ void print_from_memory(const Options& options) {
   }
 }
 
-/// Measures one frame on one and several threads by wall-clock time. For comparison: two
-/// independent halves of the pixels, the maximum that the machine can reach with two threads.
+/// One frame on one and several threads, by wall-clock time; for comparison two independent halves
+/// of the pixels, the maximum for two threads.
 void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
   const DecodingTable table = decoding_table(decode_code(code), 1000);
   const Decoder decoder(table);
@@ -122,7 +122,7 @@ void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
   }
 }
 
-/// Measures the error of depths that are decoded in single precision from noise-free pixels.
+/// Error of single-precision depths of noise-free pixels.
 void print_depth_error(const std::string& code, AskedFigures& asked) {
   const int samples = 240, pixels = 200000;
   const ForwardModel model = forward_model(decode_code(code), samples);

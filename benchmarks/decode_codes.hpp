@@ -11,12 +11,12 @@
 
 namespace tofsmith::benchmarks {
 
-/// A code for measuring the decoder, on the camera paper-10f0.
+/// A code on the camera paper-10f0.
 struct DecodeCode {
   std::string_view name;    ///< option value
   std::string_view family;  ///< argument of build_family()
   int taps;
-  int built_samples;  ///< N for which every switching time is at a sample
+  int built_samples;  ///< every switching time is at a sample
 };
 inline constexpr std::array decode_codes = {
     DecodeCode{"k3", "hamiltonian-k3", 1, 240}, DecodeCode{"k4", "hamiltonian-k4", 1, 240},
@@ -30,7 +30,6 @@ inline const DecodeCode& decode_code(std::string_view name) {
   reject("code", name, "must be k3, k4, k5, two-bucket or rank7");
 }
 
-/// Signal and ambient light of a pixel [e/s].
 struct LightLevel {
   std::string_view noise;
   double signal_e_per_s;
@@ -39,7 +38,7 @@ struct LightLevel {
 inline constexpr std::array light_levels = {
     LightLevel{"low", 1e5, 1e4}, LightLevel{"medium", 1e4, 1e4}, LightLevel{"high", 1e3, 1e4}};
 
-/// Returns the model of a code with N samples: built where sampling is exact, then resampled.
+/// Builds the code where sampling is exact, then resamples it to N.
 inline ForwardModel forward_model(const DecodeCode& code, int samples) {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = code.built_samples;

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Compares the decoder's bins with a double-precision reference, pixel by pixel, on every
-// instruction set of this machine. The reference is branch and bound at N = 240 and brute force at
-// finer N; a sample of both is compared with the definition of the decoder. A pixel is a mismatch
-// unless both bins have equal scores within the rounding of the reference; such ties are counted
-// separately.
+// Compares the decoder's bins with a double-precision reference on every instruction set of this
+// machine: branch and bound at N = 240, brute force at finer N. A sample of both is compared with
+// the definition of the decoder. Different bins are a mismatch unless their scores are equal within
+// the rounding of the reference; such ties are counted separately.
 #include <fmt/format.h>
 #include <hwy/targets.h>
 #include <unistd.h>
@@ -34,8 +33,8 @@ using namespace tofsmith::benchmarks;
 struct Options {
   std::vector<std::string> codes = {"k3", "k4", "k5", "two-bucket", "rank7"};
   std::vector<int> samples = {240, 1000, 10000};
-  double pixels = 1e9;              // number at N = 240, over all codes and targets
-  double brute_force_pixels = 1e7;  // number for each code and target at finer N
+  double pixels = 1e9;              // at N = 240, in total
+  double brute_force_pixels = 1e7;  // at finer N, per code and target
   std::uint64_t seed = 1;
 };
 
@@ -48,7 +47,7 @@ struct Counts {
   std::int64_t ties = 0;  // equal within rounding
 };
 
-/// Reference and decoder of a code, with the current pixels.
+/// Reference and decoder of a code, and the current pixels.
 class Comparison {
  public:
   Comparison(const DecodeCode& code, int samples)
@@ -63,9 +62,9 @@ class Comparison {
   static constexpr int blocks = 16;
   static constexpr int chunk = blocks * block;
 
-  /// Generates `pixels` new pixels with their reference bins.
+  /// Generates pixels with their reference bins.
   void make(std::uint64_t seed, int pixels);
-  /// Decodes them with the currently selected instruction set.
+  /// Decodes them with the selected instruction set.
   Counts compare() const;
   int rank() const { return curve_.rank(); }
   std::int64_t held_against_definition() const { return held_; }
@@ -116,7 +115,7 @@ void Comparison::make(std::uint64_t seed, int pixels) {
   }
 }
 
-/// Returns true if the expected and the found bin differ only because of rounding.
+/// Returns true if only rounding decides between the bins.
 bool Comparison::is_tie(std::size_t pixel, std::int32_t found) const {
   const std::int32_t expected = expected_[pixel];
   if (found < 0 || expected < 0) return false;
@@ -125,7 +124,7 @@ bool Comparison::is_tie(std::size_t pixel, std::int32_t found) const {
   double best = -1.0;
   for (int row = 0; row < curve_.samples(); ++row)
     best = std::max(best, curve_.score(reference, row));
-  // The lower bin is correct if it ties with the best, otherwise the higher one is.
+  // The lower bin is correct if it ties with the best, otherwise the higher one.
   const std::int32_t lower = std::min(found, expected), higher = std::max(found, expected);
   const double behind = best - curve_.score(reference, lower);
   return std::abs(behind - reference.tie) <= reference.rounding &&
@@ -146,7 +145,6 @@ Counts Comparison::compare() const {
   return {pixels_, mismatches, ties};
 }
 
-/// Shows the progress on a terminal.
 void show(const std::string& text) {
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K{}", text);
 }
@@ -155,7 +153,6 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// @returns the counts of differences
 Counts compare_all_targets(const DecodeCode& code, int samples, const Options& options) {
   std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   std::erase_if(targets, [with_kernels = dispatch_targets()](std::int64_t target) {

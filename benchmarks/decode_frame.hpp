@@ -16,11 +16,11 @@ inline constexpr int frame_width = 640, frame_height = 480;
 inline constexpr int frame_pixels = frame_width * frame_height;
 
 enum class Scene {
-  planes,  ///< slanted planes with steps in between: adjacent pixels have similar depths
-  random,  ///< independent depth for every pixel
+  planes,  ///< slanted planes with steps: neighbours have similar depths
+  random,  ///< independent depths
 };
 
-/// Returns the depth of every pixel, in bins.
+/// In bins.
 inline std::vector<double> scene_depth_bins(Scene scene, int samples, FastRandom& random) {
   constexpr int patch_width = 80, patch_height = 60;
   std::vector<double> depth_bin(static_cast<std::size_t>(frame_pixels));
@@ -41,8 +41,8 @@ inline std::vector<double> scene_depth_bins(Scene scene, int samples, FastRandom
   return depth_bin;
 }
 
-/// Appends the raw values of one pixel (K), linearly interpolated in a table. `noise` scales
-/// standard normal noise in units of its standard deviation.
+/// Appends the raw values of a pixel (K), interpolated linearly in the table; `noise` scales the
+/// standard deviation.
 inline void append_pixel(const DecodingTable& table, double depth_bin, double signal_e_per_s,
                          double ambient_e_per_s, double noise, FastRandom& random,
                          std::vector<float>& raw) {
@@ -60,7 +60,7 @@ inline void append_pixel(const DecodingTable& table, double depth_bin, double si
   }
 }
 
-/// Returns the raw values (H, W, K) of a frame.
+/// Raw values (H, W, K).
 inline std::vector<float> noisy_frame(const DecodingTable& table, Scene scene,
                                       const LightLevel& light) {
   FastRandom random(7);
@@ -71,13 +71,11 @@ inline std::vector<float> noisy_frame(const DecodingTable& table, Scene scene,
   return raw;
 }
 
-/// All planes of a decoded frame; a view selects some of them.
 struct DecodedPlanes {
   std::vector<std::int32_t> bin = std::vector<std::int32_t>(frame_pixels);
   DepthImage image{frame_height, frame_width};
 };
 
-/// Requested planes.
 enum class OutputSet { bin, depth, depth_signal_ambient, depth_confidence_status, all };
 inline constexpr std::array output_sets = {OutputSet::bin, OutputSet::depth,
                                            OutputSet::depth_signal_ambient,

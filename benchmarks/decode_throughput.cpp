@@ -17,8 +17,7 @@ namespace tofsmith::benchmarks {
 
 namespace {
 
-/// Returns the target for bins alone at N = 1000 and medium noise, as a fraction of the read-write
-/// limit.
+/// Target for bins at N = 1000 and medium noise, as a fraction of the read-write limit.
 std::optional<double> asked_share(std::string_view code) {
   if (code == "k3") return 1.0 / 3.0;
   if (code == "k4") return 1.0 / 4.0;
@@ -26,7 +25,7 @@ std::optional<double> asked_share(std::string_view code) {
   return std::nullopt;
 }
 
-/// Returns `count` pixels spread over a frame, for slow decoders.
+/// Pixels spread over a frame, for slow decoders.
 std::vector<float> some_pixels(const std::vector<float>& raw, int measurements, int count) {
   std::vector<float> some;
   for (int i = 0; i < count; ++i) {

@@ -16,11 +16,11 @@ class DecodeThroughput {
  public:
   DecodeThroughput(const DecodeCode& code, int samples);
 
-  /// Measures one frame on one core, prints one line and adds the targets.
+  /// Prints one line for a frame on one core and adds the targets.
   void print(Scene scene, const LightLevel& light, int rounds, AskedFigures& asked) const;
   static void print_heading();
 
-  /// Prints one line for bins of frames that exceed the caches, including memory traffic.
+  /// Prints one line for bins of frames that exceed the caches.
   void print_from_memory(Scene scene, int rounds) const;
 
  private:

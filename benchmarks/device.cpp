@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Pixels per second decoded by an OpenCL device, from device and from host memory, compared with
-// copies of the same bytes in the same run; and the number of differences from Decoder. Also frames
-// and recordings filtered per second on device and CPU, and the frame size above which the device
-// is faster.
+// copies of the same bytes, and the number of differences from Decoder. Frames and recordings
+// filtered per second on device and CPU, and the size above which the device is faster.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -20,7 +19,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns the shortest time of several runs [s].
+/// Shortest of several runs [s].
 double seconds_of(const std::function<void()>& work, int runs) {
   work();
   double best = 1e30;
@@ -33,7 +32,7 @@ double seconds_of(const std::function<void()>& work, int runs) {
   return best;
 }
 
-/// Returns the bytes read and written per second by copies within the device.
+/// Bytes read and written per second by copies within the device.
 double copy_rate(const Device& device, std::size_t bytes, int runs) {
   const DeviceQueue queue(device);
   const DeviceMemory from = queue.allocate(bytes), to = queue.allocate(bytes);
@@ -65,7 +64,6 @@ std::int64_t differences(const std::vector<Value>& a, const std::vector<Value>& 
   return count;
 }
 
-/// Prints the number of different bins, statuses and bits of other planes.
 void tell_differences(const Planes& a, const Planes& b) {
   std::int64_t floats = 0;
   for_each_plane(
@@ -85,7 +83,7 @@ void report(const Device& device, const char* code, int pixels, double copy_byte
   camera.samples = 960;
   const DecodeSetup setup(code, camera);
   const int measurements = setup.decoder.measurements();
-  // Repeat some noisy pixels; their values do not affect the speed.
+  // The values do not affect the speed.
   const std::vector<float> some = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 1 << 19, 1);
   std::vector<float> raw;
   while (raw.size() < static_cast<std::size_t>(pixels) * static_cast<std::size_t>(measurements))
@@ -122,7 +120,7 @@ void report(const Device& device, const char* code, int pixels, double copy_byte
   tell_differences(on_it, planes);
 }
 
-/// Returns a frame of a slanted wall behind a box.
+/// A slanted wall behind a box.
 std::vector<float> frame_of_a_box(const DecodingTable& table, int height, int width) {
   RandomStream random(7, 0);
   std::vector<float> raw;
@@ -170,7 +168,7 @@ void report_filters(const Device& device, int runs) {
   }
 }
 
-/// Measures recordings in frames per second, on the device and on the CPU.
+/// Frames per second on the device and on the CPU.
 void report_recordings(const std::string& device, int runs) {
   constexpr int height = 480, width = 640, frames = 8;
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
@@ -205,7 +203,7 @@ void report_recordings(const std::string& device, int runs) {
        {.time_filter = TimeFilterOptions{.before_filter = true}, .filter = &normal});
 }
 
-/// Describes the smallest size from which `there` is faster than `here`.
+/// Smallest size from which `there` is faster than `here`, as text.
 std::string crossover(const std::function<double(int)>& there,
                       const std::function<double(int)>& here) {
   std::optional<int> from;
@@ -216,8 +214,7 @@ std::string crossover(const std::function<double(int)>& there,
   return from ? fmt::format("{} pixels", *from * *from) : "none up to 1048576 pixels";
 }
 
-/// Measures the size from which the device is faster, including copies (see
-/// auto_min_pixels_to_filter).
+/// Size from which the device is faster, including copies (see auto_min_pixels_to_filter).
 void report_crossovers(const Device& device, int runs) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();

@@ -15,7 +15,7 @@ namespace {
 
 enum class Kind { low, medium, high, ambient, any_light, half_way, whole, scaled, odd, mixed };
 
-/// Kinds in a cycle of 16 blocks: common light is frequent, cases decided in double are rare.
+/// One cycle of kinds: common light is frequent, cases decided in double are rare.
 constexpr Kind kinds[] = {Kind::low,       Kind::medium, Kind::high,     Kind::ambient,
                           Kind::any_light, Kind::medium, Kind::half_way, Kind::high,
                           Kind::low,       Kind::whole,  Kind::ambient,  Kind::any_light,
@@ -72,7 +72,7 @@ class HardPixels {
     }
   }
 
-  /// Returns the norm of a bin without its ambient component, which normalizes its score.
+  /// Norm of a bin without its ambient component.
   double contrast(int bin) const {
     double along = 0.0, ambient = 0.0, square = 0.0;
     for (int k = 0; k < measurements(); ++k) {
@@ -85,7 +85,7 @@ class HardPixels {
     return std::sqrt(square - along * along / ambient);
   }
 
-  /// Sets raw values half-way between two adjacent or arbitrary bins, a tie up to rounding.
+  /// Half-way between two adjacent or arbitrary bins: a tie up to rounding.
   void half_way(float* raw) {
     const int n = random_.below(table_.samples());
     const int m =
@@ -121,16 +121,16 @@ class HardPixels {
   void odd(float* raw) {
     noisy(1e4, 1e4, raw);
     switch (random_.below(8)) {
-      case 0:  // NaN
+      case 0:
         raw[random_.below(measurements())] = std::numeric_limits<float>::quiet_NaN();
         return;
       case 1:
         raw[random_.below(measurements())] = -std::numeric_limits<float>::infinity();
         return;
-      case 2:  // all zero
+      case 2:
         std::fill_n(raw, measurements(), 0.0f);
         return;
-      case 3:  // one value differs from the others
+      case 3:  // one different value
         std::fill_n(raw, measurements(), static_cast<float>(random_.below(1000)));
         raw[random_.below(measurements())] += static_cast<float>(random_.below(1000));
         return;

@@ -10,12 +10,12 @@
 
 namespace tofsmith::benchmarks {
 
-inline constexpr int pixels_per_kind = 4096;  ///< number of consecutive pixels of a kind
+inline constexpr int pixels_per_kind = 4096;  ///< consecutive pixels
 
-/// Generates raw values (pixels, K) that are difficult to decode, from the stream `seed`: three
-/// noise levels, ambient light 100 times the signal, light over six powers of ten, exactly half-way
-/// between two bins, whole numbers, tiny and huge scales, ambient light only, NaN and infinity, and
-/// a mixture. The kind changes every pixels_per_kind pixels.
+/// Generates raw values (pixels, K) that are difficult to decode: three noise levels, ambient light
+/// 100 times the signal, light over six powers of ten, exactly half-way between two bins, whole
+/// numbers, tiny and huge scales, only ambient light, NaN and infinity, and a mixture. The kind
+/// changes every pixels_per_kind pixels.
 /// @param raw  (pixels * K)
 void fill_hard_pixels(const DecodingTable& table, std::uint64_t seed, int pixels, float* raw);
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Residuals of the factorization of Hamiltonian correlation functions, compared with the best
-// results of an independent prototype: one line per camera, measurement and peak, then the verdict.
+// Residuals of the factorization of Hamiltonian correlation functions, compared with the best of an
+// independent prototype, per camera, measurement and peak.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ struct Row {
   int order;        // K
   int measurement;  // 1-based
   double peak_factor;
-  double f_max;  // in units of the fundamental frequency; 0: no limit
+  double f_max;  // [f0]; 0: no limit
   double prototype_rms;
 };
 
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
     const Factorization f =
         factorize(targets.measurements[static_cast<std::size_t>(row.measurement - 1)], camera);
     const PairCandidate& best = f.best();
-    // The results of the prototype are rounded to their last digit.
+    // The prototype's results are rounded.
     const double rounding = row.prototype_rms >= .1 || row.prototype_rms < .03 ? 5e-4 : 5e-5;
     const bool met =
         best.residual_rms <= 1.02 * row.prototype_rms + (row.prototype_rms > 0 ? rounding : 1e-6);

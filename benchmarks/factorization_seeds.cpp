@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Reliability of random starts for the K = 3 Hamiltonian code: 50 seeds per peak, without
-// structured starts and without the naive pair. Also the effect of feeding the projection back into
-// the iteration (the formulation of the paper) for K = 4.
+// structured starts and naive pair. Also the effect of feeding the projection back into the
+// iteration, as in the paper, for K = 4.
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 namespace tofsmith::benchmarks {
 
-/// Fast random numbers of moderate quality: SplitMix64.
+/// Fast random numbers of moderate quality (SplitMix64).
 /// @see Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014
 class FastRandom {
  public:
@@ -19,14 +19,14 @@ class FastRandom {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// Returns a number in [0, 1).
+  /// In [0, 1).
   double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Returns a number with uniform logarithm.
+  /// With uniform logarithm.
   double log_uniform(double low, double high) { return low * std::pow(high / low, uniform()); }
-  /// Returns a number in [0, count).
+  /// In [0, count).
   int below(int count) { return static_cast<int>(((*this)() >> 32) * count >> 32); }
-  /// Returns a number with mean 0 and variance 1, within 3.5: the sum of four uniform numbers.
+  /// Sum of four uniform numbers, with mean 0 and variance 1, within 3.5.
   double normal() {
     const std::uint64_t bits = (*this)();
     const auto sum = static_cast<double>((bits & 0xffff) + (bits >> 16 & 0xffff) +

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames per second of the spatial and the temporal filter, VGA with four measurements, compared
-// with copying and decoding the same frame.
+// Frames per second of the spatial and temporal filters (VGA, four measurements), compared with
+// copying and decoding the same frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace tofsmith::benchmarks {
 namespace {
 
-/// Returns the shortest time of several runs, which has the least interference [s].
+/// Shortest of several runs, with the least interference [s].
 template <typename Work>
 double seconds_of(const Work& work) {
   constexpr int runs = 7;
@@ -43,7 +43,7 @@ const std::array time_filters = {
     NamedTimeFilter{"in time, looking 4 frames ahead", {.look_ahead = 4}},
     NamedTimeFilter{"in time, looking 16 frames ahead", {.look_ahead = 16}}};
 
-/// Returns the memory of a temporal filter, in frames of K floats per pixel.
+/// Memory of a temporal filter, in frames of K floats per pixel.
 double frames_held(const TimeFilterOptions& options) {
   return static_cast<double>(TimeFilter::memory_bytes(options, frame_height, frame_width, 4, 1)) /
          (sizeof(float) * 4.0 * frame_pixels);

@@ -10,17 +10,17 @@
 
 namespace tofsmith::benchmarks {
 
-/// A function to be timed alternately with others.
+/// A function to be timed.
 struct Contender {
   double pixels = 0.0;  ///< per call
   std::function<void()> work;
 };
 
-/// Seconds per pixel of contenders that run alternately, so that other load on the machine affects
-/// all of them equally. Only ratios are meaningful.
+/// Seconds per pixel of contenders in alternation, so that other load affects all of them equally.
+/// Only ratios are meaningful.
 class Turns {
  public:
-  /// @param clock  CLOCK_THREAD_CPUTIME_ID for single-threaded work, else CLOCK_MONOTONIC
+  /// @param clock  CLOCK_THREAD_CPUTIME_ID for a single thread, else CLOCK_MONOTONIC
   Turns(const std::vector<Contender>& contenders, int rounds,
         clockid_t clock = CLOCK_THREAD_CPUTIME_ID)
       : seconds_(contenders.size()) {
@@ -37,9 +37,9 @@ class Turns {
     return *std::min_element(seconds_[i].begin(), seconds_[i].end());
   }
   double pixels_per_s(std::size_t i) const { return 1.0 / min_s(i); }
-  /// Returns the speed relative to contender `other`, both at their fastest.
+  /// Speed relative to contender `other`, both at their fastest.
   double speed_over(std::size_t i, std::size_t other) const { return min_s(other) / min_s(i); }
-  /// Returns the median over the rounds of the speed ratio within each round.
+  /// Median over rounds of the speed ratio within a round.
   double median_speed_over(std::size_t i, std::size_t other) const {
     std::vector<double> ratios;
     for (std::size_t round = 0; round < seconds_[i].size(); ++round)
@@ -56,7 +56,7 @@ class Turns {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  std::vector<std::vector<double>> seconds_;  // per pixel, for each contender and round
+  std::vector<std::vector<double>> seconds_;  // per pixel, contender and round
 };
 
 }  // namespace tofsmith::benchmarks

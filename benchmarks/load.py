@@ -8,8 +8,8 @@ endless stream.
     load.py TOFSMITH sweep [--items 1e6]
     load.py TOFSMITH stream [--minutes 10]
 
-Memory is the resident set of the process; rates use wall-clock time, so run on an idle machine.
-Exits with 1 if the second half differs from the first by more than 10 % in memory or 25 % in rate.
+Memory is the resident set; rates use wall-clock time on an idle machine. Exits with 1 if the halves
+of a run differ by more than 10 % in memory or 25 % in rate.
 """
 
 import argparse

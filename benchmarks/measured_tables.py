@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Depth error with a measured correlation table relative to the error with the exact camera, for
-various taps, orders, signs and directions. Each camera is swept over 121 delays of 64 pixels at
-S = 3e6 e/s and calibrated with its nominal description. Both decoders use the same 40,000 pixels
-with random depths at S = 3e5 e/s. Target: a ratio of at most 1.05.
+"""Depth error with a measured correlation table relative to the exact camera, for various taps,
+orders, signs and directions. Each camera is swept over 121 delays of 64 pixels at S = 3e6 e/s
+and calibrated with its nominal description. Both decoders use the same 40,000 pixels at random
+depths and S = 3e5 e/s. Target: at most 1.05.
 
     PYTHONPATH=build-dev/python measured_tables.py
 """

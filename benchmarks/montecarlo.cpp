@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Depth-error trials per second and core, compared with random numbers only, decoding only, and the
-// same experiment in NumPy (the output of montecarlo_numpy.py can be given as a file).
+// same experiment in NumPy (output of montecarlo_numpy.py).
 //
 //   benchmark_montecarlo [--rounds R] [--numpy FILE]
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ namespace {
 constexpr std::int64_t trials_in_a_call = 1 << 17;
 constexpr LightLevel light = light_levels[1];
 
-/// Trials per second of NumPy, with keys "code samples".
+/// Trials per second, by "code samples".
 using PeerSpeeds = std::map<std::string, double>;
 
 PeerSpeeds read_peer(const std::string& path) {
@@ -40,7 +40,7 @@ PeerSpeeds read_peer(const std::string& path) {
   return speeds;
 }
 
-/// One experiment: a code at one light level with one noise model.
+/// A code at one light level with one noise model.
 class Experiment {
  public:
   Experiment(const DecodeCode& code, int samples, NoiseModel noise)
@@ -108,7 +108,7 @@ class Experiment {
     sums_ = sum_errors(trials_, rounds, 1.0, {});
   }
 
-  /// Draws all random numbers of the trials, without other work.
+  /// Only the random numbers of the trials.
   void draw_numbers() {
     const int rank = decoder_.rank();
     const bool in_plane = trials_.draws_in_plane();
@@ -128,7 +128,6 @@ class Experiment {
     }
   }
 
-  /// Stores the raw values of the trials in order.
   void fill_raw() {
     const DepthTrials by_measurement(model_, camera_,
                                      {.trials = trials_in_a_call, .draw_every_measurement = true});
@@ -161,7 +160,7 @@ class Experiment {
   std::unique_ptr<TrialTile> tile_ = std::make_unique<TrialTile>();
 };
 
-/// Measures Poisson numbers per microsecond, compared with the standard library.
+/// Poisson numbers per microsecond, compared with the standard library.
 void print_poisson(int rounds) {
   fmt::print("\n{:>12}{:>14}{:>14}{:>8}\n", "Poisson mean", "million/s", "std million/s", "times");
   std::mt19937_64 random(1);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Speed of two-return decoding compared with the single-path decoder: a two-bucket Hamiltonian code
+// Speed of two-return decoding relative to the single-path decoder: a two-bucket Hamiltonian code
 // with five exposures, on one core.
 #include <fmt/format.h>
 
@@ -17,8 +17,7 @@ namespace {
 
 constexpr int pixels = 32768;
 
-/// Returns a frame in which a fraction of the pixels has a second return that one return cannot
-/// explain.
+/// In a fraction of the pixels there is a second return that one return cannot explain.
 std::vector<float> frame(const DecodingTable& table, double share) {
   FastRandom random(11);
   std::vector<float> raw;

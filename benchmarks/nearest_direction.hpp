@@ -9,8 +9,8 @@
 
 namespace tofsmith::benchmarks {
 
-/// Peer for comparisons: nearest direction by nanoflann's k-d tree, in single precision. make()
-/// returns null if the benchmark was built without nanoflann.
+/// Nearest direction by nanoflann's k-d tree in single precision, for comparison. make() returns
+/// null without nanoflann.
 class NearestDirection {
  public:
   static std::unique_ptr<NearestDirection> make(const ReferenceCurve& curve);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Results of direct optimization compared with targets: geometric mean depth error over the paper's
-// 25 light levels (f0 = 15 MHz, T = 0.3 s, read noise 20 e), or the gain over Hamiltonian K = 4 at
-// one level, with independent trials at N = 240; and the processor time of a design.
+// Direct optimization compared with targets: geometric mean depth error over the paper's 25 light
+// levels (f0 = 15 MHz, T = 0.3 s, read noise 20 e), or the gain over Hamiltonian K = 4 at one
+// level, by independent trials at N = 240; and processor time.
 //   benchmark_optimize [--only NAME] [--seed S] [--exposures E] [--history]
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ using namespace tofsmith;
 
 struct Row {
   const char* name;
-  double peak_factor, band_multiple;  // 0: no limit, with a shortest pulse of 0.5 ns
+  double peak_factor, band_multiple;  // 0: no limit, but a shortest pulse of 0.5 ns
   DepthErrorKind error;
   int exposures, taps;
   double asked;                    // maximum [mm], or minimum gain over Hamiltonian K = 4
@@ -76,7 +76,7 @@ std::vector<CodeSet> baselines_for(const Camera& camera) {
 
 double seconds_of_processor() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Returns the error of a code with trials that were not used in its selection [m].
+/// Error by trials that were not used in the design [m].
 Estimate judged(const CodeSet& code, const Camera& camera) {
   EvaluateOptions options;
   options.seed = 987654321;

@@ -127,7 +127,7 @@ class Phasors:
         response, *_ = np.linalg.lstsq(np.stack(waves, 1), table, rcond=None)
         self.inverse = np.linalg.pinv(response)  # (K, 1 + 2 F)
         self.harmonics, self.depth_m = harmonics, np.arange(samples + 1) * RANGE_M / samples
-        # Phases of the table: no bias from waveforms that are not sinusoidal.
+        # The table's own phases avoid a bias of waveforms that are not sinusoidal.
         self.phase = []
         for harmonic, own in zip(harmonics, self.of(table)):
             unwrapped = np.unwrap(np.angle(own))

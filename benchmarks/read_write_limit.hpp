@@ -12,8 +12,8 @@
 
 namespace tofsmith::benchmarks {
 
-/// Reads every raw value of a frame and writes every value of the requested planes, in blocks of a
-/// few thousand pixels: the minimum work of any decoder.
+/// Reads every raw value and writes every value of the requested planes, a few thousand pixels at a
+/// time: the minimum work of a decoder.
 inline void read_and_write(const std::vector<float>& raw, int measurements,
                            const DecodedView& planes) {
   constexpr int block = 4096;

@@ -35,7 +35,7 @@ using Vector = hn::Vec<Doubles>;
 
 HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Doubles())); }
 
-/// Returns the scores of the rows of a block, starting at row i.
+/// Scores of the rows of a block from row i on.
 template <int Rank>
 HWY_INLINE Vector scores(const double* unit, const double* block, int i) {
   const Doubles d;
@@ -47,7 +47,7 @@ HWY_INLINE Vector scores(const double* unit, const double* block, int i) {
 
 HWY_INLINE double largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Doubles(), v)); }
 
-/// Returns the first row of a block whose score is at least `least`, or -1.
+/// First row of a block with a score of at least `least`, or -1.
 template <int Rank>
 HWY_INLINE int first_row(const double* unit, const double* block, double least) {
   const Doubles d;
@@ -99,8 +99,7 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const ReferenceP
   const Doubles d;
   constexpr int stride = Rank * reference_block;
   const double* const unit = pixel.unit.data();
-  // The sine of a small angle loses half of its digits when computed from the cosine; the
-  // tolerances account for it.
+  // A sine from a cosine near 1 loses half of its digits; the tolerances account for it.
   const Vector one = hn::Set(d, 1.0), lost = hn::Set(d, 1e-14), slack = hn::Set(d, 1e-9);
   HWY_ALIGN double highest[max_run_blocks * reference_block];
   Vector most = hn::Set(d, -2.0);
@@ -114,7 +113,7 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const ReferenceP
       hn::Store(hn::IfThenElse(hn::Ge(c, cosine), hn::Add(one, slack), bound), d, highest + run);
       most = hn::Max(most, c);
     }
-  double best = largest(most);  // a centre is one of the directions
+  double best = largest(most);  // centres are directions
   int candidates[max_run_blocks * reference_block], count = 0;
   for (int run = 0; run < view.run_blocks * reference_block; ++run)
     if (highest[run] >= best) candidates[count++] = run;
@@ -199,7 +198,7 @@ BranchAndBound::BranchAndBound(const ReferenceCurve& curve) {
   const int runs = (curve.samples() + run_rows - 1) / run_rows;
   const int blocks = (runs + reference_block - 1) / reference_block;
   require(blocks <= max_run_blocks, "samples", curve.samples(), "must be at most 16384");
-  // Padding of the last block repeats the last run and has no rows.
+  // Padding repeats the last run and has no rows.
   const auto entries = static_cast<std::size_t>(blocks * reference_block);
   centre_.resize(entries * static_cast<std::size_t>(rank));
   cosine_.assign(entries, 1.0);

@@ -9,28 +9,26 @@
 
 namespace tofsmith::benchmarks {
 
-/// Finds the lowest bins whose scores are within reference_tie of the best, over all bins. Brute
-/// force in double, for eight rows and four pixels at a time.
-/// @param pixels  must have only finite values
+/// Finds the lowest bins with scores within reference_tie of the best, by brute force in double.
+/// @param pixels  finite
 void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixels, int count,
                          std::int32_t* bin);
 
-/// As bins_by_brute_force(), by branch and bound: runs of adjacent bins are enclosed in cones, and
-/// cones whose upper bound is below the best score are skipped.
+/// The same by branch and bound: runs of adjacent bins are in cones; cones with a bound below the
+/// best score are skipped.
 class BranchAndBound {
  public:
-  /// @param curve  must outlive this object and keep its address
+  /// @param curve  must outlive this object
   explicit BranchAndBound(const ReferenceCurve& curve);
 
   std::int32_t bin(const ReferencePixel& pixel) const;
 
-  /// Arrays of the search; runs are stored in blocks like rows.
+  /// Arrays of the search; runs are in blocks like rows.
   struct View {
     int rank = 0;
     int run_blocks = 0;
     int row_blocks = 0;
-    const double* centre =
-        nullptr;  ///< [run_blocks][rank][reference_block]: central direction of the run
+    const double* centre = nullptr;  ///< [run_blocks][rank][reference_block]: centre of the run
     const double* cosine = nullptr;  ///< [runs] of the angle between centre and farthest row
     const double* sine = nullptr;    ///< [runs]
     const double* row = nullptr;     ///< see ReferenceCurve::rows()

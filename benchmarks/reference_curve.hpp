@@ -11,23 +11,23 @@
 
 namespace tofsmith::benchmarks {
 
-inline constexpr int reference_block = 8;  ///< number of rows with interleaved components
+inline constexpr int reference_block = 8;  ///< rows with interleaved components
 inline constexpr int max_rank = 8;
 inline constexpr double reference_tie = 1e-11;  ///< tolerance of ties, in units of |P y'|
 
-/// A pixel with the ambient component projected out.
+/// A pixel without its ambient component.
 struct ReferencePixel {
-  std::array<double, max_rank> unit{};  ///< unit vector, or zero if no signal is left
-  double tie = reference_tie;           ///< scores of `unit` within this distance tie
-  double rounding = 0.0;                ///< bound on the rounding error of a score of `unit`
-  bool is_number = false;               ///< true if all raw values are finite
+  std::array<double, max_rank> unit{};  ///< unit vector, or zero
+  double tie = reference_tie;           ///< tolerance of ties for `unit`
+  double rounding = 0.0;                ///< of a score of `unit`
+  bool is_number = false;               ///< all raw values are finite
 };
 
-/// The decoder's definition in double: directions of bins and pixels, in coordinates of the space
-/// spanned by the bins without the ambient component. Independent of the library's tables.
+/// The decoder's definition in double: directions of bins and pixels in the space of the bins
+/// without the ambient component. Independent of the library's tables.
 class ReferenceCurve {
  public:
-  /// @throws std::invalid_argument if the rank is not in [2, max_rank], or for bins without
+  /// @throws std::invalid_argument unless the rank is in [2, max_rank], or for bins without
   ///   contrast
   explicit ReferenceCurve(const DecodingTable& table);
 
@@ -35,7 +35,7 @@ class ReferenceCurve {
   int rank() const { return rank_; }
   int measurements() const { return static_cast<int>(coordinates_.cols()); }
   int blocks() const { return (samples_ + reference_block - 1) / reference_block; }
-  /// Returns the directions [blocks][rank][reference_block]; padding repeats the last row.
+  /// Directions [blocks][rank][reference_block]; padding repeats the last row.
   const double* rows() const { return rows_.data(); }
   double component(int row, int j) const {
     return rows_[static_cast<std::size_t>((row / reference_block * rank_ + j) * reference_block +

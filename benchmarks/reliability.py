@@ -61,9 +61,8 @@ def cases():
 
 
 def lobe_edges(table):
-    """Number of rows, and the width of the lobe to the left and right of each row [rows], by the
-    definition of `confidence`: as far as the code's own score decreases, at most 5 % of the
-    range."""
+    """Number of rows, and the width of the lobe to the left and right of each row [rows], as
+    defined for `confidence`: while the code's own score decreases, at most 5 % of the range."""
     correlation = np.asarray(table.correlation)
     gain = np.asarray(table.ambient_gain)
     if np.any(gain):
@@ -109,8 +108,8 @@ def signal_deviation(code, camera):
 
 
 def reliability(decoder, code, camera, strength, pixels):
-    """Confidence, whether the depth is in the right lobe, and the tile, of all pixels with a depth.
-    Without a filter each pixel is a tile."""
+    """Confidence, correctness of the lobe, and tile, of all pixels with a depth. Without a filter
+    each pixel is a tile."""
     signals = FILTERED_SIGNALS if strength else SIGNALS
     depth, albedo = random_scene(np.random.default_rng(7), pixels, camera.range_m, signals,
                                  bool(strength))

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Searches on a chip clock, each compared with its target: proven optima and their processor time,
-// annealed codes without proof, and a comparison with standard codes by metric, Monte Carlo and on
-// a mesh. `benchmark_search [quick|proofs|raw|anneal|compare]`; quick, the default, skips searches
-// of more than a minute or two (n = 18, four taps n = 15 and 16, raw pairs).
+// Searches on a chip clock compared with targets: proven optima and processor time, annealed codes,
+// and a comparison with standard codes by metric, Monte Carlo and on a mesh. `benchmark_search
+// [quick|proofs|raw|anneal|compare]`; quick, the default, skips searches of more than a minute or
+// two (n = 18, four taps n = 15 and 16, raw pairs).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct LightLevel {
 const LightLevel levels[] = {
     {"HIGH", {1.7e7, 0.0}}, {"LOWAMB", {1.7e7, 8e7}}, {"LOWSIG", {1.1e6, 0.0}}};
 
-/// One required search: best known metrics [mm], and processor seconds on two cores.
+/// A search with best known metrics [mm] and processor seconds on two cores.
 struct Row {
   int taps, chips, exposures;
   double asked_mm[3];  // at each level; 0: no target
@@ -97,8 +97,8 @@ void prove(bool is_long, benchmarks::AskedFigures& asked) {
   }
 }
 
-/// Compares the search with all codes of three taps and nine chips, enumerated without symmetry,
-/// bounds or order.
+/// All codes of three taps and nine chips, without symmetry, bounds or order, compared with the
+/// search.
 void raw(benchmarks::AskedFigures& asked) {
   constexpr int chips = 9;
   const Camera camera = chip_camera(chips, 3, levels[0].point);
@@ -152,7 +152,7 @@ void anneal(benchmarks::AskedFigures& asked) {
   }
 }
 
-/// Returns a bumpy ball that fills the view, centred at about half the range.
+/// Fills the view, centred at about half the range.
 SceneImage bumpy_ball() {
   TriangleMesh mesh = tessellated_sphere(4);
   for (auto& v : mesh.vertices)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Time to solve one circulant total-variation subproblem, in units of one forward and one inverse
-// real Fourier transform of the same length by the same library in the same run, so that results
-// can be compared between machines. A general-purpose QP solver needs about 400 ms at N = 1000.
+// Time of a circulant total-variation subproblem, in units of one forward and one inverse real
+// Fourier transform of its length in the same run, for comparisons between machines. A
+// general-purpose QP solver needs about 400 ms at N = 1000.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using tofsmith::CirculantTvProblem;
 using tofsmith::CirculantTvResult;
 using tofsmith::CirculantTvSolver;
 
-// Returns the median time of a call [s], over batches of about a millisecond.
+// Median of calls, in batches of about a millisecond [s].
 template <typename Work>
 double median_seconds(Work&& work) {
   using clock = std::chrono::steady_clock;
@@ -38,7 +38,7 @@ double median_seconds(Work&& work) {
   return seconds[20];
 }
 
-// Returns a waveform of on and off runs, in units of 1 / `units` of the period.
+// On and off runs, in units of 1 / `units` of the period.
 Eigen::VectorXd binary_code(int samples, const std::vector<int>& runs, int units, int shift) {
   Eigen::VectorXd code(samples);
   for (int n = 0; n < samples; ++n) {
@@ -60,8 +60,7 @@ Eigen::VectorXd smoothed_twice(const Eigen::VectorXd& x, int width) {
   return tofsmith::circular_convolution(tofsmith::circular_convolution(x, window), window);
 }
 
-// Returns the subproblem of the modulation of a Hamiltonian code, for its ideal demodulation and
-// correlation function.
+// The modulation of a Hamiltonian code, for its demodulation and ideal correlation function.
 CirculantTvProblem hamiltonian_problem(int samples, const std::vector<int>& runs, int units,
                                        int shift, double peak_factor, bool band_limited) {
   Eigen::VectorXd demodulation = binary_code(samples, runs, units, shift);
@@ -90,14 +89,14 @@ void report(const char* name, const CirculantTvProblem& problem) {
   const double before = time_transforms();
 
   CirculantTvSolver solver(samples);
-  // Alternate kernels, so that no transform is reused from the previous solve.
+  // Different kernels prevent reuse of transforms.
   std::vector<CirculantTvProblem> variants(2, problem);
   variants[1].kernel *= 1 + 1e-12;
   std::size_t turn = 0;
   CirculantTvResult cold;
   const double cold_seconds = median_seconds([&] { cold = solver.solve(variants[turn++ % 2]); });
 
-  // Change the target slightly, as between two steps of the alternation.
+  // A slightly different target, as in the next step of the alternation.
   for (CirculantTvProblem& variant : variants)
     for (int n = 0; n < samples; ++n) variant.target[n] += 0.003 * std::sin(40.0 * n / samples);
   CirculantTvResult warm;

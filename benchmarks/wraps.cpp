@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Wrong wrap counts of multi-frequency codes: without noise for random sets of frequencies, and
-// with noise compared with exact maximum likelihood on the continuous model.
+// Wrong wrap counts of multi-frequency codes: without noise for random frequencies, and with noise
+// compared with exact maximum likelihood on the continuous model.
 //
 //   benchmark_wraps [SETS] [PIXELS PER SET] [SEED]     (default: 1000 sets of 10000 pixels)
 //   benchmark_wraps --noise [PIXELS PER LEVEL]         (default: 100000)
@@ -34,7 +34,7 @@ std::string name_of(const Frequencies& list) {
   return name;
 }
 
-/// Returns a camera with differences of two buckets, f0 = 1 MHz and no impulse responses.
+/// Differences of two buckets, f0 = 1 MHz, no impulse responses.
 Camera ideal_camera() {
   Camera camera;
   camera.operating = paper_operating_range();
@@ -50,7 +50,7 @@ double phase_of(const FrequencySteps& f, int step) {
   return turn * step / (f.steps == 2 ? 4 : f.steps);
 }
 
-/// Appends the differences of the buckets for unit amplitude, plus normal noise.
+/// Differences of the buckets for unit amplitude, plus normal noise.
 void append_pixel(const Frequencies& list, double periods, double noise, RandomStream& random,
                   std::vector<float>& raw) {
   for (const FrequencySteps& f : list)
@@ -96,7 +96,7 @@ int without_noise(int sets, int pixels, std::uint64_t seed) {
     const Frequencies list = random_frequencies(random);
     const Decoder decoder = decoder_of(list);
     const double range_m = decoder.table().range_m;
-    // Errors must be less than half a period of the highest frequency.
+    // Wrong wraps are off by at least half a period of the highest frequency.
     int highest = 1;
     for (const FrequencySteps& f : list) highest = std::max(highest, f.frequency);
     std::vector<double> truth_m;
@@ -127,8 +127,8 @@ int without_noise(int sets, int pixels, std::uint64_t seed) {
   return wrong > 0 ? 1 : 0;
 }
 
-/// Returns argmax_z Re sum_f phasor_f exp(-2 pi i f z) [periods]: maximum likelihood for equal
-/// noise in all measurements and unknown signal. Brute force, then Newton steps.
+/// argmax_z Re sum_f phasor_f exp(-2 pi i f z) [periods]: maximum likelihood for equal noise in all
+/// measurements and unknown signal, by brute force and Newton steps.
 double most_likely(const Frequencies& list, const float* raw) {
   std::vector<std::complex<double>> phasor;
   int highest = 1;
