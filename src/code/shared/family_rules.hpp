@@ -22,15 +22,11 @@ std::optional<BrokenRule> pulsed_multi_frequency_misfit(int low_steps, int high_
 std::optional<BrokenRule> gray_misfit(int bits, const FamilyOptions& options);
 std::optional<BrokenRule> hamiltonian_misfit(int measurements, const FamilyOptions& options);
 
-<<<<<<< HEAD
-/// The phase steps in the order of exposures and taps: tap t of exposure e measures step
+/// Returns the phase steps in the order of exposures and taps: tap t of exposure e measures step
 /// e + t steps / taps.
 std::vector<int> steps_by_tap(int steps, int taps);
 
-/// Of a walk alone.
-=======
 /// For the walk alone.
->>>>>>> e92d6383 (code: comments in plain English)
 std::optional<BrokenRule> walk_misfit(int measurements);
 
 std::string pulsed_multi_frequency_name(int low_steps, int high_frequency);
