@@ -19,7 +19,7 @@ Waveform scaled(const Waveform& waveform, double factor) {
                               : waveform.scaled(0.0, factor);
 }
 
-/// Exposures in the order in which they are played, with their taps as they are read out.
+/// Reorders exposures into the order of playback, and complements or swaps taps if inverted.
 void play(const Playback& playback, int taps, ActualCode& actual) {
   const ActualCode said = actual;
   for (std::size_t e = 0; e < playback.order.size(); ++e) {
@@ -36,12 +36,13 @@ void play(const Playback& playback, int taps, ActualCode& actual) {
       std::swap(actual.demodulation[i - 1], actual.demodulation[i]);
 }
 
-/// `points` is what the generator makes of modulation e.
+/// Returns the error if the generator outputs no pulse of modulation e.
+/// @param points  output of the generator for modulation e
 std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform& points,
                                      const Generator& generator, double frequency_hz) {
   const Waveform& nominal = code.modulation(e);
   if (points.mean() > 0.0 || nominal.mean() == 0.0) return std::nullopt;
-  // A point for every pulse as wide as the mean one.
+  // One point must be no longer than the mean pulse.
   const double pulses = std::max(1.0, 0.5 * nominal.edges());
   const double needed = std::ceil(pulses / nominal.duty() * (1.0 - 1e-9));
   return broken(

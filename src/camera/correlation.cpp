@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Running integral of a step function from 0, for any real t.
+/// Integral of a periodic step function from 0 to t, for any real t.
 class Integral {
  public:
   explicit Integral(const StepFunction& function) : function_(function), at_breakpoint_{0.0} {
@@ -41,17 +41,18 @@ class Integral {
   std::vector<double> at_breakpoint_;
 };
 
-/// Sorts positions in [0, 1), the first of which is 0, and leaves out repeats.
+/// Sorts positions in [0, 1), the first of which is 0, and removes duplicates.
 void sort_corners(std::vector<double>& corners) {
   std::sort(corners.begin(), corners.end());
-  constexpr double same = 1e-12;  // differences that are rounding
+  constexpr double same = 1e-12;  // rounding error
   const auto last =
       std::unique(corners.begin(), corners.end(), [](double a, double b) { return b - a < same; });
   corners.erase(last, corners.end());
   while (corners.size() > 1 && corners.back() > 1.0 - same) corners.pop_back();
 }
 
-/// Positions where the correlation of two step functions changes slope, sorted, without repeats.
+/// Returns the positions at which the correlation of two step functions changes slope, sorted and
+/// without duplicates.
 std::vector<double> corner_positions(const StepFunction& d, const StepFunction& m) {
   std::vector<double> corners{0.0};
   corners.reserve(d.breakpoints.size() * m.breakpoints.size() + 1);
@@ -61,8 +62,8 @@ std::vector<double> corner_positions(const StepFunction& d, const StepFunction& 
   return corners;
 }
 
-/// The number of equal cells of the period at whose borders alone both functions change; 0 where
-/// there are none as large as the closest two of their breakpoints.
+/// Returns the number of equal cells such that both functions change only at cell borders; 0 if the
+/// closest breakpoints of a function do not define such cells.
 int common_cells(const StepFunction& d, const StepFunction& m) {
   double closest = 1.0;
   for (const StepFunction* function : {&d, &m})
@@ -77,7 +78,6 @@ int common_cells(const StepFunction& d, const StepFunction& m) {
   return static_cast<int>(cells);
 }
 
-/// The values of a step function in so many equal cells.
 Eigen::VectorXd cell_values(const StepFunction& function, int cells) {
   Eigen::VectorXd values(cells);
   for (std::size_t i = 0; i < function.values.size(); ++i) {
@@ -89,7 +89,7 @@ Eigen::VectorXd cell_values(const StepFunction& function, int cells) {
   return values;
 }
 
-/// Value at `position` in [0, 1) behind corner i of a function that is straight between corners.
+/// Interpolates linearly at `position` in [0, 1), between corner i and the next corner.
 double between_corners(const std::vector<double>& corners, const std::vector<double>& values,
                        std::size_t i, double position) {
   const bool last = i + 1 == corners.size();
@@ -99,11 +99,11 @@ double between_corners(const std::vector<double>& corners, const std::vector<dou
   return values[i] + share * (value_at_end - values[i]);
 }
 
-/// How far a waveform goes up and down within a period.
+/// Returns the total variation of a waveform over one period, or an upper bound on it.
 double variation(const Waveform& waveform) {
   if (waveform.is_binary())
     return 2.0 * waveform.level() * static_cast<double>(waveform.on_intervals().size());
-  double sum = 0.0;  // of the variations of all cosines
+  double sum = 0.0;  // bound: variations of all cosines
   for (Eigen::Index n = 1; n < waveform.coefficients().size(); ++n)
     sum += 8.0 * static_cast<double>(n) * std::abs(waveform.coefficients()[n]);
   if (!waveform.is_sampled()) return sum;
@@ -111,7 +111,7 @@ double variation(const Waveform& waveform) {
   return (x - circular_shift(x, 1)).cwiseAbs().sum();
 }
 
-/// The last harmonic that both waveforms have; none: there is no end.
+/// Returns the highest harmonic that both waveforms have; no_end if neither is band-limited.
 constexpr int no_end = std::numeric_limits<int>::max();
 int last_harmonic(const Waveform& d, const Waveform& m) {
   int last = no_end;
@@ -121,8 +121,8 @@ int last_harmonic(const Waveform& d, const Waveform& m) {
   return last;
 }
 
-/// The last harmonic of the transfer that counts: all others together are rounding. Harmonic n of a
-/// waveform is at most variation / (2 pi n).
+/// Returns the highest harmonic of the transfer function above rounding error: the sum of all
+/// higher ones is negligible. Harmonic n of a waveform is at most variation / (2 pi n).
 int last_that_counts(const Waveform& d, const Waveform& m, const Eigen::VectorXcd& transfer) {
   constexpr double rounding = 1e-15;
   const double allowed = rounding * d.mean() * m.mean() / (variation(d) * variation(m));
@@ -144,8 +144,8 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
     return;
   }
   const StepFunction d = demodulation.steps(), m = modulation.steps();
-  // Every pair of breakpoints is a corner. Where these are too many, they mostly coincide: on a
-  // grid that both share.
+  // Each pair of breakpoints yields a corner. If there are many pairs, both functions usually
+  // change on a common grid, on which most corners coincide.
   const double pairs =
       static_cast<double>(d.breakpoints.size()) * static_cast<double>(m.breakpoints.size());
   constexpr double many_pairs = 1 << 12, max_pairs = 1 << 27;
@@ -154,7 +154,7 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
       const Eigen::VectorXd of_d = cell_values(d, cells), of_m = cell_values(m, cells);
       Eigen::VectorXd values = circular_correlation(of_d, of_m) / cells;
       if (of_d.minCoeff() >= 0.0 && of_m.minCoeff() >= 0.0)
-        values = values.cwiseMax(0.0);  // not below it by rounding
+        values = values.cwiseMax(0.0);  // remove negative rounding errors
       for (int i = 0; i < cells; ++i) corners_.push_back(static_cast<double>(i) / cells);
       values_.assign(values.begin(), values.end());
       return;
@@ -203,7 +203,7 @@ CorrelationFunction CorrelationFunction::moved(double delay, bool reversed) cons
 double CorrelationFunction::operator()(double u) const {
   if (harmonics_.size() > 0) {
     const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * wrap(u, 1.0));
-    std::complex<double> sum = 0.0;  // Horner, from the highest harmonic down to the first
+    std::complex<double> sum = 0.0;  // Horner's method, from the highest harmonic
     for (Eigen::Index n = harmonics_.size() - 1; n >= 1; --n) sum = (sum + harmonics_[n]) * turn;
     return harmonics_[0].real() + 2.0 * sum.real();
   }
@@ -233,7 +233,7 @@ Eigen::VectorXd CorrelationFunction::table(int points) const {
     }
     return values;
   }
-  // Harmonics above points/2 fold onto lower ones: exact at the points of the table.
+  // Harmonics above points/2 alias to lower ones, which is exact at the points of the table.
   std::vector<std::complex<double>> folded(static_cast<std::size_t>(points), 0.0);
   folded[0] = harmonics_[0].real();
   for (Eigen::Index n = 1; n < harmonics_.size(); ++n) {

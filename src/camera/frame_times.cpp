@@ -9,7 +9,8 @@ namespace tofsmith {
 
 namespace {
 
-/// From the beginning of a frame to that of one of its exposures; past the last: all with gaps.
+/// Returns the time from the start of a frame to the start of an exposure. With exposure =
+/// exposures: the duration of all exposures and readout gaps.
 double exposure_start_s(const Camera& camera, int exposure, int exposures) {
   double start_s = 0.0;
   for (int i = 0; i < exposure; ++i)

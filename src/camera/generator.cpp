@@ -14,21 +14,21 @@ namespace tofsmith {
 
 namespace {
 
-// Switching times that a grid was meant to hold are off it by rounding only [points].
+// Rounding error of switching times that lie on a grid [points].
 constexpr double rounding = 1e-9;
-constexpr double max_points = 1 << 20;  // far more than any code's detail
+constexpr double max_points = 1 << 20;  // exceeds the detail of any code
 
-/// First point of a pulse and the first behind it.
+/// First point of a pulse and first point after it.
 struct Pulse {
   double begin, end;
 };
 
-/// The pulses that are left, sorted, with a gap between any two.
+/// Returns the pulses that do not vanish, sorted, with adjacent pulses merged.
 std::vector<Pulse> pulses_on_points(const std::vector<OnInterval>& on, double points) {
   std::vector<Pulse> pulses;
   for (const OnInterval& interval : on) {
     Pulse pulse{nearest_point(interval.rise, points), nearest_point(interval.fall, points)};
-    if (pulse.begin == pulse.end) continue;  // the middle of no point lies within
+    if (pulse.begin == pulse.end) continue;  // contains no middle of a point
     if (pulse.begin == points) pulse = {0.0, pulse.end - points};
     pulses.push_back(pulse);
   }
@@ -68,7 +68,7 @@ double max_points_per_period(double sample_rate_hz, double frequency_hz) {
   return sample_rate_hz / frequency_hz * (1 + 1e-12);
 }
 
-/// Steps of an edge grid in one period; a whole number on a valid generator.
+/// Number of steps of an edge grid per period, an integer for valid generators.
 double grid_steps(double edge_grid_s, double frequency_hz) {
   return std::round(1.0 / (edge_grid_s * frequency_hz));
 }
@@ -110,7 +110,7 @@ void Generator::validate(std::string_view field, double fundamental_frequency_hz
 }
 
 double nearest_point(double switching_time_periods, double points_per_period) {
-  // The first point whose middle is not before the switching time.
+  // First point whose middle is at or after the switching time.
   return std::ceil(switching_time_periods * points_per_period - 0.5 - rounding);
 }
 

@@ -11,7 +11,6 @@ namespace tofsmith {
 
 namespace {
 
-/// A step function by the ends of its steps in (0, 1]; those of the library begin at 0.
 class Steps {
  public:
   explicit Steps(const Waveform& waveform) : function_(waveform.steps()) {}

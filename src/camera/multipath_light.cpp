@@ -17,8 +17,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Twice integrated histogram of unit total: 0 before its begin, a straight line of slope 1 behind
-/// its end, parabolas within bins.
+/// Second integral of a histogram normalized to total 1: 0 before the histogram, quadratic within
+/// bins, linear with slope 1 after it.
 class SecondIntegral {
  public:
   /// @param bin_rows  length of a bin in rows
@@ -44,10 +44,11 @@ class SecondIntegral {
  private:
   double bin_rows_;
   std::vector<double> density_;                 // per row
-  std::vector<double> once_{0.0}, twice_{0.0};  // at the begin of each bin
+  std::vector<double> once_{0.0}, twice_{0.0};  // at the start of each bin
 };
 
-/// Weight of every row of a period that together act on chords as the histogram does.
+/// Returns row weights whose correlation with a piecewise linear table equals that of the
+/// histogram.
 Eigen::VectorXd row_weights(const Transient& transient, double range_m, int points) {
   const double rows_per_m = points / range_m;
   const SecondIntegral integral(transient.light, rows_per_m * transient.bin_m);
@@ -58,7 +59,7 @@ Eigen::VectorXd row_weights(const Transient& transient, double range_m, int poin
   const auto end = static_cast<std::int64_t>(std::ceil(first + length)) + 1;
   for (std::int64_t row = begin; row <= end; ++row) {
     const double at = static_cast<double>(row) - first;
-    // Integral of the histogram times a hat of half width 1.
+    // Integral of the histogram times a triangle of half width 1.
     weight[((row % points) + points) % points] +=
         integral(at + 1.0) - 2.0 * integral(at) + integral(at - 1.0);
   }

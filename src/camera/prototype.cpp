@@ -23,7 +23,7 @@ Camera prototype_camera() {
   camera.sensor.drain = false;
   camera.sensor.readout = Readout::difference;
   camera.sensor.read_noise_e = 20.0 / std::numbers::sqrt2;
-  camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it
+  camera.sensor.noise = NoiseModel::gaussian;  // as in the simulations of the paper
   constexpr double signal_at_od0_e_per_s = 1e6;
   for (const double optical_density : {3.0, 2.0, 1.0, 0.0})
     camera.operating.signal_e_per_s.push_back(signal_at_od0_e_per_s *

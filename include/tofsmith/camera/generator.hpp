@@ -10,22 +10,22 @@
 
 namespace tofsmith {
 
-/// Arbitrary waveform generator, or pattern memory, that drives one arm of a camera from a table of
-/// points. Its analog bandwidth belongs to the impulse response of the arm.
+/// Arbitrary waveform generator or pattern memory that drives one arm of a camera from a table of
+/// points. Its analog bandwidth is part of the impulse response of the arm.
 struct Generator {
   double sample_rate_hz = 500e6;
   int amplitude_bits = 14;
-  /// Points of the table that contains one period; none: as many as are played. If the table has
-  /// more points than the sample rate allows, some are skipped.
+  /// Number of points in the table of one period; none: points_per_period(). If the sample rate
+  /// allows fewer points, some points of the table are skipped.
   std::optional<int> table_points = {};
-  /// Binary waveforms switch only at multiples of this time, which divides the period [s]; none: at
-  /// any point.
+  /// Time grid [s] of the edges of binary waveforms; must divide the period. None: edges may occur
+  /// at any point.
   std::optional<double> edge_grid_s = {};
 
-  /// Number of points of one period that are played, n: the largest integer with
-  /// n f0 <= sample_rate_hz, limited by table_points. The clock is then n f0.
+  /// Number of points output per period, n: the largest integer with n f0 <= sample_rate_hz, but at
+  /// most table_points. The clock is n f0.
   int points_per_period(double fundamental_frequency_hz) const;
-  /// Number of points of the table that contains one period.
+  /// Number of points in the table of one period.
   int points_in_table(double fundamental_frequency_hz) const;
 
   /// @throws std::invalid_argument naming `field`.member, value and rule
@@ -52,30 +52,29 @@ inline void describe(FieldVisitor& fields, Generator& generator) {
                generator.edge_grid_s);
 }
 
-/// Table of one period of a nominal waveform in a generator; each point is held for 1/n of the
-/// period.
-///   - Switching times of a binary waveform first move to the edge grid, if there is one.
-///   - A point has the value of the waveform at the middle of its time. A switching time thereby
-///     moves to the nearest point, by at most half a point (from the middle between two points to
-///     the earlier one), and a pulse shorter than a point may vanish.
-///   - Amplitudes are rounded to 2^bits levels from 0 to the peak of the waveform. A binary
-///   waveform
-///     stays binary, and does not change if its switching times are points.
-/// @throws std::invalid_argument if the generator cannot play that frequency, or for values below 0
+/// Returns the table of one period of a nominal waveform. Each point is held for 1/n of the period.
+///   - If there is an edge grid, switching times of a binary waveform are first moved to it.
+///   - Each point has the value of the waveform at its middle. A switching time therefore moves to
+///     the nearest point, by at most half a point (ties: the earlier point). Pulses shorter than a
+///     point may vanish.
+///   - Amplitudes are rounded to 2^bits levels from 0 to the peak of the waveform. Binary waveforms
+///     stay binary; they are unchanged if their switching times coincide with points.
+/// @throws std::invalid_argument if the generator does not support the frequency, or for negative
+///   values
 Waveform generator_table(const Waveform& waveform, const Generator& generator,
                          double fundamental_frequency_hz);
 
-/// Waveform that a generator plays for a nominal one: its table or, of a table with more points
-/// than are played, the points at the middles of those that are played.
+/// Returns the waveform that a generator outputs for a nominal one: its table, resampled at the
+/// middles of the output points if the table has more points than points_per_period().
 /// @throws std::invalid_argument as generator_table()
 Waveform generated(const Waveform& waveform, const Generator& generator,
                    double fundamental_frequency_hz);
 
-/// Switching time that generated() makes of a switching time [periods].
+/// Returns the switching time after generated() has rounded it [periods].
 double generated_switching_time(double switching_time_periods, const Generator& generator,
                                 double fundamental_frequency_hz);
 
-/// Point to which generator_table() moves a switching time without an edge grid [points].
+/// Returns the point to which generator_table() moves a switching time without edge grid [points].
 double nearest_point(double switching_time_periods, double points_per_period);
 
 }  // namespace tofsmith

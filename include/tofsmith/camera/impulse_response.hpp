@@ -13,23 +13,23 @@
 namespace tofsmith {
 
 /// Impulse response of a light source or a sensor. Its transfer function is 1 at frequency 0, so
-/// that mean power and duty are preserved.
+/// mean power and duty are preserved.
 struct ImpulseResponse {
   enum class Kind { none, hann, gaussian, lowpass, file };
 
   Kind kind = Kind::none;
-  /// Hann: frequency at which the window attenuates by 5 [Hz]. The window is 1.444 / f_max_hz wide
-  /// and its transfer function sinc(x) / (1 - x^2), x = f * width.
+  /// hann: frequency [Hz] at which the window attenuates by a factor of 5. The window has a width
+  /// of 1.444 / f_max_hz and the transfer function sinc(x) / (1 - x^2), x = f * width.
   /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4.2 and Fig. 5
   double f_max_hz = 0.0;
   double cutoff_hz = 0.0;  ///< gaussian, lowpass: -3 dB frequency [Hz]
-  /// file: measured response, linear between samples; scaled to sum 1 where it is used. Nothing
-  /// passes above half the sampling rate.
+  /// file: measured response, linear between samples, normalized to sum 1 when used. The transfer
+  /// function is 0 above half the sampling rate.
   std::vector<double> samples;
   double time_step_s = 0.0;  ///< file: time between samples [s]
-  std::string file;          ///< file: path from which the samples were read; may be empty
+  std::string file;          ///< file: path of the samples; may be empty
 
-  /// Transfer function at a frequency [Hz]; 1 at 0.
+  /// Returns the transfer function at a frequency [Hz].
   std::complex<double> transfer(double frequency_hz) const;
 
   /// @throws std::invalid_argument naming `field`.member, value and rule
@@ -38,7 +38,7 @@ struct ImpulseResponse {
   friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
 };
 
-/// Words for the kinds, in their order.
+/// Names of the kinds, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 5> impulse_response_kinds = {
     "none", "hann", "gaussian", "lowpass", "file"};
 /// "none", "hann", "gaussian", "lowpass", "file".

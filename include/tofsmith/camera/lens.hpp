@@ -12,33 +12,34 @@
 
 namespace tofsmith {
 
-/// Sensors whose frames are parts of their image, by the size of the frames.
+/// Sensors with several frame modes that crop or bin the image; the frame size identifies the mode.
 enum class FrameModes {
-  azure_kinect,  ///< 640 x 576, 320 x 288, 512 x 512 or 1024 x 1024 of a sensor of 1024 x 1024
+  azure_kinect,  ///< 640 x 576, 320 x 288, 512 x 512 or 1024 x 1024 of 1024 x 1024 pixels
 };
 
-/// Words for the enumerators, in their order.
+/// Names of the enumerators, in their order.
 inline constexpr std::array<std::string_view, 1> frame_modes_words = {"azure-kinect"};
 
-/// Pinhole of the sensor and distortion of its lens. Required for point clouds and for conversion
-/// between z-depth and radial distance.
+/// Pinhole model of the sensor and distortion of its lens. Required for point clouds and for
+/// conversions between z-depth and radial distance.
 struct Lens {
   double fx_px = 0.0;                                ///< focal length in columns [px]
   double fy_px = 0.0;                                ///< focal length in rows [px]
   double cx_px = 0.0;                                ///< column of the optical axis [px]
   double cy_px = 0.0;                                ///< row of the optical axis [px]
-  std::optional<LensDistortion> distortion = {};     ///< none: an ideal pinhole
-  std::optional<int> width_px = {}, height_px = {};  ///< size of the images [px]; none: any
+  std::optional<LensDistortion> distortion = {};     ///< none: ideal pinhole
+  std::optional<int> width_px = {}, height_px = {};  ///< image size [px]; none: any
   std::optional<FrameModes> frame_modes = {};        ///< none: frames are whole images
-  /// Replaces all other members: path of an array (.npy) with the ray of each pixel, (H, W, 2) of
-  /// x/z and y/z or (H, W, 3) of directions. Pixels with NaN see nothing. Empty: the pinhole.
+  /// Path of a NumPy array (.npy) with the ray of each pixel, which replaces all other members:
+  /// shape (H, W, 2) with x/z and y/z, or (H, W, 3) with directions. NaN marks pixels without a
+  /// ray. Empty: pinhole.
   std::string rays = {};
 
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
 /// Keys of [lens] that describe the pinhole. `calibration` names a file that replaces most of them,
-/// `calibration_camera` one of its cameras; readers of documents load it.
+/// `calibration_camera` selects one of its cameras. The readers of documents load the file.
 inline void describe(FieldVisitor& fields, Lens& lens) {
   fields.value(Key("rays", "File with the ray of each pixel (.npy), instead of a pinhole"),
                InputPath{lens.rays});
@@ -91,13 +92,13 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
   });
 }
 
-/// Blur of the image before it falls on pixels, and its sampling in simulations. Light is blurred,
-/// not depth: the expected electrons of a pixel are a weighted sum over many rays.
+/// Optical blur of the image in simulations, and its sampling. The blur applies to light, not to
+/// depth: the expected electrons of a pixel are a weighted sum over many rays.
 struct LensBlur {
   enum class Kind {
     none,      ///< no blur
     gaussian,  ///< Gaussian point spread function
-    disc,      ///< disc of confusion of a thin lens, by distance
+    disc,      ///< disc of confusion of a thin lens, which depends on distance
   };
   Kind kind = Kind::none;
   double blur_sigma_px = 0.0;     ///< gaussian: standard deviation in each direction [px]
@@ -105,15 +106,15 @@ struct LensBlur {
   double f_number = 0.0;          ///< disc: focal length over aperture
   double focus_distance_m = 0.0;  ///< disc: distance in focus [m], > focal length
   double pixel_pitch_m = 0.0;     ///< disc: distance between pixel centres [m]
-  /// n: scenes of shapes are sampled with n x n rays, evenly over the square of a pixel; 1: one ray
-  /// through its centre. Depth images have one value per pixel in any case.
+  /// n: scenes made of shapes are sampled with n x n rays, evenly spaced over each pixel; 1: one
+  /// ray through the pixel centre. Depth images always have one value per pixel.
   int pixel_samples = 1;
 
-  /// Returns true if every pixel sees only the ray through its centre.
+  /// Returns true if every pixel samples only the ray through its centre.
   bool is_sharp() const { return kind == Kind::none && pixel_samples == 1; }
 
-  /// Radius of the disc of confusion at a distance; NaN: infinitely far [px].
-  ///   r = f^2 / (2 k (z_f - f)) |1 - z_f / z| / pitch,  k the f-number, z_f the focus distance
+  /// Returns the radius of the disc of confusion at a distance [px]; NaN means infinitely far.
+  ///   r = f^2 / (2 k (z_f - f)) |1 - z_f / z| / pitch,  k: f-number, z_f: focus distance
   double disc_radius_px(double distance_m) const;
 
   /// @throws std::invalid_argument naming the field as lens.*, value and rule
@@ -122,7 +123,7 @@ struct LensBlur {
   friend bool operator==(const LensBlur&, const LensBlur&) = default;
 };
 
-/// Words for the kinds of blur, in their order.
+/// Names of the kinds of blur, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 3> lens_blur_kinds = {"none", "gaussian", "disc"};
 
 /// Keys of [lens] that describe the blur.

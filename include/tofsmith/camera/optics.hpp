@@ -10,8 +10,8 @@
 
 namespace tofsmith {
 
-/// Optics of a camera, which relate watts and lux to electrons. Surfaces are Lambertian and face
-/// the camera; the light fills its field of view evenly; objects are far from the lens.
+/// Optics of a camera, which relate watts and lux to electrons. Assumptions: Lambertian surfaces
+/// that face the camera, uniform illumination of the field of view, objects far from the lens.
 /// @see docs/optics.md for formulas and their sources
 struct Optics {
   double source_power_w = 0.0;
@@ -23,25 +23,28 @@ struct Optics {
   double transmission = 1.0;
   double fill_factor = 1.0;
   std::optional<double> filter_width_m = {};
-  /// The global spectrum of ASTM G173-03 has 109.9 klx. Requires a filter within 800 to 1000 nm.
+  /// Illuminance of surfaces. The global spectrum of ASTM G173-03 has 109.9 klx. Requires a filter
+  /// within 800 to 1000 nm.
   std::optional<double> sunlight_klux = {};
-  std::optional<double> sunlight_w_per_m2_nm = {};  ///< instead of sunlight_klux
+  std::optional<double> sunlight_w_per_m2_nm = {};  ///< replaces sunlight_klux
 
-  /// S and A of a surface [e/s]:
+  /// Returns signal S and ambient light A of a surface [e/s]:
   ///   S = albedo E tau / (4 k^2) pitch^2 fill QE lambda / (h c),
-  ///   E = P / (4 d^2 tan(h / 2) tan(v / 2)); A likewise from the sunlight that the filter passes.
+  ///   E = P / (4 d^2 tan(h / 2) tan(v / 2)).
+  ///
+  /// A has the irradiance by sunlight within the band of the filter for E.
   /// @throws std::invalid_argument naming field, value and rule
   OperatingPoint light_at(double distance_m, double albedo = 1.0) const;
-  /// Distance at which a surface returns that signal [m].
+  /// Returns the distance at which a surface returns the signal [m].
   double distance_m(double signal_e_per_s, double albedo = 1.0) const;
-  /// Mean optical power that returns that signal from that distance [W].
+  /// Returns the mean optical power that yields the signal at the distance [W].
   double source_power_for_w(double signal_e_per_s, double distance_m, double albedo = 1.0) const;
 
-  /// Irradiance by the light source on a surface that faces it [W / m2].
+  /// Returns the irradiance by the light source on a surface that faces it [W / m2].
   double source_w_per_m2(double distance_m) const;
-  /// Irradiance by the sunlight that the filter passes on such a surface [W / m2].
+  /// Returns the irradiance by sunlight within the band of the filter [W / m2].
   double sunlight_w_per_m2() const;
-  /// Electrons of a pixel per joule that falls on a square metre of white surface.
+  /// Returns the electrons per pixel for 1 J/m2 on a white surface.
   double electrons_per_j_per_m2() const;
 
   /// @throws std::invalid_argument naming the field as optics.*, value and rule

@@ -10,22 +10,21 @@
 
 namespace tofsmith {
 
-/// The first modulation of which the light's generator plays nothing: every pulse falls between
-/// its points.
+/// Returns the error for the first modulation whose pulses all fall between the points of the
+/// light's generator.
 std::optional<BrokenRule> pulse_not_generated(const CodeSet& code, const Camera& camera);
 
-/// What a generated modulation is scaled by to keep the source's average power: 1 / mean above a
-/// mean of 1, else 1.
+/// Returns the factor that preserves the average power of the source: 1 / mean for a mean above 1,
+/// otherwise 1.
 double average_power_scale(const Waveform& modulation);
-/// The modulation, scaled so.
 Waveform at_average_power(const Waveform& modulation);
 
-/// Whether the light's generator plays modulations that come `rotation_bin` of N bins later as it
-/// plays them now, only later: by a whole number of its points, to a sixteenth of a bin. Others it
-/// rounds otherwise.
+/// Returns true if delaying a modulation by `rotation_bin` of N bins only delays the output of the
+/// light's generator, i.e. if the delay is a whole number of its points to within 1/16 bin. Other
+/// delays change the rounding.
 bool plays_alike_rotated(const Camera& camera, int samples, int rotation_bin);
 
-/// Whether the second tap of every exposure is what the first leaves.
+/// Returns true if the second tap of every exposure is the complement of the first.
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera);
 
 }  // namespace tofsmith

@@ -9,14 +9,14 @@
 
 namespace tofsmith {
 
-/// The brightest ambient light a camera is judged in; 0 if it has no operating points.
+/// Returns the brightest ambient light of the operating range; 0 without operating points.
 inline double brightest_ambient_e_per_s(const Camera& camera) {
   const auto& ambient = camera.operating.ambient_e_per_s;
   return ambient.empty() ? 0.0 : *std::max_element(ambient.begin(), ambient.end());
 }
 
-/// The rule of unknown_ambient_gain(): whether what leaks of that light into measurements (K) [e]
-/// is nothing beside their noise.
+/// Criterion of unknown_ambient_gain(): returns true if the ambient light left in measurements (K)
+/// [e] is negligible compared with their noise.
 inline bool ambient_cancels(const Camera& camera, const Eigen::VectorXd& leak_e,
                             const Eigen::VectorXd& variance_e2) {
   constexpr double share_of_noise = 0.05;

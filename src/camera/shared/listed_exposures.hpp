@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Why a camera that lists exposure times or an order of playback cannot use codes of so many
+/// Returns the error if a camera lists exposure times or an order of playback for another number of
 /// exposures.
 /// @param whose  " of code NAME", for the message
 inline std::optional<BrokenRule> other_exposures_listed(const Camera& camera, int exposures,

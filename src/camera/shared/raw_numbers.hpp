@@ -8,13 +8,13 @@
 
 namespace tofsmith {
 
-/// First and last number of a converter [DN].
 struct ConverterNumbers {
   double min_dn = 0.0, max_dn = 0.0;
 };
 
-/// From 0 on; of a mixer without a black level, which would be its count without light, numbers of
-/// both signs. @param sensor  with adc_bits
+/// Returns the range from 0, or a symmetric range for a mixer without black level (its output
+/// without light).
+/// @param sensor  must have adc_bits
 inline ConverterNumbers raw_numbers(const Sensor& sensor) {
   const double count = std::exp2(*sensor.adc_bits);
   if (sensor.is_signed() && !sensor.black_level_dn) return {-0.5 * count, 0.5 * count - 1.0};
