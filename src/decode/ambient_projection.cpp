@@ -7,18 +7,18 @@
 namespace tofsmith {
 
 namespace {
-// Below these shares of the whole, a residual is rounding.
+// Relative thresholds below which a residual is rounding error.
 constexpr double no_ambient = 1e-9;
 constexpr double no_dimension = 1e-12;
 constexpr double no_contrast = 1e-9;
-// Singular values as close as this are one: which directions belong to each is up to rounding.
+// Relative distance of singular values that count as equal. Rounding determines their directions.
 constexpr double tied_values = 1e-6;
 
-/// The one orthonormal basis of the space that these columns span which any other basis of it
-/// gives, too: its first vector is the projection of the unit vector that lies in the space best,
-/// of those that do equally well the first, and so on in what is left.
+/// Returns an orthonormal basis of the column space that does not depend on the given basis: its
+/// first vector is the projection of the unit vector closest to the space (the first one in case of
+/// ties); the others follow in the same way from the remaining space.
 Eigen::MatrixXd settled_basis(const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd left = columns * columns.transpose();  // of each unit vector in the space
+  Eigen::MatrixXd left = columns * columns.transpose();  // column i: projection of unit vector i
   Eigen::MatrixXd basis(columns.rows(), columns.cols());
   for (Eigen::Index i = 0; i < basis.cols(); ++i) {
     const Eigen::VectorXd lengths = left.colwise().norm();
@@ -30,8 +30,8 @@ Eigen::MatrixXd settled_basis(const Eigen::MatrixXd& columns) {
   return basis;
 }
 
-/// Directions, and signs, that the decomposition leaves to rounding, the same on any processor: a
-/// seed's noise is drawn along them.
+/// Replaces directions of equal singular values by settled_basis(), so that they are the same on
+/// every processor: the noise of a random seed is drawn along them.
 void settle(Eigen::MatrixXd& directions, const Eigen::VectorXd& values) {
   for (Eigen::Index begin = 0, end = 0; begin < directions.cols(); begin = end) {
     while (end < directions.cols() && values[end] >= (1.0 - tied_values) * values[begin]) ++end;
@@ -64,7 +64,7 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
   while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole) ++kept;
   noise_basis = svd.v.leftCols(kept);
   settle(noise_basis, svd.values);
-  // The decomposition leaves some of it in, which of much ambient light would decide ties.
+  // Remove the rounding error of the SVD along `direction`; strong ambient light would amplify it.
   if (!ambient.isZero(0.0)) noise_basis -= direction * (direction.transpose() * noise_basis).eval();
   basis = noise_basis;
   if (table.has_rows()) basis = table.whitening.transpose() * noise_basis;

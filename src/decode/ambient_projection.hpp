@@ -8,16 +8,16 @@
 
 namespace tofsmith {
 
-/// Most measurements of a pixel a decoder takes: bounds the work space it keeps on the stack.
+/// Maximum number of measurements per pixel; limits the stack memory of decoders.
 inline constexpr int max_measurements = 64;
 
-/// Below this share of what is measured, its residual without ambient light is rounding.
+/// Residuals below this fraction of the measurements (without ambient light) are rounding errors.
 inline constexpr double nothing_left = 1e-12;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The part of a decoding table that ambient light cannot explain, in coordinates of the plane
-/// (of dimension rank) in which it lies.
+/// Decoding table with ambient light projected out, in coordinates of the remaining subspace
+/// (dimension: rank).
 struct AmbientProjection {
   explicit AmbientProjection(const DecodingTable& table);
 
@@ -27,9 +27,9 @@ struct AmbientProjection {
   RowMajorMatrix gated;     ///< x = T o chi (N, K)
   Eigen::MatrixXd basis;    ///< V (K, rank): orthonormal columns that span the rows of P x
   RowMajorMatrix curve;     ///< p = V^T P x (N, rank); exactly 0 where there is no contrast
-  /// V itself where the noise of electrons is independent. Of rows the plane is that of whitened
-  /// electrons W y', which have the noise of the table: P takes off W a, noise_basis is V, and
-  /// basis W^T V, so that q = basis^T y' everywhere.
+  /// V for independent noise. For rows, the subspace is that of whitened electrons W y' with the
+  /// noise of the table: P removes W a, noise_basis is V and basis is W^T V, so that q = basis^T y'
+  /// in all cases.
   Eigen::MatrixXd noise_basis;
 };
 

@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// From -1 on the first of n to 1 on the last.
+/// Maps index 0 ... n - 1 to [-1, 1].
 double place(int at, int n) { return n > 1 ? 2.0 * at / (n - 1) - 1.0 : 0.0; }
 
 double harmonics_m(const Eigen::VectorXd& terms_m, double phase_rad) {
@@ -81,7 +81,7 @@ double DepthCorrection::error_m(double depth_m, double range_m, int row, int col
   if (needs_signal())
     log_signal = std::log(std::clamp(signal_e_per_s_here, min_signal_e_per_s, max_signal_e_per_s) /
                           signal_e_per_s);
-  // Between the middles of two parts the one model turns into the other.
+  // Interpolate linearly between the middles of adjacent parts.
   double share = 1.0;
   if (const Eigen::Index parts = known_share.size(); parts > 0) {
     const double at = depth_m / range_m * static_cast<double>(parts) - 0.5;
@@ -136,7 +136,7 @@ void apply(const DepthCorrection& correction, double range_m, const DecodedView&
       double corrected_m = depth_m - error_m;
       corrected_m -= range_m * std::floor(corrected_m / range_m);
       const auto rounded = static_cast<float>(corrected_m);
-      // Rounding to float can land on the end of the range, which is its beginning.
+      // Rounding to float can yield range_m, which is equivalent to 0.
       decoded.depth_m[at] = rounded >= static_cast<float>(range_m) ? 0.0f : rounded;
     }
   });

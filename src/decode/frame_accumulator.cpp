@@ -54,7 +54,7 @@ FrameMemory FrameAccumulator::memory(int recorded, int height, int width) const 
     memory.row = static_cast<double>(width) *
                  (static_cast<double>(sizeof(double)) * measurements_ + sizeof(float));
   if (steps_.time_filter) {
-    TimeFilterOptions options = *steps_.time_filter;  // no more frames wait than there are
+    TimeFilterOptions options = *steps_.time_filter;  // waiting frames are limited by the recording
     const int means = (recorded + steps_.average - 1) / steps_.average;
     options.look_ahead = std::min(options.look_ahead, means - 1);
     memory.whole = static_cast<double>(

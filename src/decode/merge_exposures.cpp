@@ -17,7 +17,6 @@ namespace tofsmith {
 
 namespace {
 
-/// What a merge needs to know of the sensor.
 struct Taps {
   std::vector<double> black_level, gain_e_per_raw;
   double constant_variance_e2 = 0.0;  // mean over measurements
@@ -30,7 +29,6 @@ struct Taps {
         levels(table) {}
 };
 
-/// One pixel in all exposures.
 class Bracket {
  public:
   Bracket(const Taps& taps, std::span<const double> exposures)
@@ -44,8 +42,8 @@ class Bracket {
   double* raw(std::size_t frame) { return raw_.data() + frame * measurements_; }
   void set_averaged(std::size_t frame, double averaged) { averaged_[frame] = averaged; }
 
-  /// @param merged  K numbers
-  /// @return of how many measurements of the shortest exposure they are the mean, in variance
+  /// @param merged  K raw values
+  /// @return number of averaged measurements of the shortest exposure with the same variance
   double merge(float* merged) {
     std::size_t shortest_clipped = exposures_.size();
     bool any = false;
@@ -78,7 +76,7 @@ class Bracket {
     double all_exposure = 0.0;
     for (std::size_t f = 0; f < exposures_.size(); ++f)
       if (usable_[f]) all_exposure += exposures_[f];
-    // Shot noise in the shortest exposure, from the light of all.
+    // Shot noise at the shortest exposure, estimated from all exposures.
     double shot_e2 = 0.0;
     for (std::size_t k = 0; k < measurements_; ++k) {
       double sum_e = 0.0;

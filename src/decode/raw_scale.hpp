@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// From raw numbers to electrons without dark ones, and back.
+/// Converts raw values to electrons without dark electrons, and back.
 class RawScale {
  public:
   explicit RawScale(const DecodingTable& table) {
@@ -23,7 +23,6 @@ class RawScale {
     const Line& line = lines_[static_cast<std::size_t>(measurement)];
     return (raw - line.dark_raw) * line.gain_e_per_raw;
   }
-  /// Raw number without light.
   double dark_raw(int measurement) const {
     return lines_[static_cast<std::size_t>(measurement)].dark_raw;
   }
@@ -37,10 +36,10 @@ class RawScale {
 
  private:
   struct Line {
-    double dark_raw;  // raw number without light
+    double dark_raw;  // raw value without light
     double gain_e_per_raw;
   };
-  std::vector<Line> lines_;  // of every measurement
+  std::vector<Line> lines_;
 };
 
 }  // namespace tofsmith

@@ -14,12 +14,12 @@ namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-/// First and last raw number of measurements that are clipped; infinite where they never are.
+/// Raw values from which measurements are clipped; infinite if they never are.
 struct Rails {
   double lowest = -no_limit, highest = no_limit;
 };
 
-/// A mixer is clipped at both signs, by its well or its converter.
+/// The well or the converter clips both signs of a mixer.
 Rails rails_of_mixer(const Sensor& sensor) {
   Rails rails;
   const double black = sensor.black_level_dn.value_or(0.0);
@@ -41,12 +41,12 @@ Rails rails_of(const Sensor& sensor) {
   if (!tap) return {};
   const auto level = static_cast<double>(*tap);
   if (sensor.readout != Readout::difference) return {-no_limit, level};
-  // One tap at its limit and nothing in the other.
+  // One tap at its limit, the other one empty.
   const double largest = level - sensor.black_level_dn.value_or(0.0);
   return {-largest, largest};
 }
 
-/// The same with numbers for saturated measurements that only markers tell.
+/// As rails_of(sensor), with limits for sensors whose saturation is known from markers only.
 Rails rails_of(const Camera& camera) {
   Rails rails = rails_of(camera.sensor);
   if (camera.raw.saturated.empty() || std::isfinite(rails.highest)) return rails;

@@ -18,7 +18,7 @@ namespace tofsmith {
 namespace {
 
 constexpr int max_rounds = 60;
-constexpr double converged = 1e-6;  // of the largest light
+constexpr double converged = 1e-6;  // relative to the largest light
 
 double sum_of(const Image<float>& kernel) {
   double sum = 0.0;
@@ -28,7 +28,6 @@ double sum_of(const Image<float>& kernel) {
 
 }  // namespace
 
-/// The convolution for frames of one size, made once.
 struct StrayLight::Plan {
   PaddedConvolution convolution;
   int height, width;
@@ -114,7 +113,8 @@ void StrayLight::remove(const RawView& stored, const DecodingTable& table, RawFr
   parallel_for(raw.measurements, [&](std::int64_t measurement) {
     const auto k = static_cast<std::size_t>(measurement);
     const auto black = static_cast<float>(table.black_level[measurement]);
-    // Light that is not known scatters none; saturated pixels scatter at least what they say.
+    // Unknown light is assumed to scatter none; saturated pixels scatter at least their measured
+    // light.
     Image<float> seen(raw.height, raw.width);
     for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
       const float number = clean.values[i * measurements + k];

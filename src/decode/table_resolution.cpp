@@ -14,7 +14,7 @@ namespace tofsmith {
 namespace {
 
 constexpr int max_rows = 1 << 18;
-/// Error between rows: what rounding to single precision leaves of 20 um.
+/// Permitted error between rows: 20 um minus the rounding error to single precision.
 double depth_accuracy_m(double range_m) {
   constexpr double in_all_m = 2e-5, least_m = 5e-6, margin = 0.8;
   return margin *
@@ -23,7 +23,7 @@ double depth_accuracy_m(double range_m) {
 
 constexpr double widest_turn_rad = 15.0 * std::numbers::pi / 180.0;
 
-/// How many times as many rows a smooth table needs.
+/// Returns the factor by which a smooth table needs more rows.
 int resolving_factor(const DecodingTable& table) {
   const RowMajorMatrix curve = AmbientProjection(table).curve;
   if (curve.cols() < 2) return 1;
@@ -33,7 +33,7 @@ int resolving_factor(const DecodingTable& table) {
   const auto limited = [&](double factor) {
     return static_cast<int>(std::clamp(std::ceil(factor - 1e-9), 1.0, static_cast<double>(most)));
   };
-  // The error falls with the third power of the spacing.
+  // The error is proportional to the cube of the spacing.
   const auto factor_of = [&](const SmoothCurve& at, double rows_per_row) {
     const double error_m = interpolation_error(at) * table.row_m() / rows_per_row;
     return rows_per_row * std::max(std::cbrt(error_m / depth_accuracy_m(table.range_m)),
@@ -41,13 +41,12 @@ int resolving_factor(const DecodingTable& table) {
   };
   const double factor = factor_of(*smooth, 1.0);
   if (factor <= 1.0) return 1;
-  // Few rows of a curve that turns far between them tell little of the error with more.
+  // With few rows the estimate of the error is unreliable, so repeat it with more rows.
   constexpr int finer = 4;
   const std::optional<SmoothCurve> fine = SmoothCurve::of(interpolated(curve, finer));
   return limited(fine ? factor_of(*fine, finer) : factor);
 }
 
-/// Columns at `factor` times as many rows, by linear interpolation.
 Eigen::MatrixXd on_chords(const Eigen::MatrixXd& columns, int factor) {
   Eigen::MatrixXd fine(columns.rows() * factor, columns.cols());
   for (Eigen::Index n = 0; n < columns.rows(); ++n)

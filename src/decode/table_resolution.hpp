@@ -6,18 +6,19 @@
 
 namespace tofsmith {
 
-/// Rows of a decoding table that determine all of the model's correlation functions, at least N.
-///   - Where these are sums of harmonics: 8/3 rows or more for the highest one that counts.
-///   - Without impulse responses: the fewest that include all corners, up to 32 N; else N.
+/// Returns the number of rows, at least N, that determine all correlation functions of the model.
+///   - Sums of harmonics: at least 8/3 rows per period of the highest significant harmonic.
+///   - Without impulse responses: the least number that includes all corners, up to 32 N; otherwise
+///     N.
 int sufficient_rows(const ForwardModel& model);
 
-/// make_decoding_table() of a correlation (N, K), with just these rows.
+/// As make_decoding_table() of a correlation (N, K), without additional rows.
 DecodingTable table_of_rows(const Eigen::MatrixXd& correlation, double range_m);
 
-/// Returns the table with as many rows as decoders need, and the same bins. Smooth tables are
-/// interpolated until depths between rows are accurate to 20 um, rounding to single precision
-/// included, and rows are at most 15 degrees apart. Other tables are returned unchanged, since
-/// nothing is known between their rows.
+/// Returns the table with the resolution that decoders need, and the same bins. Smooth tables are
+/// interpolated until depths between rows are accurate to 20 um, including rounding to single
+/// precision, and adjacent rows are at most 15 degrees apart. Other tables are returned unchanged,
+/// because their course between rows is unknown.
 DecodingTable resolved(const DecodingTable& table);
 
 }  // namespace tofsmith

@@ -16,11 +16,11 @@
 
 namespace tofsmith {
 
-/// How much a Filter does.
+/// Strength of a Filter.
 enum class FilterStrength {
-  light,   ///< 5 x 5 pixels, once: several times as fast as normal
-  normal,  ///< 25 x 25 pixels, and once more along the slopes found
-  strong,  ///< as normal, with a second round along the slopes
+  light,   ///< one window of 5 x 5 pixels; several times as fast as normal
+  normal,  ///< 25 x 25 pixels, followed by one pass along slopes
+  strong,  ///< 25 x 25 pixels, followed by two passes along slopes
 };
 inline constexpr std::array all_filter_strengths = {FilterStrength::light, FilterStrength::normal,
                                                     FilterStrength::strong};
@@ -29,18 +29,17 @@ constexpr std::array<std::string_view, 3> words_of(FilterStrength /*any*/) {
 }
 /// "light", "normal", "strong".
 std::string_view name_of(FilterStrength strength);
-/// @throws std::invalid_argument for any other word
+/// @throws std::invalid_argument for an unknown name
 FilterStrength parse_filter_strength(std::string_view name);
 
-/// Options of a Filter.
 struct FilterOptions {
   int windows = 2;
   int slope_rounds = 1;
   double max_difference_sigma = 3.5;
-  /// Larger values detect smaller depth steps, smaller values smooth slopes more.
+  /// Larger values detect smaller depth steps; smaller values smooth slopes more.
   double trusted_pixels = 12.0;
   double same_depth_sigma = 4.0;
-  /// Avoids that light leaks across edges.
+  /// Prevents light from leaking across edges.
   double own_light_sigma = 8.0;
 
   static FilterOptions of(FilterStrength strength);
@@ -69,7 +68,7 @@ auto fields_of(ConstOrNot<FilterOptions> auto& o) {
 
 struct FilterPlanes;
 
-/// A filtered frame, with the memory that filtering the next one of its size uses again.
+/// Filtered frame and the memory for filtering further frames of the same size.
 class FilteredFrame {
  public:
   FilteredFrame();
@@ -79,13 +78,13 @@ class FilteredFrame {
 
   int height() const;
   int width() const;
-  /// Raw numbers as any decoder takes them, and of how many measurements each is the mean. Valid
-  /// while the frame lives and nothing else is filtered into it.
+  /// Raw values for any decoder, with the number of averaged measurements. Valid until the frame is
+  /// destroyed or filtered into again.
   RawView view() const;
-  /// The same numbers, (1, H, W, K).
+  /// Returns a copy of the raw values, (1, H, W, K).
   RawFrames values() const;
-  /// (H, W): of how many measurements of a pixel's light each of its numbers is the mean, in
-  /// variance; 1 where nothing was added.
+  /// (H, W): effective number of measurements averaged into each pixel (variance reduction); 1 for
+  /// unfiltered pixels.
   const Image<float>& averaged() const;
 
  private:
@@ -94,26 +93,28 @@ class FilteredFrame {
   std::unique_ptr<FilterPlanes> planes_;
 };
 
-/// Adds the raw measurements of pixels that see the same depth, before anything is decoded.
+/// Averages the raw measurements of neighbouring pixels at the same depth, before decoding.
 ///
-/// Without ambient light, the vectors of pixels at one depth are parallel, whatever their albedo: u
-/// = V^T y = S p(z), so that they may be added without bias. Whether two may be is a test of
-/// parallelism that knows the noise v of each,
+/// Without ambient light, the measurement vectors of pixels at one depth are parallel for any
+/// albedo: u = V^T y = S p(z). They can therefore be averaged without bias. A test of parallelism
+/// that accounts for the noise variances v and v' decides whether two pixels are averaged:
 ///   lambda = (a + b - sqrt((a - b)^2 + 4 c^2)) / 2,  a = |u|^2 / v, b = |u'|^2 / v',
-///   c = max(0, u . u') / sqrt(v v'),
-/// the least chi^2 of one direction for both, with rank - 1 degrees of freedom. Its mean over a
-/// patch of 5 x 5 weighs the neighbour. Later windows take every fifth pixel of the results of the
-/// one before, which share no measurement, so that the variance of the sum is exact.
-/// Rounds along slopes decode what they have, fit a plane to the depths around every pixel, and
-/// move each neighbour's light along the curve by what the planes say before it is added: a surface
-/// that slants keeps its depth, and all of the window counts.
+///   c = max(0, u . u') / sqrt(v v').
+/// lambda is the least chi^2 of one direction for both vectors, with rank - 1 degrees of freedom.
+/// The weight of a neighbour follows from the mean of lambda over a 5 x 5 patch. Each further
+/// window combines every fifth pixel of the previous result. These pixels share no measurement, so
+/// the variance of the average is exact.
 ///
-/// What a pixel has of ambient light and of other returns is added along. Pixels that are invalid
-/// or saturated are left as they are and weigh nothing. With three measurements the test has one
-/// degree of freedom and tells little. Maps of pixels (PixelMaps) are applied to what is decoded:
-/// offsets that differ from pixel to pixel by more than noise keep neighbours apart.
+/// A pass along slopes decodes the current result, fits a plane to the depths around each pixel,
+/// and moves the light of each neighbour along the coding curve by the depth difference of the
+/// plane before averaging. Slanted surfaces thus keep their depth and use the whole window.
 ///
-/// Immutable and safe to use from many threads at once, each with a frame of its own.
+/// Ambient light and other returns are averaged as well. Invalid and saturated pixels keep their
+/// values and have no weight. With three measurements the test has one degree of freedom and little
+/// power. PixelMaps are applied after filtering, so neighbours whose offsets differ by more than
+/// the noise are not averaged.
+///
+/// Immutable and thread-safe, if each thread has its own FilteredFrame.
 class Filter {
  public:
   /// @throws std::invalid_argument if the table or the options are invalid
@@ -125,25 +126,26 @@ class Filter {
   const DecodingTable& table() const;
   const FilterOptions& options() const;
   int measurements() const { return table().measurements(); }
-  /// Memory that frames of this size are filtered in [bytes]: a FilteredFrame's, and what each
-  /// thread works in.
+  /// Returns the memory for frames of this size [bytes]: a FilteredFrame and the working memory of
+  /// all threads.
   static std::size_t memory_bytes(const FilterOptions& options, int height, int width,
                                   int measurements, int threads);
 
-  /// Filters one frame on all threads. Allocates nothing if the frame held one of the same size.
-  /// @param raw  electrons or counts, with as many measurements as the table, or means of several
-  ///             as its `averaged` says
-  /// @param left_out  (H, W), or empty: pixels that are not 0 are left as they were measured and
-  ///                  weigh nothing, as those that mark_mixed_pixels() found
-  /// @throws std::invalid_argument if the measurements or sizes differ; Interrupted if progress
-  ///         says so
-  /// @note the same bits for any number of threads and any layout of the raw numbers
+  /// Filters one frame on all threads. Allocates nothing if `filtered` already holds a frame of the
+  /// same size.
+  /// @param raw  electrons or counts with the measurements of the table; may be averages, as
+  ///   specified by `averaged`
+  /// @param left_out  (H, W) or empty: pixels with nonzero values keep their raw values and have no
+  ///   weight (e.g. those of mark_mixed_pixels())
+  /// @throws std::invalid_argument if measurements or sizes differ; Interrupted if `progress`
+  ///   requests it
+  /// @note the same bits for any number of threads and any memory layout
   void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
              const Image<std::uint8_t>& left_out = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K).
+  /// Filters frame `frame` of (F, H, W, K).
   FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  struct Plan;  ///< of the implementation
+  struct Plan;  ///< implementation
 
  private:
   friend const Plan& plan_of(const Filter& filter);

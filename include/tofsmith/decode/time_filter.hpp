@@ -15,7 +15,7 @@ namespace tofsmith {
 struct TimeFilterOptions {
   int max_frames = 64;
   double max_difference_sigma = 5.0;
-  /// The filter in space leaves so little noise that smaller changes matter.
+  /// Set this if a spatial filter follows: it leaves little noise, so smaller changes matter.
   bool before_filter = false;
   int look_ahead = 0;
 

@@ -14,23 +14,23 @@ namespace tofsmith {
 inline constexpr int patch_side = 2 * patch_reach + 1;
 inline constexpr int patch_pixels = patch_side * patch_side;
 
-/// Chi^2 of so many degrees of freedom that is exceeded as normal noise exceeds `sigma` (Wilson and
-/// Hilferty).
+/// Returns the chi^2 quantile with the tail probability of `sigma` standard deviations of a normal
+/// distribution (Wilson-Hilferty approximation).
 inline float chi2_limit(int freedom, double sigma) {
   const double spread = 2.0 / (9.0 * freedom);
   return static_cast<float>(freedom * std::pow(1.0 - spread + sigma * std::sqrt(spread), 3));
 }
 
-/// A test by chi^2: below `certain` nothing changed, from `most` on nothing stayed.
+/// Chi^2 test for changes: no change below `certain`, full change from `most` on.
 struct ChangeTest {
-  /// Share of max_sigma up to which the past has all of its weight.
+  /// Fraction of max_sigma below which the past keeps its full weight.
   static constexpr double certain_share = 0.6;
 
   ChangeTest(int freedom, double max_sigma)
       : certain(chi2_limit(freedom, certain_share * max_sigma)),
         most(chi2_limit(freedom, max_sigma)) {}
 
-  /// How much of the past stays, in [0, 1].
+  /// Fraction of the past that is kept, in [0, 1].
   float share(float chi2) const { return std::clamp((most - chi2) / (most - certain), 0.0f, 1.0f); }
   float beyond(float chi2) const { return std::max(0.0f, chi2 - certain); }
 
@@ -40,8 +40,8 @@ struct ChangeTest {
 /// sums[i] += values[i] (time_kernel.cpp).
 void add_to_sums(const float* values, std::ptrdiff_t count, float* sums);
 
-/// The rows of a strip and of the patches around it, with a margin at both ends. Of each pixel:
-/// chi^2, whether it counts, and its K differences in standard deviations.
+/// Rows of a strip and of the patches around it, with a margin at both ends. Planes: chi^2, usable
+/// flag, and K differences in standard deviations.
 class ComparedRows {
  public:
   ComparedRows(int rows, int width, int measurements, std::vector<float>& room)
@@ -50,25 +50,24 @@ class ComparedRows {
     if (room.size() < wanted) room.resize(wanted);
     first_ = room.data();
   }
-  /// With a row of sums over columns.
   static std::size_t floats(int rows, int width, int measurements) {
     return static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(planes_of(measurements)) *
            static_cast<std::size_t>(width + 2 * patch_reach);
   }
 
-  /// The first pixel of the image in a row.
+  /// Pointers to the first pixel of a row (after the margin).
   float* chi2(int row) { return plane(row, 0) + patch_reach; }
   float* counts(int row) { return plane(row, 1) + patch_reach; }
-  /// From one measurement to the next.
+  /// Distance between measurements [floats].
   std::ptrdiff_t pitch() const { return pitch_; }
   float* difference(int row, int k) { return plane(row, 2 + k) + patch_reach; }
 
-  /// A row that agrees and does not count.
+  /// Sets a row to the given chi^2, with no usable pixels.
   void clear(int row, float chi2) {
     std::fill_n(plane(row, 0), pitch_, chi2);
     std::fill_n(plane(row, 1), (planes_ - 1) * pitch_, 0.0f);
   }
-  /// Sums over the rows of a patch, instead of a row that is no longer needed.
+  /// Adds the rows of a patch; returns the index of the row with the sums.
   int add_rows(int first_row) {
     float* const sums = plane(rows_, 0);
     std::copy_n(plane(first_row, 0), planes_ * pitch_, sums);

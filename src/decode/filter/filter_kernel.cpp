@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/filter_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/filter/pair_weight-inl.hpp"
@@ -21,8 +21,8 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// lambda of the pixels of a row and of those `away` from them, from column -reach on; rank - 1
-/// where one of both is not usable.
+/// Computes lambda for the pixels of a row and their neighbours at offset `away`; rank - 1 if one
+/// of them is not usable.
 HWY_INLINE void test_row(const SimilarityTest& test, std::ptrdiff_t at, std::ptrdiff_t away,
                          int columns, float* lambda) {
   const Vector half = all(0.5f), four = all(4.0f),
@@ -40,7 +40,7 @@ HWY_INLINE void test_row(const SimilarityTest& test, std::ptrdiff_t at, std::ptr
     const Vector a = load(test.energy + p), b = load(test.energy + q);
     const Vector apart = hn::Sub(a, b), sum = hn::Add(a, b);
     const Vector root = hn::Sqrt(hn::MulAdd(apart, apart, hn::Mul(four, hn::Mul(c, c))));
-    // (sum - root) / 2 of large numbers that are nearly equal would be rounding.
+    // (sum - root) / 2 would cancel for large, nearly equal a and b.
     const Vector product = hn::NegMulAdd(c, c, hn::Mul(a, b));
     const Vector least = hn::Div(hn::Add(hn::Max(product, zero), hn::Max(product, zero)),
                                  hn::Max(hn::Add(sum, root), all(1e-30f)));
@@ -63,7 +63,7 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
   for (std::size_t i = 0; i < half_window.size(); ++i) {
     const int down = half_window[i].rows * strip.step, right = half_window[i].columns * strip.step;
     const std::ptrdiff_t away = down * grid.stride + right;
-    const int top = strip.first_row - down;  // the first row whose weights are used
+    const int top = strip.first_row - down;  // first row whose weights are used
     const int test_rows = strip.rows + down + 2 * reach;
     for (int r = 0; r < test_rows; ++r) {
       float* const row = lambda + r * weights.stride;
@@ -84,7 +84,7 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
       for (int x = 0; x < grid.width; x += lanes_of()) {
         Vector s = load(sums + r * weights.stride + x);
         for (int n = 1; n < side; ++n) s = hn::Add(s, load(sums + (r + n) * weights.stride + x));
-        // What noise the pair itself has must not choose it: it tells what noise cannot be.
+        // A pair's own noise must not select it; only differences too large for noise count.
         const Vector own = load(lambda + (r + reach) * weights.stride + x + reach);
         s = hn::Sub(s, hn::Min(own, noise_limit));
         const Vector w = weight_of(hn::MulSub(s, by, expected), inverse_max);
@@ -95,7 +95,7 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
   }
 }
 
-/// Weighted means of `Count` planes, once their inverse sums of weights are known.
+/// Computes weighted means of `Count` planes from the inverse sums of weights.
 template <int Count>
 HWY_INLINE void add_planes(const WeightedSums& sums, int first, const RowPairs& pairs, int width,
                            std::ptrdiff_t row, const float* inverse_sum) {
@@ -118,7 +118,7 @@ HWY_INLINE void add_planes(const WeightedSums& sums, int first, const RowPairs& 
   }
 }
 
-/// Sums of weights, and the variance of what they add up.
+/// Computes the inverse sums of weights and the variances of the weighted means.
 HWY_INLINE void add_variances(const WeightedSums& sums, const RowPairs& pairs, int width,
                               std::ptrdiff_t row, float* inverse_sum) {
   for (int x = 0; x < width; x += lanes_of()) {
@@ -138,8 +138,8 @@ HWY_INLINE void add_variances(const WeightedSums& sums, const RowPairs& pairs, i
   }
 }
 
-/// Mean of a plane times how far its depth lies beyond the slope: seen from the neighbour behind,
-/// the pixel lies as far on the other side.
+/// Computes the mean of a plane multiplied by its depth beyond the slope. The sign is opposite for
+/// neighbours behind, because weights are stored for the pair as seen from the other pixel.
 HWY_INLINE void add_shifted(const WeightedSums& sums, const RowPairs& pairs, int width,
                             std::ptrdiff_t row, const float* inverse_sum) {
   for (int x = 0; x < width; x += lanes_of()) {
@@ -154,7 +154,7 @@ HWY_INLINE void add_shifted(const WeightedSums& sums, const RowPairs& pairs, int
   }
 }
 
-/// Rows of the scratch: inverse sums, then a row's own weights and how far they shift.
+/// Layout of the scratch rows: inverse sums, then the row's own weights and shifts.
 BalancedRow balanced_row(const FilterGrid& grid, const FilterStrip& strip,
                          const PairWeights& weights, int r) {
   constexpr auto both_ways = static_cast<std::ptrdiff_t>(2 * half_window.size());
@@ -212,7 +212,7 @@ void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const Filter
   }
 }
 
-/// Measured light of a pixel along what was added to another, times the length of that.
+/// Returns the scalar product of the measured light of one pixel and the added light of another.
 HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
                               std::ptrdiff_t measured) {
   Vector sum = hn::Zero(Floats());
@@ -222,7 +222,7 @@ HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
   return sum;
 }
 
-/// Where at least 60 % of the usable pixels around show light of their own, at least `least`.
+/// Returns true if at most own_light_share of the usable pixels around measured less than `least`.
 HWY_INLINE Mask is_light_around(const OwnLightTest& test, const FilterGrid& grid, std::ptrdiff_t at,
                                 Vector least) {
   Vector count = hn::Zero(Floats()), below = count;
@@ -240,7 +240,7 @@ HWY_INLINE Mask is_light_around(const OwnLightTest& test, const FilterGrid& grid
 bool fuses() { return HWY_NATIVE_FMA != 0; }
 
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own) {
-  constexpr float mean_noise = own_light_noise / own_light_side;  // in deviations of one pixel
+  constexpr float mean_noise = own_light_noise / own_light_side;  // standard deviations of a pixel
   const Vector zero = hn::Zero(Floats());
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
@@ -304,7 +304,7 @@ HWY_EXPORT(find_own_light);
 HWY_EXPORT(fuses);
 
 namespace {
-/// A pair's own difference of more standard deviations is not of noise.
+/// Pair differences above this many standard deviations are not noise.
 constexpr double own_difference_sigma = 3.0;
 
 std::size_t row_floats(const FilterGrid& grid) {

@@ -10,10 +10,10 @@
 
 namespace tofsmith {
 
-/// The variance that a coordinate of the decoding plane has without light, and the signal where
-/// buckets are subtracted, so that only its contrast is seen. Signal S with variance f + S m of
-/// each of `rank` coordinates makes <|u|^2> = S^2 <p^2> + rank (f + S m); of a mean of n
-/// measurements f and m are n times smaller.
+/// Estimates the signal from its contrast if subtracted buckets hide the light, and provides the
+/// variance of a coordinate of the decoding subspace without light. A signal S with variance f + S
+/// m in each of `rank` coordinates yields <|u|^2> = S^2 <p^2> + rank (f + S m). For averages of n
+/// measurements, f and m are n times smaller.
 struct HiddenSignal {
   HiddenSignal(const ExpectedNoise& noise, const AmbientProjection& projection)
       : rank(static_cast<float>(projection.rank())),
@@ -26,7 +26,8 @@ struct HiddenSignal {
     shot_per_signal = static_cast<float>((noise.shot_gated * share).mean());
   }
 
-  /// S [e/s] of means of `averaged` measurements. @param squares  |u|^2 [e^2]
+  /// Returns S [e/s] for averages of `averaged` measurements.
+  /// @param squares  |u|^2 [e^2]
   float of(float squares, float averaged) const {
     const float per_mean = rank / averaged;
     const float m = per_mean * shot_per_signal;
@@ -35,10 +36,10 @@ struct HiddenSignal {
   }
 
   float rank = 0.0f;
-  std::vector<float> shot_share;   ///< of a measurement in a coordinate's variance, on average (K)
+  std::vector<float> shot_share;   ///< mean share of a measurement in a coordinate's variance (K)
   float floor_variance_e2 = 0.0f;  ///< f
-  float shot_per_signal = 0.0f;    ///< m, over all depths
-  float mean_curve_square = 0.0f;  ///< <p^2>, over all depths
+  float shot_per_signal = 0.0f;    ///< m, averaged over all depths
+  float mean_curve_square = 0.0f;  ///< <p^2>, averaged over all depths
 };
 
 }  // namespace tofsmith

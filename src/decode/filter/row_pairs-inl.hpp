@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The pairs of a row's pixels and their neighbours, as they are added. Compiled once for every
-// instruction set.
+// Weighted pairs of the pixels of a row and their neighbours. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP
 #undef TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP
@@ -17,10 +16,9 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Where a row's pairs and their weights are.
 struct RowPairs {
   std::array<const float*, half_window.size()> ahead, behind;  // weights
-  std::array<std::ptrdiff_t, half_window.size()> away;         // of the neighbour ahead
+  std::array<std::ptrdiff_t, half_window.size()> away;         // offset of the neighbour ahead
 };
 
 RowPairs pairs_of_row(const FilterGrid& grid, const FilterStrip& strip, const float* weights,
@@ -39,7 +37,7 @@ RowPairs pairs_of_row(const FilterGrid& grid, const FilterStrip& strip, const fl
   return pairs;
 }
 
-/// A row's weights of its own, which need not be those that its neighbours see, in `room`.
+/// Returns pairs whose weights belong to one row only and are stored in `room`.
 RowPairs own_pairs(const RowPairs& pairs, const float* room, std::ptrdiff_t stride) {
   RowPairs own = pairs;
   for (std::size_t i = 0; i < half_window.size(); ++i) {
@@ -49,21 +47,21 @@ RowPairs own_pairs(const RowPairs& pairs, const float* room, std::ptrdiff_t stri
   return own;
 }
 
-/// A row's weights as the strip has them, and room for those that its pixels give.
+/// Weights of a row in the strip, and memory for the row's own weights.
 struct BalancedRow {
-  RowPairs weights, shifted;         // as the strip has them
-  float *own_weights, *own_shifted;  // room for those of the row
+  RowPairs weights, shifted;         // as stored for the strip
+  float *own_weights, *own_shifted;  // of this row only
   std::ptrdiff_t stride;
 };
 
-/// What of a neighbour's weight stays where its light is to be at most `balanced_light` times that
-/// of the one opposite.
+/// Returns the factor that limits the weighted light of a neighbour to `balanced_light` times that
+/// of the opposite one.
 HWY_INLINE Vector share_of_light(Vector light, Vector opposite) {
   const Vector most = hn::Mul(all(balanced_light), opposite);
   return hn::Min(hn::Div(most, hn::Max(light, all(1e-30f))), all(1.0f));
 }
 
-/// Weights of a row that trade noise for what slopes err by (LightBalance).
+/// Computes weights of a row that balance noise and the error of slopes (see LightBalance).
 HWY_INLINE void balance_row(const WeightedSums& sums, const BalancedRow& pairs, int width,
                             std::ptrdiff_t row) {
   const LightBalance& balance = *sums.balance;
@@ -104,7 +102,7 @@ HWY_INLINE void balance_row(const WeightedSums& sums, const BalancedRow& pairs, 
       noise_balanced =
           hn::MulAdd(hn::Mul(share_behind, share_behind), noise_behind, noise_balanced);
     }
-    // How far the depth may err that all are moved by, squared; and how much noise is saved by it.
+    // Squared depth error of the unbalanced sum, and the noise that balancing adds.
     const Vector light2 = hn::Max(hn::Mul(light, light), tiny),
                  balanced2 = hn::Max(hn::Mul(light_balanced, light_balanced), tiny);
     const Vector offset2 = hn::Div(
@@ -122,10 +120,10 @@ HWY_INLINE void balance_row(const WeightedSums& sums, const BalancedRow& pairs, 
     const Vector more =
         hn::Max(hn::Sub(hn::Div(noise_balanced, balanced2), hn::Div(noise, light2)), zero);
     const Vector wanted = hn::Div(error2, hn::Max(hn::Add(error2, more), tiny));
-    // That share of depth, not of light.
+    // `wanted` refers to depth; convert it to light.
     const Vector of_balanced = hn::Mul(wanted, light);
     const Vector of_all = hn::Mul(hn::Sub(one, wanted), light_balanced);
-    // Noise alone must not choose what is added.
+    // Noise alone must not change the weights.
     const Mask is_seen = hn::Gt(hn::Mul(light2, length2), hn::Mul(all(balanced_energy), noise));
     const Mask is_lit =
         hn::And(is_seen, hn::And(hn::Gt(light, zero), hn::Gt(light_balanced, zero)));

@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/slope_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/filter/pair_weight-inl.hpp"
@@ -20,7 +20,7 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A difference of depths, of a period's bins, as the nearest way round.
+/// Wraps a difference of depths [bin] to half a period.
 HWY_INLINE Vector nearest(Vector difference, Vector samples, Vector per_sample) {
   return hn::NegMulAdd(hn::Round(hn::Mul(difference, per_sample)), samples, difference);
 }
@@ -61,7 +61,6 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
   }
 }
 
-/// Where a neighbour is, in pixels.
 struct RingPlace {
   std::ptrdiff_t away = 0;
   float x = 0.0f, y = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
@@ -75,7 +74,7 @@ struct RingPlace {
         yy(y * y) {}
 };
 
-/// Neighbours ahead, each followed by the one opposite.
+/// Returns all neighbours ahead, each followed by the opposite one.
 std::array<RingPlace, 2 * std::size(half_rings)> ring_places(std::ptrdiff_t stride) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     return std::array{RingPlace(half_rings.data()[I / 2], I % 2 == 0 ? 1 : -1, stride)...};
@@ -83,7 +82,7 @@ std::array<RingPlace, 2 * std::size(half_rings)> ring_places(std::ptrdiff_t stri
   (std::make_index_sequence<2 * std::size(half_rings)>());
 }
 
-/// Sums of a plane's slopes, weighted: of x^2, x y, y^2, x d, y d.
+/// Weighted sums for fitting the slopes of a plane: x^2, x y, y^2, x d, y d.
 struct SlopeSums {
   Vector xx, xy, yy, xd, yd;
   HWY_INLINE SlopeSums() : xx(hn::Zero(Floats())), xy(xx), yy(xx), xd(xx), yd(xx) {}
@@ -95,7 +94,7 @@ struct SlopeSums {
     xd = hn::MulAdd(d, all(place.x), xd);
     yd = hn::MulAdd(d, all(place.y), yd);
   }
-  /// One direction alone tells nothing of the other.
+  /// Solves for the slopes. Regularized, because neighbours may lie on one line.
   HWY_INLINE void solve(Vector& slope_x, Vector& slope_y) const {
     const Vector little = hn::MulAdd(hn::Add(xx, yy), all(1e-4f), all(1e-20f));
     const Vector a = hn::Add(xx, little), b = hn::Add(yy, little);
@@ -121,7 +120,7 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         noise = hn::Max(load(test.variance + p + away), tiny);
         return load(test.usable + p + away);
       };
-      // Opposite neighbours that differ from the pixel by as much in opposite ways, ..
+      // Initial fit: opposite neighbours whose differences from the pixel are opposite.
       SlopeSums pairs;
       for (std::size_t i = 0; i < std::size(half_rings); ++i) {
         const RingPlace& place = places.data()[2 * i];
@@ -138,7 +137,7 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
       }
       Vector across, along;
       pairs.solve(across, along);
-      // .. then every neighbour that the plane so found explains.
+      // Final fit: all neighbours that agree with the initial plane.
       SlopeSums singles;
       Vector chi2 = zero, count = zero;
       for (std::size_t i = 0; i < places.size(); ++i) {
@@ -163,7 +162,6 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
     }
 }
 
-/// Places between two bins, as where their points stand in the curve.
 struct CurvePlaces {
   IndexVector from, to;
   Vector share;  // of `to`
@@ -182,7 +180,7 @@ struct CurvePlaces {
     const auto size = hn::Set(di, curve.coordinates);
     from = hn::Mul(at, size), to = hn::Mul(next, size);
   }
-  /// How much farther the curve is a bin beyond.
+  /// Returns the difference of coordinate k between the two bins.
   HWY_INLINE Vector per_bin(const CurvePoints& curve, int k) const {
     return hn::Sub(hn::GatherIndex(Floats(), curve.points + k, to),
                    hn::GatherIndex(Floats(), curve.points + k, from));
@@ -218,7 +216,7 @@ void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
   const Vector zero = hn::Zero(Floats());
   for (int x = 0; x < width; x += lanes_of()) {
     const Vector signal = load(row.signal + x), shift = row.shift ? load(row.shift + x) : zero;
-    // Where noise leaves next to no signal, there is nothing to be moved.
+    // If noise leaves almost no signal, the shift is meaningless.
     const Mask can_move = hn::Gt(signal, hn::Mul(hn::Abs(shift), all(0.25f)));
     const Vector beyond = hn::IfThenElseZero(can_move, hn::Div(shift, signal));
     const CurvePlaces places(curve, hn::Add(load(row.depth + x), beyond));
@@ -245,7 +243,7 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
       far2 = hn::MulAdd(far, far, far2);
       dot = hn::MulAdd(per_bin[j], far, dot);
     }
-    // What of the near sum lies where the far one would go if its depth changed.
+    // Project the near sum on the direction in which the far sum would move with its depth.
     const Vector along = hn::Div(dot, hn::Max(far2, tiny));
     Vector moved = zero, move2 = tiny;
     for (int j = 0; j < curve.rank; ++j) {
@@ -253,7 +251,7 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
       moved = hn::MulAdd(move, load(sums.near.data()[j] + at), moved);
       move2 = hn::MulAdd(move, move, move2);
     }
-    // The far sum holds the near one, so their difference has less noise than that has.
+    // The far sum includes the near one, so their difference has less noise than the near sum.
     const Vector near_variance = hn::Max(load(sums.near_variance + at), all(1e-12f));
     const Vector noise = hn::Max(hn::Sub(near_variance, load(sums.far_variance + at)),
                                  hn::Mul(near_variance, all(least_noise_share)));
@@ -264,7 +262,6 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
   }
 }
 
-/// Of a near sum's light.
 HWY_INLINE Vector near_square(const NearAndFar& sums, std::ptrdiff_t at) {
   Vector square = hn::Zero(Floats());
   for (int j = 0; j < sums.rank; ++j) {
@@ -274,9 +271,9 @@ HWY_INLINE Vector near_square(const NearAndFar& sums, std::ptrdiff_t at) {
   return square;
 }
 
-/// Keeps a share of the near sum in place of the far one: of its light, and, by `share2`, of the
-/// variance that it has beyond. The far sum is a mean of all: its covariance with the near one is
-/// its own variance.
+/// Replaces a share of the far sum by the near sum: share `kept` of the light, and `share2` of the
+/// additional variance of the near sum. The covariance of both sums equals the variance of the far
+/// sum, which is the mean of all pixels.
 HWY_INLINE void keep_share(const NearAndFar& sums, std::ptrdiff_t at, Vector kept, Vector share2,
                            Vector near_variance) {
   for (int k = 0; k < sums.planes; ++k) {
@@ -289,7 +286,8 @@ HWY_INLINE void keep_share(const NearAndFar& sums, std::ptrdiff_t at, Vector kep
   store(hn::MulAdd(share2, beyond, far), sums.far_variance + at);
 }
 
-/// How much of the near sums bias and noise are least with, beyond what noise explains.
+/// Returns the share of the near sum that minimizes bias and noise, given the difference that noise
+/// does not explain.
 HWY_INLINE Vector kept_of(Vector excess, float half) {
   return hn::Div(excess, hn::Add(excess, all(half)));
 }
@@ -309,11 +307,11 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
       }
     const Vector per_pixel = hn::Div(one, hn::Max(count, one));
     const Vector around = hn::Sub(hn::Div(squares, hn::Max(count, one)), all(explained_by_noise));
-    // Where a surface bends alike all around, all differ a little, in the same way.
+    // On uniformly curved surfaces all pixels differ slightly, with the same sign.
     const Vector mean_around = hn::Mul(sum_around, per_pixel);
     const Vector bent =
         hn::NegMulAdd(per_pixel, all(explained_in_patch), hn::Mul(mean_around, mean_around));
-    // At a silhouette or a crease the pixels of a thin line alone differ, all in the same way.
+    // At a silhouette or a crease, only the pixels along a thin line differ, with the same sign.
     Vector best = zero;
     for (std::size_t i = 0; i < std::size(line_directions); ++i) {
       const WindowStep& step = line_directions.data()[i];
@@ -336,7 +334,7 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
         hn::Max(kept_of(hn::Max(around, zero), half_kept), kept_of(best, half_kept_along_lines));
     store(kept, sums.kept + at);
     if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
-    // Where noise alone has some of the near sum kept, it was so much larger than usual.
+    // If noise alone causes `kept` > 0, the noise of the near sum is larger than usual.
     keep_share(sums, at, kept, hn::Mul(hn::Mul(kept, kept), all(kept_noise)), near_variance);
   }
 }

@@ -6,10 +6,10 @@
 
 namespace tofsmith {
 
-inline constexpr float min_depth_variance = 1e-8f;  // [bin^2], of scenes without noise
+inline constexpr float min_depth_variance = 1e-8f;  // [bin^2], lower limit for noiseless scenes
 
-/// Neighbours that tell the slope, and those opposite: few, because near ones of filtered pixels
-/// share their noise.
+/// Neighbours from which slopes are estimated (the opposite ones are used, too). They are sparse
+/// and distant, because close neighbours share noise after filtering.
 inline constexpr std::array<WindowStep, 12> half_rings = {{{0, 3},
                                                            {3, -3},
                                                            {3, 0},
@@ -22,10 +22,10 @@ inline constexpr std::array<WindowStep, 12> half_rings = {{{0, 3},
                                                            {slope_reach, -slope_reach},
                                                            {slope_reach, 0},
                                                            {slope_reach, slope_reach}}};
-/// From this one of them on pixels are so far apart that they share few measurements.
+/// Index of the first neighbour that shares few measurements with the pixel.
 inline constexpr std::size_t first_far_ring = 8;
 
-/// The test of depths along slopes, all in bins.
+/// Inputs of the test of depths along slopes, in bins.
 struct SlopeTest {
   const float* depth = nullptr;
   const float* variance = nullptr;  ///< of depth
@@ -39,14 +39,14 @@ struct SlopeTest {
 void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
                         const PairWeights& weights);
 
-/// Slopes of the plane through the depths of pixels 3 to 12 away that are of the same surface; 0
-/// where there are too few.
-/// @param excess  of depth's variance, >= 1: how much more the depths of far pixels of the surface
-///                scatter about the plane
+/// Fits a plane to the depths of the pixels 3 to 12 away that lie on the same surface, and computes
+/// its slopes; 0 if there are too few pixels.
+/// @param excess  factor >= 1 by which the scatter of far pixels about the plane exceeds the
+///   variance of their depths
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
                  float* slope_x, float* slope_y, float* excess);
 
-/// x = T o chi in coordinates of which the first `rank` are those of the decoding plane.
+/// x = T o chi. The first `rank` coordinates span the decoding subspace.
 struct CurvePoints {
   const float* points = nullptr;  ///< (samples, coordinates)
   int samples = 0;
@@ -54,82 +54,81 @@ struct CurvePoints {
   int rank = 0;
 };
 
-/// A row's light into signal along its depth and the rest; without a depth all is rest.
+/// Splits the light of a row into signal along its depth and a remainder. Without a depth, all
+/// light is remainder.
 struct SplitRow {
   const float* depth = nullptr;   ///< [bin], in [0, N)
-  const float* guided = nullptr;  ///< > 0 where there is a depth
+  const float* guided = nullptr;  ///< > 0 if the pixel has a depth
   std::array<const float*, max_measurements> in{};
   std::array<float*, max_measurements> out{};
   float* signal = nullptr;
 };
 void split_row(const CurvePoints& curve, const SplitRow& row, int width);
 
-/// Adds a row's signal to the rest of its light, where its depth is and shift / signal beyond.
+/// Adds the signal of a row to the remainder, at the depth shifted by shift / signal.
 struct JoinRow {
   const float* depth = nullptr;
   const float* guided = nullptr;
   const float* signal = nullptr;
-  const float* shift = nullptr;  ///< [signal bin]; null where nothing is moved
+  const float* shift = nullptr;  ///< [signal bin]; null: no shift
   std::array<float*, max_measurements> light{};
 };
 void join_row(const CurvePoints& curve, const JoinRow& row, int width);
 
-/// Pixels around one that are looked at together: 7 x 7, every other one, because near sums of
-/// pixels side by side share most of their measurements.
+/// Pixels around a pixel that are compared: every second one of 13 x 13, because the near sums of
+/// adjacent pixels share most of their measurements.
 inline constexpr int compared_reach = 6, compared_step = 2;
-/// And 9 in a row, every third one, through the pixel in each of four directions.
+/// Pixels of a line through the pixel, in each of four directions: 9, every third one.
 inline constexpr int line_side = 4, line_step = 3, line_reach = line_side * line_step;
 inline constexpr std::array<WindowStep, 4> line_directions = {{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
-/// Of the near sum's variance, so much is the least that its difference from the far one has.
+/// Lower limit of the noise of the difference, as a fraction of the near sum's variance.
 inline constexpr float least_noise_share = 0.25f;
-/// Mean square of differences in deviations that noise is taken to make, of the pixels around; and
-/// square of their mean along the best of the lines and around, divided by how many count.
+/// Thresholds that noise explains: mean squared difference of the pixels around [standard
+/// deviations], and squared mean along the best line and around, divided by the number of pixels.
 inline constexpr float explained_by_noise = 2.3f, explained_along_lines = 18.0f;
 inline constexpr float explained_in_patch = 12.0f;
-/// What exceeds it is kept as excess / (excess + this).
+/// An excess above the threshold keeps the share excess / (excess + this) of the near sum.
 inline constexpr float half_kept = 0.2f, half_kept_along_lines = 0.3f;
-/// How much larger than usual the noise of a near sum is where noise alone has some of it kept.
+/// Factor of the near sum's variance if noise alone caused it to be kept.
 inline constexpr float kept_noise = 1.6f;
-/// Near sums of fewer standard deviations, squared, tell too little of their depth.
+/// Near sums with a lower squared signal-to-noise ratio have no useful depth.
 inline constexpr float least_energy = 25.0f;
-/// From so many standard deviations on near sums alone tell slopes, and little bends.
+/// Signal-to-noise ratio from which near sums alone determine slopes and small curvatures.
 inline constexpr float bright_sigma = 50.0f;
 
-/// Two sums for each pixel: of near neighbours, and of these and far ones.
+/// Two sums per pixel: near neighbours only, and near and far neighbours.
 struct NearAndFar {
   std::array<const float*, max_measurements> near{};
-  std::array<float*, max_measurements> far{};  ///< and then what is kept of both
+  std::array<float*, max_measurements> far{};  ///< input; then the mixture of both sums
   int planes = 0, rank = 0;
   const float* usable = nullptr;  ///< 1 or 0
-  const float* depth = nullptr;   ///< of both [bin], in [0, N)
+  const float* depth = nullptr;   ///< of the far sum [bin], in [0, N)
   const float* near_variance = nullptr;
-  float* far_variance = nullptr;  ///< and then that of what is kept
-  float* difference = nullptr;    ///< of the two depths [standard deviations]
-  float* kept = nullptr;          ///< and the share of the near sum that is kept
+  float* far_variance = nullptr;  ///< input; then the variance of the mixture
+  float* difference = nullptr;    ///< between the depths of both sums [standard deviations]
+  float* kept = nullptr;          ///< output: share of the near sum
 };
-/// `difference` of a row.
 void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const FilterGrid& grid,
                   int row);
-/// Far neighbours may be of another surface, or of one that bends, by less than the test of a pair
-/// sees. Where the sums with them, of pixels around one or along a line through it, have other
-/// depths than the near sums by more than noise explains, so much of the near sum is kept that the
-/// bias and the noise that it leaves are least. Needs `difference` of the rows around.
+/// Mixes the near sum back in where far neighbours belong to another or a curved surface, although
+/// the test of pairs did not detect it. If the depths of both sums differ by more than noise
+/// explains, in the pixels around or along a line through the pixel, the share of the near sum
+/// minimizes the remaining bias and noise. Requires `difference` of the rows around.
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
-/// Before there are slopes: from bright_sigma on the less noise a near sum has, the more of it is
-/// kept, and all from twice that on. Its depth tells slopes well enough, and far neighbours, which
-/// lie along slopes that are not known yet, would bias it.
+/// Mixes the near sum back in for bright pixels, before slopes are known: none below bright_sigma,
+/// all from twice that signal-to-noise ratio on. The depth of a bright near sum yields good slopes,
+/// whereas far neighbours, whose slopes are still unknown, would bias it.
 void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row);
 
-/// What the noise of slopes adds to the variance of a sum along them,
-///   v (sum + sum_offset d^2) + v' (before + before_offset d^2),
-/// where v is the variance of the sum without it, v' that of the depth that slopes were taken from,
-/// and d how far the middle of what was added lies from the pixel, in steps of the last window.
-/// Inside a plane depths of near sums alone count less by this share, measured.
+/// Additional variance of a sum along slopes due to the noise of the slopes,
+///   v (sum + sum_offset d^2) + v' (before + before_offset d^2).
+/// v is the variance of the sum without it, v' that of the depth from which slopes were estimated,
+/// and d the distance of the averaged pixels' centroid from the pixel in steps of the last window.
+/// The constant is the measured reduction for near sums inside a plane.
 inline constexpr float slope_noise_of_near = 0.67f;
 struct SlopeNoise {
   float sum, sum_offset, before, before_offset;
 };
-/// For so many windows, in this round of those.
 SlopeNoise slope_noise_of(int windows, int round);
 
 }  // namespace tofsmith

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The rounds of a Filter along slopes. A neighbour q's light y_q is split into signal along its
-// depth and the rest, y_q = S_q x(z_q) + e_q. The rests are added as they are, the signals where
-// the pixel's own depth is and as far beyond it as the neighbour lies beyond the slope:
+// Passes of a Filter along slopes. The light of a neighbour q is split into signal along its depth
+// and a remainder, y_q = S_q x(z_q) + e_q. Remainders are averaged unchanged. Signals are moved to
+// the depth z of the pixel plus the neighbour's distance d_q from the plane:
 //   sum_q w_q e_q + (sum_q w_q S_q) x(z + sum_q w_q S_q d_q / sum_q w_q S_q).
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,11 @@ namespace tofsmith {
 
 namespace {
 
-/// For one window and more. All steps are linear in the noise of depth: this is the energy of their
-/// impulse response, on a plane where all neighbours weigh alike and beside its border.
+/// By number of windows. All steps are linear in the noise of depth. The coefficients are the
+/// energy of their impulse response on a plane with equal weights, inside and at its border.
 constexpr SlopeNoise first_slope_noise[] = {
     {0.005f, 0.1f, 0.003f, 0.065f}, {0.27f, 0.3f, 0.03f, 0.085f}, {0.44f, 0.65f, 0.05f, 0.19f}};
-/// The same of later rounds, whose slopes were taken from sums along slopes.
+/// The same for later passes, whose slopes come from sums along slopes.
 constexpr SlopeNoise later_slope_noise[] = {
     {0.005f, 0.1f, 0.003f, 0.065f}, {0.31f, 0.45f, 0.03f, 0.085f}, {0.62f, 1.48f, 0.05f, 0.19f}};
 
@@ -28,10 +28,10 @@ SlopeNoise slope_noise_of(int windows, int round) {
   return (round == 0 ? first_slope_noise : later_slope_noise)[windows - 1];
 }
 
-/// The noise of slopes affects the depth only, not the residual. No ratio is used for the residual
-/// of two rounds, because these add errors in bright light that would cause false alarms.
+/// The noise of slopes affects the depth only, not the residual. For two passes no ratio of the
+/// residual is used, because they add errors in bright light that would cause false alarms.
 /// Neighbours with the same wrong lobe support each other, because slopes are fitted to the depths
-/// of one lobe. The ratio for lobes, 1.3, was found with benchmarks/reliability.py.
+/// of one lobe. The ratio for lobes, 1.3, was determined with benchmarks/reliability.py.
 NoiseRatios Filter::Plan::noise_ratios() const {
   if (options.slope_rounds == 0) return {};
   NoiseRatios ratios{.of_lobes = 1.3f};
@@ -50,7 +50,7 @@ void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from,
     std::copy_n(frame.scalar(last_variance()) + row * grid.stride, grid.width,
                 &frame.averaged(row, 0));
   });
-  // Whole rows with their margins, so that planes are what decoders write.
+  // Decode whole rows with margins, so that planes have the layout that decoders write.
   float* const depth = frame.scalar(FilterPlanes::depth);
   float* const variance = frame.scalar(FilterPlanes::depth_variance);
   const RawView filtered{.data = static_cast<const float*>(frame.light(into, 0) - grid.margin),
@@ -119,7 +119,7 @@ void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int win
 void Filter::Plan::add_slope_noise(FilterPlanes& frame, int round) const {
   const int window = options.windows - 1;
   const SlopeNoise noise = slope_noise_of(options.windows, round);
-  // Later rounds test depths by their noise alone.
+  // Only the last pass includes all terms: later passes test depths by their noise alone.
   const bool is_last = round + 1 == options.slope_rounds;
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t at = row * frame.grid.stride;
@@ -134,7 +134,7 @@ void Filter::Plan::add_slope_noise(FilterPlanes& frame, int round) const {
       const float far_share = window > 0 ? 1.0f - near_share[x] : 1.0f;
       const float d2 = is_last ? offset2[x] : 0.0f;
       const float of_sum = noise.sum + noise.sum_offset * d2;
-      // Depths of near sums share less noise with those that tell the slope.
+      // Depths of near sums share less noise with the depths that determine the slope.
       const float of_near = slope_noise_of_near * std::min(1.0f, before[x] / near[x]);
       const float of_before =
           is_last ? noise.before * (1.0f - of_near) + noise.before_offset * d2 : 0.0f;

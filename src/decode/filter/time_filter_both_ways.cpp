@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames that are added to those before them, too.
+// Time filter with later frames (look_ahead).
 #include <algorithm>
 
 #include "decode/filter/time_filter_state.hpp"
 
 namespace tofsmith {
 
-/// What changes from past to future cancels where both weigh the same: neither is tested against
-/// the other.
+/// Past and future are each compared with the frame, not with each other. Linear changes from past
+/// to future cancel if both have the same weight.
 void TimeFilter::State::join_row(const RawView& raw, int row) {
   Numbers numbers;
   BlockOfPixels averaged_now;
@@ -23,7 +23,7 @@ void TimeFilter::State::join_row(const RawView& raw, int row) {
       const float* const before = mean(past, k, first);
       float* const after = mean(future, k, first);
       for (int i = 0; i < pixels; ++i) {
-        // Sides of no weight may hold what is no number.
+        // The means of pixels without weight may be NaN.
         const float d_past = w_past[i] > 0.0f ? w_past[i] * (before[i] - now[i]) : 0.0f;
         const float d_future = w_future[i] > 0.0f ? w_future[i] * (after[i] - now[i]) : 0.0f;
         const float both =

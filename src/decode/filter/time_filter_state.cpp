@@ -63,7 +63,8 @@ void TimeFilter::State::resize(const RawView& raw) {
   cells.assign(cell_changes.size() * static_cast<std::size_t>(measurements + 1), 0.0f);
 }
 
-/// Raw numbers of some pixels of a row, [K][block_pixels], and of how many they are the mean.
+/// Reads raw values of a block of a row, [K][block_pixels], and their numbers of averaged
+/// measurements.
 void TimeFilter::State::read(const RawView& raw, std::ptrdiff_t first, int pixels, Numbers& numbers,
                              BlockOfPixels& averaged_now) const {
   for_each_run(raw, first, pixels, [&](const auto* pixel, std::int64_t length, std::int64_t) {
@@ -102,7 +103,7 @@ void TimeFilter::State::compare_row(const RawView& raw, const AddedFrames& added
   }
 }
 
-/// @param compared_row  of the pixel itself
+/// @param compared_row  index of the row in `compared`
 void TimeFilter::State::weigh_row(const RawView& raw, AddedFrames& added, int row,
                                   ComparedRows& compared, int compared_row) {
   const int sums = compared.add_rows(compared_row - patch_reach);
@@ -119,7 +120,7 @@ void TimeFilter::State::weigh_row(const RawView& raw, AddedFrames& added, int ro
                          .past = added.averaged.pixels.data() + first,
                          .averaged_now = raw.averaged ? raw.averaged + first : nullptr,
                          .pixels = pixels,
-                         // Without a filter behind it nobody asks.
+                         // Only find_shares_of_row() distinguishes invalid pixels.
                          .none = options.before_filter ? tells_nothing : 0.0f,
                          .weight = added.weights.data() + first,
                          .unchanged = unchanged.data()});
@@ -139,7 +140,7 @@ void TimeFilter::State::compare(const RawView& raw, AddedFrames& added, IndexRan
   buffers.give_back(std::move(buffer));
 }
 
-/// @param unchanged  1 where no test has shown a change, else 0: only those tell of smaller ones
+/// @param unchanged  1 if no test detected a change, else 0; only unchanged pixels are added
 void TimeFilter::State::add_to_cells(int row, int column, int pixels,
                                      const BlockOfPixels& unchanged, ComparedRows& compared,
                                      int compared_row) {
@@ -184,14 +185,15 @@ void TimeFilter::State::weigh_row_by_cells(const RawView& raw, AddedFrames& adde
   float* const weight = added.weights.data() + first;
   for (int i = 0; i < width; ++i) {
     const float n = raw.averaged ? raw.averaged[first + i] : 1.0f;
-    // What so many pixels share is not less after they are added: their sum's noise counts.
+    // A change common to many pixels does not decrease with averaging, so compare it with the noise
+    // of the average.
     const float changed = changes[i / cell_side] * (1.0f / past[i] + 1.0f / n);
     if (weight[i] > 0.0f) weight[i] /= 1.0f + weight[i] * changed;
   }
 }
 
-/// The least share of the past that stays in the five pixels of the row around each, over
-/// telling_share.
+/// Computes the least share of the past kept by the five pixels of the row around each pixel,
+/// divided by telling_share.
 void TimeFilter::State::find_shares_of_row(const RawView& raw, const AddedFrames& added, int row) {
   const std::ptrdiff_t first = pixel(row, 0);
   const float* const weight = added.weights.data() + first;
@@ -206,7 +208,7 @@ void TimeFilter::State::find_shares_of_row(const RawView& raw, const AddedFrames
   }
 }
 
-/// The same of the rows around it: no pixel keeps much more than those beside it.
+/// Limits the weight of each pixel by the shares of the rows around it.
 void TimeFilter::State::weigh_row_by_shares(const RawView& raw, AddedFrames& added, int row) const {
   const std::ptrdiff_t first = pixel(row, 0);
   float* const weight = added.weights.data() + first;

@@ -15,34 +15,34 @@
 
 namespace tofsmith {
 
-/// Rows of a frame that one thread compares at a time.
 inline constexpr int compared_strip_rows = 32;
 
-/// Side of the cells whose sums show what many pixels share, and how far cells around one count.
+/// Side of the cells whose sums detect changes common to many pixels, and their neighbourhood.
 inline constexpr int cell_side = 8, cell_reach = 1;
 static_assert(compared_strip_rows % cell_side == 0, "a strip is of whole cells");
 
-/// The weight of a pixel that is no measurement, before those around it are compared with it.
+/// Weight of an invalid pixel until its neighbours have been compared.
 inline constexpr float tells_nothing = -1.0f;
-/// Shares of the past above this are left by chance, and those beside a pixel say nothing about it.
+/// Smaller kept shares of the past also lower the weights of adjacent pixels; larger ones are
+/// considered random.
 inline constexpr float telling_share = 0.5f;
 
-/// Frames of one side of another, added up.
+/// Average of the past or future frames.
 struct AddedFrames {
   bool is_empty = true;
-  std::vector<float> means;    ///< raw numbers (K, H, W)
-  std::vector<float> weights;  ///< of what was added to a pixel, in the next mean (H, W)
+  std::vector<float> means;    ///< raw values (K, H, W)
+  std::vector<float> weights;  ///< weight of the average in the next mean (H, W)
   Image<float> averaged;       ///< n
 
   void resize(const RawView& raw);
 };
 
-/// Frames that wait until those after them are known, in the order that they came.
+/// Queue of frames that wait for later frames.
 class WaitingFrames {
  public:
   int count() const { return count_; }
   void push(const RawView& raw);
-  /// The oldest is 0. Valid until the next push() once pop() has taken it.
+  /// Returns frame `index` (0: oldest). A view remains valid after pop() until the next push().
   RawView view(int index) const;
   void pop();
   void clear() { count_ = 0; }
@@ -60,9 +60,8 @@ class WaitingFrames {
   int height_ = 0, width_ = 0, measurements_ = 0;
 };
 
-/// What a TimeFilter knows, what it keeps, and its steps over a frame.
+/// Constant data of a TimeFilter, its state, and its steps over a frame.
 struct TimeFilter::State {
-  /// Pixels of a row that are worked on at a time.
   static constexpr int block_pixels = 256;
   using BlockOfPixels = std::array<float, block_pixels>;
 
@@ -76,7 +75,7 @@ struct TimeFilter::State {
   HiddenSignal hidden;
   bool has_own_shot_noise;
   std::vector<float> floor_variance_e2;  // of each measurement, without light (K)
-  std::vector<float> shot_per_signal;    // over all depths (K)
+  std::vector<float> shot_per_signal;    // averaged over all depths (K)
   std::vector<float> dark_raw, gain;     // electrons = (raw - dark_raw) gain (K)
   std::vector<float> to_plane;           // V^T (rank, K)
   ChangeTest pixel_test, patch_test, shared_test;
@@ -84,33 +83,29 @@ struct TimeFilter::State {
   int height = 0, width = 0;
   AddedFrames past, future;
   WaitingFrames waiting;
-  std::vector<float> shares;  // of the past that stay, where small changes matter (H, W)
+  std::vector<float> shares;  // of the past that are kept, if before_filter (H, W)
   int cell_columns = 0;
-  std::vector<float> cells;         // sums of differences and how many they are of (cell, K + 1)
-  std::vector<float> cell_changes;  // how much a cell changed beyond noise, in chi^2 over K
+  std::vector<float> cells;         // sums of differences, and number of pixels (cell, K + 1)
+  std::vector<float> cell_changes;  // change of a cell beyond noise, chi^2 divided by K
   StripBufferPool buffers;
 
-  /// Of `cells` and `cell_changes`.
   static std::size_t cell_floats(int height, int width, int measurements);
   bool is_empty() const { return past.is_empty && waiting.count() == 0; }
-  /// Empty, for frames of this size.
+  /// Resets the state for frames of this size.
   void resize(const RawView& raw);
-  /// How much of what was added to each pixel counts, into its weights.
   void weigh(const RawView& raw, AddedFrames& added);
-  /// The next means of it.
   void add(const RawView& raw, AddedFrames& added);
-  /// The frame with what stays of both sides, in place of the future.
+  /// Replaces `future` by the average of past, frame and future.
   void join(const RawView& raw);
-  /// The oldest frame that waits, with what stays the same of all that are known around it.
+  /// Returns the oldest waiting frame, averaged with the frames before and after it.
   RawView finish_oldest();
-  /// Measurement k of the means, from a pixel on.
+  /// Returns measurement k of the average, from a pixel on.
   float* mean(AddedFrames& added, int k, std::ptrdiff_t pixel) const {
     return added.means.data() + std::ptrdiff_t{k} * height * width + pixel;
   }
   const float* mean(const AddedFrames& added, int k, std::ptrdiff_t pixel) const {
     return added.means.data() + std::ptrdiff_t{k} * height * width + pixel;
   }
-  /// Of the means of past or future.
   RawView view(const AddedFrames& added) const;
 
  private:
@@ -133,7 +128,7 @@ struct TimeFilter::State {
       for (std::int64_t row = rows.begin; row < rows.end; ++row) work(static_cast<int>(row));
     });
   }
-  /// The most that a pixel's past may weigh.
+  /// Returns the maximum weight of a pixel's average.
   float most_weight(const RawView& raw, const AddedFrames& added, std::ptrdiff_t pixel) const {
     const float n = raw.averaged ? raw.averaged[pixel] : 1.0f;
     return std::min(added.averaged.pixels[static_cast<std::size_t>(pixel)],

@@ -8,23 +8,23 @@
 
 namespace tofsmith {
 
-/// Pixels of a row beside what was added to them: [K][TimeFilter::State::block_pixels].
+/// Inputs and outputs of compare_pixels(), for a block of a row:
+/// [K][TimeFilter::State::block_pixels].
 struct ComparedPixels {
   const float* now = nullptr;
   const float* averaged_now = nullptr;
-  std::ptrdiff_t first = 0;  ///< of the pixels in the frame
+  std::ptrdiff_t first = 0;  ///< index of the first pixel in the frame
   int pixels = 0;
-  float* usable = nullptr;               ///< 1 where both are measurements of light, else 0
+  float* usable = nullptr;               ///< 1 if both values are valid measurements, else 0
   float* difference = nullptr;           ///< in standard deviations; 0 where not usable
-  std::ptrdiff_t difference_stride = 0;  ///< from one measurement to the next
-  float* chi2 = nullptr;                 ///< as it is where not usable
+  std::ptrdiff_t difference_stride = 0;  ///< distance between measurements [floats]
+  float* chi2 = nullptr;                 ///< unchanged where not usable
 };
 void compare_pixels(const TimeFilter::State& state, const AddedFrames& added,
                     const ComparedPixels& compared);
 
-/// Sums over the rows of a patch, and what the pixels show by themselves.
 struct WeighedPixels {
-  const float* patch_chi2 = nullptr;  ///< sums over rows; two columns more at both ends
+  const float* patch_chi2 = nullptr;  ///< sums over rows, with two more columns at both ends
   const float* counts = nullptr;
   const float* difference = nullptr;
   std::ptrdiff_t difference_stride = 0;
@@ -33,13 +33,14 @@ struct WeighedPixels {
   const float* past = nullptr;
   const float* averaged_now = nullptr;  ///< null: 1
   int pixels = 0;
-  float none = 0.0f;           ///< the weight of pixels that are not usable
-  float* weight = nullptr;     ///< of what was added
-  float* unchanged = nullptr;  ///< 1 where no test shows a change, else 0
+  float none = 0.0f;           ///< weight of pixels that are not usable
+  float* weight = nullptr;     ///< of the past
+  float* unchanged = nullptr;  ///< 1 if no test detects a change, else 0
 };
 void weigh_pixels(const TimeFilter::State& state, const WeighedPixels& weighed);
 
-/// now + (mean - now) w / (w + n) of each measurement, and of how many that is the mean.
+/// Computes now + (mean - now) w / (w + n) for each measurement, and the number of averaged
+/// measurements.
 void add_pixels(const float* now, const float* averaged_now, const float* weight, int measurements,
                 int pixels, float* mean, std::ptrdiff_t mean_stride, float* averaged);
 

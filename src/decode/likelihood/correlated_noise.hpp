@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Covariance of rows on the chords between bins, linear in light(at bin, at the next, ambient).
-/// Nothing is allocated for it.
+/// Covariance of rows at positions between bins. It is linear in light(at bin, at the next bin,
+/// ambient). Allocates nothing per pixel.
 class CorrelatedNoise {
  public:
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
@@ -19,23 +19,24 @@ class CorrelatedNoise {
 
   explicit CorrelatedNoise(const RowCovariance& covariance);
 
-  /// A covariance, then the lower triangle L of L L^T.
+  /// A covariance matrix or, after factorize(), the lower triangle L of L L^T.
   struct Factor {
     Matrix values;
 
-    /// Leaves L instead of the covariance. @return the logarithm of its determinant
+    /// Replaces the covariance by L.
+    /// @return the logarithm of its determinant
     double factorize(int count);
-    /// L^-1 column.
     void whiten(int count, Column& column) const;
-    /// L^-1 matrix L^-T, of a symmetric matrix.
+    /// Computes L^-1 matrix L^-T for a symmetric matrix.
     void whiten(int count, Matrix& matrix) const;
   };
 
-  /// @param min_variance_e2  smaller variances count as this
-  /// @param variance_share   of the noise of a single measurement
+  /// Returns the covariance.
+  /// @param min_variance_e2  lower limit of the variances
+  /// @param variance_share   variance relative to that of a single measurement
   void at(std::int32_t bin, std::int32_t next, const Quadratic::Vector& light,
           double min_variance_e2, double variance_share, Factor& covariance) const;
-  /// How it changes with light 0 or 1, at that bin, or 2.
+  /// Returns the derivative with respect to light 0 or 1 (at that bin) or 2.
   Matrix slope(int light, std::int32_t bin, double variance_share) const;
 
  private:

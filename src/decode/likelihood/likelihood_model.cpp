@@ -10,9 +10,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Share of the mean measurement below which no variance is believed.
+/// Lower limit of variances, as a fraction of the mean measurement.
 constexpr double min_share = 1e-4;
-/// Costs that differ by less, per unit where they are large, are one.
 double same_cost(double cost) { return 1e-10 * std::max(1.0, std::abs(cost)); }
 constexpr int max_steps = 30, max_halvings = 8, max_chords = 16, max_bins_apart = 3;
 
@@ -40,7 +39,7 @@ double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
   const std::int32_t to = next(bin);
   const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(to).data();
   const double *s0 = noise_.shot_gated.row(bin).data(), *s1 = noise_.shot_gated.row(to).data();
-  constexpr int factors = 4;  // so many variances have a product that does not overflow
+  constexpr int factors = 4;  // the product of 4 variances does not overflow
   double squares = 0.0, logs = 0.0, product = 1.0;
   for (int k = 0; k < measurements_; ++k) {
     const double mean = light[0] * x0[k] + light[1] * x1[k] + light[2] * ambient_[k];
@@ -73,8 +72,8 @@ BoundedMinimum LikelihoodModel::least_squares(const LikelihoodPixel& pixel, std:
   return minimize_bounded(q, unknowns_);
 }
 
-/// The quadratic that Fisher scoring puts in place of cost / 2 around some light: its gradient, and
-/// the expected value of its second derivatives.
+/// Returns the quadratic approximation of cost / 2 that Fisher scoring uses at some light: its
+/// gradient and the expected second derivatives.
 Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bin,
                                    const Quadratic::Vector& light) const {
   if (correlated_) return correlated_scoring(pixel, bin, light);
@@ -105,7 +104,7 @@ Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bi
     }
   }
   q.h[0][1] = q.h[1][0], q.h[0][2] = q.h[2][0], q.h[1][2] = q.h[2][1];
-  // From steps to light itself, whose bounds are at 0.
+  // Convert from steps to light, which is bounded by 0.
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) q.g[i] += q.h[i][j] * light[j];
   return q;
@@ -122,7 +121,7 @@ double LikelihoodModel::correlated_cost(const LikelihoodPixel& pixel, std::int32
     residual[k] = pixel.electrons[k] - light[0] * x0[k] - light[1] * x1[k] - light[2] * ambient_[k];
   const double log_determinant = covariance.factorize(measurements_);
   covariance.whiten(measurements_, residual);
-  // As of independent measurements, a smaller share of noise leaves the logarithms as they are.
+  // As for independent measurements, variance_share must not change the logarithms.
   return residual.head(measurements_).squaredNorm() + log_determinant -
          measurements_ * std::log(pixel.variance_share);
 }
@@ -133,7 +132,7 @@ Quadratic LikelihoodModel::correlated_scoring(const LikelihoodPixel& pixel, std:
   CorrelatedNoise::Factor covariance;
   correlated_->at(bin, to, light, pixel.min_variance_e2, pixel.variance_share, covariance);
   covariance.factorize(measurements_);
-  // Everything in coordinates in which the covariance is 1.
+  // Whitened coordinates, in which the covariance is the identity.
   const std::array rows{gated_.row(bin).data(), gated_.row(to).data(), ambient_.data()};
   std::array<CorrelatedNoise::Column, 3> mean;
   std::array<CorrelatedNoise::Matrix, 3> slope;

@@ -11,18 +11,18 @@
 
 namespace tofsmith {
 
-/// Measurements of one pixel, as the likelihood takes them.
+/// Measurements of one pixel for the LikelihoodModel.
 struct LikelihoodPixel {
-  const double* electrons = nullptr;  ///< without dark (K)
-  double min_variance_e2 = 0.0;       ///< smaller expected variances count as this
-  double variance_share = 1.0;        ///< of the noise of a single measurement
+  const double* electrons = nullptr;  ///< without dark electrons (K)
+  double min_variance_e2 = 0.0;       ///< lower limit of expected variances
+  double variance_share = 1.0;        ///< relative to the variance of a single measurement
 };
 
-/// The most likely light on the chord from bin `bin` to the next: mean and variance of every
-/// measurement are linear in light(at bin, at the next bin, ambient), which are all >= 0.
+/// Most likely light on the chord from bin `bin` to the next one. Mean and variance of each
+/// measurement are linear in light(at bin, at the next bin, ambient), whose components are >= 0.
 struct ChordFit {
   std::int32_t bin = 0;
-  Quadratic::Vector light{};  ///< signal seen at both ends of the chord, ambient [e/s]
+  Quadratic::Vector light{};  ///< signal at both ends of the chord, ambient light [e/s]
   double cost = 0.0;          ///< sum_i (y_i - mu_i)^2 / v_i + log v_i
 
   double signal_e_per_s() const { return light[0] + light[1]; }
@@ -34,35 +34,40 @@ struct ChordFit {
   bool is_at_next() const { return light[0] == 0.0 && light[1] > 0.0; }
 };
 
-/// The likelihood of depth, signal and ambient light on the chords between bins. Measurements of
-/// correlated noise come whitened, with the covariance that is left of it: then all of
-///   cost = (y - mu)^T C^-1 (y - mu) + log det C
-/// counts, with C linear in light as the variances are, and held up on its diagonal as they are.
+/// Likelihood of depth, signal and ambient light on the chords between bins. Measurements with
+/// correlated noise are whitened; the cost then includes the remaining covariance C,
+///   cost = (y - mu)^T C^-1 (y - mu) + log det C.
+/// C is linear in light and has the same lower limit on its diagonal as independent variances.
 class LikelihoodModel {
  public:
-  /// @param table  whitened(), where measurements are rows
+  /// @param table  whitened() if the measurements are rows
   LikelihoodModel(const DecodingTable& table, const AmbientProjection& projection);
 
-  /// The least variance taken for a pixel: electrons are whole, so that little light seen where
-  /// much is seen elsewhere does not mean none.
+  /// Returns a pixel with its lower limit of variances. The limit is necessary because electrons
+  /// are discrete: in a pixel with bright measurements, a dark measurement does not imply zero
+  /// light.
   LikelihoodPixel pixel(const double* electrons, double variance_share = 1.0) const;
 
-  /// Twice the negative log-likelihood of some light on a chord, up to a constant.
+  /// Returns twice the negative log-likelihood of light on a chord, up to a constant.
   double cost(const LikelihoodPixel& pixel, std::int32_t bin, const Quadratic::Vector& light) const;
 
-  /// Least weighted squares on a chord: sum_i weight_i (y_i - mu_i)^2 - weight_i y_i^2, halved.
+  /// Minimizes weighted least squares on a chord: half of sum_i weight_i (y_i - mu_i)^2 - weight_i
+  /// y_i^2.
   BoundedMinimum least_squares(const LikelihoodPixel& pixel, std::int32_t bin,
                                const double* weight) const;
-  /// The least cost on a chord, by Fisher scoring from the least squares of these weights on.
+  /// Minimizes the cost on a chord by Fisher scoring, starting from least squares with these
+  /// weights.
   ChordFit fit(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
-  /// The least cost around a bin: on both chords beside it, and on from there while it falls.
+  /// Minimizes the cost near a bin: on both adjacent chords, and on further ones while the cost
+  /// decreases.
   ChordFit fit_around(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
-  /// The least cost on the chords up to three bins from a fit: the bends between chords leave
-  /// several least points in one lobe.
+  /// Minimizes the cost on the chords up to three bins from a fit, because bends between chords can
+  /// cause several minima in one lobe.
   ChordFit fit_near(const LikelihoodPixel& pixel, const ChordFit& found,
                     const double* weight) const;
 
-  /// Light at a fit, and deviations by the Fisher information that means alone hold.
+  /// Returns light and depth of a fit, with standard deviations from the Fisher information of the
+  /// means.
   PixelEstimate estimate(const LikelihoodPixel& pixel, const ChordFit& fit) const;
 
  private:
@@ -76,11 +81,11 @@ class LikelihoodModel {
                                const Quadratic::Vector& light) const;
 
   int samples_, measurements_;
-  int unknowns_;  // 2 where ambient light cannot be seen, else 3
+  int unknowns_;  // 2 if ambient light cancels, else 3
   Eigen::VectorXd ambient_;
   RowMajorMatrix gated_;  // x = T o chi (N, K)
   ExpectedNoise noise_;
-  std::optional<CorrelatedNoise> correlated_;  // none: measurements are independent
+  std::optional<CorrelatedNoise> correlated_;  // none: independent measurements
 };
 
 }  // namespace tofsmith

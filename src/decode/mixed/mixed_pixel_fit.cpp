@@ -12,18 +12,18 @@ namespace tofsmith {
 
 namespace {
 
-/// By so much in chi^2 two returns must beat either one of them alone, and may be beaten by a
-/// single return at the decoded depth. Where a pixel has a depth of its own beside an edge, both
-/// surfaces are likely.
+/// Chi^2 thresholds: two returns must be better than either surface alone by `better`, and may be
+/// worse than a single return at the decoded depth by `little_worse`, because both surfaces are
+/// likely next to an edge.
 constexpr double better = 3.0, little_worse = 25.0;
-/// By so much they must beat the single return where its depth is that of a surface.
+/// The same if the decoded depth is that of a surface: two returns must be better by this much.
 constexpr double far_better = 20.0;
-/// Surfaces are not flat and lenses not the same for all that is added: so much of the chi^2 of one
-/// alone may remain.
+/// Fraction of the chi^2 of a single surface that may remain, because surfaces are not flat and the
+/// lens blur differs between averaged pixels.
 constexpr double may_remain = 0.25;
-/// More measurements than this do not make the model of two flat surfaces any truer.
+/// Upper limit of averaged measurements, beyond which model errors dominate.
 constexpr double most_averaged = 16.0;
-/// Depths between bins are not known better [bin].
+/// Lower limit of the standard deviation of depths, due to interpolation [bin].
 constexpr double least_deviation_bins = 0.05;
 
 }  // namespace
@@ -55,7 +55,6 @@ MixedPixelFit::Return MixedPixelFit::return_at(double depth_m) const {
   return r;
 }
 
-/// Weighted least squares of the returns' light and ambient light.
 template <int Returns>
 MixedPixelFit::Fit MixedPixelFit::fit(const double* electrons, const Measured& weight,
                                       const std::array<const Return*, Returns>& returns) const {
@@ -96,7 +95,7 @@ MixedPixelFit::Explanation MixedPixelFit::explain(const double* electrons, doubl
   Measured weight;
   weight.fill(1.0);
   Fit two = fit<2>(electrons, weight, {&near, &far});
-  // Again, with the noise that so much light makes, and what is not known of the depths.
+  // Repeat with the noise of the estimated light and the uncertainty of the depths.
   const double s1 = std::max(0.0, two.amount[0]), s2 = std::max(0.0, two.amount[1]);
   const double a = std::max(0.0, two.amount[2]);
   const double least_m = least_deviation_bins * range_m_ / samples_;

@@ -10,13 +10,13 @@
 
 namespace tofsmith {
 
-/// A surface near a pixel, as it would be seen there.
+/// Depth of a neighbouring surface, extrapolated to the pixel.
 struct SurfaceDepth {
   double depth_m = 0.0;
-  double deviation_m = 0.0;  ///< standard deviation of it
+  double deviation_m = 0.0;  ///< standard deviation
 };
 
-/// Decides between one return and two of known depths.
+/// Decides whether one return or two returns of known depths explain a pixel.
 class MixedPixelFit {
  public:
   explicit MixedPixelFit(const DecodingTable& table);
@@ -24,17 +24,16 @@ class MixedPixelFit {
   int rank() const { return rank_; }
   int measurements() const { return measurements_; }
 
-  /// What the measurements of a pixel are explained by.
   struct Explanation {
-    bool is_two = false;        ///< both returns are there, and better than one of them alone
-    bool is_no_single = false;  ///< and better than a single return at the decoded depth
-    double first_e_per_s = 0.0, second_e_per_s = 0.0;  ///< of both surfaces
-    double chi2 = 0.0;                                 ///< of both
+    bool is_two = false;        ///< both returns are positive, and better than one surface alone
+    bool is_no_single = false;  ///< is_two, and better than a single return at the decoded depth
+    double first_e_per_s = 0.0, second_e_per_s = 0.0;  ///< of the two surfaces
+    double chi2 = 0.0;                                 ///< of the fit with both
   };
 
-  /// @param electrons  without dark ones (K)
-  /// @param averaged   of how many measurements they are the mean
-  /// @param decoded_m  depth that a single return would have; NaN: not known
+  /// @param electrons  without dark electrons (K)
+  /// @param averaged   number of averaged measurements
+  /// @param decoded_m  depth of a single return; NaN if unknown
   Explanation explain(const double* electrons, double averaged, double decoded_m,
                       const SurfaceDepth& first, const SurfaceDepth& second) const;
 
@@ -44,7 +43,7 @@ class MixedPixelFit {
     Measured light, per_m, shot;
   };
   struct Fit {
-    Eigen::Vector3d amount;  ///< of the returns, then of ambient light
+    Eigen::Vector3d amount;  ///< of the returns, then ambient light
     double chi2 = 0.0;
   };
 

@@ -29,44 +29,41 @@ constexpr EnumWords<MixedPixels, all_mixed_pixels.size()> mixed_words("MixedPixe
 
 constexpr int reach = 4;
 constexpr int window_pixels = (2 * reach + 1) * (2 * reach + 1);
-/// A pixel is of a surface if so many of the 8 around it have its depth: more than
-/// in a ribbon of mixed pixels, or on an object one pixel wide.
+/// A pixel belongs to a surface if this many of its 8 neighbours have the same depth. A ribbon of
+/// mixed pixels or an object one pixel wide has fewer.
 constexpr int least_neighbours = 6;
 constexpr int least_pixels = 2;
 constexpr int most_surfaces = 4;
-/// Depths are the same within so many standard deviations, and within this share of the range: less
-/// is no edge.
+/// Depths are equal within this many standard deviations or this fraction of the range.
 constexpr double same_sigma = 1.3, same_share = 0.002;
-/// Steps to both sides that differ by more are not of one slope.
+/// Steps on both sides that differ by more do not belong to one slope.
 constexpr double slope_sigma = 2.0, parts_sigma = 1.7;
-/// Standard deviation of a surface's slope where its pixels do not tell, as a share of the range
-/// for each pixel.
+/// Prior standard deviation of a surface's slope, as a fraction of the range per pixel.
 constexpr double slope_share = 0.0025;
 
 struct WindowPixel {
   double depth_m = 0.0, variance_m2 = 0.0;
-  double here_m = 0.0;  ///< its depth, moved along its slope to the window's own pixel
+  double here_m = 0.0;  ///< depth extrapolated along the slope to the central pixel
   int dx = 0, dy = 0;
   std::size_t index = 0;
   int distance() const { return dx * dx + dy * dy; }
 };
 
-/// By how much depth rises from one pixel to the next [m].
+/// Depth difference between adjacent pixels [m].
 struct Slope {
   float x = 0.0f, y = 0.0f;
 };
 
-/// A surface around a pixel.
 struct Surface {
   SurfaceDepth here;
-  std::size_t nearest = 0;  ///< its nearest pixel; of several the one that is farther to the front
+  std::size_t nearest = 0;  ///< nearest pixel; in case of ties the one closer to the camera
   std::size_t pixels = 0;
 };
 
-/// What is known of a frame before any pixel of it is marked.
+/// Depths, slopes and surfaces of a frame before any pixel is marked.
 class Surroundings {
  public:
-  /// @param mixed  (H, W), or empty: pixels that are not 0 are of no surface
+  /// @param mixed  (H, W) or empty: nonzero pixels belong to no surface
   Surroundings(const DecodedView& decoded, const Image<std::uint8_t>& mixed, int height, int width,
                double range_m)
       : height_(height),
@@ -100,9 +97,8 @@ class Surroundings {
   }
   float depth_m(std::size_t i) const { return depth_[i]; }
   float deviation_m(std::size_t i) const { return deviation_[i]; }
-  /// Whether it was found before.
   bool was_mixed(std::size_t i) const { return status_[i] == PixelStatus::mixed; }
-  /// Whether it may be mixed at all.
+  /// Returns true if the pixel has a depth that may be mixed.
   bool is_decoded(std::size_t i) const {
     return was_mixed(i) ||
            (std::isfinite(depth_[i]) &&
@@ -110,7 +106,7 @@ class Surroundings {
              status_[i] == PixelStatus::inconsistent || status_[i] == PixelStatus::ambiguous));
   }
 
-  /// The surfaces around a pixel, largest first; none if there are not two.
+  /// Returns the surfaces around a pixel, largest first; none if there are fewer than two.
   void find_surfaces(int row, int x, std::vector<Surface>& surfaces) const {
     surfaces.clear();
     std::array<WindowPixel, window_pixels> pixels;
@@ -134,8 +130,9 @@ class Surroundings {
     if (surfaces.size() > most_surfaces) surfaces.resize(most_surfaces);
   }
 
-  /// Whether a pixel's depth is that of a surface. Half of what joins the depths of one: a little
-  /// light of another surface moves the depth by as little, and those of pixels beside it.
+  /// Returns true if the depth of a pixel lies on a surface. The tolerance is half of that for
+  /// joining pixels, because a little light of another surface shifts the depth by a similar
+  /// amount.
   bool lies_on(std::size_t i, const Surface& surface) const {
     return std::abs(depth_[i] - surface.here.depth_m) <=
            0.5 *
@@ -144,13 +141,14 @@ class Surroundings {
 
  private:
   bool is_usable(std::size_t i) const {
-    // Errors of the camera model make pixels inconsistent, but leave surfaces.
+    // Errors of the camera model make pixels inconsistent, but surfaces remain.
     return (status_[i] == PixelStatus::ok || status_[i] == PixelStatus::inconsistent) &&
            std::isfinite(depth_[i]) && std::isfinite(deviation_[i]);
   }
 
-  /// A pixel's slope between its neighbours on both sides: the mean of both steps or, where they
-  /// differ by more than noise, the smaller one, as the other is an edge; less its noise.
+  /// Returns the slope of a pixel from its neighbours on both sides, reduced by its noise: the mean
+  /// of both steps, or the smaller step if they differ by more than the noise (the larger one is an
+  /// edge).
   float slope_along(std::size_t before, std::size_t i, std::size_t after) const {
     if (!is_usable(before) || !is_usable(after)) return 0.0f;
     const float down = depth_[i] - depth_[before], up = depth_[after] - depth_[i];
@@ -171,11 +169,12 @@ class Surroundings {
     return {.x = x > 0 && x + 1 < width_ ? slope_along(i - 1, i, i + 1) : 0.0f,
             .y = row > 0 && row + 1 < height_ ? slope_along(i - below, i, i + below) : 0.0f};
   }
-  /// The smaller of two slopes; 0 where they do not agree.
+  /// Returns the smaller of two slopes; 0 if their signs differ.
   static double shared(float a, float b) {
     return a * b > 0.0f ? (std::abs(a) < std::abs(b) ? a : b) : 0.0;
   }
-  /// How much farther pixel `j`, which lies (dx, dy) from `i`, is on a surface that holds both.
+  /// Returns the expected depth difference between pixels `j` and `i`, offset by (dx, dy), on a
+  /// common surface.
   double rise_m(std::size_t i, std::size_t j, int dx, int dy) const {
     return dx * shared(slope_[i].x, slope_[j].x) + dy * shared(slope_[i].y, slope_[j].y);
   }
@@ -215,13 +214,13 @@ class Surroundings {
     return count;
   }
 
-  /// Whether nothing joins two depths, one after the other.
+  /// Returns true if two consecutive depths belong to different surfaces.
   bool parts(const WindowPixel& a, const WindowPixel& b) const {
     return b.here_m - a.here_m >
            std::max(2 * same_m_, parts_sigma * std::sqrt(a.variance_m2 + b.variance_m2));
   }
 
-  /// A plane through some pixels, where the window's own pixel is.
+  /// Fits a plane to pixels and evaluates it at the central pixel.
   Surface surface_of(const WindowPixel* pixels, std::ptrdiff_t count) const {
     const auto n = static_cast<double>(count);
     double mean = 0.0, variance = 0.0;
@@ -261,7 +260,7 @@ class Surroundings {
   std::vector<std::uint8_t> is_firm_;
 };
 
-/// One pixel's electrons without dark ones; false if a number is not finite.
+/// Reads the electrons of a pixel without dark electrons; returns false if a value is not finite.
 bool read_electrons(const RawView& raw, const RawScale& scale, int row, int x,
                     std::array<double, max_measurements>& electrons) {
   return std::visit(
@@ -287,12 +286,10 @@ void drop(const DecodedView& decoded, std::size_t i) {
       decoded);
 }
 
-/// What is known of a pixel that sees two surfaces.
 struct MixedPixel {
-  std::optional<Surface> stronger;  ///< of both; none: no surface is there any more
+  std::optional<Surface> stronger;  ///< surface with more light; none if no surface remains
 };
 
-/// Finds out which pixels see two surfaces.
 class MixedPixelSearch {
  public:
   MixedPixelSearch(const DecodingTable& table, const RawView& raw, const Surroundings& around,
@@ -304,10 +301,11 @@ class MixedPixelSearch {
         decoded_(raw),
         own_(unfiltered.measured) {}
 
-  /// Nothing can be found with fewer than 3.
+  /// At least 3 is required to find mixed pixels.
   int rank() const { return fit_.rank(); }
 
-  /// None if the pixel does not see two. @param surfaces  memory that is used again
+  /// Returns none if the pixel does not see two surfaces.
+  /// @param surfaces  working memory
   std::optional<MixedPixel> at(int row, int x, std::vector<Surface>& surfaces) const {
     const std::size_t i = around_.at(row, x);
     if (!around_.is_decoded(i)) return std::nullopt;
@@ -322,7 +320,8 @@ class MixedPixelSearch {
   }
 
  private:
-  /// The stronger of the two surfaces that explain a pixel best; none if it does not see two.
+  /// Returns the surface with more light of the two that explain a pixel best; none if the pixel
+  /// does not see two surfaces.
   std::optional<Surface> stronger_of_two(const RawView& raw, int row, int x,
                                          const std::vector<Surface>& surfaces) const {
     std::array<double, max_measurements> electrons;

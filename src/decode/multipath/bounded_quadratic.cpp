@@ -8,18 +8,18 @@ namespace tofsmith {
 
 namespace {
 
-/// Pivots below this share of their diagonal are rounding.
+/// Smaller pivots relative to their diagonal are rounding errors.
 constexpr double no_pivot = 1e-13;
 
-/// Solves h x = g in the components of `set`, the others 0. False if h is singular there or the
-/// solution is not >= 0.
+/// Solves h x = g for the components in `set`; the others are 0. Returns false if h is singular on
+/// them or x is not >= 0.
 bool solve_within(const Quadratic& q, unsigned set, Quadratic::Vector& x) {
   std::array<int, 3> index{};
   int size = 0;
   for (int i = 0; i < 3; ++i)
     if (set >> i & 1u) index[static_cast<std::size_t>(size++)] = i;
 
-  // h = L L^T, L y = g, L^T x = y.
+  // h = L L^T, L y = g, L^T x = y
   double lower[3][3] = {}, y[3] = {};
   const auto h = [&](int a, int b) {
     return q.h[static_cast<std::size_t>(index[static_cast<std::size_t>(a)])]
@@ -69,7 +69,7 @@ BoundedMinimum minimize_bounded(const Quadratic& quadratic, int unknowns) {
     if (!solve_within(quadratic, set, x)) continue;
     const double value = quadratic.at(x);
     if (value < best.value) best = {x, value};
-    if (set == all) break;  // the least point of all is allowed
+    if (set == all) break;  // the unconstrained minimum is feasible
   }
   return best;
 }

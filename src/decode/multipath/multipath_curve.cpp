@@ -11,8 +11,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double min_direction = 1e-2;  // of the main one: what separates returns
-constexpr double min_kept = 1e-3;       // of the main one: below, noise is all there is
+// Limits relative to the main direction.
+constexpr double min_direction = 1e-2;  // for separating returns
+constexpr double min_kept = 1e-3;       // smaller directions contain only noise
 constexpr int min_points = 900;
 
 std::vector<float> as_floats(const RowMajorMatrix& values) {
@@ -23,23 +24,21 @@ std::vector<float> as_floats(const RowMajorMatrix& values) {
   return floats;
 }
 
-/// With the first row again at the end.
 RowMajorMatrix closed(const RowMajorMatrix& table) {
   RowMajorMatrix rows(table.rows() + 1, table.cols());
   rows << table, table.row(0);
   return rows;
 }
 
-/// Every row but each `step`-th left out.
 RowMajorMatrix thinned(const RowMajorMatrix& table, Eigen::Index rows) {
   RowMajorMatrix kept(rows, table.cols());
   for (Eigen::Index j = 0; j < rows; ++j) kept.row(j) = table.row(j * table.rows() / rows);
   return kept;
 }
 
-/// So many places that the curve turns little from one to the next.
+/// Returns the number of coarse places between which the curve turns little.
 int coarse_places(const RowMajorMatrix& curve) {
-  constexpr double max_turn = 0.165;  // of the curve's own length
+  constexpr double max_turn = 0.165;  // relative to the length of the curve
   const double length = curve.norm();
   for (const int count : {80, 96, 120, 160, 200}) {
     if (count >= curve.rows()) break;

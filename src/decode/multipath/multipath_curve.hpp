@@ -8,30 +8,30 @@
 
 namespace tofsmith {
 
-/// Most dimensions in which returns are separated; those in which a code hardly moves are left
-/// out.
+/// Maximum number of dimensions in which returns are separated; minor dimensions of a code are
+/// omitted.
 inline constexpr int max_span = 12;
-/// Pixels that a search takes at a time; a multiple of any vector length used.
+/// Pixels that a search processes together; a multiple of all supported vector lengths.
 inline constexpr int pixels_per_group = 16;
 
-/// The curve of a decoding table as a search for returns needs it: positions are points of a table
-/// drawn finer than bins, all in single precision.
+/// Curve of a decoding table for the search for returns, in single precision. Positions are points
+/// of a table with finer spacing than bins.
 struct MultipathCurve {
-  /// @param tail_m  mean delay of the tail beside the direct return [m]; 0: there is none
+  /// @param tail_m  mean delay of the tail [m]; 0: no tail
   MultipathCurve(const DecodingTable& table, const AmbientProjection& projection, double tail_m);
 
   int measurements = 0;
-  int span = 0;            ///< dimensions r of the residual without ambient light
-  int points = 0;          ///< fine points of a period
-  int points_per_row = 0;  ///< of the table
+  int span = 0;            ///< dimensions r without ambient light
+  int points = 0;          ///< fine points per period
+  int points_per_row = 0;  ///< fine points per row of the table
   int coarse = 0;          ///< places at which pairs are tried first
   bool sees_ambient = false;
-  /// Columns that expected measurements are made of: the ambient direction if it is seen, then the
-  /// plane, (K, dims()).
+  /// Basis of expected measurements: ambient direction if visible, then the decoding subspace, (K,
+  /// dims()).
   std::vector<float> basis;
   std::vector<float> products;    ///< basis_a basis_b, a >= b, (K, pairs)
-  std::vector<float> fine;        ///< p in the plane, (points + 1, span), last row = first
-  std::vector<float> tail;        ///< the same of a unit tail; empty if there is none
+  std::vector<float> fine;        ///< p in the subspace, (points + 1, span), last row = first
+  std::vector<float> tail;        ///< the same for a unit tail; empty without tail
   std::vector<float> coarse_row;  ///< every (points / coarse)-th row of `fine`
   std::vector<float> coarse_tail;
 
@@ -39,11 +39,11 @@ struct MultipathCurve {
   int pairs() const { return dims() * (dims() + 1) / 2; }
 };
 
-/// Dimensions in which a code on a camera separates returns by more than 1 % of its main one.
+/// Returns the number of dimensions whose size exceeds 1 % of the main dimension's.
 int independent_directions(const AmbientProjection& projection);
 
-/// Rows between rows, `factor` for one: by cubics through four rows, or by chords where the table's
-/// own rows are foretold better by chords of their neighbours (ideal codes have corners).
+/// Interpolates `factor` rows per row: by cubics through four rows, or linearly if linear
+/// interpolation predicts the table's rows better (ideal codes have corners).
 RowMajorMatrix drawn_finer(const RowMajorMatrix& table, int factor);
 
 }  // namespace tofsmith

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Harmonics that carry more than 1 % of the largest one's amplitude.
+/// Returns the number of harmonics with more than 1 % of the largest amplitude.
 int harmonics_of(const AmbientProjection& projection) {
   const PeriodicTransform transform(static_cast<int>(projection.curve.rows()));
   Eigen::VectorXd power = Eigen::VectorXd::Zero(transform.coefficients());
@@ -44,7 +44,7 @@ std::optional<BrokenRule> missing_support(const AmbientProjection& projection,
                   "alike";
   rule += "; decode it with zncc or ml, or ";
   const Eigen::Index measurements = projection.gated.cols();
-  if (measurements >= needed)  // as many as it takes, so that it is not them that lack
+  if (measurements >= needed)  // enough measurements, but too few independent means
     rule += "let more harmonics through: its " + std::to_string(measurements) +
             " measurements are enough, but hold too few; a higher bandwidth of light and sensor "
             "(light.impulse_response, sensor.impulse_response) keeps more of the code's, and some "

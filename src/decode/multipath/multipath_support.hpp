@@ -11,10 +11,10 @@ namespace tofsmith {
 
 enum class MultipathKind;
 
-/// How measurements fall short of what is unknown: depth, signal, ambient light, and delay and
-/// strength of a second return (5; a tail of known delay: 4), and one more to judge the fit by.
-/// Says how many independent means there are, how many are needed and what would do; none: they
-/// are enough.
+/// Checks that there are enough independent means for the unknowns: depth, signal, ambient light,
+/// delay and strength of a second return (5; for a tail of known delay 4), and one more to test the
+/// fit. Returns an error with the available and required numbers and a remedy; none if they
+/// suffice.
 std::optional<BrokenRule> missing_support(const AmbientProjection& projection, MultipathKind later);
 
 }  // namespace tofsmith

@@ -11,7 +11,8 @@ namespace tofsmith {
 NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
                          const double* variance_e2)
     : rank_(static_cast<int>(noise_basis.cols())) {
-  // Smaller variances, as shares of the diagonal, are rounding errors of a direction without noise.
+  // Lower limit relative to the diagonal; smaller variances are rounding errors of noiseless
+  // directions.
   constexpr double least_share = 1e-12;
   std::array<double, max_pairs> factor;
   const auto at = [](int i, int j) { return static_cast<std::size_t>(i * (i + 1) / 2 + j); };
@@ -24,7 +25,7 @@ NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
       for (int j = 0; j <= i; ++j) factor[at(i, j)] += by * row[j];
     }
   }
-  // C = L L^T, with the inverse of the diagonal in its place.
+  // C = L L^T; the diagonal stores inverses.
   for (int j = 0; j < rank_; ++j) {
     double left = factor[at(j, j)];
     const double floor = least_share * left;
@@ -36,7 +37,7 @@ NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
       factor[at(i, j)] = value * inverse;
     }
   }
-  // L^-1 in place.
+  // L^-1 in place
   for (int j = 0; j < rank_; ++j)
     for (int i = j + 1; i < rank_; ++i) {
       double value = factor[at(i, j)] * factor[at(j, j)];
@@ -61,8 +62,8 @@ NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
   length_ = std::sqrt(square);
 }
 
-/// Each eigenvalue is at most sqrt(rank - 1) standard deviations of all eigenvalues away from their
-/// mean.
+/// Each eigenvalue differs from the mean by at most sqrt(rank - 1) standard deviations of the
+/// eigenvalues.
 double NoiseMetric::stretch() const {
   double trace = 0.0, squares = 0.0;
   for (int i = 0, at = 0; i < rank_; ++i)

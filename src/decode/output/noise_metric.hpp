@@ -8,8 +8,8 @@
 
 namespace tofsmith {
 
-/// Products of vectors in the plane of a pixel, weighted by the inverse of the covariance
-/// C = V^T diag(v) V of its vector q: <u, w>_C = u^T C^-1 w. Allocates nothing.
+/// Scalar products in the decoding subspace of a pixel, weighted by the inverse of the covariance C
+/// = V^T diag(v) V of its vector q: <u, w>_C = u^T C^-1 w. Allocates nothing.
 class NoiseMetric {
  public:
   static constexpr std::size_t max_pairs =
@@ -26,8 +26,8 @@ class NoiseMetric {
   const double* along() const { return along_.data(); }
   /// |q|_C.
   double length() const { return length_; }
-  /// Bounds the factor by which small angles grow under the metric; infinite where noise is too
-  /// uneven for the bound.
+  /// Returns an upper bound on the factor by which small angles grow under the metric; infinite if
+  /// the noise is too uneven for the bound.
   double stretch() const;
 
   double product(const double* u, const double* w) const;

@@ -10,12 +10,12 @@
 
 namespace tofsmith {
 
-/// Pixels whose records lie side by side in the work space.
+/// Number of pixels whose records are processed together.
 inline constexpr int pixels_per_chunk = 128;
-/// Variances of measurements below this share of the pixel's largest count as that in residuals.
+/// Lower limit of variances in residuals, relative to the largest variance of the pixel.
 inline constexpr double least_variance_share = 1e-4;
 
-/// Positions of the fields of a bin's ResidualModel::Limit, in blocks of four.
+/// Positions of the fields of ResidualModel::Limit, in blocks of four.
 struct LimitLayout {
   static constexpr int variance = 0;  ///< per signal, per ambient light, and without light
   static constexpr int error = 3;
@@ -25,49 +25,47 @@ struct LimitLayout {
   static constexpr int end = 6, stride = 8;
 };
 
-/// What is the same for all bins.
 struct OutputConstants {
   int samples = 0;
   float bin_m = 0.0f;
-  float bin_high_m = 0.0f;  // bin_m = high + low; a bin's number times high is exact
+  float bin_high_m = 0.0f;  // bin_m = high + low; bin * high is exact
   float bin_low_m = 0.0f;
   float range_m = 0.0f;
   bool sees_ambient = false;
   std::vector<float> ambient_weight;  // a / |a|^2 (K)
   std::vector<float> shot_ambient;    // variance per ambient light (K)
   std::vector<float> floor_noise_e2;  // variance without light (K)
-  float typical_ambient = 0.0f;       // typical_variance() per ambient light
-  float typical_floor_e2 = 0.0f;      // and without light
-  // Least variance of a measurement in residuals: per signal, per ambient light, and without light.
+  float typical_ambient = 0.0f;       // typical_variance() per unit of ambient light
+  float typical_floor_e2 = 0.0f;      // typical_variance() without light
+  // Lower limits of variances in residuals: per signal, per ambient light, and without light.
   float least_shot = 0.0f, least_shot_ambient = 0.0f, least_floor_e2 = 0.0f;
   float low_signal_sigma2 = 0.0f;
   float min_confidence = 0.0f;
   bool finds_inconsistent = false;
-  float half_quantile = 0.0f;  // q / 2 of ResidualModel, the largest of all bins
+  float half_quantile = 0.0f;  // q / 2 of ResidualModel, maximum over bins
   int off_plane_count = 0;
-  std::vector<float> off_plane;          // as ResidualModel, direction by direction (count, K)
+  std::vector<float> off_plane;          // see ResidualModel (count, K)
   std::vector<float> residual_basis;     // V, then off_plane_noise (K, rank + count)
-  std::vector<float> ambient_direction;  // as ResidualModel (K)
+  std::vector<float> ambient_direction;  // see ResidualModel (K)
 };
 
-/// Which steps the wanted planes need.
 struct OutputSteps {
   bool ambient = false;
   bool noise = false;
   bool confidence = false;
   bool residual = false;
-  int fields = 0;  // of the records
+  int fields = 0;  // number of record fields
 };
 
-/// Work space of a chunk, all that is known of its pixels in rows of pixels_per_chunk.
+/// Working memory of a chunk, in rows of pixels_per_chunk.
 struct OutputChunk {
   int pixels = 0;
   const float* plane = nullptr;      // as in the tile
   const float* electrons = nullptr;  // as in the tile
   alignas(64) std::int32_t bin[pixels_per_chunk];
   alignas(64) std::uint32_t start[pixels_per_chunk];  // of the bins' records
-  alignas(64) float signal[pixels_per_chunk];         // > 0 where there is a depth
-  alignas(64) float offset[pixels_per_chunk];         // of depth from the bin, in bins: in [-1, 1]
+  alignas(64) float signal[pixels_per_chunk];         // > 0 if the pixel has a depth
+  alignas(64) float offset[pixels_per_chunk];         // depth minus bin, in bins, in [-1, 1]
   alignas(64) float ambient[pixels_per_chunk];
   // Variances relative to a single measurement: 1 / averaged, also multiplied by NoiseRatios.
   alignas(64) float variance_share[pixels_per_chunk];
@@ -76,7 +74,7 @@ struct OutputChunk {
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
   alignas(64) float residual[pixels_per_chunk];
-  alignas(64) float inconsistent[pixels_per_chunk];  // 1 where a pixel is, else 0
+  alignas(64) float inconsistent[pixels_per_chunk];  // 1 if inconsistent, else 0
   alignas(64) std::uint32_t limit_start[pixels_per_chunk];
   alignas(64) float limit[LimitLayout::stride * pixels_per_chunk];
   alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];

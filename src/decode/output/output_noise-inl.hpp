@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What is known of a pixel's noise: deviations, confidence and status. Compiled once for every
-// instruction set.
+// Noise of pixels: standard deviations, confidence and status. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
@@ -19,12 +18,12 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
-/// Ambient light that makes noise.
+/// Returns the ambient light that contributes shot noise.
 HWY_INLINE Vector noisy_ambient(const OutputChunk& chunk, int i) {
   return hn::Max(load(chunk.ambient, i), hn::Zero(Floats()));
 }
 
-/// Per signal, per ambient light, and without light.
+/// Returns the variance from coefficients per signal, per ambient light, and without light.
 HWY_INLINE Vector variance_of(Vector signal, Vector ambient, Vector per_signal, Vector per_ambient,
                               Vector without) {
   const Vector sum = product_plus(signal, per_signal, product_plus(ambient, per_ambient, without));
@@ -57,9 +56,9 @@ HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_devi
   }
 }
 
-/// Returns where the confidence of pixels is proven to be 1. With c = <q, u_b>, q across u_b of
-/// length r and the score of other places at most s = cosine c + sine r (LobeBound), these have a
-/// chi-square larger by (|q|^2 - s^2 - r^2) / v.
+/// Returns the pixels whose confidence is proven to be 1. With c = <q, u_b>, the component of q
+/// across u_b of length r, and a score of other places of at most s = cosine c + sine r
+/// (LobeBound), the chi-square of other places is larger by (|q|^2 - s^2 - r^2) / v.
 HWY_INLINE Mask is_sure(const OutputConstants& c, const RecordLayout& layout, int rank,
                         const OutputChunk& chunk, int i) {
   const Floats d;
@@ -82,7 +81,6 @@ HWY_INLINE Mask is_sure(const OutputConstants& c, const RecordLayout& layout, in
   return hn::And(hn::Lt(other, score), hn::Ge(lead, least));
 }
 
-/// Posterior probability of the main lobe of pixel i.
 inline float posterior_of(const OutputConstants& c, const BinRecords& records,
                           const LobePosterior& posterior, int rank, const OutputChunk& chunk,
                           int i) {
@@ -111,7 +109,7 @@ inline float posterior_of(const OutputConstants& c, const BinRecords& records,
   return static_cast<float>(posterior.probability(plane, variance_e2, chunk.bin[i]));
 }
 
-/// Confidence of pixels with a depth: for most of them it is proven to be 1.
+/// Computes the confidence of pixels with a depth. Most are proven to have confidence 1.
 HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records,
                                 const LobePosterior& posterior, int rank, OutputChunk& chunk) {
   const Floats d;
@@ -134,7 +132,6 @@ HWY_INLINE hn::Vec<Indices> status(PixelStatus value) {
   return hn::Set(Indices(), static_cast<std::int32_t>(value));
 }
 
-/// The first status in the order of PixelStatus that applies.
 HWY_INLINE void write_status(const OutputConstants& c, const OutputChunk& chunk,
                              const std::uint8_t* saturated, PixelStatus* to) {
   const Floats d;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Where a pixel is and what light it sees. Compiled once for every instruction set.
+// Position and light of pixels. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_OUTPUT_POSITION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_POSITION_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_POSITION_INL_HPP
@@ -14,7 +14,6 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
-/// <q, vector> with a vector of the record.
 HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
   Vector sum = hn::Mul(load(chunk.plane, i), load(chunk.field(field), i));
   for (int j = 1; j < rank; ++j)
@@ -23,10 +22,10 @@ HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
   return sum;
 }
 
-/// Best point on the chords left and right. With x = <q, p> / |p|^2 and v = <q, w>, rising to the
-/// side where it is > 0: S = x - v beta / c, t = v / (c S). Of two rising sides the steeper is
-/// best, unless its best point lies past the end of the chord: so it may at a bin that is not the
-/// best one (ChordMatcher).
+/// Finds the best point on the left and right chords. With x = <q, p> / |p|^2 and v = <q, w>, which
+/// is positive on rising sides: S = x - v beta / c, t = v / (c S). If both sides rise, the steeper
+/// one is best, unless its best point lies beyond the end of the chord, which is possible if the
+/// bin is not the best one (see ChordMatcher).
 HWY_INLINE void refine_on_chords(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
   const Vector zero = hn::Zero(d);
@@ -60,10 +59,9 @@ HWY_INLINE void refine_on_chords(const RecordLayout& layout, int rank, OutputChu
   }
 }
 
-/// Maximum of the pixel's own correlation around its row of a smooth curve, as
-/// DepthPolynomials::maximum(), and the signal there,
-///   S = (x + g t + b t^2 / 2 + c t^3 / 3) / (1 + growth t + growth_change t^2),  x = <q, p> /
-///   |p|^2.
+/// Finds the maximum of the correlation of each pixel around its row of a smooth curve (see
+/// DepthPolynomials::maximum()), and the signal there, with x = <q, p> / |p|^2:
+///   S = (x + g t + b t^2 / 2 + c t^3 / 3) / (1 + growth t + growth_change t^2).
 HWY_INLINE void refine_on_curve(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
   const Vector zero = hn::Zero(d), one = all(1.0f), back = all(-1.0f);
@@ -99,7 +97,6 @@ HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk)
     refine_on_chords(layout, rank, chunk);
 }
 
-/// The quarters of chords where the best points lie.
 HWY_INLINE void find_chords(const RecordTable& chords, OutputChunk& chunk) {
   const Floats d;
   const Indices di;
@@ -139,7 +136,7 @@ HWY_INLINE void write_depth(const OutputConstants& c, const OutputChunk& chunk, 
   }
 }
 
-/// Copies values, NaN where there is no depth.
+/// Copies values; pixels without a depth become NaN.
 HWY_INLINE void write_values(const OutputChunk& chunk, const float* values, float* plane) {
   const Floats d;
   for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
@@ -148,7 +145,7 @@ HWY_INLINE void write_values(const OutputChunk& chunk, const float* values, floa
   }
 }
 
-/// What signal leaves is ambient light; 0 where differences hide it.
+/// Computes ambient light as the remainder after the signal; 0 if differences hide it.
 HWY_INLINE void find_ambient(const OutputConstants& c, const RecordLayout& layout,
                              OutputChunk& chunk) {
   const Floats d;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Goodness of fit, as ResidualModel. Compiled once for every instruction set.
+// Goodness of fit (see ResidualModel). Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_OUTPUT_RESIDUAL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_RESIDUAL_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_RESIDUAL_INL_HPP
@@ -14,19 +14,19 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
-/// A vector of pixels without the light that was found.
 struct Unexplained {
   static constexpr int lanes = widest_vector;
-  Mask is_left;   ///< the pixels are on the side of the row before
+  Mask is_left;   ///< the position lies before the row
   Vector square;  ///< sum of the squared components
-  /// Components along the plane and off it, and orthonormal directions in the plane in which signal
-  /// and depth change the pixel.
+  /// Components in the decoding subspace and outside it, and orthonormal directions in the subspace
+  /// in which signal and depth change the measurements.
   alignas(64) float component[max_measurements * lanes];
   alignas(64) float direction[max_measurements * lanes];
   alignas(64) float slope[max_measurements * lanes];
 };
 
-/// The directions of the chord to the nearer side, at a bin of the one that rises or falls more.
+/// Finds the directions of the chord on the nearer side. At a bin, the side with the larger change
+/// is used.
 HWY_INLINE void find_chord(const RecordLayout& layout, int rank, const OutputChunk& chunk, int i,
                            Unexplained& left) {
   const Floats d;
@@ -45,7 +45,6 @@ HWY_INLINE void find_chord(const RecordLayout& layout, int rank, const OutputChu
   }
 }
 
-/// Divides vectors by their lengths.
 HWY_INLINE void normalize(float* components, int rank, Vector square) {
   const Vector least = all(std::numeric_limits<float>::min());
   const Vector scale = hn::Div(all(1.0f), hn::Sqrt(hn::Max(square, least)));
@@ -55,7 +54,7 @@ HWY_INLINE void normalize(float* components, int rank, Vector square) {
   }
 }
 
-/// The direction u(n + t) of a smooth curve and its slope, by DepthPolynomials:
+/// Finds the direction u(n + t) of a smooth curve and its slope with DepthPolynomials:
 ///   u / |p_n| = p_n / |p_n|^2 + t W + t^2 B / 2 + t^3 C / 3.
 HWY_INLINE void find_tangent(const RecordLayout& layout, int rank, const OutputChunk& chunk, int i,
                              Unexplained& left) {
@@ -80,7 +79,6 @@ HWY_INLINE void find_tangent(const RecordLayout& layout, int rank, const OutputC
   normalize(left.slope, rank, own_slope);
 }
 
-/// Finds the residual of the unweighted fit of ambient light, signal and depth.
 HWY_INLINE void find_unexplained(const OutputConstants& c, const RecordLayout& layout, int rank,
                                  const OutputChunk& chunk, int i, Unexplained& left) {
   const Floats d;
@@ -114,7 +112,7 @@ HWY_INLINE void find_unexplained(const OutputConstants& c, const RecordLayout& l
   }
 }
 
-/// Variance of measurements where the pixels are between their rows, (K, lanes).
+/// Computes the variances of measurements at positions between rows, (K, lanes).
 HWY_INLINE void find_variances(const OutputConstants& c, const BinRecords& records,
                                OutputChunk& chunk, int i, Mask is_left, float* variance) {
   const Floats d;
@@ -150,15 +148,14 @@ HWY_INLINE void find_variances(const OutputConstants& c, const BinRecords& recor
   }
 }
 
-/// a - b^2 / c, with c >= 0 that is 0 only where b is.
+/// Returns a - b^2 / c for c >= 0, where c = 0 implies b = 0.
 HWY_INLINE Vector less_square(Vector a, Vector b, Vector c) {
   return hn::Sub(a, hn::Mul(hn::Div(b, hn::Max(c, all(std::numeric_limits<float>::min()))), b));
 }
 
-/// Chi-square of the weighted fit of ambient light, signal and depth.
 HWY_INLINE Vector weighted_squares(const OutputConstants& c, const RecordLayout& layout, int rank,
                                    const Unexplained& left, const float* variance) {
-  // Products of a, ambient light, x, signal, s, slope, and r, the residual; over the variances.
+  // Weighted products of ambient light a, signal x, slope s and residual r.
   const Vector zero = hn::Zero(Floats());
   Vector aa = zero, ax = zero, as = zero, ar = zero, xx = zero, xs = zero, xr = zero, ss = zero,
          sr = zero, rr = zero;
@@ -202,10 +199,10 @@ HWY_INLINE Vector weighted_squares(const OutputConstants& c, const RecordLayout&
   return hn::Max(less_square(rr, sr, ss), zero);
 }
 
-/// Finds inconsistent pixels and, if `wants_plane`, residuals. The unweighted squares over the
-/// least variance are a bound that is enough for most pixels.
+/// Finds inconsistent pixels and, if `wants_plane`, residuals. For most pixels a bound suffices:
+/// the unweighted squares divided by the least variance.
 ///
-/// Inlining it makes g++ 12 fail with an internal error for AVX-512.
+/// This function is not inlined, because g++ 12 fails with an internal error for AVX-512.
 template <int Rank>
 HWY_NOINLINE void find_residual(const OutputConstants& c, const BinRecords& records,
                                 const RecordTable& limits, bool wants_plane, OutputChunk& chunk) {

@@ -15,20 +15,21 @@ namespace tofsmith {
 
 namespace {
 
-/// Model error of any pixel: rounding to single precision, as a share of the signal's part.
+/// Rounding errors to single precision, relative to the signal.
 constexpr double rounding_error = 2e-6;
-/// Root mean square of t (1 - t) / 2 over a chord, sqrt(1 / 120).
+/// Root mean square of t (1 - t) / 2 over a chord: sqrt(1 / 120).
 constexpr double chord_error = 0.0913;
-/// With more degrees of freedom the least eigenvalue is bounded instead of computed.
+/// For more degrees of freedom the least eigenvalue is bounded instead of computed.
 constexpr int most_eigenvalues = 8;
-/// Cosine of the largest turn between both chords of a bin at which the curve counts as smooth.
+/// Minimum cosine between both chords of a bin for the curve to count as smooth.
 constexpr double smooth_turn = 0.9;
 
 Eigen::VectorXd normalized_or_zero(const Eigen::VectorXd& vector) {
   return vector.isZero(0.0) ? vector : vector.normalized().eval();
 }
 
-/// The least variance of measurements along a combination of these columns, or a lower bound.
+/// Returns the least variance of measurements along any combination of the columns, or a lower
+/// bound.
 double least_variance(const Eigen::MatrixXd& columns, const Eigen::VectorXd& variance) {
   if (columns.cols() == 0) return 0.0;
   if (columns.cols() > most_eigenvalues) return std::max(variance.minCoeff(), 0.0);
@@ -105,7 +106,7 @@ ResidualModel::Course ResidualModel::course_on_chords(std::int32_t row) const {
   course.has_slope = !to_before.isZero(0.0) || !to_after.isZero(0.0);
   course.is_corner = course.has_slope &&
                      !(-to_before.dot(to_after) > smooth_turn * to_before.norm() * to_after.norm());
-  // At t, chords leave the curve by t (1 - t) / 2 of its second difference.
+  // The distance between chord and curve is t (1 - t) / 2 times the second difference.
   const Eigen::VectorXd bend = chord_error * (before - 2.0 * x + after);
   const Eigen::VectorXd across_bend = bend - bend.dot(x) / x.squaredNorm() * x;
   course.error = (across_bend - course.slope.dot(across_bend) * course.slope).norm();
@@ -149,7 +150,7 @@ ResidualModel::Limit ResidualModel::limit_at(std::int32_t row, const RowMajorMat
   const Eigen::MatrixXd left = complement_of(known);
   const double quantile =
       chi_square_quantile_of_tail(options.false_alarm_rate, freedom + (course.is_corner ? 1 : 0));
-  // Shot noise changes from row to row.
+  // Least shot noise of the adjacent rows.
   const Eigen::VectorXd shot = noise_.shot_gated.row(row)
                                    .cwiseMin(noise_.shot_gated.row(previous(row)))
                                    .cwiseMin(noise_.shot_gated.row(next(row)));
@@ -168,7 +169,7 @@ void ResidualModel::find_tangent(const Position& position, PerMeasurement& point
   const double t = position.fraction;
   const std::int32_t before = t > 0.0 ? from : previous(from);
   if (!polynomials_) {
-    // At a row the slope is the mean of both sides.
+    // At a row, use the mean slope of both sides.
     for (int k = 0; k < measurements_; ++k) {
       const auto i = static_cast<std::size_t>(k);
       point[i] = (1 - t) * curve_(from, k) + t * curve_(to, k);
@@ -206,7 +207,7 @@ PixelResidual ResidualModel::residual(const double* electrons, const PixelEstima
       min_variance_e2, signal * least_noise_[0] + ambient * least_noise_[1] + least_noise_[2]);
   PerMeasurement point, slope;
   find_tangent(position, point, slope);
-  // The directions of ambient light, signal and depth, then the measurements, in units of noise.
+  // Directions of ambient light, signal and depth, and the measurements, in units of noise.
   std::array<PerMeasurement, 4> rows;
   for (int k = 0; k < measurements_; ++k) {
     const auto i = static_cast<std::size_t>(k);
@@ -229,7 +230,7 @@ PixelResidual ResidualModel::residual(const double* electrons, const PixelEstima
       sum += rows[a][i] * rows[b][i];
     return sum;
   };
-  // Gram-Schmidt leaves the residual in the last row.
+  // Gram-Schmidt; the last row becomes the residual.
   for (std::size_t a = 0; a < 3; ++a) {
     const double whole = dot(a, a);
     for (std::size_t b = 0; b < a; ++b) {

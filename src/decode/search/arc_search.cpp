@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/arc_search.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/search/arc_walk-inl.hpp"
@@ -20,9 +20,9 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int group_pixels = 16;  // whose steps are taken together, so that they overlap
+constexpr int group_pixels = 16;  // pixels processed together to hide latencies
 
-/// What leads in every lane: the best score, the second best, and the row of the best.
+/// Best and second best score in every lane, and the row of the best.
 struct Leaders {
   float best[block_lanes];
   float second[block_lanes];
@@ -56,7 +56,7 @@ HWY_INLINE void meet_near_rows(const ArcTable& table, const Query& q, const Walk
   hn::StoreU(hn::Add(meet.row, hn::Iota(Indices(), 0)), Indices(), leaders.row);
 }
 
-/// The row of a window that leads in it by more than `margin`, or -1.
+/// Returns the row of a window that leads by more than `margin`, or -1.
 template <int Rank>
 HWY_INLINE std::int32_t leader_of_window(const float* window, const Query& q, float margin) {
   HWY_ALIGN float score[block_lanes];
@@ -73,8 +73,8 @@ HWY_INLINE std::int32_t leader_of_window(const float* window, const Query& q, fl
   return std::has_single_bit(reached) ? std::countr_zero(reached) : -1;
 }
 
-/// Around the best score, rows are distinguished by differences of directions, which are short and
-/// hence exact. All others have to be behind by whole scores.
+/// Proves the best row. Rows close to the best score are compared by differences of directions,
+/// which are short and therefore accurate. All other rows must be behind by a larger margin.
 template <int Rank>
 HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leaders& leaders,
                               const Margins& margins, float error) {
@@ -98,7 +98,7 @@ HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leade
   return leads && found >= 0 ? w * step + found : -1;
 }
 
-/// Far from where floats under- or overflow.
+/// Range without overflow or underflow of floats.
 HWY_INLINE bool can_be_proven(float length, float error) {
   return length > 1e-12f && length < 1e12f && error < length;
 }
@@ -149,7 +149,6 @@ void search(const ArcTable& table, const float* plane, int stride, const float* 
   }
 }
 
-/// Scores of 8 rows in double.
 struct DoubleScores {
   const DirectionTable& directions;
   const double* unit;
@@ -209,7 +208,6 @@ std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions,
   return lowest.row;
 }
 
-/// Collects blocks of rows with their scores.
 struct MeetScores {
   const ArcTable& table;
   const Query& q;

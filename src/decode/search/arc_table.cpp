@@ -33,8 +33,8 @@ struct Bound {
   }
 };
 
-/// u = alpha u_a + beta u_b + e with alpha, beta >= 0 bounds for any such numbers; wanted are those
-/// that leave little.
+/// Bounds u from u = alpha u_a + beta u_b + e with alpha, beta >= 0. Any such numbers are valid;
+/// these leave a small e.
 Bound bound_of(const Eigen::VectorXd& u, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const auto with = [&](double alpha, double beta) {
     return Bound{std::max(alpha + beta, 1.0), (u - alpha * a - beta * b).norm()};
@@ -53,12 +53,12 @@ Bound bound_of(const Eigen::VectorXd& u, const Eigen::VectorXd& a, const Eigen::
   return best;
 }
 
-/// Offset of every row: 0, or -infinity where a lower row has the same direction up to
-/// rounding, which is far less than what ties.
+/// Returns the offset of every row: 0, or -infinity if a lower row has the same direction up to
+/// rounding, which is much less than tie_tolerance.
 std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   constexpr double same = 0.1 * tie_tolerance;
   const std::int32_t samples = directions.samples();
-  // Rows that are close are close along any line; only those are compared.
+  // Close rows are close along any line, so compare only those.
   Eigen::VectorXd line(directions.rank());
   RandomStream random(1, 0);
   for (double& component : line) component = random.normal();
@@ -75,7 +75,7 @@ std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   struct Group {
     std::int32_t centre, lowest;
   };
-  std::vector<Group> groups;  // by place along the line
+  std::vector<Group> groups;  // sorted along the line
   std::vector<float> offset(along.size(), -float_infinity);
   for (const std::int32_t n : order) {
     const Eigen::VectorXd direction = direction_of(directions, n);
@@ -96,7 +96,7 @@ std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   return offset;
 }
 
-/// So that no more bundles are needed than a search keeps in mind.
+/// Limits the number of bundles to max_bundle_blocks blocks.
 std::int32_t min_blocks_per_arc(std::int32_t samples) {
   constexpr std::int32_t most = max_bundle_blocks * arcs_per_block * arcs_per_block * block_lanes;
   return (samples + most - 1) / most;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// How arcs are passed over; compiled once for every instruction set.
+// Branch and bound over arcs. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_ARC_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_ARC_WALK_INL_HPP
 #undef TOFSMITH_DECODE_ARC_WALK_INL_HPP
@@ -26,7 +26,7 @@ namespace {
 
 static_assert(block_lanes == widest_vector);
 constexpr float no_score = -std::numeric_limits<float>::infinity();
-constexpr int max_flat_blocks = 16;  // of arcs that are looked at one by one
+constexpr int max_flat_blocks = 16;  // of arcs that are examined one by one
 
 HWY_INLINE float largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
 
@@ -38,7 +38,6 @@ HWY_INLINE std::uint32_t bits_of(Mask mask) {
   return bits;
 }
 
-/// One vector q, its components `stride` apart.
 struct Query {
   const float* first;
   int stride;
@@ -47,7 +46,7 @@ struct Query {
   HWY_INLINE float operator[](int j) const { return first[j * stride]; }
 };
 
-/// Scores of as many vectors of a block as fit, each plus its offset.
+/// Returns the scores of a vector of directions of a block, plus their offsets.
 template <int Rank>
 HWY_INLINE Vector scores(const Query& q, const float* block) {
   const Floats d;
@@ -58,18 +57,18 @@ HWY_INLINE Vector scores(const Query& q, const float* block) {
   return sum;
 }
 
-/// The arcs of one query that may hold its best row: of all, or of the bundles that may.
+/// Arcs that may contain the best row of a query: of all arcs, or of candidate bundles.
 struct Walk {
-  std::uint64_t near[max_bundle_blocks / 4];  // bits of arcs (flat) or bundles, 16 a block
-  float threshold;                            // bounds below it are passed over
+  std::uint64_t near[max_bundle_blocks / 4];  // bits of arcs (flat) or bundles, 16 per block
+  float threshold;                            // lower bounds are excluded
 };
 
-/// A threshold at or below 0 would need negative scores in its bounds: nothing is passed over.
+/// Thresholds <= 0 would require bounds on negative scores, so nothing is excluded.
 HWY_INLINE float threshold_of(float best, float slack) {
   return best > slack ? best - slack : no_score;
 }
 
-/// Bits of the knots whose score reaches what the bounds of their arcs ask for.
+/// Returns the bits of the knots whose score reaches the requirement of their arcs' bounds.
 HWY_INLINE std::uint32_t reaching(Vector score, const float* bounds, const Query& q,
                                   float threshold) {
   const Floats d;
@@ -78,7 +77,7 @@ HWY_INLINE std::uint32_t reaching(Vector score, const float* bounds, const Query
   return bits_of(hn::Ge(score, needed));
 }
 
-/// Bits of the arcs of a block whose bound reaches the threshold.
+/// Returns the bits of the arcs of a block whose bound reaches the threshold.
 template <int Rank>
 HWY_INLINE std::uint32_t near_in_block(const float* block, const float* score, const Query& q,
                                        float threshold) {
@@ -110,7 +109,6 @@ HWY_INLINE const KnotLevel& first_level(const ArcTable& table) {
   return is_flat(table) ? table.arcs() : table.bundles();
 }
 
-/// Looks at all knots of the first level.
 template <int Rank>
 HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, Walk& walk) {
   HWY_ALIGN float score[max_bundle_blocks * block_lanes];
@@ -148,7 +146,7 @@ struct BestKnot {
   }
 };
 
-/// Raises the threshold by the knots of the arcs in all bundles that are near.
+/// Raises the threshold with the knots of all arcs in candidate bundles.
 template <int Rank>
 HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, Walk& walk) {
   if (is_flat(table)) return;
@@ -188,7 +186,7 @@ struct OfBundle {
   }
 };
 
-/// Calls visit(block of rows) for all arcs that may hold the best row.
+/// Calls visit(block of rows) for all arcs that may contain the best row.
 template <int Rank, typename Visit>
 HWY_INLINE void for_each_near_rows(const ArcTable& table, const Query& q, const Walk& walk,
                                    Visit& visit) {

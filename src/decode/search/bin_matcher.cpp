@@ -13,7 +13,8 @@ namespace tofsmith {
 
 namespace {
 
-/// The vector of a pixel in the plane without its length, whose square it returns; zeros stay so.
+/// Computes the unit vector of a pixel in the decoding subspace, and returns its squared length.
+/// Zero vectors remain zero.
 template <typename Value>
 Value normalized(const PixelTile& tile, int pixel, int rank,
                  std::array<Value, max_measurements>& unit) {
@@ -46,7 +47,7 @@ BinMatcher::Search BinMatcher::make_search(bool for_few) const {
   return {};
 }
 
-/// Between directions that the search tells apart by differences of scores.
+/// Returns the least distance of directions that the search distinguishes by differences of scores.
 double BinMatcher::min_distance() const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->min_gap();
   return std::holds_alternative<CellSearch>(search_) ? distinct_.shortest_step
@@ -73,7 +74,7 @@ void BinMatcher::match_plane(PixelTile& tile) const {
   }
 }
 
-/// @returns whether all bins are proven
+/// @returns true if all bins are proven
 bool BinMatcher::search(PixelTile& tile) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);
   if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->search(tile);
@@ -87,8 +88,9 @@ bool BinMatcher::search(PixelTile& tile) const {
   return all_proven;
 }
 
-/// Whether single precision tells where a pixel is. No search proves the bin of one that is not.
-/// Which others are decided differs between processors, and must not show in `plane`.
+/// Returns true if single precision determines the position of a pixel; if not, no search proves
+/// its bin. Which other pixels need double precision depends on the processor, so their `plane`
+/// must not be replaced.
 bool BinMatcher::is_precise(const PixelTile& tile, int pixel) const {
   constexpr float share = 1e-5f;
   float largest = 0.0f;
@@ -97,7 +99,6 @@ bool BinMatcher::is_precise(const PixelTile& tile, int pixel) const {
   return tile.error[pixel] < share * largest;
 }
 
-/// One pixel in double arithmetic.
 void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const {
   std::array<double, max_measurements> raw;
   for_each_run(view, first + pixel, 1, [&](const auto* number, std::int64_t, std::int64_t) {
@@ -116,10 +117,9 @@ void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, Pixe
                         : distinct_.bin.front();
 }
 
-/// The lowest bin whose score ties with the best.
 std::int32_t BinMatcher::choose(const double* unit, double tie) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->choose(unit, tie);
-  // What ties by more may stand in no run of the cell.
+  // Directions that tie by more may not be in a run of the cell.
   if (const auto* cells = std::get_if<CellSearch>(&search_);
       cells && tie <= max_proven_residual * tie_tolerance)
     return cells->choose(unit, tie);

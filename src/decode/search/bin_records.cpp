@@ -14,14 +14,13 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int floats_per_line = 16;  // of cache
+constexpr int floats_per_line = 16;  // cache line
 
 void store(const Eigen::VectorXd& values, float* to) {
   std::transform(values.begin(), values.end(), to,
                  [](double value) { return static_cast<float>(value); });
 }
 
-/// Fills records bin by bin.
 class RecordBuilder {
  public:
   RecordBuilder(const DecodingTable& table, const AmbientProjection& projection)
@@ -34,8 +33,8 @@ class RecordBuilder {
 
   const RecordLayout& layout() const { return layout_; }
 
-  /// @param record  of the bin
-  /// @param chords  all chords, where they are wanted
+  /// @param record  record of the bin
+  /// @param chords  table of all chords; null: skipped
   void fill(std::int32_t n, float* record, RecordTable* chords) const {
     const Eigen::VectorXd p = point(n);
     const double length2 = p.squaredNorm();
@@ -78,7 +77,6 @@ class RecordBuilder {
     record[layout_.growth() + 1] = static_cast<float>(polynomials_->growth_change[n]);
   }
 
-  /// One side's `left` or `right`, `turn` and `reach`.
   void fill_side(std::int32_t n, std::int32_t neighbour, float* across_to, float* turn) const {
     const Eigen::VectorXd p = point(n), chord = point(neighbour) - p;
     const double beta = p.dot(chord) / p.squaredNorm();
@@ -90,7 +88,7 @@ class RecordBuilder {
     turn[2] = static_cast<float>(1.0 / c);
   }
 
-  /// Depth noise is that in the middle of the quarter.
+  /// Uses the depth noise at the middle of the quarter.
   void fill_chord(std::int32_t n, std::int32_t neighbour, int quarter, float* fields) const {
     const double t = (quarter + 0.5) / ChordLayout::quarters;
     const Eigen::VectorXd p = point(n), chord = point(neighbour) - p;
@@ -101,7 +99,7 @@ class RecordBuilder {
       fields[ChordLayout::ambient] = static_cast<float>(ambient_part(neighbour) - ambient_part(n));
   }
 
-  /// dz = <d, noise> / (S |d|^2) with d the slope across p.
+  /// dz = <d, noise> / (S |d|^2), where d is the slope across p.
   Eigen::Vector3d depth_noise_at(const Eigen::VectorXd& p, const Eigen::VectorXd& slope,
                                  const Eigen::VectorXd& shot) const {
     const Eigen::VectorXd across = slope - slope.dot(p) / p.squaredNorm() * p;
@@ -111,7 +109,7 @@ class RecordBuilder {
     return noise_along(across * (table_.row_m() / across2), shot);
   }
 
-  /// Variance of <weight, q>: per signal, per ambient light, and without light.
+  /// Returns the variance of <weight, q>: per signal, per ambient light, and without light.
   Eigen::Vector3d noise_along(const Eigen::VectorXd& weight, const Eigen::VectorXd& shot) const {
     const Eigen::VectorXd squares = (projection_.noise_basis * weight).cwiseAbs2();
     Eigen::Vector3d noise;

@@ -9,16 +9,17 @@
 namespace tofsmith {
 
 namespace {
-// In units of |q|, which is 1 to 2 on the cube: far above tie_tolerance and rounding.
+// In units of |q|, which is 1 to 2 on the cube; much larger than tie_tolerance and rounding errors.
 constexpr double certain_loss = 1e-9;
-// What rounding may make of a straight run, in all: below any lead that proves something.
+// Total rounding error of a straight run; smaller than any lead that proves a result.
 constexpr double flat = 2e-12;
-// Longer runs bend too much for a line to prove anything.
+// Longer runs are too curved for a linear fit with proof.
 constexpr std::int32_t longest_proven_run = 40;
-// A lead that no tie can have.
+// Leads above this exclude ties.
 constexpr double clear_lead = 5 * tie_tolerance;
 
-/// Calls use(from, to) for every edge of a box of so many sides, by the numbers of its corners.
+/// Calls use(from, to) for every edge of a box with `sides` dimensions, with the numbers of its
+/// corners.
 template <typename Use>
 void for_each_edge(int sides, const Use& use) {
   for (std::size_t from = 0; from < std::size_t{1} << sides; ++from)
@@ -74,7 +75,6 @@ CellBuilder::Scores CellBuilder::scores_at(const Corners& corners, std::int32_t 
   Scores scores;
   scores[0] = 0.0;
   for (int j = 0; j < rank_; ++j) scores[0] += corners.lowest[static_cast<std::size_t>(j)] * u[j];
-  // Every side doubles the corners that are known.
   std::size_t known = 1;
   for (int j = 0; j < rank_; ++j) {
     if (j == corners.axis) continue;
@@ -91,7 +91,7 @@ void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& c
   scores_.clear();
   for (const std::int32_t n : candidates) scores_.push_back(scores_at(corners, n));
 
-  // The best in the middle, and at every corner, rule out most others.
+  // The best directions at the centre and at the corners exclude most others.
   const auto corner_count = static_cast<std::size_t>(corner_count_);
   std::array<std::size_t, max_corners + 1> leaders{};
   double best_sum = -1e300;
@@ -129,14 +129,14 @@ double CellBuilder::closeness(const CellBox& box,
 
 void CellBuilder::runs(const CellBox& box, const std::vector<std::int32_t>& winners,
                        std::vector<CellRecord>& found) {
-  constexpr std::int32_t bridged = 2;  // a step that skips one direction does not end a run
+  constexpr std::int32_t bridged = 2;  // gaps of one direction do not end a run
   const Corners corners = corners_of(box);
   found.clear();
   const auto end_of_group = [&](std::size_t k) {
     while (k + 1 < winners.size() && winners[k + 1] - winners[k] <= bridged) ++k;
     return k;
   };
-  // The last run may go on at the first direction.
+  // The last run may continue at the first direction.
   const std::size_t front = end_of_group(0);
   const bool goes_on =
       front + 1 < winners.size() && winners.front() + count_ - winners.back() <= bridged;
@@ -148,7 +148,8 @@ void CellBuilder::runs(const CellBox& box, const std::vector<std::int32_t>& winn
   }
 }
 
-/// Cuts the directions first .. last, twice around, where the score may dip between its neighbours.
+/// Splits the directions first ... last (indices up to 2 M) where the score may have a local
+/// minimum.
 void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t last,
                         std::vector<CellRecord>& found) {
   const auto corner_count = static_cast<std::size_t>(corner_count_);
@@ -170,7 +171,7 @@ void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t
     found.push_back(run);
   };
   std::int32_t begin = first;
-  double dips = 0.0;  // of the run, in all
+  double dips = 0.0;  // total over the run
   for (std::int32_t n = first + 1; n < last; ++n) {
     if (n == begin) continue;
     const Scores& after = leads_[static_cast<std::size_t>(n - first)];
@@ -186,14 +187,14 @@ void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t
   keep(begin, last);
 }
 
-/// Fits x to the borders of neighbours, where they cross the edges of the box: x = n + 1/2 there.
+/// Fits x to the borders of neighbours, where they intersect the edges of the box: x = n + 1/2.
 void CellBuilder::fit(const Corners& corners, std::span<const Scores> leads,
                       CellRecord& run) const {
   if (run.length == 0) {
     run.slack = 0;
     return;
   }
-  constexpr double weight_of_corner = 1e-4;  // corners only say which way x grows
+  constexpr double weight_of_corner = 1e-4;  // corners only determine the sign of the slope
   Eigen::Matrix<double, max_cell_rank, max_cell_rank> normal;
   normal.setIdentity();
   normal *= 1e-9;
@@ -220,7 +221,7 @@ void CellBuilder::fit(const Corners& corners, std::span<const Scores> leads,
     }
 
   const Place solution = normal.ldlt().solve(right) / fit_unit_;
-  if (!(solution.cwiseAbs().maxCoeff() < 32767.0)) return;  // without proof
+  if (!(solution.cwiseAbs().maxCoeff() < 32767.0)) return;  // no proof
   for (std::size_t s = 0; s < max_cell_rank; ++s)
     run.fit[s] = static_cast<std::int16_t>(std::lround(solution[static_cast<Eigen::Index>(s)]));
   if (!is_short) return;
@@ -228,9 +229,9 @@ void CellBuilder::fit(const Corners& corners, std::span<const Scores> leads,
   if (units < CellRecord::no_proof) run.slack = static_cast<std::int16_t>(units);
 }
 
-/// How far x gets from n + 1/2, at most, on the wrong side: where direction n + 1 does not clearly
-/// beat n, x must be below, and above where n does not clearly beat n + 1. Both are convex parts of
-/// the box, whose corners are the box's or lie on its edges.
+/// Returns the maximum distance of x from n + 1/2 on the wrong side: x must be below where
+/// direction n + 1 does not clearly beat n, and above where n does not clearly beat n + 1. Both
+/// regions are convex, and their corners are corners of the box or lie on its edges.
 double CellBuilder::slack(const Corners& corners, std::span<const Scores> leads,
                           const CellRecord& run) const {
   Place fit;

@@ -12,43 +12,42 @@
 
 namespace tofsmith {
 
-/// A box on a face of the cube.
 struct CellBox {
-  int axis = 0;                                ///< of the face
+  int axis = 0;                                ///< axis of the face
   std::array<double, max_cell_rank> centre{};  ///< +-1 along the axis
-  double half = 1.0;                           ///< of its sides
+  double half = 1.0;                           ///< half of the side
 
-  /// The whole face 2 axis + (negative side).
+  /// Returns a whole face; number = 2 axis + (1 if negative).
   static CellBox face(int number);
-  /// Number `part` of the 2^(rank - 1) boxes of half the side.
+  /// Returns number `part` of the 2^(rank - 1) boxes with half the side.
   CellBox child(int part, int rank) const;
 };
 
-/// Finds what can win in boxes, by proof: a score q.u_n - q.u_m is linear in q, so that its largest
-/// value over a box stands at a corner. Boxes are taken with their overlap. Keeps work space: one
-/// builder per thread.
+/// Determines which directions can be best in a box, with proof: a score difference q.u_n - q.u_m
+/// is linear in q, so its maximum over a box is at a corner. Boxes include their overlap. Use one
+/// builder per thread, since it holds working memory.
 class CellBuilder {
  public:
-  /// @param fit_unit  of the records' fits
+  /// @param fit_unit  unit of the records' fits
   CellBuilder(const DistinctDirections& directions, double fit_unit);
 
-  /// Those of `candidates` that can win somewhere in a box, ascending.
+  /// Selects the `candidates` that can be best somewhere in a box, in ascending order.
   void winners(const CellBox& box, const std::vector<std::int32_t>& candidates,
                std::vector<std::int32_t>& kept);
-  /// The winners of a box as runs with one peak each.
+  /// Divides the winners of a box into runs with one peak each.
   void runs(const CellBox& box, const std::vector<std::int32_t>& winners,
             std::vector<CellRecord>& found);
-  /// Score of the best of `candidates` at the centre of a box, of unit vectors.
+  /// Returns the best score of `candidates` at the centre of a box, for unit vectors.
   double closeness(const CellBox& box, const std::vector<std::int32_t>& candidates) const;
 
  private:
   static constexpr int max_corners = 8;
   using Scores = std::array<double, max_corners>;
-  using Place = Eigen::Matrix<double, max_cell_rank, 1>;  // 1, t_1, t_2 ..
+  using Place = Eigen::Matrix<double, max_cell_rank, 1>;  // 1, t_1, t_2, ...
   struct Corners {
     int axis = 0;
     double side = 0.0;
-    std::array<double, max_cell_rank> lowest{};  // the corner with the least coordinates
+    std::array<double, max_cell_rank> lowest{};  // corner with the least coordinates
     std::array<Place, max_corners> place;
   };
 
@@ -65,7 +64,7 @@ class CellBuilder {
   int corner_count_;
   std::int32_t count_;
   double fit_unit_;
-  std::vector<Scores> scores_;  // of candidates
+  std::vector<Scores> scores_;  // of the candidates
   std::vector<Scores> leads_;   // of n + 1 over n at the corners, along a run
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// From the vectors of a tile to what their cells say; compiled once for every instruction set.
+// Looks up the cells of the vectors of a tile. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_CELL_PLACE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_CELL_PLACE_INL_HPP
 #undef TOFSMITH_DECODE_CELL_PLACE_INL_HPP
@@ -29,8 +29,8 @@ constexpr int row_floats = 4;  // of a step or a direction
 
 struct Scratch {
   alignas(64) float place[3][tile];     // t_s in the cell
-  alignas(64) std::int32_t cell[tile];  // before enter_roots() of a cell among all there could be
-  alignas(64) std::int32_t cut[tile];   // of rank 4: of the same, among those of its root
+  alignas(64) std::int32_t cell[tile];  // before enter_roots(): index of the root
+  alignas(64) std::int32_t cut[tile];   // rank 4: index within a cut root
   alignas(64) std::int32_t is_cut[tile];
   alignas(64) std::int32_t first[tile];
   alignas(64) std::int32_t last[tile];
@@ -42,10 +42,11 @@ struct Scratch {
   bool all_proven;
 };
 
-/// Added to a number of up to 22 bits it leaves the nearest whole one in the lowest bits.
+/// Adding this to a number of up to 22 bits leaves the nearest integer in the lowest bits.
 constexpr float to_whole = 0x1.8p23f;
 
-/// 1 / v to 2^-22; elsewhere than on x86 approximations may be coarser.
+/// Returns 1 / v with a relative error of 2^-22. Approximations on other architectures than x86 may
+/// be less accurate.
 HWY_INLINE Vector reciprocal_of(Vector v) {
   const Floats d;
 #if HWY_ARCH_X86
@@ -56,8 +57,9 @@ HWY_INLINE Vector reciprocal_of(Vector v) {
 #endif
 }
 
-/// Cell and place in it of every pixel (of rank 4: root, cell if it is cut, and place in that), and
-/// how much the place may be off; infinite where the pixel is too uncertain for its cell.
+/// Computes the cell of every pixel and the position in it (rank 4: the root, the cell if the root
+/// is cut, and the position in that), and a bound on the error of the position; infinite if the
+/// pixel is too uncertain for its cell.
 template <int Rank>
 HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int padded,
                        Scratch& scratch) {
@@ -72,8 +74,8 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
              cut_mask = hn::Set(di, (1 << view.cut_bits) - 1);
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto rounding_of_place = hn::Set(d, 1e-6f * (sides + 2));
-  constexpr float farthest = 1e30f;  // beyond, reciprocals are lost
-  // Twice this and rounding is less than CellRecord::overlap.
+  constexpr float farthest = 1e30f;  // reciprocals of larger numbers underflow
+  // CellRecord::overlap exceeds twice this plus rounding.
   constexpr auto reach = static_cast<float>(max_proven_error);
   for (int i = 0; i < padded; i += lanes) {
     Vector q[Rank];
@@ -92,7 +94,8 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
                                   hn::Lt(largest, hn::Set(d, farthest)));
 
     const auto scale = hn::Mul(half, reciprocal_of(largest));
-    // An error of q moves c by twice itself over the largest component, and t by G times that.
+    // An error of q changes c by at most twice the error divided by the largest component, and t by
+    // G times that.
     const auto slip = hn::MulAdd(hn::Mul(error, scale), hn::Set(d, 4.1f), rounding_of_place);
     hn::Store(hn::IfThenElse(has_cell, slip, infinite), d, scratch.slip + i);
 
@@ -105,7 +108,7 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
       const auto index = hn::Min(hn::Max(hn::Add(shifted, middle), first_cell), last_cell);
       const auto within = hn::Sub(shifted, hn::Sub(index, middle));
       hn::Store(hn::Add(within, within), d, scratch.place[s] + i);
-      // Also what is no number lands in a cell.
+      // NaN inputs also map to a valid cell index.
       const auto fine = hn::And(hn::BitCast(di, index), fine_bits);
       if (Rank == 4) {
         cut = hn::Add(hn::ShiftLeftSame(cut, view.cut_bits), hn::And(fine, cut_mask));
@@ -120,8 +123,8 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   }
 }
 
-/// From the roots of pixels to their cells, which are on their way into the cache when they are
-/// read. Number by number: gathers take longer, and so would vectors of single numbers.
+/// Converts the roots of pixels to their cells, and prefetches these. Scalar code is faster than
+/// gathers here.
 HWY_INLINE void enter_roots(const CellSearchView& view, int padded, Scratch& scratch) {
   for (int i = 0; i < padded; ++i) {
     const std::int32_t root = view.roots[scratch.cell[i]], is_cut = root & 1;
@@ -132,7 +135,8 @@ HWY_INLINE void enter_roots(const CellSearchView& view, int padded, Scratch& scr
   }
 }
 
-/// Of pixels whose root is not cut: the place in it, from that in the cell of a cut one.
+/// For pixels whose root is not cut: converts the position in a cut cell to the position in the
+/// root.
 HWY_INLINE void place_in_roots(const CellSearchView& view, int padded, Scratch& scratch) {
   constexpr int sides = 3;
   const Floats d;
@@ -156,7 +160,7 @@ HWY_INLINE void place_in_roots(const CellSearchView& view, int padded, Scratch& 
 
 HWY_INLINE IndexVector low_half(IndexVector v) { return hn::And(v, hn::Set(Indices(), 0xffff)); }
 
-/// Low and high halves of words as numbers.
+/// Convert low and high halves of words to floats.
 HWY_INLINE Vector low_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(hn::ShiftLeft<16>(words)));
 }
@@ -164,15 +168,15 @@ HWY_INLINE Vector high_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(words));
 }
 
-/// Writes the pixels of a mask one behind the other, and up to a vector more; @returns how many.
-/// Some processors take a hundred cycles for a compressing store.
+/// Writes the pixels of a mask consecutively (up to one vector more); returns their number.
+/// Compressing stores take about a hundred cycles on some processors.
 HWY_INLINE int list(IndexVector pixel, hn::Mask<Indices> mask, std::int32_t* listed) {
   hn::StoreU(hn::Compress(pixel, mask), Indices(), listed);
   return static_cast<int>(hn::CountTrue(Indices(), mask));
 }
 
-/// The bins of pixels whose cell proves them, and where to begin in the run of the others, which
-/// are listed; so are pixels with several runs.
+/// Computes the bins of pixels whose cell proves them, and the start in the run for the others,
+/// which are listed together with pixels that have several runs.
 template <int Rank>
 HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixels,
                         Scratch& scratch) {
@@ -194,7 +198,7 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixel
         words);
     const auto run = hn::BitCast(di, words[0]), fit01 = hn::BitCast(di, words[1]),
                fit23 = hn::BitCast(di, words[2]), beside = hn::BitCast(di, words[3]);
-    // Of rank 3 the slack stands in place of the fourth fit.
+    // For rank 3, the slack replaces the fourth fit.
     auto slack = high_number(fit23);
     if (Rank == 4) slack = high_number(beside);
     auto x = hn::MulAdd(high_number(fit01), hn::Load(d, scratch.place[0] + i), low_number(fit01));
@@ -205,14 +209,14 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixel
     const auto length = hn::ShiftRight<16>(run), first = low_half(run);
     const auto last_after = hn::ConvertTo(d, length);
     const auto after = hn::Min(hn::Max(hn::Sub(hn::Add(x, whole), whole), hn::Zero(d)), last_after);
-    // Also what is no number stays in the run.
+    // NaN inputs also stay in the run.
     const auto steps =
         hn::Min(hn::And(hn::BitCast(di, hn::Add(after, whole)), hn::Set(di, 0x7fff)), length);
     const auto at = hn::Add(first, steps);
     const auto once = hn::IfThenElse(hn::Lt(at, count), at, hn::Sub(at, count));
     hn::Store(once, di, pixels.bin + i);
 
-    // x must be further from the borders of its direction than it may be off.
+    // The distance of x from the borders of its direction must exceed the error bound.
     const auto rounding =
         hn::MulAdd(slack, slack_unit, hn::Mul(steepest, hn::Load(d, scratch.slip + i)));
     const auto place = hn::Sub(x, after);

@@ -9,7 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/cell_search.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/search/cell_place-inl.hpp"
@@ -19,7 +19,7 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// The vector of one pixel, and how uncertain signs of its products with unit vectors are.
+/// Vector of one pixel, and the uncertainty of signs of its products with unit vectors.
 template <int Rank>
 struct PixelVector {
   float q[Rank];
@@ -40,7 +40,8 @@ struct PixelVector {
   }
 };
 
-/// The winner of a run, all counted twice around, by the signs beside it; -1 where one is unsure.
+/// Returns the best direction of a run (indices up to 2 M avoid wrap-around), decided by the signs
+/// of neighbouring score differences; -1 if a sign is not certain.
 template <int Rank>
 HWY_INLINE std::int32_t settle(const CellSearchView& view, const PixelVector<Rank>& pixel,
                                std::int32_t first, std::int32_t last, std::int32_t at) {
@@ -68,7 +69,7 @@ HWY_INLINE std::int32_t settle(const CellSearchView& view, const PixelVector<Ran
   }
 }
 
-/// Notes the direction of a pixel, twice around, or -1.
+/// Stores the bin of direction n (index up to 2 M), or -1.
 HWY_INLINE void keep(const CellSearchView& view, std::int32_t pixel, std::int32_t n,
                      PixelTile& pixels, Scratch& scratch) {
   pixels.bin[pixel] = n < view.count ? n : n - view.count;
@@ -79,7 +80,7 @@ HWY_INLINE bool is_sharp(const Scratch& scratch, std::int32_t pixel) {
   return scratch.slip[pixel] < std::numeric_limits<float>::infinity();
 }
 
-/// Searches the runs of the pixels that their cells do not prove.
+/// Searches the runs of pixels that their cells do not prove.
 template <int Rank>
 HWY_INLINE void search_runs(const CellSearchView& view, PixelTile& pixels, Scratch& scratch) {
   for (int k = 0; k < scratch.unproven_count; ++k) {
@@ -95,7 +96,6 @@ HWY_INLINE void search_runs(const CellSearchView& view, PixelTile& pixels, Scrat
   }
 }
 
-/// The best of the runs of one pixel; -1 where it is unsure.
 template <int Rank>
 HWY_INLINE std::int32_t search_list(const CellSearchView& view, std::int32_t pixel,
                                     const Scratch& scratch, const PixelTile& pixels) {
@@ -123,7 +123,6 @@ HWY_INLINE std::int32_t search_list(const CellSearchView& view, std::int32_t pix
   return best - second > 2.0f * vector.margin ? leader : -1;
 }
 
-/// Searches all runs of the pixels that have several.
 template <int Rank>
 HWY_INLINE void search_lists(const CellSearchView& view, PixelTile& pixels, Scratch& scratch) {
   for (int k = 0; k < scratch.lists; ++k) {
@@ -134,7 +133,7 @@ HWY_INLINE void search_lists(const CellSearchView& view, PixelTile& pixels, Scra
   }
 }
 
-/// @returns whether all pixels are proven
+/// @returns true if all pixels are proven
 template <int Rank>
 bool search_tile(const CellSearchView& view, PixelTile& pixels) {
   const int lanes = lanes_of();
@@ -173,7 +172,7 @@ namespace {
 
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<float>::epsilon();
 
-/// Rows of 4, twice around, beginning with row `begin`.
+/// Returns rows of 4, for indices `begin` to 2 M (wrapped around).
 std::vector<float> twice_around(const RowMajorMatrix& rows, std::int32_t begin) {
   const auto count = static_cast<std::int32_t>(rows.rows());
   std::vector<float> laid;
@@ -194,8 +193,8 @@ CellSearch::CellSearch(const DistinctDirections& directions)
   steps_ = twice_around(step, -1);
   units_ = twice_around(directions.unit, 0);
 
-  // Rounding a step, r products and r - 1 sums, to first order, with a little for higher ones; and
-  // scores that tie, whose neighbours differ by a step at least.
+  // Rounding errors of a step, r products and r - 1 sums to first order, with a margin for higher
+  // orders; and ties, whose neighbours differ by at least one step.
   constexpr double safety = 1.02;
   const double tie = 10 * tie_tolerance / directions.shortest_step;
   view_ = {.rank = directions.rank(),

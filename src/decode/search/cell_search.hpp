@@ -10,26 +10,26 @@
 
 namespace tofsmith {
 
-/// What the search reads, as plain memory.
 struct CellSearchView {
   int rank = 0;
   int root_bits = 0;
   int cut_bits = 0;
-  const std::int32_t* roots = nullptr;  ///< of rank 4; rank 3 has no cuts
+  const std::int32_t* roots = nullptr;  ///< rank 4 only; rank 3 has no cuts
   const CellRecord* cells = nullptr;
   const CellRecord* lists = nullptr;
   float fit_unit = 0.0f;
   std::int32_t count = 0;        ///< M directions
-  const float* steps = nullptr;  ///< unit vector from n to n + 1 at [n + 1], n = -1 .. 2 M, each 4
-  const float* units = nullptr;  ///< directions n = 0 .. 2 M, each 4
-  const std::int32_t* bin = nullptr;  ///< of a direction; null where all bins are distinct
-  float steepest_fit = 0.0f;          ///< as of the table
-  float rounding = 0.0f;              ///< of the sign of <q, step>, per sum of |q_j|
+  const float* steps = nullptr;  ///< unit vector from n to n + 1 at [n + 1], n = -1 ... 2 M; 4 each
+  const float* units = nullptr;  ///< directions n = 0 ... 2 M, 4 floats each
+  const std::int32_t* bin = nullptr;  ///< of a direction; null if all bins are distinct
+  float steepest_fit = 0.0f;          ///< as in the table
+  float rounding = 0.0f;              ///< error of the sign of <q, step>, per sum of |q_j|
 };
 
-/// Closest directions by cells: a cell names one run of neighbouring directions, or a few, and the
-/// sign of <q, u_(n+1) - u_n> tells on which side of n the winner stands. Differences are rounded
-/// from double arithmetic, so that a sign is right unless it is close to 0.
+/// Finds the closest directions with cells. A cell contains one or several runs of neighbouring
+/// directions. The sign of <q, u_(n+1) - u_n> decides on which side of n the best direction lies.
+/// Differences are computed in double precision and then rounded, so a sign is correct unless the
+/// product is close to 0.
 class CellSearch {
  public:
   /// @param directions  with CellTable::serves(directions)
@@ -37,19 +37,18 @@ class CellSearch {
 
   const CellTable& table() const { return table_; }
   const CellSearchView& view() const { return view_; }
-  /// As in the view.
   std::span<const float> steps() const { return steps_; }
   std::span<const float> units() const { return units_; }
-  /// Bin of every direction (M), by increasing bin.
+  /// Bin of every direction (M), ascending.
   std::span<const std::int32_t> bins() const { return bin_; }
 
-  /// Fills bin of a tile from plane and error: -1 where single precision does not prove that it
-  /// beats all others by more than ties need (see TileProjection).
-  /// @returns whether all are proven
+  /// Fills the bins of a tile from plane and error; -1 if single precision does not prove that the
+  /// bin beats all others by more than the margin of ties (see TileProjection).
+  /// @returns true if all bins are proven
   bool search(PixelTile& tile) const;
-  /// The lowest bin whose score ties with the best, in double arithmetic.
-  /// @param unit  (rank) of length 1
-  /// @param tie   by how much scores may differ: up to max_proven_residual tie_tolerance
+  /// Returns the lowest bin whose score ties with the best, in double precision.
+  /// @param unit  (rank), of length 1
+  /// @param tie   margin of ties, up to max_proven_residual tie_tolerance
   std::int32_t choose(const double* unit, double tie) const;
 
  private:

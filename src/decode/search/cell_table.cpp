@@ -15,8 +15,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Roots along a side of a face: 2^this. Finer ones hold fewer directions, until they leave the
-/// cache.
+/// Number of roots along a side of a face is 2^this. More roots contain fewer directions each, but
+/// must fit into the cache.
 int root_bits_for(int rank, std::int32_t directions) {
   if (rank == 3) return directions <= 500 ? 6 : directions <= 4000 ? 7 : 8;
   return 4;
@@ -25,17 +25,16 @@ int cut_bits_for(int rank, std::int32_t directions) {
   if (rank == 3) return 0;
   return directions <= 500 ? 1 : 2;
 }
-/// Share of the roots that is cut: fewer of long curves, whose cells take longer to prove.
+/// Fraction of the roots that are cut; smaller for long curves, whose cells take longer to prove.
 double cut_share_for(std::int32_t directions) { return directions <= 4000 ? 0.125 : 0.04; }
 
-/// A root with its winners.
 struct Root {
   CellBox box;
   std::vector<std::int32_t> winners;
   double closeness = 0.0;  // to the curve
 };
 
-/// Index along each side of a half, from that of the whole box.
+/// Returns the index of a half along each side, given that of the whole box.
 std::array<std::size_t, max_cell_rank> child_index(std::array<std::size_t, max_cell_rank> index,
                                                    int part, int rank) {
   for (int s = 0; s + 1 < rank; ++s) {
@@ -45,7 +44,7 @@ std::array<std::size_t, max_cell_rank> child_index(std::array<std::size_t, max_c
   return index;
 }
 
-/// Splits a box down to roots; `index` counts boxes of this size along each side.
+/// Splits a box into roots; `index` counts boxes of this size along each side.
 void split(CellBuilder& builder, int rank, int face, const CellBox& box, int levels,
            std::array<std::size_t, max_cell_rank> index,
            const std::vector<std::int32_t>& candidates, int root_bits, std::vector<Root>& roots) {
@@ -66,7 +65,7 @@ void split(CellBuilder& builder, int rank, int face, const CellBox& box, int lev
   }
 }
 
-/// Cuts a box down to cells; `at` counts cells, the first coordinate being the slowest.
+/// Cuts a box into cells; `at` counts cells, with the first coordinate slowest.
 void cut(CellBuilder& builder, int rank, const CellBox& box, int levels,
          std::array<std::size_t, max_cell_rank> index, int cut_bits,
          const std::vector<std::int32_t>& winners, std::vector<CellRecord>* cells) {
@@ -124,7 +123,7 @@ CellTable::CellTable(const DistinctDirections& directions)
           root_bits_, roots);
   });
 
-  // The roots closest to the curve are cut.
+  // Cut the roots closest to the curve.
   std::vector<double> closeness;
   for (const Root& root : roots) closeness.push_back(root.closeness);
   const auto cuts = static_cast<std::size_t>(cut_share_for(directions.count()) *
@@ -153,7 +152,7 @@ CellTable::CellTable(const DistinctDirections& directions)
 }
 
 void CellTable::store(const std::vector<Runs>& runs) {
-  // Few cells have the steepest fits; without them one bound serves all.
+  // Few cells have very steep fits; without them, one bound suffices for all.
   std::vector<double> steep;
   for (const Runs& of_cell : runs)
     if (of_cell.size() == 1 && of_cell.front().slack != CellRecord::no_proof)

@@ -12,18 +12,16 @@ namespace tofsmith {
 
 namespace {
 
-/// Lobes that are refined per pixel, at most.
 constexpr int max_lobes = 64;
-/// Rows decide where the curve keeps this many times their distance from itself. The squares of the
-/// offsets of two rows from the best points of their lobes then differ by less than 1 / 25 of the
-/// squared distance of the lobes.
+/// Rows decide if the distance of the curve from itself is at least this many times the spacing of
+/// rows. The squared offsets of two rows from the best points of their lobes then differ by less
+/// than 1 / 25 of the squared distance of the lobes.
 constexpr double far_apart = 2.5;
-/// Rows for which the distance is examined, at most.
 constexpr Eigen::Index max_examined = 4096;
 
-/// Returns true if the curve of unit directions comes closer to itself than `distance`, other than
-/// in the run of rows around each row along which scores fall.
-/// @param spacing  the largest distance between neighbouring rows
+/// Returns true if the curve of unit directions comes closer to itself than `distance`, except in
+/// the run of rows around each row along which scores decrease.
+/// @param spacing  largest distance between neighbouring rows
 bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) {
   const Eigen::Index rows = units.rows();
   const Eigen::Index step = (rows + max_examined - 1) / max_examined;
@@ -42,8 +40,7 @@ bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) 
       return false;
     };
     if (turns_back(first, 1) || turns_back(last, -1)) return true;
-    // Between the ends of the run, rows that the curve cannot come close to in fewer steps are
-    // skipped.
+    // Between the ends of the run, skip rows within which the curve cannot come close.
     while (first < last) {
       const double now = score(first);
       if (now > limit) return true;
@@ -54,7 +51,8 @@ bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) 
   return false;
 }
 
-/// The largest share of |q| by which a best point can exceed the rows next to it.
+/// Returns the maximum difference, relative to |q|, between the score of a best point and of
+/// adjacent rows.
 double slack_of(const RowMajorMatrix& units) {
   const Eigen::Index rows = units.rows();
   double second_difference = 0.0;
@@ -62,14 +60,15 @@ double slack_of(const RowMajorMatrix& units) {
     second_difference = std::max(
         second_difference,
         (units.row((n + 1) % rows) - 2.0 * units.row(n) + units.row((n + rows - 1) % rows)).norm());
-  constexpr double margin = 1.1;  // for what differences leave out of the second derivative
+  constexpr double margin = 1.1;  // for the approximation of the second derivative by differences
   return margin * second_difference / 8.0;
 }
 
 }  // namespace
 
 std::optional<CloseLobes> CloseLobes::of(const AmbientProjection& projection) {
-  // On a circle, lobes that meet are alike: rows decide, which favours those passed slowly.
+  // On a circle, intersecting lobes have the same shape. Rows decide, which favours slowly passed
+  // lobes.
   if (projection.rank() < 3 || !depth_polynomials(projection.curve)) return std::nullopt;
   const RowMajorMatrix units = projection.curve.rowwise().normalized();
   const double spacing = turns_of(projection.curve).maxCoeff();
@@ -83,8 +82,8 @@ CloseLobes::CloseLobes(const SmoothCurve& curve, double slack)
       points_(curve.points(0.0)),
       slopes_(curve.slopes(0.0)) {}
 
-/// The score of the best point around a row, on the cubic through points and slopes of the rows on
-/// both sides.
+/// Returns the score of the best point around a row, on the cubic defined by points and slopes of
+/// the rows on both sides.
 double CloseLobes::best_score(const double* unit, std::int32_t row) const {
   using Vector = Eigen::Map<const Eigen::RowVectorXd>;
   const Vector q(unit, points_.cols());
@@ -142,7 +141,7 @@ void CloseLobes::choose(const DirectionTable& directions, const ArcSearch& arcs,
         chosen = row;
       }
     }
-    // Single precision may find a peak one row off; the best row is exact.
+    // Single precision may shift a peak by one row; the best row is exact.
     if (std::abs(circular_difference(chosen, tile.bin[i], directions.samples())) > 1)
       tile.bin[i] = chosen;
   }

@@ -10,18 +10,18 @@
 
 namespace tofsmith {
 
-/// Chooses between lobes whose best rows score nearly alike. The score of a lobe's best point
-/// exceeds that of its best row by at most `slack` |q|, so all lobes whose best rows come that
-/// close to the best row are refined, and the one with the best point wins; of equal ones the
-/// lowest.
+/// Chooses between lobes whose best rows have similar scores. The score of a lobe's best point
+/// exceeds that of its best row by at most `slack` |q|. Therefore all lobes whose best rows are
+/// that close to the best row are refined, and the one with the best point is chosen (in case of
+/// ties the lowest).
 class CloseLobes {
  public:
-  /// Returns nothing where rows decide: the curve is not smooth, lies on a circle, or comes nowhere
-  /// closer to itself than 2.5 times the distance between rows.
+  /// Returns none if rows decide: the curve is not smooth, lies on a circle, or never comes closer
+  /// to itself than 2.5 times the spacing of rows.
   static std::optional<CloseLobes> of(const AmbientProjection& projection);
 
   /// Replaces the best row of every pixel in the tile by the best row of the lobe with the best
-  /// point. Pixels without a row (-1) keep none.
+  /// point. Pixels without a row (-1) remain unchanged.
   void choose(const DirectionTable& directions, const ArcSearch& arcs, PixelTile& tile) const;
 
  private:

@@ -10,24 +10,23 @@
 
 namespace tofsmith {
 
-/// Chords whose ends differ in direction by less are one direction: the square of the sine.
+/// Squared sine below which the ends of a chord have the same direction.
 inline constexpr double parallel_chords = 1e-14;
 
-/// Rows whose components stand side by side.
+/// Number of rows with interleaved components.
 inline constexpr int rows_per_block = 8;
 
-/// Scores tie that are this close, in units of |P y'|: what ambient light does not explain of a
-/// pixel, and of which its vector in the plane may be a small part.
+/// Scores within this distance tie, in units of |P y'|, the part of a pixel that ambient light does
+/// not explain. Its vector in the decoding subspace may be a small part of that.
 inline constexpr double tie_tolerance = 1e-11;
 
-/// Cells prove no bin of a pixel whose error is a larger share of its vector q in the plane,
+/// Cells do not prove pixels whose error exceeds this fraction of their vector q in the subspace,
 inline constexpr double max_proven_error = 8e-6;
-/// nor of one with more than this in |P y'| / |q|.
+/// or whose |P y'| / |q| exceeds this.
 inline constexpr double max_proven_residual = 32.0;
 
-/// Unit directions of a code's curve, laid out for search. There is one row per bin, and a last
-/// block is filled up. Bins without contrast have no direction: their rows repeat that of another
-/// bin, so that no score of theirs is new.
+/// Unit directions of the curve of a code, arranged for searches: one row per bin, padded to whole
+/// blocks. Bins without contrast have no direction; their rows repeat that of another bin.
 class DirectionTable {
  public:
   explicit DirectionTable(const AmbientProjection& projection);
@@ -36,7 +35,6 @@ class DirectionTable {
   int rank() const { return rank_; }
   int blocks() const { return static_cast<int>(bin_of_row_.size()) / rows_per_block; }
 
-  /// Bin whose direction stands in a row.
   std::int32_t bin_of_row(std::int32_t row) const {
     return bin_of_row_[static_cast<std::size_t>(row)];
   }
@@ -46,7 +44,7 @@ class DirectionTable {
     return block(row / rows_per_block)[j * rows_per_block + row % rows_per_block];
   }
 
-  /// Of every row, filled up to a whole block.
+  /// One entry per row, including padding.
   std::span<const std::int32_t> bins_by_row() const { return bin_of_row_; }
 
  private:

@@ -9,11 +9,12 @@
 
 namespace tofsmith {
 
-/// For every row the lowest row whose direction is no further away than `tolerance`; its own number
-/// where there is none. Rows of zeros have no direction and stand for themselves.
+/// Returns, for every row, the lowest row whose direction is within `tolerance`, or the row itself.
+/// Zero rows have no direction and return themselves.
 std::vector<std::int32_t> lowest_alike(const RowMajorMatrix& unit, double tolerance);
 
-/// The directions of a code's curve that can win: of those that always tie only the lowest bin's.
+/// Directions of the curve of a code that can be best: among directions that always tie, only that
+/// of the lowest bin.
 struct DistinctDirections {
   explicit DistinctDirections(const DirectionTable& table);
 
@@ -21,9 +22,9 @@ struct DistinctDirections {
   int rank() const { return static_cast<int>(unit.cols()); }
   std::int32_t next(std::int32_t n) const { return n + 1 < count() ? n + 1 : 0; }
 
-  RowMajorMatrix unit;            ///< (M, rank), by increasing bin
+  RowMajorMatrix unit;            ///< (M, rank), by ascending bin
   std::vector<std::int32_t> bin;  ///< (M)
-  double shortest_step = 0.0;     ///< least distance between neighbours, the ends being neighbours
+  double shortest_step = 0.0;     ///< least distance between neighbours, including last and first
 };
 
 }  // namespace tofsmith

@@ -10,15 +10,13 @@
 
 namespace tofsmith {
 
-/// Residual of a pixel without ambient light, q = V^T y', as length and unit vector.
+/// Vector of a pixel without ambient light, q = V^T y', as length and unit vector.
 struct PlaneVector {
-  double length =
-      0.0;  ///< |q| [e]; 0 if the residual is rounding, NaN if a raw number is no number
-  double residual = 0.0;  ///< |P y'| / |q|, >= 1: with what lies outside of the plane
+  double length = 0.0;  ///< |q| [e]; 0 if it is a rounding error, NaN if a raw value is not finite
+  double residual = 0.0;                      ///< |P y'| / |q|, >= 1
   std::array<double, max_measurements> unit;  ///< (rank)
 };
 
-/// The projection in double arithmetic, pixel by pixel.
 class ExactProjection {
  public:
   ExactProjection(const DecodingTable& table, const AmbientProjection& projection)
@@ -28,7 +26,6 @@ class ExactProjection {
   int measurements() const { return static_cast<int>(basis_.rows()); }
   int rank() const { return static_cast<int>(basis_.cols()); }
 
-  /// Electrons without dark ones of one raw number.
   double electrons(double raw, int measurement) const { return scale_.electrons(raw, measurement); }
   /// @param raw  (K)
   void project(const double* raw, PlaneVector& vector) const;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Rows of four numbers of every lane, as four vectors; compiled once for every instruction set.
+// Loads rows of four numbers per lane as four vectors. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_ROWS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_ROWS_INL_HPP
 #undef TOFSMITH_DECODE_ROWS_INL_HPP
@@ -21,8 +21,8 @@ inline constexpr int row_length = 4;
 
 #if HWY_HAVE_SCALABLE || HWY_TARGET == HWY_SCALAR
 
-/// Number j of the row of every lane in columns[j].
-/// @param row_of  (lane): where its four numbers stand
+/// Loads number j of the row of every lane to columns[j].
+/// @param row_of  (lane): pointer to four numbers
 template <typename RowOf>
 HWY_INLINE void load_rows(const RowOf& row_of, Vector* columns) {
   HWY_ALIGN float column[row_length][widest_vector];
@@ -33,7 +33,7 @@ HWY_INLINE void load_rows(const RowOf& row_of, Vector* columns) {
 
 #else
 
-/// Rows of the lanes first, first + 4, .., one behind the other.
+/// Loads the rows of the lanes first, first + 4, ... consecutively.
 template <int Lanes, typename RowOf>
 HWY_INLINE hn::Vec<hn::CappedTag<float, Lanes> > every_fourth_row(const RowOf& row_of, int first) {
   const hn::CappedTag<float, Lanes> d;
@@ -44,9 +44,9 @@ HWY_INLINE hn::Vec<hn::CappedTag<float, Lanes> > every_fourth_row(const RowOf& r
                        every_fourth_row<Lanes / 2>(row_of, first));
 }
 
-/// Number j of the row of every lane in columns[j]: whole rows are loaded and transposed, four by
-/// four, which takes a fraction of the time of gathers, also where gathers are fast.
-/// @param row_of  (lane): where its four numbers stand
+/// Loads number j of the row of every lane to columns[j]. Loading and transposing whole rows is
+/// much faster than gathers, even on processors with fast gathers.
+/// @param row_of  (lane): pointer to four numbers
 template <typename RowOf>
 HWY_INLINE void load_rows(const RowOf& row_of, Vector* columns) {
   const Floats d;

@@ -14,9 +14,9 @@ namespace tofsmith {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/// Amplitude in the upper quarter of a spectrum, as a share of the whole, that may hide more.
+/// Relative amplitude in the upper quarter of a spectrum from which aliasing is possible.
 constexpr double hidden_share = 1e-6;
-/// Intervals that turn by less are no fast parts.
+/// Intervals that turn by less are not considered fast.
 constexpr double fast_turn_rad = 10.0 * pi / 180.0;
 constexpr double same_direction_rad = 1.0 * pi / 180.0;
 
@@ -50,7 +50,7 @@ bool falls_back(const RowMajorMatrix& curve) {
   return false;
 }
 
-/// The slope of the direction p / |p| for a slope of p.
+/// Returns the slope of the direction p / |p|, given the slope of p.
 RowMajorMatrix direction_slopes(const RowMajorMatrix& points, const RowMajorMatrix& slopes) {
   const Eigen::VectorXd length2 = points.rowwise().squaredNorm();
   const Eigen::VectorXd along = points.cwiseProduct(slopes).rowwise().sum().cwiseQuotient(length2);
@@ -126,13 +126,13 @@ Eigen::MatrixXd interpolated(const Eigen::MatrixXd& columns, int factor) {
     transform.inverse(one, column);
     fine.col(j) = column;
   }
-  // Existing rows keep their exact values.
+  // Rows of the input keep their exact values.
   for (Eigen::Index n = 0; n < rows; ++n) fine.row(n * factor) = columns.row(n);
   return fine;
 }
 
 DepthPolynomials::DepthPolynomials(const SmoothCurve& curve) {
-  const double node = 0.25 * std::numbers::sqrt3;  // of Chebyshev, with 0 and its mirror image
+  const double node = 0.25 * std::numbers::sqrt3;  // Chebyshev nodes are +-node and 0
   const RowMajorMatrix here = curve.points(0.0), before = curve.points(-node),
                        after = curve.points(node);
   const RowMajorMatrix middle = direction_slopes(here, curve.slopes(0.0)),
@@ -171,9 +171,11 @@ std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve) {
 double interpolation_error(const SmoothCurve& curve) {
   const DepthPolynomials polynomials(curve);
   const Eigen::ArrayXd turn2 = turns_of(curve.points(0.0)).array().square();
-  const Eigen::ArrayXd curvature = turn2.max(0.25 * turn2.mean());  // the curve may all but stop
+  // Lower limit, because the curve may almost stop.
+  const Eigen::ArrayXd curvature = turn2.max(0.25 * turn2.mean());
   double largest = 0.0;
-  for (const double offset : {-0.5, -0.25, 0.25, 0.5}) {  // where the quadratic is furthest off
+  for (const double offset :
+       {-0.5, -0.25, 0.25, 0.5}) {  // where the quadratic has its largest error
     const RowMajorMatrix points = curve.points(offset);
     const RowMajorMatrix derivative =
         polynomials.slope + offset * polynomials.bend + offset * offset * polynomials.asymmetry;

@@ -10,17 +10,16 @@
 
 namespace tofsmith {
 
-/// Mean of the same rows of several frames.
 class MeanOfRows {
  public:
-  /// @param levels  numbers that are clipped in one frame are clipped in the mean; numbers that are
-  ///                not finite in one frame are NaN
+  /// @param levels  values clipped in one frame are clipped in the mean; values not finite in one
+  ///   frame become NaN
   explicit MeanOfRows(const SaturationLevels& levels) : levels_(levels) {}
 
   bool is_empty() const { return frames_ == 0; }
   void add(const RawView& raw);
   /// Returns the mean of the frames since the last call, valid until the next add().
-  /// @param averaged  measurements that the numbers of one frame are the mean of
+  /// @param averaged  number of measurements averaged in each frame
   RawView finish(double averaged);
 
  private:
@@ -28,17 +27,17 @@ class MeanOfRows {
 
   SaturationLevels levels_;
   int height_ = 0, width_ = 0, measurements_ = 0, frames_ = 0;
-  std::vector<double> sums_;  // interleaved; infinite where clipped
+  std::vector<double> sums_;  // interleaved; infinite if clipped
   std::vector<float> averaged_;
 };
 
-/// Averages frames and filters them in time on the CPU.
 class FrameAccumulator {
  public:
   FrameAccumulator(const DecodingTable& table, const FrameSteps& steps);
 
   FrameMemory memory(int recorded, int height, int width) const;
-  /// As FramePipeline::submit() and submit_end(). @return the frame that is ready
+  /// As FramePipeline::submit() and submit_end().
+  /// @return the finished frame, if any
   std::optional<RawView> submit(const RawView& raw, bool completes_mean);
   std::optional<RawView> submit_end();
 

@@ -10,11 +10,11 @@
 
 namespace tofsmith {
 
-/// Returns a view of the frame with its saturated and invalid numbers replaced.
-/// @param buffer  memory of the result, unless no number can be replaced
+/// Returns a view of the frame in which saturated and invalid values are replaced.
+/// @param buffer  memory of the result; unused if the marking replaces nothing
 RawView mark_raw(const RawView& raw, const RawMarking& marking, std::vector<std::byte>& buffer);
 
-/// The same including the buffer. The first step of every decoder and filter.
+/// View of a marked frame and its buffer. The first step of every decoder and filter.
 class MarkedRaw {
  public:
   MarkedRaw(const RawView& raw, const RawMarking& marking)

@@ -17,17 +17,16 @@ namespace tofsmith {
 
 namespace {
 
-// Below these shares of the whole, a residual is rounding ..
+// Relative limits below which a residual is a rounding error.
 constexpr double no_variation = 1e-10;
 constexpr double no_offset = 1e-9;
 constexpr double no_second_phase = 1e-6;
-/// .. and this far from a multiple of kappa, c tells of gates and light that are not quite even,
-/// not of another unknown.
+/// Relative distance of c from a multiple of kappa that small asymmetries of gates and light
+/// explain, without another unknown.
 constexpr double same_offset = 1e-3;
 
-/// The harmonic of one measurement's correlation function.
 struct Harmonic {
-  int frequency = 0;  ///< 0: does not vary with depth
+  int frequency = 0;  ///< 0: constant
   double mean = 0.0;
   std::complex<double> coefficient;
 };
@@ -40,7 +39,8 @@ Harmonic harmonic_of(const Eigen::VectorXd& correlation, int measurement,
   Harmonic found{.mean = spectrum[0].real()};
   if (spectrum.size() < 2) return found;
   Eigen::VectorXd energy = spectrum.tail(spectrum.size() - 1).cwiseAbs2();
-  if (correlation.size() % 2 == 0) energy[energy.size() - 1] /= 2;  // its own mirror image
+  if (correlation.size() % 2 == 0)
+    energy[energy.size() - 1] /= 2;  // the Nyquist coefficient counts once
   const double whole = energy.sum();
   if (whole <= no_variation * no_variation * correlation.squaredNorm()) return found;
   Eigen::Index strongest = 0;
@@ -54,7 +54,7 @@ Harmonic harmonic_of(const Eigen::VectorXd& correlation, int measurement,
   return found;
 }
 
-/// Whether the measurements of a frequency differ in more than amplitude and sign.
+/// Returns true if the measurements of a frequency differ in more than amplitude and sign.
 bool sees_two_phases(const std::vector<Harmonic>& harmonics, int frequency) {
   std::vector<std::complex<double>> seen;
   for (const Harmonic& h : harmonics)
@@ -66,7 +66,7 @@ bool sees_two_phases(const std::vector<Harmonic>& harmonics, int frequency) {
   return values.size() == 2 && values[1] > no_second_phase * values[0];
 }
 
-/// What offsets can be, as columns: none where ambient light cancels, one in most codes.
+/// Returns possible offsets as columns: none if ambient light cancels, one for most codes.
 Eigen::MatrixXd offset_columns(const DecodingTable& table, const Eigen::VectorXd& means) {
   const Eigen::VectorXd of_ambient = table.exposure_s.cwiseProduct(table.ambient_gain);
   const Eigen::VectorXd of_signal = table.exposure_s.cwiseProduct(means);
@@ -103,8 +103,8 @@ PhaseModel::PhaseModel(const DecodingTable& table, double largest_other_energy) 
           fmt::format("must have no common divisor: depth repeats after {:.4g} of {:.4g} m",
                       table.range_m / std::max(common, 1), table.range_m));
 
-  // Columns: the offset, then 2 T Re C and -2 T Im C of each frequency, scaled to length 1 because
-  // a camera may leave next to nothing of a high frequency.
+  // Columns: the offset, then 2 T Re C and -2 T Im C for each frequency, normalized because the
+  // camera may strongly attenuate high frequencies.
   const Eigen::MatrixXd offsets = offset_columns(table, means);
   Eigen::MatrixXd system =
       Eigen::MatrixXd::Zero(table.measurements(), offsets.cols() + 2 * count());

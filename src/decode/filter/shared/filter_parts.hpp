@@ -9,18 +9,17 @@
 
 namespace tofsmith {
 
-/// What a Filter knows, for what filters likewise on another processor. Lives as long as its
-/// filter, which may be moved.
+/// Returns the constant data of a Filter, for implementations on other devices. Valid as long as
+/// the filter, even if it is moved.
 const Filter::Plan& plan_of(const Filter& filter);
 
-/// The same of a TimeFilter, for what adds frames up likewise.
+/// Returns the state of a TimeFilter, for implementations on other devices.
 const TimeFilter::State& state_of(const TimeFilter& filter);
 
-/// @throws std::invalid_argument unless this is a frame of the filter, as Filter::apply
+/// @throws std::invalid_argument if the frame does not fit the filter, as Filter::apply()
 void require_filterable(const Filter::Plan& plan, const RawView& raw,
                         const Image<std::uint8_t>& left_out);
 
-/// Where a filtered frame's numbers are.
 FilterPlanes& planes_of(FilteredFrame& frame);
 
 }  // namespace tofsmith

@@ -6,7 +6,8 @@
 
 namespace tofsmith {
 
-/// f(x) = x^T h x / 2 - g^T x of up to three unknowns, h positive semidefinite.
+/// Quadratic function of up to three unknowns, f(x) = x^T h x / 2 - g^T x, with h positive
+/// semidefinite.
 struct Quadratic {
   using Vector = std::array<double, 3>;
   std::array<Vector, 3> h{};
@@ -15,18 +16,18 @@ struct Quadratic {
   double at(const Vector& x) const;
 };
 
-/// The least point of a quadratic with x >= 0 in every component.
+/// Minimum of a quadratic subject to x >= 0.
 struct BoundedMinimum {
   Quadratic::Vector x{};
   double value = 0.0;  ///< f(x) <= f(0) = 0
 };
 
-/// Tries all sets of components that are not 0: exact, and nothing to converge.
-/// @param unknowns  the first so many components take part, the others stay 0
+/// Returns the exact minimum by trying all sets of nonzero components.
+/// @param unknowns  number of components that may be nonzero, from the first
 BoundedMinimum minimize_bounded(const Quadratic& quadratic, int unknowns);
 
-/// What the others leave of h_ii once they are eliminated: the inverse of [h^-1]_ii. 0 if nothing
-/// but rounding is left; others that are themselves nothing but rounding are left out.
+/// Returns h_ii after elimination of the other components, 1 / [h^-1]_ii; 0 if only rounding errors
+/// remain. Other components that consist of rounding errors are ignored.
 double left_of(const Quadratic& quadratic, int i);
 
 }  // namespace tofsmith

@@ -8,15 +8,15 @@
 
 namespace tofsmith {
 
-/// What a Decoder decides by, for what decides likewise on another processor. Lives as long as its
-/// decoder, which may be moved.
+/// Parts of a Decoder for implementations on other devices. Valid as long as the decoder, even if
+/// it is moved.
 struct DecoderParts {
   const ChordMatcher& matcher;
   const OutputKernel& outputs;
 };
 DecoderParts parts_of(const Decoder& decoder);
 
-/// @throws InvalidArgument if raw numbers are no frame, or of another number of measurements
+/// @throws InvalidArgument if `raw` is not a frame or has another number of measurements
 void require_frame(const RawView& raw, int measurements);
 
 }  // namespace tofsmith

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of pixels, and how their records become vectors. Compiled once for every instruction set.
+// Vectors of pixels, and conversion of their records to vectors. Compiled once per instruction set.
 #if defined(TOFSMITH_DECODE_OUTPUT_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_VECTORS_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_VECTORS_INL_HPP
@@ -24,14 +24,14 @@ namespace HWY_NAMESPACE {
 namespace {
 using Bytes = hn::Rebind<std::uint8_t, Indices>;
 
-/// a b + c, rounded twice: the same with and without fused instructions.
+/// Returns a b + c with two roundings, which is the same with and without FMA instructions.
 HWY_INLINE Vector product_plus(Vector a, Vector b, Vector c) { return hn::Add(hn::Mul(a, b), c); }
 HWY_INLINE Vector load(const float* row, int i) { return hn::LoadU(Floats(), row + i); }
 HWY_INLINE Vector unless(Mask is_so, Vector value) {
   return hn::IfThenElse(is_so, value, all(std::numeric_limits<float>::quiet_NaN()));
 }
 
-/// Stores the first `room` values of a vector, at most all.
+/// Stores the first `room` values of a vector, or all if it has fewer.
 template <typename Tag, typename Values, typename T>
 HWY_INLINE void store_some(Tag tag, Values values, T* to, int room) {
   if (room >= lanes_of(tag)) return hn::StoreU(values, tag, to);
@@ -41,15 +41,15 @@ HWY_INLINE void store_some(Tag tag, Values values, T* to, int room) {
 }
 
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
-/// Fields [begin, end) of a vector of pixels from their records at `start`, as rows of fields.
-/// `begin` is a multiple of four; up to three more fields are written.
+/// Transposes the fields [begin, end) of the records at `start` to rows of fields. `begin` must be
+/// a multiple of four; up to three more fields are written.
 HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin, int end,
                        float* rows) {
   for (int i = 0; i < lanes_of(); ++i)
     for (int f = begin; f < end; ++f) rows[f * pixels_per_chunk + i] = table[start[i] + f];
 }
 #else
-/// Four fields of every fourth record, side by side.
+/// Returns four fields of every fourth record, in consecutive 128-bit blocks.
 template <typename Tag>
 HWY_INLINE hn::Vec<Tag> load_blocks(Tag d, const float* table, const std::uint32_t* start) {
   constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
@@ -59,7 +59,7 @@ HWY_INLINE hn::Vec<Tag> load_blocks(Tag d, const float* table, const std::uint32
     const hn::Half<Tag> half;
     return hn::Combine(d, hn::Load(half, table + start[4]), hn::Load(half, table + start[0]));
   } else {
-    // Masked loads of one block need no shuffle.
+    // Masked loads of single blocks avoid shuffles.
     hn::Vec<Tag> blocks = hn::LoadDup128(d, table + start[0]);
     for (int b = 4; b < lanes; b += 4)
       blocks = hn::IfThenElse(hn::FirstN(d, static_cast<std::size_t>(b)), blocks,
@@ -68,9 +68,9 @@ HWY_INLINE hn::Vec<Tag> load_blocks(Tag d, const float* table, const std::uint32
   }
 }
 
-/// Fields [begin, end) of a vector of pixels from their records at `start`, as rows of fields.
-/// `begin` is a multiple of four; up to three more fields are written. Pixel 4 b + v goes to block
-/// b of part v, from where it need not leave block b.
+/// Transposes the fields [begin, end) of the records at `start` to rows of fields. `begin` must be
+/// a multiple of four; up to three more fields are written. Pixel 4 b + v is loaded to block b of
+/// vector v, so that the transposition does not cross blocks.
 HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin, int end,
                        float* rows) {
   const Floats d;
@@ -94,7 +94,7 @@ HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin
 }
 #endif
 
-/// Where the rows of a table with these numbers start; a chunk's further rows are row -1.
+/// Returns the offsets of the rows with these numbers. Unused entries of a chunk refer to row -1.
 HWY_INLINE void find_rows(const RecordTable& table, const std::int32_t* numbers, int pixels,
                           std::uint32_t* start) {
   const auto stride = static_cast<std::uint32_t>(table.stride());

@@ -11,33 +11,34 @@
 
 namespace tofsmith {
 
-/// What ZNCC sees of raw numbers: q = weight raw + offset [e], without ambient light.
+/// Linear map of ZNCC from raw values to the subspace without ambient light: q = weight raw +
+/// offset [e].
 struct PlaneMap {
   Eigen::MatrixXd weight;  ///< (rank, K)
   Eigen::VectorXd offset;  ///< (rank)
 };
 
-/// The decoder inside a Monte Carlo loop, of any method: no status, no planes but positions, and
-/// for ZNCC a way in behind the projection. Its positions are those of the method's decoder up to
-/// single precision between bins.
+/// Decoder for Monte Carlo loops, for any method. It computes positions only, no status or other
+/// planes. ZNCC can also decode projected measurements. Positions equal those of the method's
+/// decoder up to rounding errors to single precision between bins.
 class TrialDecoder {
  public:
-  /// @param trials  as many as will be decoded, about
-  /// @throws std::invalid_argument if the method cannot decode this table
+  /// @param trials  approximate number of decoded trials
+  /// @throws std::invalid_argument if the method does not support the table
   TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights,
                std::int64_t trials);
 
   int measurements() const { return measurements_; }
   int samples() const { return samples_; }
-  /// The projection of raw numbers that alone decides where a pixel is; none but for ZNCC.
+  /// Returns the projection that ZNCC decodes; null for other methods.
   const PlaneMap* plane_map() const { return zncc_ ? &zncc_->plane_map : nullptr; }
 
-  /// Positions in [0, N) of what stands in tile.plane.
-  /// @param tile       with `pixels` set, plane filled up to a multiple of 16
-  /// @param sub_bin    between bins; else the best bins
-  /// @param depth_bin  room for pixels_per_tile; not a number where the plane is not finite
+  /// Decodes tile.plane to positions in [0, N).
+  /// @param tile       with `pixels` set and plane filled up to a multiple of 16
+  /// @param sub_bin    true: interpolated positions; false: best bins
+  /// @param depth_bin  output for pixels_per_tile pixels; NaN where the plane is not finite
   void decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin) const;
-  /// The same of raw numbers [K][pixels_per_tile].
+  /// Decodes raw values [K][pixels_per_tile].
   void decode_raw(const float* raw, bool sub_bin, PixelTile& tile, double* depth_bin) const;
 
  private:

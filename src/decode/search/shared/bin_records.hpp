@@ -10,13 +10,13 @@
 
 namespace tofsmith {
 
-/// Rows of floats, read in blocks of four. Row -1, all 0, stands for no bin.
+/// Rows of floats, aligned to blocks of four. Row -1 contains zeros and represents "no bin".
 class RecordTable {
  public:
   RecordTable(std::int32_t rows, int fields);
 
   int stride() const { return stride_; }
-  /// Of all rows, from row -1 on.
+  /// Number of floats of all rows, including row -1.
   std::size_t size() const { return size_; }
   /// Row n starts at (n + 1) stride.
   const float* data() const { return values_.get(); }
@@ -27,26 +27,26 @@ class RecordTable {
   std::size_t offset(std::int32_t n) const {
     return static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(stride_);
   }
-  /// Two lines of a cache, which are fetched together.
+  /// Two cache lines, which are prefetched together.
   static constexpr std::align_val_t alignment{128};
   struct Free {
     void operator()(float* values) const { ::operator delete[](values, alignment); }
   };
-  int stride_;  // in floats
+  int stride_;  // [floats]
   std::size_t size_;
   std::unique_ptr<float[], Free> values_;
 };
 
-/// Where the fields of a bin's record begin: who wants little of a pixel reads only the front. With
-/// p the curve at the bin, e the chord to a neighbour and w the unit vector across p in its
-/// direction: e = beta p + c w. Records of smooth curves hold DepthPolynomials instead of chords.
+/// Offsets of the fields of a bin's record. Frequently used fields come first. With p the curve at
+/// the bin, e the chord to a neighbour, and w the unit vector across p in the direction of e: e =
+/// beta p + c w. Records of smooth curves contain DepthPolynomials instead of chords.
 struct RecordLayout {
   int rank = 0;
   int measurements = 0;
   bool is_smooth = false;
 
   constexpr int point() const { return 0; }           ///< p / |p|^2 (rank)
-  constexpr int left() const { return rank; }         ///< w to the bin before (rank); 0: no chord
+  constexpr int left() const { return rank; }         ///< w to the previous bin (rank); 0: no chord
   constexpr int right() const { return 2 * rank; }    ///< w to the next bin (rank)
   constexpr int turn() const { return 3 * rank; }     ///< beta / c, left and right
   constexpr int reach() const { return turn() + 2; }  ///< 1 / c, left and right
@@ -65,44 +65,45 @@ struct RecordLayout {
   constexpr int signal_noise() const { return end_of_light(); }
   constexpr int end_of_noise() const { return signal_noise() + 3; }
 
-  /// |p|, then cosine and sine of LobeBound and typical_variance() per signal: OutputKernel fills
-  /// them where confidence is wanted.
+  /// |p|, then cosine and sine of LobeBound and typical_variance() per signal. OutputKernel fills
+  /// them if confidence is requested.
   constexpr int bound() const { return end_of_noise(); }
   constexpr int end_of_bound() const { return bound() + 4; }
 
-  /// Variance of the measurements per signal (K): begins a block.
+  /// Variance of the measurements per signal (K); starts a block.
   constexpr int shot() const { return (end_of_bound() + 3) / 4 * 4; }
   constexpr int end() const { return shot() + measurements; }
 };
 
-/// A bin's chords: blocks of four fields, from the last quarter of the left chord over the bin
-/// itself to the last quarter of the right one.
+/// Chords of a bin: blocks of four fields, from the last quarter of the left chord over the bin
+/// itself to the last quarter of the right chord.
 struct ChordLayout {
   static constexpr int quarters = 4;
   static constexpr int at_bin = quarters;
   static constexpr int blocks = 2 * quarters + 1;
-  /// Row of a table of chords where a bin's blocks begin; those of bin -1 are all 0.
+  /// Row of a table of chords where the blocks of a bin start. The blocks of bin -1 are 0.
   static constexpr std::int32_t first_row(std::int32_t bin) { return blocks * (bin + 1) - 1; }
 
-  /// S^2 times the variance of depth [m^2], infinite where depth has no slope: per signal, per
-  /// ambient light, and without light.
+  /// S^2 times the variance of depth [m^2]: per signal, per ambient light, and without light;
+  /// infinite if depth has no slope.
   static constexpr int depth_noise = 0;
   static constexpr int ambient = 3;  ///< change of <x, a> / |a|^2 along the chord
   static constexpr int fields = 4;
 };
 
-/// Most fields of a record, a multiple of a block's four.
+/// Maximum number of fields of a record, a multiple of four.
 inline constexpr int max_record_fields =
     (RecordLayout{max_measurements, max_measurements, true}.end() + 3) / 4 * 4;
 
-/// All that depends on the bin alone, in single precision, computed in double.
+/// All data that depend on the bin only, computed in double precision and stored in single
+/// precision.
 struct BinRecords {
-  /// @param with_chords  else those stay 0: positions on chords do not need them
+  /// @param with_chords  false: chords are 0, since positions do not require them
   BinRecords(const DecodingTable& table, const AmbientProjection& projection, bool with_chords);
 
   RecordLayout layout;
   RecordTable records;  ///< of every bin
-  RecordTable chords;   ///< of every bin
+  RecordTable chords;
 
  private:
   template <typename Builder>

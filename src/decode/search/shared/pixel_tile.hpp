@@ -8,20 +8,18 @@
 
 namespace tofsmith {
 
-/// Pixels that are decoded together; a multiple of any vector length.
+/// Number of pixels that are decoded together; a multiple of any vector length.
 inline constexpr int pixels_per_tile = 256;
 
-/// A tile of pixels between the stages of a decoder, pixel next to pixel.
 struct PixelTile {
   int pixels = 0;
-  /// Raw numbers, [K][pixels_per_tile].
+  /// Raw values, [K][pixels_per_tile].
   alignas(64) float raw[max_measurements * pixels_per_tile];
-  /// Residual without ambient light, q = V^T y' [e], [rank][pixels_per_tile].
+  /// Vector without ambient light, q = V^T y' [e], [rank][pixels_per_tile].
   alignas(64) float plane[max_measurements * pixels_per_tile];
-  /// Bound on the distance of `plane` from exact arithmetic [e]; NaN or infinite where a raw number
-  /// is.
+  /// Bound on the error of `plane` [e]; NaN or infinite if a raw value is.
   alignas(64) float error[pixels_per_tile];
-  /// Best bin, in [0, N); -1 where not (yet) known.
+  /// Best bin in [0, N); -1 if unknown.
   alignas(64) std::int32_t bin[pixels_per_tile];
 };
 
