@@ -27,7 +27,7 @@ struct AtlasArguments {
   std::vector<int> taps, exposures;
 };
 
-/// "5", or "5:20": whether a value lies there.
+/// Returns true if a value equals "5" or lies in "5:20".
 bool lies_in(double value, const std::string& limits, const char* option) {
   double low = 0.0, high = 0.0;
   if (limits.find(':') == std::string::npos) {
@@ -80,7 +80,6 @@ nlohmann::ordered_json atlas_document(const std::vector<AtlasEntry>& entries) {
   return document;
 }
 
-/// The same as a table.
 std::string csv_of(const std::vector<AtlasEntry>& entries) {
   const nlohmann::ordered_json document = atlas_document(entries);
   std::string text;
@@ -99,7 +98,8 @@ std::string csv_of(const std::vector<AtlasEntry>& entries) {
 void print_entries(const Session& session, const std::vector<AtlasEntry>& entries,
                    const AtlasArguments& arguments) {
   session.print_json(atlas_document(entries));
-  // All of them are many: of those that differ in exposures alone, the best, unless asked for.
+  // To limit the list, show only the best number of exposures for each camera, unless exposures are
+  // given.
   const std::vector<AtlasEntry> shown =
       arguments.exposures.empty() ? best_by_exposures(entries) : entries;
   std::vector<std::vector<std::string>> rows{

@@ -26,16 +26,15 @@ std::set<int> taps_of(const std::vector<AtlasEntry>& entries) {
   return taps;
 }
 
-/// What a figure is drawn over.
 struct AtlasAxis {
   std::string id, title, label;
   bool logarithmic;
   double (*of)(const AtlasCamera&);
 };
 
-/// Errors of one number of taps over an axis: geometric means over all other cameras. What has no
-/// place on it (no bandwidth on one of bandwidths) is not drawn; nor is a mean over fewer cameras
-/// than the others are.
+/// Errors for one number of taps over an axis: geometric means over all other cameras. Entries
+/// without a position on the axis (e.g. unlimited bandwidth) and means over fewer cameras than the
+/// others are omitted.
 Series series_of_taps(const std::vector<AtlasEntry>& entries, int taps, DepthErrorKind kind,
                       const AtlasAxis& axis, const LineStyle& style) {
   std::map<double, std::vector<Estimate>> groups;

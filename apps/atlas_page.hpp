@@ -10,15 +10,15 @@
 
 namespace tofsmith::apps {
 
-/// A heading and a row for each law of taps and error that entries suffice for; with their best
-/// numbers of exposures alone, where they have several.
+/// Returns a heading and a row for each law of taps and error that the entries determine. Uses only
+/// the best number of exposures of each camera.
 std::vector<std::vector<std::string>> law_rows(const std::vector<AtlasEntry>& entries);
 
-/// "10", or what the shortest pulse is where there is no limit.
+/// Returns a bandwidth such as "10", or the shortest pulse if the bandwidth is unlimited.
 std::string bandwidth_text(const AtlasCamera& camera);
 
-/// Entries of the atlas as a page: what bandwidth, peak and exposures do to the error for each
-/// number of taps, the laws, and a table.
+/// Returns the atlas as a page: figures of the error over bandwidth, peak factor and exposures for
+/// each number of taps, the laws, and a table.
 Page atlas_page(const std::vector<AtlasEntry>& entries, const std::string& command_line);
 
 }  // namespace tofsmith::apps

@@ -27,7 +27,7 @@ void CalibrateOutput::check(const Session& session, const std::vector<std::strin
           fmt::format("{} {}: unknown extension; expected {}", option, path, extension));
     outputs.push_back(path);
   };
-  // In the order in which they are written.
+  // Paths in the order of writing.
   for (const std::string& path : others)
     if (!path.empty()) outputs.push_back(path);
   add(page_path, "--report", ".html");

@@ -14,11 +14,11 @@
 
 namespace tofsmith::apps {
 
-/// What `calibrate correlation --reference` was given.
+/// Arguments of `calibrate correlation --reference`.
 struct DepthCalibrationArguments {
   std::vector<std::filesystem::path> frames;
   std::string raw_format;  ///< file; empty: .npy, .npz or .h5
-  std::string dataset;     ///< of .npz and .h5; empty: the one called raw, or the only one
+  std::string dataset;     ///< dataset of .npz and .h5; empty: "raw", or the only one
   bool reference_is_z = false;
   std::string reference, table, camera_path, camera_name;
   OutputPolicy policy;
@@ -29,8 +29,8 @@ struct DepthCalibrationArguments {
   std::function<void(const Page&)> write_page;
 };
 
-/// Calibrates against reference depth, says what was found and writes the table.
-/// @throws UsageError without exactly one code; IoError for files that do not fit
+/// Calibrates against reference depth, prints the result and writes the table.
+/// @throws UsageError unless there is exactly one code; IoError for invalid files
 void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Session& session);
 
 }  // namespace tofsmith::apps

@@ -15,39 +15,39 @@
 
 namespace tofsmith::apps {
 
-/// Adds one of the calibrations to `calibrate`.
 void add_calibrate_response(CLI::App& calibrate, Session& session);
 void add_calibrate_correlation(CLI::App& calibrate, Session& session);
 void add_calibrate_noise(CLI::App& calibrate, Session& session);
 void add_calibrate_temperature(CLI::App& calibrate, Session& session);
 void add_calibrate_stray_light(CLI::App& calibrate, Session& session);
 
-/// What all calibrations write: a camera and a page.
+/// Outputs of all calibrations: a camera and a page.
 struct CalibrateOutput {
-  std::string camera_path;                              ///< .toml, or ""
-  std::string page_path;                                ///< .html, or ""
-  OutputPolicy policy = OutputPolicy::refuse_existing;  ///< of all outputs, once they are checked
+  std::string camera_path;                              ///< .toml; empty: none
+  std::string page_path;                                ///< .html; empty: none
+  OutputPolicy policy = OutputPolicy::refuse_existing;  ///< of all outputs, set by check()
 
   void add_to(CLI::App& command);
-  /// Looks at the outputs before the work, these and others ("": none). @throws UsageError, IoError
+  /// Checks these outputs and `others` (empty: none) before the computation.
+  /// @throws UsageError, IoError
   void check(const Session& session, const std::vector<std::string>& others = {});
-  /// @param next  the command that comes next; "": a design for it
+  /// @param next  suggested next command; empty: a design for the camera
   void write_camera(const Camera& camera, const Session& session,
                     const std::string& next = "") const;
   void write_page(const Page& page, const Session& session) const;
 };
 
-/// What is wrong with the files of a calibration, naming the one that holds the field.
-/// @param file     of all other fields
-/// @param by_field fields and their files
+/// Converts an error to one that names the file with the invalid field.
+/// @param file      file of all fields not in by_field
+/// @param by_field  fields and their files
 IoError wrong_file(const std::invalid_argument& error, const std::string& file,
                    const std::map<std::string, std::string>& by_field);
 
-/// {"value": .., "standard_error": ..}; null where it is no number.
+/// Returns {"value": ..., "standard_error": ...}; null for non-finite numbers.
 nlohmann::ordered_json estimate_json(const Estimate& estimate);
-/// A number, or null where it is none.
+/// Returns a number, or null if it is not finite.
 nlohmann::ordered_json number_json(double value);
-/// "name: note" lines.
+/// Returns lines of the form "name: note".
 std::string note_lines(const std::vector<std::string>& notes);
 
 }  // namespace tofsmith::apps

@@ -53,7 +53,7 @@ void show_camera(const Session& session, const std::string& name) {
   session.say(toml);
 }
 
-/// One of a file or with keys changed, as it is read, with what it leaves to defaults.
+/// Prints a camera file, or a camera with changed keys, with all defaults filled in.
 void show_changed(const Session& session, const std::string& name_or_path, Settings settings) {
   const Camera camera = load_camera(name_or_path, settings);
   session.print_json({{"name", camera.name},
@@ -68,7 +68,8 @@ void show_changed(const Session& session, const std::string& name_or_path, Setti
                           with, camera.range_m(), toml));
 }
 
-/// Type, unit, range, condition and default of a key: "number [Hz], finite and > 0; default 1.0".
+/// Returns type, unit, range, condition and default of a key, such as "number [Hz], finite and > 0;
+/// default 1.0".
 std::string value_text(const nlohmann::ordered_json& key) {
   std::string text = key["type"].get<std::string>();
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -90,7 +91,8 @@ std::string value_text(const nlohmann::ordered_json& key) {
   return text;
 }
 
-/// @param json  list of keys @param title  of the list
+/// @param json  list of keys
+/// @param title  heading of the list
 void list_keys(const Session& session, const std::string& json, const std::string& title) {
   const auto keys = nlohmann::ordered_json::parse(json);
   session.print_json(keys);

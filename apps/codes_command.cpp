@@ -41,11 +41,11 @@ void list(const Session& session) {
               "Show one with `tofsmith codes hamiltonian-k4`.");
 }
 
-/// One line of # and . per waveform: what a binary waveform looks like over the period.
+/// Returns a waveform over one period as one line of characters.
 std::string strip(const Waveform& waveform) {
   constexpr int cells = 60;
   const Eigen::VectorXd values = waveform.cell_averages(cells);
-  const double least = std::min(values.minCoeff(), 0.0);  // weights of rows have any sign
+  const double least = std::min(values.minCoeff(), 0.0);  // weights of rows may be negative
   const double span = std::max(values.maxCoeff() - least, 1e-12);
   constexpr std::string_view shades = " .:-=+*#";
   std::string text;
@@ -55,7 +55,7 @@ std::string strip(const Waveform& waveform) {
   return text;
 }
 
-/// Number of switching times, or the kind of a waveform that does not switch.
+/// Returns the number of switching times, or the kind of a waveform that is not binary.
 std::string edges_text(const Waveform& waveform) {
   if (waveform.is_binary()) return fmt::format("{}", waveform.edges());
   return waveform.is_sampled() ? "sampled" : "cosines";
@@ -65,7 +65,7 @@ std::string counted(int count, std::string_view what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// A line for every tap value, headings first: of a row its weights in place of a gate's duty.
+/// Returns headings and one row per tap value. Rows of weights have weights instead of a duty.
 std::vector<std::vector<std::string>> waveform_rows(const CodeSet& code, std::string_view value) {
   std::vector<std::vector<std::string>> rows{
       {std::string(value), "mod. duty", "mod. peak", "edges"}};
@@ -94,7 +94,7 @@ std::vector<std::vector<std::string>> waveform_rows(const CodeSet& code, std::st
 void show(const Session& session, const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);
   const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
-  // What the sensor reads out: as many as the code has tap values, or the differences of pairs.
+  // The sensor reads out one measurement per tap value, or differences of pairs.
   const int measurements = model.measurements();
   const bool are_differences = measurements < code.measurements();
   nlohmann::ordered_json document = {{"name", code.name()},

@@ -24,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
-/// {"a", "b"} of "TEXT:{a,b}"; nothing where any value will do.
+/// Returns {"a", "b"} for "TEXT:{a,b}"; empty if any value is allowed.
 Words choices_of(const std::string& type) {
   Words choices;
   const std::size_t begin = type.find('{'), end = type.find('}');
@@ -45,7 +45,7 @@ Words names_of(const CLI::Option& option) {
   return names;
 }
 
-/// Long names of the options, in order.
+/// Returns the long names of the options, sorted.
 Words names_of(const std::set<CLI::Option*>& options) {
   Words names;
   for (const CLI::Option* option : options) names.push_back(names_of(*option).back());
@@ -69,7 +69,8 @@ Json argument(const CLI::Option& option) {
   return item;
 }
 
-/// Names that can be typed as they are: "hamiltonian-k4" for the family "hamiltonian-kK".
+/// Returns names of codes that can be used directly: "hamiltonian-k4" for the family
+/// "hamiltonian-kK".
 Words code_names() {
   Words names;
   for (const FamilyDescription& family : list_families()) {
@@ -94,13 +95,13 @@ std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
 
 void list_command(const CLI::App& app, const Words& words, Json& commands) {
   Json command = {{"words", words}, {"summary", app.get_description()}};
-  // A subcommand without examples of its own has those of the program, which say nothing on it.
+  // Subcommands without examples inherit the program's examples.
   if (app.get_parent() == nullptr || app.get_footer() != app.get_parent()->get_footer())
     command["example"] = app.get_footer();
   Json subcommands = Json::array(), positionals = Json::array(), options = Json::array();
   for (const CLI::App* sub : subcommands_of(app)) subcommands.push_back(sub->get_name());
   for (const CLI::Option* option : app.get_options())
-    if (!option->get_group().empty())  // it has no group if it is hidden
+    if (!option->get_group().empty())  // hidden options have no group
       (option->get_positional() ? positionals : options).push_back(argument(*option));
   command["subcommands"] = subcommands;
   command["positionals"] = positionals;

@@ -10,11 +10,11 @@ namespace tofsmith::apps {
 
 struct Session;
 
-/// Adds the subcommands of this program: all of them, or `demo` alone (apps/demo/).
+/// Adds the subcommands of this program: all, or only `demo` (apps/demo/).
 void add_commands(CLI::App& app, Session& session);
 
-/// Each adds one subcommand, in a file of its own. The subcommand's callback does the work and
-/// throws on failure; main() turns exceptions into messages and exit codes.
+/// Each function adds one subcommand. The callback of the subcommand does the work and throws on
+/// failure; main() converts exceptions to messages and exit codes.
 void add_demo_command(CLI::App& app, Session& session);
 void add_cameras_command(CLI::App& app, Session& session);
 void add_codes_command(CLI::App& app, Session& session);

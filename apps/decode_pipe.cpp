@@ -21,7 +21,7 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Waits in short steps, so that Ctrl-C is seen while nothing comes.
+/// Polls in short steps, so that Ctrl-C is handled while no input arrives.
 std::size_t read_input(std::span<std::byte> into) {
   constexpr int step_ms = 100;
   std::size_t done = 0;
@@ -56,7 +56,7 @@ void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Sess
     throw UsageError("--json: standard output holds the frames of -o -; expected a file for it");
   if (isatty(STDOUT_FILENO) != 0)
     throw UsageError("-o -: standard output is a terminal; expected a pipe or a file");
-  // A frame should not go through a pipe in many small pieces; where it must, it does.
+  // A large pipe buffer avoids transferring a frame in many small pieces. Failure is harmless.
   constexpr int pipe_bytes = 1 << 20;
   static_cast<void>(fcntl(STDIN_FILENO, F_SETPIPE_SZ, pipe_bytes));
   static_cast<void>(fcntl(STDOUT_FILENO, F_SETPIPE_SZ, pipe_bytes));

@@ -7,12 +7,12 @@
 
 namespace tofsmith::apps {
 
-/// The RAW and OUTPUT that mean standard input and output.
+/// Value of RAW and OUTPUT that means standard input and output.
 inline constexpr std::string_view pipe_word = "-";
 
-/// `decode - .. -o -`: frames from standard input to standard output, one after another; what there
-/// is to say goes to standard error.
-/// @throws UsageError as decode_all(); Interrupted, also while it waits for a frame
+/// Implements `decode - ... -o -`: decodes frames from standard input to standard output. Messages
+/// go to standard error.
+/// @throws UsageError as decode_all(); Interrupted, also while waiting for a frame
 void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Session& session);
 
 }  // namespace tofsmith::apps

@@ -9,12 +9,12 @@
 
 namespace tofsmith::apps {
 
-/// What was written, for people: a line per frame, the first few if there are many, and one with
-/// totals and rate.
+/// Returns a summary for the terminal: one line per frame (only the first ones if there are many),
+/// and one with totals and rate.
 std::string decode_lines(const DecodeRequest& request, const DecodedRecording& result);
 
-/// Adds the same to a document: frames, files, statuses, rate. Beyond 100 000 frames there is no
-/// list of them.
+/// Adds frames, files, status counts and rate to a document. The list of frames is omitted beyond
+/// 100,000 frames.
 void add_decode_summary(const DecodeRequest& request, const DecodedRecording& result,
                         nlohmann::ordered_json& document);
 

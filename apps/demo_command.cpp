@@ -39,8 +39,8 @@ struct DemoArguments {
   std::string output = "tofsmith-demo";
 };
 
-/// Light of the captures: the weakest, the middle and the strongest signal at which the camera is
-/// evaluated, with its middle ambient light.
+/// Returns the light of the captures: the lowest, middle and highest signal of the camera's
+/// operating points, with its middle ambient light.
 std::vector<NamedLight> lights_of(const Camera& camera) {
   const OperatingPoint middle = camera.operating.middle();
   const auto [weakest, strongest] = std::ranges::minmax(camera.operating.signal_e_per_s);
@@ -56,7 +56,6 @@ DesignOptions design_options(const DemoArguments& arguments) {
   return with_effort(arguments.options, arguments.effort);
 }
 
-/// The winner and the sinusoids.
 std::vector<CodeSet> codes_for_scene(const DesignResult& result) {
   std::vector<CodeSet> codes{result.winner().code};
   for (const char* name : {"sinusoid-k4", "multifrequency-k5"})
@@ -69,12 +68,12 @@ SceneResult capture_scene(LoadedScene loaded, std::uint64_t seed, const Camera& 
                           const DesignResult& result, const Progress& progress) {
   SceneResult scene{.name = loaded.name, .truth = std::move(loaded.image), .view = loaded.view};
   scene.reference_distance_m = median_depth_m(scene.truth);
-  capture_and_decode(scene, codes_for_scene(result), camera, lights_of(camera), seed, FilterOptions{},
-                     progress);
+  capture_and_decode(scene, codes_for_scene(result), camera, lights_of(camera), seed,
+                     FilterOptions{}, progress);
   return scene;
 }
 
-/// The winner's raw frames and depth in every format, and all waveforms.
+/// Writes the winner's raw frames and depth in every format, and all waveforms.
 void write_products(const fs::path& directory, const SceneResult& scene, const Camera& camera,
                     const DesignResult& result, std::uint64_t seed, OutputPolicy policy) {
   const CodeSet& best = result.winner().code;
@@ -142,7 +141,7 @@ void print_summary(const Session& session, const fs::path& directory, const Came
 
 void run(const DemoArguments& arguments, const Session& session) {
   const auto begin = std::chrono::steady_clock::now();
-  // 1. The camera, the scene, and somewhere to put the results.
+  // 1. Load the camera and the scene, and prepare the directory.
   const Camera camera = arguments.camera.load();
   LoadedScene loaded = scene_of(arguments.scene, camera);
   const DesignOptions options = design_options(arguments);

@@ -8,7 +8,6 @@
 
 namespace tofsmith::apps {
 
-/// The option `--effort`: see with_effort().
 inline void add_effort(CLI::App& command, double& effort) {
   command
       .add_option("--effort", effort,

@@ -13,7 +13,6 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Columns of the codes' errors in multipath, behind those without.
 void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
                    DepthErrorKind kind) {
   rows.front().insert(rows.front().end(), {"second return (mm)", "as two returns (mm)"});
@@ -26,7 +25,7 @@ void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResu
   }
 }
 
-/// Sentences on who won, by how much and over whom.
+/// Returns sentences about the winner and its advantage over other codes.
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
   const Candidate& winner = result.winner();

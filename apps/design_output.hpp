@@ -9,12 +9,11 @@
 
 namespace tofsmith::apps {
 
-/// Prints candidates by depth error, best first, or the design document with --json.
+/// Prints candidates by ascending depth error, or the design document with --json.
 void print_design(const Session& session, const Camera& camera, const DesignResult& result,
                   const DesignOptions& options);
 
-/// Builds the report of a directory (a design and, if there is one, its scene) as
-/// DIRECTORY/report.html.
+/// Writes the report of a directory (a design and, if present, its scene) to DIRECTORY/report.html.
 void write_report(const Session& session, const std::filesystem::path& directory,
                   OutputPolicy policy);
 

@@ -16,7 +16,6 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Prints what there is.
 void list_devices(bool as_json) {
   const std::vector<Device> devices = Device::all();
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

@@ -10,13 +10,13 @@
 
 namespace tofsmith::apps {
 
-/// What computes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.
+/// Option `--device`. OpenCL is loaded only if a device other than cpu is named.
 class DeviceArguments {
  public:
   void add_to(CLI::App& command);
-  /// Returns the backend of the device that was named.
-  /// @throws UsageError if a device is named and no device decodes by this method; IoError if there
-  ///         is no such device, or it fails
+  /// Returns the backend of the selected device.
+  /// @throws UsageError if devices do not support the decoding method; IoError if the device does
+  ///   not exist or fails
   std::unique_ptr<FrameBackend> backend(std::unique_ptr<const DepthDecoder> decoder) const;
 
  private:

@@ -9,14 +9,14 @@
 
 namespace tofsmith::apps {
 
-/// Light by the camera's [optics] instead of its operating points: `--distance`, `--albedo`,
-/// `--klux`.
+/// Options that replace the operating points by light from the camera's [optics]: `--distance`,
+/// `--albedo`, `--klux`.
 class DistanceArguments {
  public:
   void add_to(CLI::App& command);
 
   bool is_asked() const { return !distances_m_.empty(); }
-  /// The camera at the distances asked for, and a line for each that says which light that is.
+  /// Returns the camera at the given distances, and prints the light at each.
   /// @throws InvalidArgument for a camera without optics
   Camera at(const Camera& camera, const Session& session) const;
 

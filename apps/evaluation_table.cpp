@@ -15,8 +15,7 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// "61.2 (1.08x)"; "none" where nothing bounds the error from below.
-/// A bound in a CSV file: an empty field where it bounds nothing.
+/// Returns a bound for a CSV file; an empty field if there is no bound.
 std::string bound_field(double bound_m) {
   return std::isnan(bound_or_nan(bound_m)) ? "" : fmt::format("{:.9g}", bound_m);
 }

@@ -9,13 +9,13 @@
 
 namespace tofsmith::apps {
 
-/// Geometric mean of the depth error of each code, then the error at the light where it is least
-/// and where it is most, or at every one; each bound beside how many times as large the circular
-/// error is; headings first.
+/// Returns a table of depth errors, headings first. Each code has its geometric mean, then the
+/// operating points with the least and the largest error, or all of them. Each bound is followed by
+/// the ratio of the circular error to it.
 std::vector<std::vector<std::string>> evaluation_rows(const std::vector<EvaluatedCode>& codes,
                                                       DepthErrorKind kind, bool every_level);
 
-/// The same as a CSV file, in metres.
+/// Returns the same as CSV, in metres.
 std::string evaluation_csv(const std::vector<EvaluatedCode>& codes);
 
 }  // namespace tofsmith::apps

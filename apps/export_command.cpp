@@ -28,7 +28,7 @@ struct ExportArguments {
   bool no_loss = false;
 };
 
-/// What is wrong with these arguments is wrong usage.
+/// Converts invalid arguments to usage errors.
 bool is_one_file(const ExportRequest& request) {
   try {
     return request.is_one_file();
@@ -48,7 +48,7 @@ void say_report(const Session& session, const ExportedCode& exported) {
                           text_table(generator_loss_rows(*exported.loss, kind))));
 }
 
-/// "3 SCPI scripts, ", or nothing.
+/// Returns a text such as "3 SCPI scripts, "; empty for 0.
 std::string script_count(std::size_t scripts) {
   if (scripts == 0) return "";
   return fmt::format("{} SCPI script{}, ", scripts, scripts == 1 ? "" : "s");

@@ -22,7 +22,8 @@ std::vector<std::string> keys_of(Options options = {}) {
   return names;
 }
 
-/// Sets the field that "key=value" of `argument` names. @throws UsageError
+/// Sets the field named by "key=value" in `argument`.
+/// @throws UsageError
 template <typename Options>
 void set_field(const char* argument, const std::string& setting, Options& options) {
   const std::size_t at = setting.find('=');
@@ -47,7 +48,7 @@ void set_field(const char* argument, const std::string& setting, Options& option
                                near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
-/// An option for settings of the fields of Options, which goes with another.
+/// Adds an option that sets fields of Options and requires another option.
 template <typename Options>
 void add_settings(CLI::App& command, const char* argument, const char* whose, CLI::Option* with,
                   std::vector<std::string>& settings) {

@@ -12,16 +12,15 @@
 
 namespace tofsmith::apps {
 
-/// Whether measurements are filtered before they are decoded: `--filter`, `--filter-set`, and in
-/// time `--time-filter`, `--look-ahead`, `--time-filter-set`.
+/// Options for filtering raw measurements: `--filter`, `--filter-set`, `--time-filter`,
+/// `--look-ahead`, `--time-filter-set`.
 class FilterArguments {
  public:
   void add_to(CLI::App& command);
-  /// None without `--filter`. @throws UsageError for a key or a value that cannot be
+  /// Returns none without `--filter`.
+  /// @throws UsageError for invalid keys or values
   std::optional<FilterOptions> options() const;
-  /// The same of `--time-filter`.
   std::optional<TimeFilterOptions> time_options() const;
-  /// The strength, or "off".
   std::string name() const { return strength_.empty() ? "off" : strength_; }
 
  private:

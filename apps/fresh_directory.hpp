@@ -8,8 +8,8 @@
 
 namespace tofsmith::apps {
 
-/// Make one before a DesignDirectory: if the work fails before any file is there, a directory that
-/// was made for it goes away again.
+/// Removes a newly created directory if the work fails before any file is written. Construct it
+/// before the DesignDirectory.
 class FreshDirectory {
  public:
   explicit FreshDirectory(std::filesystem::path path)

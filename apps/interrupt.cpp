@@ -11,7 +11,7 @@ namespace tofsmith::apps {
 
 namespace {
 volatile std::sig_atomic_t flag = 0;
-volatile std::sig_atomic_t someone_looks = 0;  // whether the flag is asked for
+volatile std::sig_atomic_t someone_looks = 0;  // whether interrupted() has been called
 
 extern "C" void stop_or_set_flag(int signal) {
   if (someone_looks == 0) {
@@ -27,7 +27,7 @@ extern "C" void stop_or_set_flag(int signal) {
 void catch_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     if (std::signal(signal, stop_or_set_flag) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of that write
+  std::signal(SIGXFSZ, SIG_IGN);  // report files beyond the size limit as write errors
 }
 
 bool interrupted() {

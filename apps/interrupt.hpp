@@ -6,12 +6,11 @@ namespace tofsmith::apps {
 
 inline constexpr int exit_interrupted = 130;
 
-/// From now on Ctrl-C (SIGINT), SIGTERM and SIGHUP only set a flag, so that work can stop cleanly;
-/// a second one ends the process at once. So does the first while nobody has asked for the flag
-/// yet: input is being read then, and nothing is written.
+/// Makes Ctrl-C (SIGINT), SIGTERM and SIGHUP set a flag, so that work can stop cleanly. A second
+/// signal terminates the process immediately, as does the first one before interrupted() has been
+/// called (while reading input, before anything is written).
 void catch_interrupts();
 
-/// Whether the user asked to stop.
 bool interrupted();
 
 }  // namespace tofsmith::apps

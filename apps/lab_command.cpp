@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The page of an installation or, of a build, the one that scripts/lab.sh made.
-/// @throws IoError that says how to make it
+/// Returns the page of the installation or, in a build tree, that of scripts/lab.sh.
+/// @throws IoError that explains how to build it
 fs::path lab_page() {
   const fs::path here = program_directory();
   const std::array places = {here / "../share/tofsmith/lab.html",

@@ -10,7 +10,7 @@
 
 namespace tofsmith::apps {
 
-/// Which decoder turns measurements into depth: `--method`, `--unwrap-weights`.
+/// Options of the decoding method: `--method`, `--unwrap-weights`.
 class MethodArguments {
  public:
   void add_to(CLI::App& command) {

@@ -11,7 +11,7 @@
 
 namespace tofsmith::apps {
 
-/// How multipath is looked for: `--threshold`, `--shortest-delay`, `--longest-delay`,
+/// Options of multipath decoding: `--threshold`, `--shortest-delay`, `--longest-delay`,
 /// `--tail-length`, `--bayes` and its prior.
 class MultipathArguments {
  public:

@@ -36,7 +36,7 @@ struct MultipathCommandArguments {
   std::string output;
 };
 
-/// What becomes of the scene by the first code; none if there is no scene.
+/// Captures and decodes the scene with the first code; none without a scene.
 std::optional<MultipathScene> lit_scene(const MultipathCommandArguments& arguments,
                                         const std::vector<CodeSet>& codes, const Camera& camera) {
   if (arguments.scene.scene.empty()) return std::nullopt;

@@ -11,7 +11,8 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Bytes of the character that a text begins with; 0 where there is none of UTF-8 (RFC 3629).
+/// Returns the number of bytes of the first character of a text; 0 if it is not valid UTF-8 (RFC
+/// 3629).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -27,7 +28,6 @@ std::size_t utf8_length(std::string_view text) {
   return code >= least[length] && code <= 0x10ffff && !is_surrogate ? length : 0;
 }
 
-/// Whether a character of so many bytes does something else than being shown.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1)

@@ -8,8 +8,8 @@
 
 namespace tofsmith::apps {
 
-/// A message for a terminal: control bytes, which could steer it, and what is no UTF-8 are shown as
-/// \xNN; what is longer than anybody reads is cut.
+/// Makes a message safe for a terminal: control bytes and invalid UTF-8 are shown as \xNN, and text
+/// beyond `longest` is cut.
 std::string printed(std::string_view message, std::size_t longest = 4000);
 
 }  // namespace tofsmith::apps

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* debian_python = "/usr/bin/python3";
 
-/// Runs the module that is its first argument with the others.
+/// Runs the module named by the first argument with the remaining arguments.
 constexpr const char* bootstrap =
     "import importlib.util, runpy, sys\n"
     "if importlib.util.find_spec('tofsmith') is None:\n"
@@ -39,7 +39,7 @@ std::string interpreter() {
   return fs::exists(debian_python) ? debian_python : "python3";
 }
 
-/// Makes Python find the package that belongs to this program.
+/// Adds the package that belongs to this program to the search path of Python.
 void add_package_to_path() {
   const fs::path here = program_directory();
   const std::array places = {here / "../python", here / "../lib/python3/dist-packages",

@@ -11,7 +11,7 @@ namespace tofsmith::apps {
 /// next to this program (build, installation, wheel), then where Python itself searches; if it is
 /// missing, Python reports what to install. The environment variable TOFSMITH_PYTHON selects
 /// another interpreter.
-/// @param input  what the module reads from its standard input; empty: that of this process
+/// @param input  standard input of the module; empty: inherited
 /// @throws IoError if Python cannot be started
 [[noreturn]] void run_python_module(const std::string& module, const std::string& input,
                                     const std::vector<std::string>& arguments = {});

@@ -20,7 +20,6 @@ struct ReproduceArguments {
   std::string output = "tofsmith-reproduce";
 };
 
-/// Arguments of python/tofsmith/paper/__main__.py.
 std::vector<std::string> python_arguments(const ReproduceArguments& arguments,
                                           const Session& session) {
   std::vector<std::string> words = {"--output=" + arguments.output,

@@ -33,7 +33,8 @@ struct RequireArguments {
   std::string output;
 };
 
-/// "5mm", "2 cm", "0.005 m". @throws UsageError
+/// Parses "5mm", "2 cm" or "0.005 m".
+/// @throws UsageError
 double length_of(const std::string& text) {
   for (const auto& [unit, metres] :
        {std::pair("mm", 1e-3), std::pair("cm", 1e-2), std::pair("m", 1.0)}) {
@@ -48,7 +49,7 @@ double length_of(const std::string& text) {
       fmt::format("--error: found '{}'; expected a length > 0 with its unit, such as 5mm", text));
 }
 
-/// How the output is written: as its extension says, or a directory without one.
+/// Format of the output, by its extension; a directory without extension.
 enum class OutputKind { none, numbers, page, directory };
 
 OutputKind kind_of(const std::string& output) {
@@ -61,13 +62,13 @@ OutputKind kind_of(const std::string& output) {
       fmt::format("-o {}: found {}; expected .json, .html, or a directory", output, extension));
 }
 
-/// Before the work: nothing that stands is replaced without --force.
+/// Checks the outputs before the computation: existing files are only replaced with --force.
 OutputPolicy check_outputs(const std::string& output, OutputKind kind, const Session& session) {
   if (kind == OutputKind::none) return session.output_policy();
   if (kind != OutputKind::directory) return session.check_outputs({std::filesystem::path(output)});
   const std::filesystem::path directory(output);
   make_output_directory(directory);
-  // In the order in which they are written; the codes that suffice come between.
+  // In the order of writing. Files of codes that meet the target are written in between.
   return session.check_outputs({directory / "as_it_is.code.json", directory / "requirements.json",
                                 directory / "report.html"});
 }

@@ -9,29 +9,30 @@
 
 namespace tofsmith::apps {
 
-/// Adds all that says how a scene is read, but its name, to a subcommand.
+/// Adds the options that specify how a scene is read, except its name.
 void add_scene_options(CLI::App& command, SceneSource& source);
 
-/// What the scene's argument may be, for help texts.
 inline constexpr const char* scene_help =
     "built-in scene (see `tofsmith scene`), scene file (.toml), mesh (.obj .ply .stl), or depth "
     "image (.npy .npz .exr .pfm, .png in mm)";
 
-/// The lens of a view as a setting, to decode what was captured through it: "lens={ fx_px = .. }".
+/// Returns the lens of a view as a setting for decoding: "lens={ fx_px = ... }".
 std::string lens_setting(const PinholeView& view);
 
-/// As load_scene(). @throws UsageError for options that do not go with the scene
+/// Loads a scene (see load_scene()).
+/// @throws UsageError for options that do not apply to the scene
 LoadedScene scene_of(const SceneSource& source, const Camera& camera);
 
-/// That the picture of a scene's albedo was scaled down; "" if it was not.
+/// Returns a remark if the albedo image was scaled down; otherwise "".
 std::string albedo_remark(const LoadedScene& scene);
 
-/// Light that bounces once between the scene's surfaces, within the camera's range.
-/// @throws UsageError for a depth image, which has no surfaces; as bounced_light()
+/// Returns light that bounces once between the surfaces of the scene, within the camera's range.
+/// @throws UsageError for a depth image, which has no surfaces; otherwise as bounced_light()
 MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera,
                                   BounceOptions options, const Progress& progress);
 
-/// "12.5 % of the depths lie beyond the unambiguous range of 9.99 m and wrap"; "" if none do.
+/// Returns a remark such as "12.5 % of the depths lie beyond the unambiguous range of 9.99 m and
+/// wrap"; "" if none do.
 std::string beyond_range_remark(const SceneExtent& extent);
 
 }  // namespace tofsmith::apps

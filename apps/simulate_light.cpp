@@ -14,7 +14,7 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Of "delta=1.0,ratio=.3", in any order.
+/// Parses "delta=1.0,ratio=0.3", in any order.
 MultipathReturn parse_multipath_return(const std::string& text) {
   std::optional<float> delay_m, ratio;
   for (const std::string& part : CLI::detail::split(text, ',')) {

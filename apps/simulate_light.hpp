@@ -12,16 +12,14 @@
 
 namespace tofsmith::apps {
 
-/// Light that comes back by longer ways: `--multipath`, `--tail`, `--multipath-file`,
-/// `--transient`,
-/// `--bounces`, and `--truth-multipath` for what was simulated.
+/// Options of simulated multipath: `--multipath`, `--tail`, `--multipath-file`, `--transient`,
+/// `--bounces`, and `--truth-multipath` for its ground truth.
 class MultipathLightArguments {
  public:
   void add_to(CLI::App& command);
-  /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
-  ///         std::invalid_argument as SceneLight::validate
+  /// @throws UsageError for contradictory options; IoError as the readers of the files;
+  ///   std::invalid_argument as SceneLight::validate()
   SceneLight load(const LoadedScene& scene, const Camera& camera) const;
-  /// Whether anything was asked for.
   bool is_used() const {
     return !multipath_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
            bounces_ > 0 || !truth_.empty();

@@ -32,8 +32,6 @@ struct MergeArguments {
   std::vector<std::filesystem::path> parts;
 };
 
-/// Outputs are looked at before the long work.
-/// @return how they are to be written
 OutputPolicy check_outputs(const SweepArguments& arguments, const Session& session) {
   std::vector<std::filesystem::path> outputs(arguments.exports.begin(), arguments.exports.end());
   for (const auto& path : outputs)

@@ -26,9 +26,10 @@ namespace {
 constexpr std::size_t max_rows = 1000;
 constexpr std::size_t max_maps = 10, max_map_codes = 6, max_map_side = 64;
 constexpr std::size_t max_written_cells = 100;
-constexpr double wide_ratio = 30.0;  // from here on an axis is logarithmic
+constexpr double wide_ratio = 30.0;  // axes with at least this ratio are logarithmic
 
-/// Whether an axis gets a figure: linked ones are in that of the axis they move with.
+/// Returns true if an axis gets a figure. Linked axes share the figure of the axis to which they
+/// are linked.
 bool can_be_drawn(const SweepAxis& axis) {
   return !axis.linked && axis.values.size() > 1 && axis.key != "seed" &&
          std::ranges::all_of(axis.values,
@@ -41,12 +42,12 @@ bool is_wide(const SweepAxis& axis) {
   return *low.number > 0.0 && *high.number / *low.number >= wide_ratio;
 }
 
-/// Errors of one code at one value of an axis, over all values of the others.
+/// Errors of one code at one value of an axis, for all values of the other axes.
 struct Group {
   std::vector<Estimate> linear_m, circular_m;
 };
 
-/// The key of an axis, and those of the axes linked to it.
+/// Returns the keys of an axis and of the axes linked to it.
 std::string label_of(const SweepSpec& spec, std::size_t a) {
   std::string label = spec.axes[a].key;
   for (std::size_t i = a + 1; i < spec.axes.size() && spec.axes[i].linked; ++i)
@@ -54,7 +55,7 @@ std::string label_of(const SweepSpec& spec, std::size_t a) {
   return label;
 }
 
-/// A letter, digit or dash for each character: the id of a figure.
+/// Returns an id of a figure: other characters than letters and digits become dashes.
 std::string figure_id(std::string id) {
   constexpr std::string_view letters_and_digits =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
@@ -71,7 +72,7 @@ Series series_of(const std::string& code, const SweepAxis& axis,
   std::vector<std::pair<double, Estimate>> points;
   for (const auto& [index, group] : groups) {
     Estimate mean = geometric_mean_of(group.*errors_m);
-    // A mean over fewer items than elsewhere could not be compared: a gap until they are there.
+    // Incomplete means are not comparable; leave a gap until all items are finished.
     if (group.linear_m.size() < whole) mean.value = std::numeric_limits<double>::quiet_NaN();
     points.emplace_back(*axis.values[index].number, mean);
   }
@@ -116,7 +117,7 @@ Figure axis_figure(const WorkList& list, std::span<const SweepResult> results, s
       {column("linear"), column("circular")}, {row});
 }
 
-/// Places of an axis' values in order of their numbers.
+/// Returns the indices of an axis' values, sorted by number.
 std::vector<std::size_t> in_order(const SweepAxis& axis) {
   std::vector<std::size_t> order(axis.values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -133,7 +134,7 @@ CategoryAxis category_axis(const SweepSpec& spec, std::size_t a) {
 
 using Cells = std::map<std::pair<std::size_t, std::size_t>, Group>;
 
-/// Errors by the places of two axes' values; NaN where nothing is finished.
+/// Returns errors over two axes; NaN where no item is finished.
 HeatMap map_of(const SweepSpec& spec, std::size_t x, std::size_t y, const Cells& cells,
                std::vector<Estimate> Group::*errors_m, std::string title) {
   const std::vector<std::size_t> columns = in_order(spec.axes[x]), rows = in_order(spec.axes[y]);
@@ -144,7 +145,7 @@ HeatMap map_of(const SweepSpec& spec, std::size_t x, std::size_t y, const Cells&
   for (const auto& [place, group] : cells) whole = std::max(whole, (group.*errors_m).size());
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t c = 0; c < columns.size(); ++c)
-      // A mean over fewer items than elsewhere could not be compared.
+      // Incomplete means are not comparable.
       if (const auto cell = cells.find({columns[c], rows[r]});
           cell != cells.end() && (cell->second.*errors_m).size() == whole)
         map.values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
@@ -152,7 +153,7 @@ HeatMap map_of(const SweepSpec& spec, std::size_t x, std::size_t y, const Cells&
   return map;
 }
 
-/// Depth error over two axes; none where they do not make a grid, as when they are zipped.
+/// Returns a map of the depth error over two axes; none if they do not form a grid (zipped axes).
 std::optional<Figure> map_figure(const SweepSpec& spec, std::span<const SweepResult> results,
                                  std::size_t x, std::size_t y) {
   std::vector<std::string> codes;
@@ -189,7 +190,7 @@ std::optional<Figure> map_figure(const SweepSpec& spec, std::span<const SweepRes
                          {.columns = 2, .show_values = width * height <= max_written_cells});
 }
 
-/// A map for every two axes of numbers, as long as there are not too many.
+/// Returns maps for all pairs of numeric axes, up to a maximum number.
 std::vector<Block> map_figures(const SweepSpec& spec, std::span<const SweepResult> results) {
   std::vector<Block> figures;
   const auto fits = [&](const SweepAxis& axis) {

@@ -10,8 +10,8 @@
 
 namespace tofsmith::apps {
 
-/// A sweep as a page: how far it is, a figure for every axis of numbers, a map for every two axes,
-/// a table of all errors.
+/// Returns a sweep as a page: its progress, a figure for every numeric axis, a map for every pair
+/// of numeric axes, and a table of all errors.
 Page sweep_page(const WorkList& list, std::span<const SweepResult> results,
                 const SweepCounts& counts, const std::string& command_line);
 

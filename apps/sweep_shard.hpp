@@ -9,7 +9,8 @@
 
 namespace tofsmith::apps {
 
-/// "3/8" as the third of eight parts; "" is the whole. @throws UsageError
+/// Parses "3/8" as the third of eight parts; "" is the whole sweep.
+/// @throws UsageError
 inline SweepShard parse_shard(const std::string& text) {
   SweepShard shard;
   if (text.empty()) return shard;

@@ -13,7 +13,7 @@
 
 namespace tofsmith::apps {
 
-/// Takes one of these words, and tells of any other which of them could have been meant.
+/// Returns a validator that accepts one of these words and suggests similar words for others.
 inline CLI::Validator one_of(const std::vector<std::string>& words) {
   const CLI::Validator member = CLI::IsMember(words);
   CLI::Validator check = member;
@@ -25,7 +25,7 @@ inline CLI::Validator one_of(const std::vector<std::string>& words) {
   });
 }
 
-/// What an NPZ code with several taps does not say about its columns: `--taps`, `--tap-order`.
+/// Options for the columns of NPZ codes with several taps: `--taps`, `--tap-order`.
 struct TapArguments {
   std::optional<int> taps;
   std::string order;

@@ -27,7 +27,7 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// One column less than the terminal has, at most 100.
+/// Returns the width of the terminal minus one column, at most 100.
 std::size_t line_width() {
   constexpr std::size_t widest = 100, usual_columns = 80;
   struct winsize size {};
@@ -35,7 +35,7 @@ std::size_t line_width() {
   return std::min(widest, (known ? size.ws_col : usual_columns) - 1);
 }
 
-/// What both ways of telling share: when the work began, and what there is to say.
+/// Start time and text that both kinds of output share.
 class ProgressText {
  public:
   explicit ProgressText(std::string_view title) : title_(title) {}
@@ -55,7 +55,7 @@ class ProgressText {
   RemainingTime remaining_;
 };
 
-/// One line of a terminal, drawn over and over.
+/// Progress in one line of a terminal that is overwritten.
 class Line {
  public:
   explicit Line(std::string_view title) : text_(title) {}
@@ -64,12 +64,12 @@ class Line {
   Line& operator=(const Line&) = delete;
 
   void tell(double fraction, std::string_view step) {
-    if (fraction >= 1.0) return clear();  // what comes next may write where the line is
+    if (fraction >= 1.0) return clear();  // make space for the following output
     constexpr double pause_s = 0.1;
     if (text_.passed_s() < next_s_) return;
     next_s_ = text_.passed_s() + pause_s;
     std::string text = text_.text(fraction, step);
-    text.resize(line_width(), ' ');  // a line that wraps could not be drawn over
+    text.resize(line_width(), ' ');  // a wrapped line could not be overwritten
     fmt::print(stderr, "\r{}", text);
     std::fflush(stderr);
     visible_ = true;
@@ -88,14 +88,14 @@ class Line {
   bool visible_ = false;
 };
 
-/// Plain lines in a log or a pipe.
+/// Progress as plain lines in a log or a pipe.
 class Log {
  public:
   explicit Log(std::string_view title) : text_(title) {}
 
   void tell(double fraction, std::string_view step) {
     constexpr double pause_s = 30.0;
-    if (fraction >= 1.0) return;  // what comes next says so
+    if (fraction >= 1.0) return;  // the following output reports the end
     const std::string text = text_.text(fraction, step);
     if (text_.passed_s() < next_s_) return;
     next_s_ = text_.passed_s() + pause_s;
@@ -104,7 +104,7 @@ class Log {
   }
 
  private:
-  static constexpr double short_s = 5.0;  // of work too short for progress
+  static constexpr double short_s = 5.0;  // no progress is shown for shorter work
 
   ProgressText text_;
   double next_s_ = short_s;

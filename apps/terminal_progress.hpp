@@ -6,13 +6,13 @@
 
 namespace tofsmith::apps {
 
-/// A progress callback that tells on stderr what is done, what share, and the time left once that
-/// is known: on a terminal in one line, which is drawn over and cleared when the work is done;
-/// elsewhere in plain lines, now and then, and only of work that takes longer than some seconds.
-/// It asks the work to stop after Ctrl-C.
+/// Returns a progress callback that prints the step, the finished share and the remaining time on
+/// stderr. In a terminal it overwrites one line and clears it at the end. Otherwise it prints a
+/// line occasionally, if the work takes longer than some seconds. The callback stops the work after
+/// Ctrl-C.
 Progress terminal_progress(std::string_view title);
 
-/// From now on progress says nothing; Ctrl-C stops work all the same.
+/// Disables the output of progress; Ctrl-C still stops the work.
 void silence_progress();
 bool is_progress_silent();
 

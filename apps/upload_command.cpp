@@ -45,7 +45,7 @@ void check_usage(const UploadArguments& arguments) {
     throw UsageError("found --channel-light 0 and --channel-sensor 0; expected one to play");
 }
 
-/// A usage error instead of a failure.
+/// Converts failures to usage errors.
 template <typename Function>
 auto as_usage(Function function) {
   try {
@@ -113,7 +113,7 @@ void set_if_given(nlohmann::ordered_json& json, const char* name,
   if (value) json[name] = *value;
 }
 
-/// The arguments of upload() in python/tofsmith/instruments.py.
+/// Returns the arguments of upload() in python/tofsmith/instruments.py.
 nlohmann::ordered_json upload_request(const UploadArguments& arguments, const CodeSet& code,
                                       const Camera& camera, const Session& session) {
   const UploadRequest& request = arguments.request;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The commands of the program that scripts/demo.sh builds.
+// Commands of the program that scripts/demo.sh builds.
 #include "commands.hpp"
 
 namespace tofsmith::apps {

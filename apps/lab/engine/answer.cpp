@@ -27,10 +27,10 @@ namespace tofsmith::lab {
 
 namespace {
 
-/// Larger than any camera or code that is not a mistake.
+/// Exceeds any valid camera or code.
 constexpr std::size_t max_request_bytes = std::size_t{32} << 20;
 
-/// Playable names, a usual selection of each family's.
+/// Names of concrete codes: common members of each family.
 constexpr std::array shown_families = {
     "sinusoid-k3",    "sinusoid-k4",       "square-k4",
     "hamiltonian-k3", "hamiltonian-k4",    "hamiltonian-k5",
@@ -44,7 +44,7 @@ Answer about() {
   Json families = Json::array(), patterns = Json::array();
   const std::vector<FamilyDescription> known = list_families();
   const auto title_of = [&](std::string_view name) -> std::string {
-    // The family whose name begins like this one's longest.
+    // Family with the longest common prefix.
     std::string title;
     std::size_t longest = 0;
     for (const FamilyDescription& family : known) {

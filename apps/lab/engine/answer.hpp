@@ -10,10 +10,10 @@
 
 namespace tofsmith::lab {
 
-/// Answers a request of the lab's page: a JSON object with `call` and the call's arguments (see
-/// docs/lab.md). The JSON of the reply holds `answer`, or `error` with the message that the command
-/// would print; whatever the request is, it is a reply.
-/// @param progress  of calls that take long; a design stops where it says so
+/// Answers a request of the lab page: a JSON object with `call` and its arguments (see
+/// docs/lab.md). The JSON of the reply contains `answer`, or `error` with the message that the
+/// command would print. Invalid requests are answered, too.
+/// @param progress  for long calls; can stop a design
 Reply answer(std::string_view request, const Progress& progress = {});
 
 }  // namespace tofsmith::lab

@@ -11,7 +11,8 @@ namespace tofsmith::lab {
 
 namespace {
 
-/// The value of "light.peak_factor" in a camera's document; null: it has none.
+/// Returns the value of a dotted key such as "light.peak_factor" in a document; null if it is not
+/// set.
 Json value_at(const Json& document, std::string_view key) {
   const Json* at = &document;
   for (;;) {
@@ -25,7 +26,7 @@ Json value_at(const Json& document, std::string_view key) {
   }
 }
 
-/// The type of a field of the page: several types of values are lists there.
+/// Returns the type of a field on the page, where several value types are lists.
 std::string_view type_of(const KeyDescription& described, const Json& value) {
   switch (described.type) {
     case ValueType::numbers:
@@ -44,7 +45,6 @@ std::string_view type_of(const KeyDescription& described, const Json& value) {
   }
 }
 
-/// Adds the bounds of numbers, and the part of them that a slider covers.
 void add_bounds(Json& field, const Key& key) {
   if (field["type"] != "number" && field["type"] != "integer" && field["type"] != "list") return;
   const bool has_low = std::isfinite(key.range.low), has_high = std::isfinite(key.range.high);

@@ -7,7 +7,8 @@
 
 namespace tofsmith::lab {
 
-/// {toml, fields, range_m, warnings}: the complete camera, and every key that applies to it.
+/// Returns {toml, fields, range_m, warnings}: the complete camera, and every key that applies to
+/// it.
 Answer camera_answer(const Camera& camera);
 
 }  // namespace tofsmith::lab

@@ -15,7 +15,7 @@ namespace tofsmith::lab {
 
 namespace {
 
-/// A word as a POSIX shell takes it whole.
+/// Quotes a word for a POSIX shell.
 std::string shell_word(const std::string& word) {
   constexpr std::string_view plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
@@ -26,12 +26,12 @@ std::string shell_word(const std::string& word) {
   return text + "'";
 }
 
-/// The name of a built-in camera or of the file that it was saved to.
+/// Returns the name of the built-in camera, or of the file to which the camera was saved.
 std::string camera_name(const Request& request) {
   return request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
 }
 
-/// `--set ..` for every key that was changed.
+/// Returns `--set ...` for every changed key.
 std::string settings_words(const Request& request) {
   std::string words;
   for (const Change& change : request.changes())
@@ -39,7 +39,7 @@ std::string settings_words(const Request& request) {
   return words;
 }
 
-/// `--camera X --set ..`, as far as it differs from what a command takes anyway.
+/// Returns `--camera X --set ...` for everything that differs from the defaults.
 std::string camera_words(const Request& request) {
   const std::string name = camera_name(request);
   return (name.empty() ? "" : " --camera " + shell_word(name)) + settings_words(request);
@@ -81,7 +81,8 @@ Answer command_answer(const Request& request) {
   std::string command;
   if (what == "camera") {
     const std::string name = camera_name(request);
-    command = "tofsmith cameras " + shell_word(name.empty() ? std::string(default_camera_name) : name) +
+    command = "tofsmith cameras " +
+              shell_word(name.empty() ? std::string(default_camera_name) : name) +
               settings_words(request);
   } else if (what == "codes") {
     command = "tofsmith codes " + first_code() + camera;

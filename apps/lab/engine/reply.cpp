@@ -6,7 +6,8 @@ namespace tofsmith::lab {
 
 namespace {
 
-/// What is not UTF-8, as a name in a file may be, is made so. Numbers that are not finite are null.
+/// Converts JSON to text. Invalid UTF-8 (e.g. in names from files) is replaced; non-finite numbers
+/// become null.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

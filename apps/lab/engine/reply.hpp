@@ -17,7 +17,7 @@ namespace tofsmith::lab {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers that leave the engine as they are, not as text.
+/// Array that is transferred in binary form.
 struct NamedArray {
   std::string name;
   std::variant<std::vector<float>, std::vector<double>, std::vector<std::int32_t>,
@@ -26,25 +26,24 @@ struct NamedArray {
   std::vector<std::size_t> shape;
 };
 
-/// What the engine says to a request.
 struct Reply {
   std::string json;
   std::vector<NamedArray> arrays;
 };
 
-/// An answer under way: a JSON object, and the arrays that it names.
+/// Answer under construction: a JSON object and the arrays to which it refers.
 class Answer {
  public:
   Json& operator[](const char* key) { return json_[key]; }
   void set(Json json) { json_ = std::move(json); }
 
-  /// Adds an array: {"array": name, "shape": [..]} under that name.
+  /// Adds an array, and {"array": name, "shape": [...]} under that name to the object.
   template <typename Number>
   void add(std::string_view name, std::vector<Number> values, std::vector<std::size_t> shape) {
     json_[std::string(name)] = {{"array", name}, {"shape", shape}};
     arrays_.push_back({std::string(name), std::move(values), std::move(shape)});
   }
-  /// A matrix as (columns, rows): one row of numbers for each of its columns.
+  /// Adds a matrix with shape (columns, rows).
   void add_columns(std::string_view name, const Eigen::MatrixXd& matrix) {
     add(name, std::vector<double>(matrix.data(), matrix.data() + matrix.size()),
         {static_cast<std::size_t>(matrix.cols()), static_cast<std::size_t>(matrix.rows())});
@@ -62,7 +61,8 @@ class Answer {
   std::vector<NamedArray> arrays_;
 };
 
-/// {"error": {"message": .., "field": ..}}. @param field  empty: none is known
+/// Returns {"error": {"message": ..., "field": ...}}.
+/// @param field  empty: unknown
 Reply error_reply(std::string_view message, std::string_view field = "");
 
 }  // namespace tofsmith::lab

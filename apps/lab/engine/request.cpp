@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t max_changes = 1000;
 
-/// A name as a shell would not split it, for codes that are in no file: the file of the page.
+/// Placeholder for codes without a file; the page saves them under this name.
 constexpr const char* code_file_name = "code.json";
 
 }  // namespace
@@ -126,7 +126,7 @@ CodeSet Request::code(const Camera& camera) const {
 }
 
 std::pair<Camera, Change> changed(const Camera& camera, const Change& change) {
-  // Nothing written leaves a key out only where the page says so, by null.
+  // An empty text would remove the key; the page uses null for that.
   require(!change.value || change.value->find_first_not_of(" \t") != std::string::npos, change.key,
           "nothing", "expected a value");
   constexpr std::string_view kind = ".impulse_response.kind";

@@ -13,15 +13,15 @@
 
 namespace tofsmith::lab {
 
-/// A key of the camera that the page has changed, as `--set` takes it. Without value: not set any
-/// more, which no command can say.
+/// Changed key of the camera, as for `--set`. Without a value the key is removed, which no
+/// command-line option can do.
 struct Change {
   std::string key;
   std::optional<std::string> value;
 };
 
-/// The arguments of a call. Every member throws InvalidArgument that names the argument, what was
-/// found and what was expected.
+/// Arguments of a call. Every member throws InvalidArgument with the argument, its value and the
+/// expected value.
 class Request {
  public:
   /// @param json  an object
@@ -30,7 +30,6 @@ class Request {
   bool has(const char* name) const;
   std::string text(const char* name) const;
   std::string text(const char* name, const std::string& otherwise) const;
-  /// A finite number.
   double number(const char* name) const;
   std::optional<double> optional_number(const char* name) const;
   std::int64_t integer(const char* name, std::int64_t low, std::int64_t high) const;
@@ -39,12 +38,14 @@ class Request {
   std::vector<std::string> texts(const char* name) const;
   std::vector<Change> changes() const;
 
-  /// `camera`, the text of a camera file, or `built_in`, the name of a camera; with the `changes`.
+  /// Returns the camera: `camera`, the text of a camera file, or `built_in`, the name of a camera;
+  /// with the `changes`.
   /// @throws IoError as parse_camera_toml()
   Camera camera() const;
-  /// `code`: {"name": a family}, built for the camera, or {"file": the text of a code file}.
+  /// Returns the code: {"name": a family}, built for the camera, or {"file": the text of a code
+  /// file}.
   /// @throws IoError as load_code() and parse_code_json(); InvalidArgument for a code that the
-  ///         camera cannot play
+  ///   camera does not support
   CodeSet code(const Camera& camera) const;
 
  private:
@@ -53,9 +54,9 @@ class Request {
   const nlohmann::json& json_;
 };
 
-/// The camera with one key changed. Another kind of impulse response gets the numbers that it
-/// needs: 10 f0, where the camera says no other.
-/// @return also the change as `--set` takes it
+/// Returns the camera with one key changed. If the kind of impulse response changes, missing
+/// numbers become 10 f0.
+/// @return the camera, and the change as for `--set`
 std::pair<Camera, Change> changed(const Camera& camera, const Change& change);
 
 }  // namespace tofsmith::lab

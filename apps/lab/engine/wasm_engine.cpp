@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The engine as a page's worker calls it; worker.js is the other side.
+// Interface of the engine to the page's worker (worker.js).
 #include <emscripten.h>
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace tofsmith::lab {
 
 namespace {
 
-/// Of the last answer, until the next one: its arrays are read where they are.
+/// The arrays of the last reply are read in place until the next call.
 Reply current;
 
 const char* name_of_numbers(const NamedArray& array) {
@@ -27,7 +27,7 @@ const char* name_of_numbers(const NamedArray& array) {
   return names[array.values.index()];
 }
 
-/// The reply's JSON with the list of its arrays, each by its place in memory.
+/// Adds the list of arrays, with their addresses, to the JSON of a reply.
 void list_arrays(Reply& reply) {
   if (reply.arrays.empty()) return;
   Json list = Json::array();
@@ -47,7 +47,7 @@ void list_arrays(Reply& reply) {
 
 bool tell(double fraction, std::string_view step) {
   tofsmith_lab_progress(fraction, std::string(step).c_str());
-  return true;  // who wants no answer ends the worker
+  return true;  // the worker is terminated to cancel work
 }
 
 }  // namespace
@@ -56,8 +56,8 @@ bool tell(double fraction, std::string_view step) {
 
 extern "C" {
 
-/// @return the reply's JSON: {answer} or {error}, and {arrays: [{name, type, pointer, length,
-///         shape}]}; valid until the next call, as the arrays are
+/// @return the JSON of the reply: {answer} or {error}, and {arrays: [{name, type, pointer, length,
+///   shape}]}. JSON and arrays are valid until the next call.
 EMSCRIPTEN_KEEPALIVE const char* tofsmith_lab_answer(const char* request) {
   using namespace tofsmith::lab;
   constexpr const char* too_large =
@@ -68,7 +68,7 @@ EMSCRIPTEN_KEEPALIVE const char* tofsmith_lab_answer(const char* request) {
     list_arrays(current);
     return current.json.c_str();
   } catch (const std::exception&) {
-    return too_large;  // not even the message of an error could be written
+    return too_large;  // not enough memory for an error message
   }
 }
 }

@@ -24,13 +24,13 @@ namespace tofsmith::lab {
 
 namespace {
 
-constexpr std::int64_t max_seed = std::int64_t{1} << 53;  // beyond, JSON numbers are not exact
+constexpr std::int64_t max_seed = std::int64_t{1} << 53;  // larger integers are not exact in JSON
 
 std::uint64_t seed_of(const Request& request) {
   return static_cast<std::uint64_t>(request.integer("seed", 0, max_seed, 1));
 }
 
-/// One number of every operating point, signal by signal.
+/// Adds one number per operating point, (S, A).
 template <typename Number>
 void add_map(Answer& answer, std::string_view name, const DepthErrorReport& report,
              const OperatingRange& range, Number&& number) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A worker of the lab's page, behind the engine's script (tofsmithEngine). It is started by
-// {start: WebAssembly.Module} and says {ready: true}; then it answers {id, call, ..}, one after the
-// other, by {id, answer, arrays} or {id, error}, and while it computes by {id, progress}.
+// Worker of the lab page, appended to the script of the engine (tofsmithEngine). It starts with the
+// message {start: WebAssembly.Module} and replies {ready: true}. It then processes {id, call, ...}
+// one by one and replies {id, answer, arrays} or {id, error}, with {id, progress} in between.
 "use strict";
 
 const numberTypes = {Float32Array, Float64Array, Int32Array, Uint8Array};
@@ -10,7 +10,7 @@ let engine = null;
 let currentId = null;
 let toldAt = 0;
 
-/** Tells of progress ten times a second. */
+/** Reports progress ten times per second. */
 function tellProgress(fraction, text) {
   const now = Date.now();
   if (currentId === null || (now - toldAt < 100 && fraction < 1)) return;
@@ -30,7 +30,7 @@ function start(module) {
   });
 }
 
-/** The reply to a request: {answer, arrays} or {error}. */
+/** Returns the reply to a request: {answer, arrays} or {error}. */
 function answer(request) {
   const text = JSON.stringify(request);
   const bytes = engine.lengthBytesUTF8(text) + 1;
@@ -68,7 +68,7 @@ self.onmessage = async ({data}) => {
   try {
     reply = answer(request);
   } catch (error) {
-    // The engine's own error: it may be in no state to go on, and the page starts another worker.
+    // Internal error: the engine may be in an invalid state, so the page starts another worker.
     reply = {error: {message: `the engine failed: ${error.message ?? error}`, fatal: true}};
   }
   currentId = null;

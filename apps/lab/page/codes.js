@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The codes side by side: which they are, and their waveforms, correlation functions and curves.
+// Codes side by side: names, waveforms, correlation functions and coding curves.
 
 import {cssColour, sequentialColour, seriesColour, seriesDash} from '../../../viewer/colours.js';
 import {announce, byId, element, saveText, showProblem} from '../../../viewer/dom.js';
@@ -11,7 +11,7 @@ import {askedCode, codeWord} from './lab.js';
 import {maxCodes} from './store.js';
 import {WaveformPlot} from './waveform_plot.js';
 
-/** A figure for each code in one of the page's rows; `make()` gives its plot. */
+/** One figure per code in a row of the page; `make()` returns its plot. */
 export class Columns {
   constructor(part, make) {
     this.place = document.querySelector(`[data-part="${part}"]`);
@@ -26,14 +26,14 @@ export class Columns {
     });
   }
 
-  /** Shows as many figures as there are codes. */
+  /** Adapts the number of figures to the number of codes. */
   fit(count) {
     this.place.style.setProperty('--codes', count);
     const wanted = this.figures.slice(0, count).map((figure) => figure.root);
     if (wanted.length !== this.place.children.length) this.place.replaceChildren(...wanted);
   }
 
-  /** Shows a figure as one of before, if there is a problem. */
+  /** Marks a figure as outdated if there is a problem. */
   pale(i, problem) {
     this.figures[i].root.classList.toggle('pale', Boolean(problem));
   }
@@ -45,7 +45,7 @@ export class Columns {
   }
 }
 
-const mostPoints = 2048;  // of a line in a picture
+const mostPoints = 2048;  // of a line in a figure
 
 const rowOf = ({values, shape}, k) => values.subarray(k * shape[1], (k + 1) * shape[1]);
 
@@ -93,13 +93,13 @@ const axesOf = (length) => [0, 1, 2].map((axis) => {
   return {title: `axis ${axis + 1}`, from: end.map((value) => -value), to: end};
 });
 
-/** Everything of the page that shows codes themselves. */
+/** The part of the page that shows codes. */
 export class CodesView {
   constructor(lab, about, files) {
     Object.assign(this, {lab, about, files, shape: ''});
     this.waveforms = new Columns('waveforms', () => new WaveformPlot());
     this.correlation = new Columns('correlation', () => new LinePlot());
-    this.view = new SpaceView();  // all curves turn together
+    this.view = new SpaceView();  // shared, so that all curves rotate together
     this.curves = new Columns('curve', () => new Space());
     this.cards = [];
     byId('find-code').addEventListener('click', () => {
@@ -115,13 +115,13 @@ export class CodesView {
     });
   }
 
-  // Cameras of three taps, for example, support no built-in code.
+  // Some cameras support no built-in code, e.g. those with three taps.
   #offerDesign() {
     const slots = this.lab.slots.slice(0, this.lab.state.codes.length);
     byId('no-code').hidden = !slots.every((slot) => slot.problem);
   }
 
-  // What was computed before something went wrong stays, but pale.
+  // After an error the last valid figures stay visible, but pale.
   #mark(i) {
     this.#offerDesign();
     for (const columns of [this.waveforms, this.correlation, this.curves])
@@ -289,7 +289,7 @@ export class CodesView {
       gateEdges: code.gate_edges,
       move: (arm, measurement, edge, position) => {
         this.held ??=
-            this.lab.state.codes[i];  // its edges keep their places in the list while one is held
+            this.lab.state.codes[i];  // indices of edges must not change while one is dragged
         this.lab.moveEdge(i, this.held, {arm, measurement, edge, position});
       },
       settle: () => {

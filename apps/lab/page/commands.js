@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The commands that give what the page shows, each below what it gives.
+// Commands that reproduce each result of the page, shown below the result.
 
 import {announce, copyText, element} from '../../../viewer/dom.js';
 import {Outdated} from './engine.js';
 import {codeWord} from './lab.js';
 
-/** The strips of commands. */
+/** Displays the commands. */
 export class Commands {
   constructor(lab, effort) {
     Object.assign(this, {lab, effort, timer: 0});
@@ -37,7 +37,7 @@ export class Commands {
     return {what: place.dataset.command, text, files};
   }
 
-  /** Asks for the commands of the present state, when it has stood for a moment. */
+  /** Requests the commands of the current state after a short pause without changes. */
   follow() {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.#ask(), 60);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A search for a code that suits the camera, in a worker of its own.
+// Design of a code for the camera, in a separate worker.
 
 import {announce, byId, element, showProblem} from '../../../viewer/dom.js';
 import {Engine, Outdated} from './engine.js';
@@ -8,7 +8,7 @@ import {lengthText} from '../../../viewer/numbers.js';
 
 const efforts = [['0', 'a known code'], ['0.1', 'a first look'], ['0.3', 'short'], ['1', 'usual']];
 
-/** The section of designs. */
+/** The design section of the page. */
 export class DesignView {
   constructor(lab, startWorker) {
     Object.assign(this, {lab, startWorker, engine: null});

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Workers that answer calls: a few share the calls of the page, one of its own designs.
+// Workers that answer calls: several share the calls of the page, a separate one runs designs.
 
-/** Why a call has no answer: a newer one of the same lane took its place, or it was cancelled. */
+/** Error of a call that was cancelled or replaced by a newer call of the same lane. */
 export class Outdated extends Error {}
 
-/** What the engine says is wrong, as the command would print it; `field` names the key at fault. */
+/** Error message of the engine, as the command would print it; `field` is the invalid key. */
 export class Refused extends Error {
   constructor({message, field}) {
     super(message);
@@ -13,13 +13,13 @@ export class Refused extends Error {
   }
 }
 
-// (module (func (result v128) i32.const 0 i8x16.splat i8x16.popcnt)): valid only where SIMD is
-// known.
+// (module (func (result v128) i32.const 0 i8x16.splat i8x16.popcnt)): valid only with SIMD
+// support.
 const simdModule = Uint8Array.of(
     0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253,
     15, 253, 98, 11);
 
-/** What this browser lacks, as a sentence; null if nothing. */
+/** Describes the missing feature of an unsupported browser; null if it is supported. */
 export function missingFeature() {
   if (typeof WebAssembly !== 'object')
     return 'This browser has no WebAssembly, which the lab computes with.';
@@ -35,7 +35,7 @@ const decoded = (base64) => Uint8Array.fromBase64 ?
     Uint8Array.fromBase64(base64) :
     Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 
-/** Compiles the packed engine once; gives a function that starts a worker with it. */
+/** Compiles the packed engine once; returns a function that starts a worker with it. */
 export async function packedEngine() {
   const text = (id) => document.getElementById(id)?.textContent ?? '';
   const address = URL.createObjectURL(new Blob([text('lab-worker')], {type: 'text/javascript'}));
@@ -54,14 +54,14 @@ export async function packedEngine() {
   };
 }
 
-/** A few workers and the calls that wait for one. */
+/** Pool of workers with a queue of calls. */
 export class Engine {
   #startWorker;
   #workers = [];
   #waiting = [];
   #nextId = 1;
 
-  /** @param startWorker  gives a new worker; @param size  how many there are */
+  /** @param startWorker  returns a new worker; @param size  number of workers */
   constructor(startWorker, size) {
     this.#startWorker = startWorker;
     for (let i = 0; i < size; ++i)
@@ -69,11 +69,11 @@ export class Engine {
   }
 
   /**
-   * Asks for an answer; a newer call of the same lane makes this one outdated.
-   * @param options  lane; isSlow: may take more than a moment, and leaves one worker free; isLong:
-   *     is
-   *                 stopped when outdated, too; rank: lower ones go first; onProgress
-   * @returns {Promise<object>} the answer, with typed arrays in place of their descriptions
+   * Calls the engine; a newer call of the same lane replaces this one.
+   * @param options  lane; isSlow: must leave one worker free; isLong: is stopped when replaced;
+   *                 rank: lower ranks first; onProgress
+   * @returns {Promise<object>} the answer, in which descriptions of arrays are replaced by typed
+   *     arrays
    */
   call(name, values, options = {}) {
     const {lane} = options;
@@ -92,7 +92,7 @@ export class Engine {
     });
   }
 
-  /** Drops what waits or runs in a lane; long calls are stopped at once. */
+  /** Cancels all calls of a lane; long calls are stopped immediately. */
   cancel(lane) {
     for (const call of this.#waiting.filter((waiting) => waiting.lane === lane))
       call.reject(new Outdated());
@@ -105,7 +105,7 @@ export class Engine {
     this.#serve();
   }
 
-  /** Whether nothing runs or waits. */
+  /** True if no call runs or waits. */
   get isIdle() {
     return !this.#waiting.length && this.#workers.every((worker) => !worker.call);
   }
@@ -140,7 +140,7 @@ export class Engine {
 
   #failed(worker, message) {
     const {call} = worker;
-    if (!worker.isReady) {  // it would fail again
+    if (!worker.isReady) {  // a restart would fail, too
       worker.failure = message;
       for (const waiting of this.#waiting.splice(0)) waiting.reject(new Error(message));
       return;
@@ -157,7 +157,7 @@ export class Engine {
     if (call && data.id === call.message.id) {
       if (data.progress) return call.onProgress?.(data.progress);
       worker.call = null;
-      if (data.error?.fatal) this.#restart(worker);  // the engine's own fault: it cannot go on
+      if (data.error?.fatal) this.#restart(worker);  // internal error of the engine
       if (data.error)
         call.reject(new Refused(data.error));
       else

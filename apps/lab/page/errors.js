@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error over light: a table as the command prints it, a map of each code, curves with bounds.
+// Depth error over light: the table of `tofsmith evaluate`, a map per code, and curves with bounds.
 
 import {Columns} from './codes.js';
 import {scaleOf} from '../../../viewer/colour_bar.js';
@@ -23,7 +23,7 @@ export const errorText = (mean, deviation) =>
 const distinct = (values) => [...new Set(values)];
 const ambientOf = (one) => distinct(one.points.map((p) => p.ambient_e_per_s));
 
-// The points at one ambient level; those of a camera that was just left may have fewer levels.
+// Points at one ambient level. Results of the previous camera may have fewer levels.
 function pointsAt(one, level) {
   const levels = ambientOf(one), ambient = levels[Math.min(level, levels.length - 1)];
   return one.points.filter((p) => p.ambient_e_per_s === ambient);
@@ -31,7 +31,7 @@ function pointsAt(one, level) {
 
 const least = (list, key) => list.reduce((best, one) => (one[key] < best[key] ? one : best));
 
-/** The section of depth errors. */
+/** The section of the page on depth errors. */
 export class ErrorsView {
   constructor(lab) {
     this.lab = lab;
@@ -77,7 +77,7 @@ export class ErrorsView {
     if (byId('seed').getAttribute('aria-invalid') !== 'true') byId('seed').value = seed;
   }
 
-  // Evaluations of the codes that there are, with what place they have.
+  // Available evaluations, with the indices of their codes.
   #known() {
     return this.lab.slots.slice(0, this.lab.state.codes.length)
         .map((slot, i) => ({i, document: slot.evaluation, one: slot.evaluation?.codes[0]}))
@@ -169,7 +169,7 @@ export class ErrorsView {
     }
   }
 
-  // Bounds hold for the circular error, whichever error the camera is judged by.
+  // Bounds always apply to the circular error.
   #drawCurves(known) {
     const ambient = ambientOf(known[0].one);
     const wanted = this.lab.state.curve_ambient ?? Math.floor(ambient.length / 2),

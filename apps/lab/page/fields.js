@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The camera as fields: a control for every key, made from what the engine says of it.
+// Camera form: one control per key, generated from the engine's description of the key.
 
 import {element, showProblem} from '../../../viewer/dom.js';
 import {fieldText} from '../../../viewer/numbers.js';
@@ -22,14 +22,14 @@ const titleOf = (section) =>
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const steps = 1000;
 
-/** What a control is called: the key without its section and unit. */
+/** Label of a control: the key without its section and unit. */
 const nameOf = ({key, section, unit}) =>
     (section ? key.slice(groupOf(section).length + 1) : key)
         .replace(unit ? /_(e_per_s|m_per_c|hz|s|e|m|px|deg|w|c)$/ : /$^/, '')
         .replaceAll('_', ' ')
         .replaceAll('.', ' ');
 
-/** Place of a slider for a value of a field, and back. */
+/** Converts a value of a field to a position of its slider, and back. */
 function sliderScale(field) {
   let [low, high] = field.usual;
   if (Number.isFinite(field.value))
@@ -145,14 +145,14 @@ class Field {
     this.panel.set(this.key, text);
   }
 
-  /** Says what is wrong with what was typed; nothing: all is well. */
+  /** Shows the error of the input; empty: valid. */
   tell(message) {
     showProblem(this.problem, message);
     this.input.toggleAttribute('aria-invalid', false);
     if (message) this.input.setAttribute('aria-invalid', 'true');
   }
 
-  /** Follows the camera. */
+  /** Updates the control after a change of the camera. */
   update(field, first) {
     const isUnder = document.activeElement === this.slider && this.slider;
     this.field = field;
@@ -185,14 +185,14 @@ export class FieldPanel {
   #controls = new Map();
   #shape = '';
 
-  /** @param form  where they stand; @param actions  set(key, text), reset(key), settle() */
+  /** @param form  parent element; @param actions  set(key, text), reset(key), settle() */
   constructor(form, actions) {
     this.form = form;
     Object.assign(this, actions);
     form.addEventListener('submit', (event) => event.preventDefault());
   }
 
-  /** Shows a camera's fields; `first` are those of the camera that it began as. */
+  /** Shows the fields of a camera; `first` are those of the unmodified camera. */
   show(fields, first) {
     const shape = JSON.stringify(fields.map(({key, type, choices}) => [key, type, choices]));
     if (shape !== this.#shape) this.#build(fields);
@@ -201,7 +201,7 @@ export class FieldPanel {
     for (const field of fields) this.#controls.get(field.key).update(field, before.get(field.key));
   }
 
-  /** Says what is wrong at a field; false: there is no such field. */
+  /** Shows an error at a field; returns false if the field does not exist. */
   tell(key, message) {
     const control = this.#controls.get(key);
     if (!control) return false;

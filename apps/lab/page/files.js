@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Files that are dropped in or chosen: cameras as TOML, codes as JSON.
+// Dropped or selected files: cameras as TOML, codes as JSON.
 
 import {announce, byId, notice} from '../../../viewer/dom.js';
 import {askedCode} from './lab.js';
 
-/** Larger files are refused without a look into them. */
+/** Larger files are rejected without reading them. */
 export const maxFileBytes = 64 * 2 ** 20;
 
 const sizeText = (bytes) =>
     (bytes >= 1e9 ? `${(bytes / 1e9).toFixed(1)} GB` : `${(bytes / 1e6).toFixed(1)} MB`);
 
-/** Reads dropped and chosen files into the lab. */
+/** Loads dropped and selected files into the lab. */
 export class Files {
   constructor(lab) {
     this.lab = lab;
@@ -39,7 +39,7 @@ export class Files {
     });
   }
 
-  /** Takes files one after the other; what is wrong with any is said once, together. */
+  /** Loads files one by one; all errors are reported together. */
   async take(files) {
     const problems = [];
     for (const file of files) {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The lab behind the page: its state, the camera and codes that follow from it, and who wants to
-// know.
+// Model of the page: its state, the camera and codes derived from it, and listeners.
 
 import {Outdated, Refused} from './engine.js';
 import {newestOnly, Sharpener} from './pace.js';
@@ -10,14 +9,14 @@ import {maxCodes} from './store.js';
 const quickTrials = 200, middleTrials = 2000;
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
-/** What is wrong, for people; null where an answer only came too late. */
+/** Error message for the user; null if the answer is merely outdated. */
 export const problemText = (error) => (error instanceof Outdated ? null : error.message);
 
-/** What the engine is asked for a camera of the state. */
+/** Camera arguments of a request to the engine. */
 export const cameraRequest = ({built_in, file, changes}) =>
     ({...(file === undefined ? {built_in} : {camera: file}), changes});
 
-/** One of up to four codes: what was computed of it. */
+/** Results of one of up to four codes. */
 class Slot {
   code = null;        // answer of `code`
   evaluation = null;  // document of `evaluate`
@@ -29,7 +28,7 @@ class Slot {
 export class Lab {
   slots = Array.from({length: maxCodes}, () => new Slot());
   camera = null;     // answer of `camera`
-  firstFields = [];  // of the camera that changes are made to
+  firstFields = [];  // of the unmodified camera
   gesture = 0;
   #answers = new Map();
   #listeners = [];
@@ -50,14 +49,14 @@ export class Lab {
     return this.store.state;
   }
 
-  /** Calls `listener(what, i)` when something new can be drawn. */
+  /** Calls `listener(what, i)` when there is a new result. */
   listen(listener) {
     this.#listeners.push(listener);
   }
 
   #tell(what, i) {
     if (what === 'code')
-      performance.mark('tofsmith picture');  // how soon pictures come, for measurements
+      performance.mark('tofsmith picture');  // for measurements of latency
     for (const listener of this.#listeners) listener(what, i);
   }
 
@@ -127,17 +126,17 @@ export class Lab {
     this.#tell('problem', i);
   }
 
-  /** Sets a key of the camera; `heard(problem)` is told how that went, null: well. */
+  /** Sets a key of the camera, then calls `heard(problem)`; null: success. */
   set(key, text, heard) {
     this.setNewest(key, text, heard, this.gesture);
   }
 
-  /** Moves an edge of the i-th code, from where it is in `code`. */
+  /** Moves an edge of the i-th code, starting from `code`. */
   moveEdge(i, code, edge) {
     this.moveNewest(i, code, edge, this.gesture);
   }
 
-  /** A hand has let go: what it asks for from now on is undone on its own. */
+  /** Ends a gesture: later changes are undone separately. */
   settle() {
     ++this.gesture;
   }
@@ -146,7 +145,7 @@ export class Lab {
     try {
       const {camera} = this, field = camera.fields.find((one) => one.key === key);
       const value =
-          text === '' && field?.default === null ? undefined : text;  // leaves the key out
+          text === '' && field?.default === null ? undefined : text;  // removes the key
       const answer = await this.engine.call('set', {camera: camera.toml, key, value});
       const change = answer.change ?? {key, value: value ?? null};
       const first = new Map(this.firstFields.map((field) => [field.key, field.value]));
@@ -170,7 +169,7 @@ export class Lab {
     }
   }
 
-  /** Sets a key back to what it was in the camera that this one began as. */
+  /** Resets a key to its value in the unmodified camera. */
   reset(key) {
     this.store.change((state) => {
       const parts = key.split('.').map((_, i, all) => all.slice(0, i + 1).join('.'));
@@ -192,7 +191,7 @@ export class Lab {
     }
   }
 
-  /** Puts a code beside the others, or in the chosen one's place where there are four. */
+  /** Adds a code; if there are four already, it replaces the selected one. */
   addCode(code) {
     this.store.change((state) => {
       if (state.codes.length < maxCodes)
@@ -205,21 +204,21 @@ export class Lab {
     });
   }
 
-  /** The kind of error that the camera is judged by: linear or circular. */
+  /** The kind of error in the camera's operating range: linear or circular. */
   get errorKind() {
     return this.camera?.fields.find((field) => field.key === 'operating.error')?.value ??
         'circular';
   }
 }
 
-/** A code as the engine takes it. */
+/** Code argument of a request to the engine. */
 export const askedCode = (code) =>
     (code.file === undefined ? {name: code.name} : {file: code.file});
 
-/** What a file of this code would be called; a family's name as it is. */
+/** Name of a file of this code, or the name of its family. */
 export const codeWord = (code) =>
     (code.file === undefined ? code.name : `${fileName(code.name)}.code.json`);
 
-/** A name that can be that of a file. */
+/** Converts a name to a valid file name. */
 export const fileName = (name) =>
     name.replace(/[^\w.+-]+/g, '-').replace(/^[-.]+/, '').slice(0, 80) || 'unnamed';

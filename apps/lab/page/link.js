@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A state in the part of an address behind #: a version, a dot, and JSON, deflated, in base64url.
+// State in the fragment of a URL: a version, a dot, and deflated JSON in base64url.
 
 import {problemOf} from './store.js';
 
-/** The version of links that this page writes; it reads no other. */
+/** Version of links; other versions are rejected. */
 export const linkVersion = 1;
 
-const maxLink = 1e5;   // characters: longer addresses are cut off by what they pass through
-const maxState = 2e6;  // characters of JSON that are unpacked at most
+const maxLink = 1e5;   // characters; longer URLs may be truncated by other programs
+const maxState = 2e6;  // maximum number of unpacked characters of JSON
 
 async function through(bytes, stream) {
   return new Response(new Blob([bytes]).stream().pipeThrough(stream));
 }
 
-/** The state as text for an address, `#` included; null if it is too long for one. */
+/** Returns the state as fragment of a URL, including `#`; null if it is too long. */
 export async function linkOf(state) {
   const json = new TextEncoder().encode(JSON.stringify(state));
   const packed = new Uint8Array(
@@ -41,8 +41,8 @@ async function limitedText(response) {
 }
 
 /**
- * What a link says.
- * @returns {Promise<{state?: object, problem?: string}>} neither where there is no link
+ * Decodes a link.
+ * @returns {Promise<{state?: object, problem?: string}>} neither if there is no link
  */
 export async function stateOf(hash) {
   if (hash.length < 2) return {};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Begins the lab.
+// Starts the lab.
 
 import {CodesView} from './codes.js';
 import {Commands} from './commands.js';
@@ -106,7 +106,7 @@ function startTools(lab) {
       store.redo();
     announce(back ? 'Undone.' : 'Redone.');
   });
-  // While something is being typed, Ctrl+Z is the field's own.
+  // In text fields, Ctrl+Z undoes typing.
   addEventListener('input', (event) => {
     event.target.dataset.typing = 'yes';
   }, true);
@@ -172,7 +172,7 @@ async function begin() {
     if (next.state) store.change((now) => Object.assign(now, next.state));
   });
   await lab.update();
-  window.tofsmithLab = {store, lab, engine};  // for tests and for a look from the console
+  window.tofsmithLab = {store, lab, engine};  // for tests and the console
 }
 
 begin().catch((error) => stop(`The lab cannot begin: ${error.message}`));

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Work that keeps up with a hand: one piece at a time, always the newest request next.
+// Scheduling of work during interaction: one request at a time, the newest one next.
 
 import {Outdated} from './engine.js';
 
 /**
- * A function that runs `work`, never twice at once; of calls that wait with the same first argument
- * only the newest is left.
+ * Returns a function that runs `work`, never concurrently. Of waiting calls with the same first
+ * argument, only the newest is kept.
  */
 export function newestOnly(work) {
   const waiting = new Map();
@@ -28,20 +28,20 @@ export function newestOnly(work) {
 }
 
 /**
- * A picture that is quick at first and then sharpens. Each request is a list of steps, functions
- * that return promises. The first `whole` ones are always finished, so that a picture follows
- * however fast requests come; the rest is given up for a newer request.
+ * Renders a coarse image first and then refines it. Each request is a list of steps, i.e. functions
+ * that return promises. The first `whole` steps are always completed, so that there is an image
+ * even if requests arrive quickly. A newer request cancels the other steps.
  */
 export class Sharpener {
   #next = null;
   #isBusy = false;
 
-  /** @param whole  steps that are finished; @param stop  gives up the step under way */
+  /** @param whole  number of steps to complete; @param stop  cancels the current step */
   constructor(whole, stop, onProblem) {
     Object.assign(this, {whole, stop, onProblem, place: 0});
   }
 
-  /** Asks for other steps. */
+  /** Replaces the steps. */
   async request(steps) {
     this.#next = steps;
     if (this.#isBusy) {
@@ -63,7 +63,7 @@ export class Sharpener {
     this.#isBusy = false;
   }
 
-  /** Whether nothing is under way or waits. */
+  /** True if no step runs or waits. */
   get isIdle() {
     return !this.#isBusy;
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// One scene, captured and decoded pixel by pixel: true depth, depth and error, alone and filtered.
+// Captured and decoded scene: true depth, depth and error, unfiltered and filtered.
 
 import {divergingColour, sequentialColour} from '../../../viewer/colours.js';
 import {byId, element, showProblem} from '../../../viewer/dom.js';
@@ -11,7 +11,7 @@ import {Picture} from '../../../viewer/picture.js';
 
 const widths = [80, 160, 240, 320], quickWidth = 80;
 
-// What nine of ten sizes stay below.
+// 90th percentile of the absolute errors.
 function spread(errors) {
   const sizes = Array.from(errors, Math.abs).filter(Number.isFinite).sort((a, b) => a - b);
   return sizes.length ? Math.max(1e-6, sizes[Math.floor(0.9 * (sizes.length - 1))]) : 1;
@@ -20,7 +20,7 @@ function spread(errors) {
 const barOf = (title, [low, high], colour) =>
     ({title, low: lengthText(low, 3), high: lengthText(high, 3), colour});
 
-/** The section of the scene. */
+/** The scene section of the page. */
 export class SceneView {
   constructor(lab, about) {
     this.lab = lab;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What the lab shows, and how it came there: one state, its past and what was undone.
+// State of the lab, with undo and redo.
 
-/** What a lab begins with. */
+/** Initial state. */
 export const firstState = () => ({
   camera: {built_in: 'indoor', changes: []},  // or {file: TOML text, file_name, changes}
   codes: [{name: 'hamiltonian-k4'}, {name: 'sinusoid-k4'}],  // or {file: JSON text, name}
@@ -13,14 +13,14 @@ export const firstState = () => ({
   scene: {name: 'table-top', filter: 'normal', width: 160, signal: 1e5, ambient: 1e4},
 });
 
-/** How many codes stand side by side. */
+/** Maximum number of codes. */
 export const maxCodes = 4;
 
 const isText = (value) => typeof value === 'string';
 const isAt = (value, low, high) => Number.isInteger(value) && value >= low && value <= high;
 const isRate = (value) => value === null || (Number.isFinite(value) && value >= 0);
 
-/** What is wrong with a state that came from elsewhere; null if nothing. */
+/** Returns the error of an imported state; null if it is valid. */
 export function problemOf(state) {
   const {camera, codes, scene} = state ?? {};
   if (!camera || (isText(camera.built_in) === isText(camera.file)) ||
@@ -42,7 +42,7 @@ export function problemOf(state) {
   return null;
 }
 
-/** One state that changes as a whole; listeners hear every change. */
+/** State that is replaced as a whole; listeners are called after every change. */
 export class Store {
   #past = [];
   #future = [];
@@ -59,8 +59,8 @@ export class Store {
   }
 
   /**
-   * Changes a copy of the state by `change(copy)` and puts it in place.
-   * @param merge  changes with the same word, one right after the other, are undone together
+   * Applies `change(copy)` to a copy of the state, and replaces the state by it.
+   * @param merge  consecutive changes with the same value are undone together
    */
   change(change, merge = null) {
     const next = structuredClone(this.state);
@@ -81,12 +81,12 @@ export class Store {
     return this.#future.length > 0;
   }
 
-  /** Goes back by one change. */
+  /** Undoes one change. */
   undo() {
     this.#step(this.#past, this.#future);
   }
 
-  /** Takes an undo back. */
+  /** Redoes one change. */
   redo() {
     this.#step(this.#future, this.#past);
   }

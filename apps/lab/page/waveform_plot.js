@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Light and gate of every measurement over one period; edges of two-level ones can be moved.
+// Light and gate of every measurement over one period; edges of binary waveforms can be moved.
 
 import {announce, drawn, drawSoon, element, onWidth, widthOf} from '../../../viewer/dom.js';
 import {rangeOf, thinned} from '../../../viewer/numbers.js';
 
 const left = 30, right = 10, axis = 22;
-const reach = matchMedia('(pointer: coarse)').matches ? 15 : 9;  // pixels to either side of an edge
+const reach = matchMedia('(pointer: coarse)').matches ? 15 : 9;  // pixels on either side of an edge
 const periods = [0, 0.25, 0.5, 0.75, 1];
 
 /**
- * The parts of the period in which a two-level waveform is on: [rise0, fall0, ..] as [from, to] in
- * [0, 1].
+ * Intervals in which a binary waveform is on: converts [rise0, fall0, ...] to [from, to] in [0, 1].
  */
 export function onParts(edges) {
   const parts = [];
@@ -46,18 +45,18 @@ function lineOf(all, x, y) {
 
 const areaOf = (values, x, base, y) => `${lineOf(values, x, y)}V${base}H${x(0)}Z`;
 
-/** Height of one waveform: less where there are many. */
+/** Height of one waveform; smaller if there are many. */
 const laneHeight = (count) => Math.max(20, Math.min(36, Math.round(330 / (2 * count))));
 
 /**
- * The waveforms of one code. What it shows: {label, samples, light, gates: {values, shape},
- * lightBehind, gatesBehind: the same behind the impulse responses, lightEdges, gateEdges, move(arm,
+ * Plot of the waveforms of one code. Content: {label, samples, light, gates: {values, shape},
+ * lightBehind, gatesBehind (after the impulse responses), lightEdges, gateEdges, move(arm,
  * measurement, edge, position), settle()}.
  */
 export class WaveformPlot {
   #spec = null;
   #held = null;     // the edge under the pointer
-  #current = null;  // the edge that the keys move, and where it is
+  #current = null;  // edge that the keys move, and its position
   #chosen = 0;
 
   constructor() {
@@ -71,7 +70,7 @@ export class WaveformPlot {
     onWidth(this.node, () => this.#draw());
   }
 
-  /** Shows something else. */
+  /** Replaces the content. */
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute('aria-label', spec.label);
@@ -176,7 +175,7 @@ export class WaveformPlot {
     return this.#held?.arm === arm && this.#held.k === k && this.#held.edge === edge;
   }
 
-  // One edge is reached by Tab, the others from there; the one that was moved keeps the focus.
+  // Tab focuses one edge, keys move to the others; a moved edge keeps the focus.
   #rove(hadFocus) {
     if (!this.edges.length) return;
     if (this.#current) {
