@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::io: files, images and meshes. Includes tofsmith/design.hpp.
+/// Includes all headers of tofsmith::io (files, images, meshes) and tofsmith/design.hpp.
 
 #include "tofsmith/design.hpp"
 #include "tofsmith/io/atomic_file.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// In a page (apps/lab) there are no files beside a camera or a code: what would read them says so,
-// in place of the rooms that are not compiled for it.
+// The web page (apps/lab) has no file system. These functions report that and replace the file
+// readers, which are not compiled for it.
 #ifdef __EMSCRIPTEN__
 
 #include <string>

@@ -43,8 +43,8 @@ fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-/// The beginning of the names of hidden files of processes that are numbered together: others, of
-/// other machines and containers, may share the directory.
+/// Prefix of the hidden files of processes with the same numbering. Other machines and containers
+/// may share the directory.
 std::string hidden_prefix(const std::string& machine) {
   return fmt::format(".tofsmith-{:016x}-", fnv1a_64(machine));
 }
@@ -53,8 +53,8 @@ struct CloseDirectory {
   void operator()(DIR* directory) const { ::closedir(directory); }
 };
 
-/// The process that writes a hidden file, "PREFIX" "NUMBER-START-COUNTER"; none: its name has
-/// another prefix or form.
+/// Parses the owner of a hidden file, "PREFIX" "NUMBER-START-COUNTER"; none: another prefix or
+/// form.
 std::optional<ProcessIdentity> owner_of(std::string_view name, const std::string& machine) {
   const std::string prefix = hidden_prefix(machine);
   if (!name.starts_with(prefix)) return std::nullopt;
@@ -71,7 +71,7 @@ std::optional<ProcessIdentity> owner_of(std::string_view name, const std::string
   return owner;
 }
 
-/// Removes the hidden files of processes that were killed. Looks once at each directory.
+/// Removes hidden files of killed processes. Each directory is searched only once.
 void remove_leftovers(const fs::path& directory, const ProcessIdentity& own) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
@@ -80,8 +80,8 @@ void remove_leftovers(const fs::path& directory, const ProcessIdentity& own) {
     const std::lock_guard lock(mutex);
     if (!seen.insert(fs::absolute(directory, ignored)).second) return;
   }
-  // Not a directory_iterator, whose increments end the process where memory is short. What cannot
-  // be listed keeps what is left in it.
+  // A directory_iterator would terminate the process if memory runs out during an increment.
+  // Directories that cannot be listed are skipped.
   const std::unique_ptr<DIR, CloseDirectory> listing(::opendir(directory.c_str()));
   if (!listing) return;
   while (const dirent* const entry = ::readdir(listing.get())) {
@@ -102,7 +102,7 @@ void check_target(const fs::path& target, OutputPolicy policy) {
     throw IoError(target.string(), fmt::format("cannot write: {}", error.message()));
   if (fs::is_directory(there))
     throw IoError(target.string(), "found a directory; expected the name of an output file");
-  // Renaming over a device would replace it.
+  // Renaming would replace a device.
   if (fs::exists(there) && !fs::is_regular_file(there))
     throw IoError(target.string(), "found a device or pipe; expected the name of an output file");
   if (!target.has_filename())
@@ -144,7 +144,7 @@ void AtomicFile::create_temporary() {
     temporary_ = directory_of(target_) / fmt::format("{}{}-{}-{}{}", hidden_prefix(own.machine),
                                                      own.number, own.start, counter++, extension);
     descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor_ < 0 && errno == EEXIST);  // left behind by a killed run
+  } while (descriptor_ < 0 && errno == EEXIST);  // left behind by a killed process
   if (descriptor_ < 0)
     throw IoError(target_.string(),
                   fmt::format("cannot create a file in {}: {}", directory_of(target_).string(),
@@ -176,8 +176,8 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
 }
 
 void AtomicFile::commit() {
-  // A library that was given temporary_path() may have put a new file there: flush what has the
-  // name now, not what was opened first.
+  // A library that uses temporary_path() may have replaced the file, so flush the file that has the
+  // name now.
   const int written = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
   const bool flushed = written >= 0 && ::fsync(written) == 0;
   const int error = errno;
@@ -186,7 +186,8 @@ void AtomicFile::commit() {
     throw IoError(target_.string(), fmt::format("cannot write: {}", system_message(error)));
   rename_to_target();
   committed_ = true;
-  // The name is safe against a power cut once its directory is flushed; not every file system can.
+  // The new name survives a power failure only once its directory is flushed, which some file
+  // systems do not support.
   const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
     (void)::fsync(directory);
@@ -213,7 +214,7 @@ void AtomicFile::rename_to_target() {
     if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0)
       return;
     if (errno == EEXIST) return keep_or_refuse();
-    // Some file systems lack the flag: look, then rename.
+    // Fallback for file systems without the flag: check, then rename.
   }
 #endif
   if (!replaces && ::access(target_.c_str(), F_OK) == 0) return keep_or_refuse();

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// Walks through the bytes of a file; every error says at which byte of which file.
+/// Reads the bytes of a file sequentially. Errors contain the file's name and the byte offset.
 class ByteCursor {
  public:
   ByteCursor(std::span<const std::byte> bytes, std::string_view file)
@@ -20,10 +20,10 @@ class ByteCursor {
   std::span<const std::byte> rest() const { return bytes_.subspan(position_); }
   bool at_end() const { return position_ == bytes_.size(); }
 
-  /// The next `count` bytes, or an error that says of `what` they would have been.
+  /// Returns the next `count` bytes. `what` names their content in error messages.
   std::span<const std::byte> take(std::size_t count, std::string_view what);
   std::string_view take_text(std::size_t count, std::string_view what);
-  /// The text up to and without the next `end`, which is skipped.
+  /// Returns the text before the next `end`, which is skipped.
   std::string_view take_until(char end, std::string_view what);
   std::uint16_t take_u16_little(std::string_view what);
   std::uint32_t take_u32_little(std::string_view what);

@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// Returns the number of an IEEE half-precision float, which single precision holds exactly.
+/// Converts an IEEE half-precision float, without rounding.
 inline float float_of_half(std::uint16_t bits) { return half(half::FromBits, bits); }
 
 }  // namespace tofsmith

@@ -7,7 +7,7 @@
 
 namespace tofsmith {
 
-/// Largest image any reader accepts, so that a few damaged bytes cannot claim all memory.
+/// Largest image that any reader accepts, so that a damaged header cannot exhaust the memory.
 inline constexpr std::uint64_t max_image_side = 65536;
 inline constexpr std::uint64_t max_image_pixels = std::uint64_t{1} << 26;
 

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// A file opened for reading, with errors that name it.
+/// A file opened for reading. Errors contain its name.
 class InputFile {
  public:
   /// @throws IoError if it is missing, a directory or unreadable
@@ -19,11 +19,12 @@ class InputFile {
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&&) = delete;
 
-  /// Bytes in it; nothing for a pipe, whose end is not known before it comes.
+  /// Returns the size in bytes; none for a pipe.
   std::optional<std::uint64_t> size() const { return size_; }
-  /// Reads on from where the last read() ended; returns less than asked for only at the end.
+  /// Reads from the end of the last read(). Returns less than requested only at the end of the
+  /// file.
   std::size_t read(std::span<std::byte> into);
-  /// Fills `into` from `offset`, wherever read() stands. @throws IoError if the file ends before
+  /// Fills `into` from `offset`, independently of read(). @throws IoError if the file is too short
   void read_at(std::uint64_t offset, std::span<std::byte> into) const;
 
  private:

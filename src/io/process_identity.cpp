@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Files of /proc have no size; "" where there is none.
+/// Returns the content of a file of /proc, which has no size; "" if it is missing.
 std::string content_of(const std::string& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -28,10 +28,10 @@ std::string target_of(const char* link) {
   return error ? "" : target.string();
 }
 
-/// When a process started, in ticks since boot (the 22nd field); "" if there is none.
+/// Returns the start time of a process in ticks since boot (22nd field); "" if there is none.
 std::string start_of(std::int64_t process) {
   const std::string stat = content_of(fmt::format("/proc/{}/stat", process));
-  const std::size_t after_name = stat.rfind(')');  // a name may hold anything
+  const std::size_t after_name = stat.rfind(')');  // the name may contain any character
   if (after_name == std::string::npos) return "";
   std::istringstream fields(stat.substr(after_name + 1));
   std::string field;
@@ -41,7 +41,7 @@ std::string start_of(std::int64_t process) {
 }
 
 std::string own_machine() {
-  // A /proc of another namespace numbers processes differently.
+  // /proc may belong to another namespace, with other process numbers.
   if (target_of("/proc/self") != fmt::format("{}", ::getpid())) return "";
   const std::string numbers = target_of("/proc/self/ns/pid");
   std::string boot = content_of("/proc/sys/kernel/random/boot_id");

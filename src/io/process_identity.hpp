@@ -7,20 +7,19 @@
 
 namespace tofsmith {
 
-/// A process, distinguished from all others that may share its files.
+/// Identity of a process among all processes that may share its files.
 struct ProcessIdentity {
-  /// This boot of the machine and the namespace of its process numbers; "" if unknown. Containers
-  /// differ in it even if they share a host name.
+  /// Boot of the machine and namespace of its process numbers; "" if unknown. It differs between
+  /// containers even if they have the same host name.
   std::string machine;
   std::int64_t number = 0;
-  std::string start;  ///< distinguishes it from a later process of the same number; "" if unknown
+  std::string start;  ///< distinguishes processes that reuse a number; "" if unknown
 
-  /// This process.
   static ProcessIdentity own();
 };
 
-/// Whether a process has surely ended. Nothing is known of processes of other machines, boots and
-/// namespaces.
+/// Returns true if a process has certainly ended. Processes of other machines, boots and namespaces
+/// are unknown.
 bool is_surely_gone(const ProcessIdentity& process, const ProcessIdentity& own);
 
 }  // namespace tofsmith

@@ -22,13 +22,13 @@ namespace {
 template <typename Container>
 Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
   InputFile file(path);
-  constexpr std::uint64_t endless_bytes = std::uint64_t{1} << 28;  // what never ends, ends here
+  constexpr std::uint64_t endless_bytes = std::uint64_t{1} << 28;  // limit for files without an end
   if (!file.size()) max_bytes = std::min(max_bytes, endless_bytes);
   const std::uint64_t announced = file.size().value_or(0);
   if (announced > max_bytes) refuse_size(path, fmt::format("{}", announced), max_bytes);
   Container content;
-  // /proc gives files of size 0 that hold something, and pipes have no size: read until the end,
-  // for which one byte more than expected is asked for.
+  // Files of /proc have size 0, and pipes have none: read until the end, and request one byte more
+  // than expected to detect the end.
   std::size_t expected = static_cast<std::size_t>(announced) + 1;
   for (;;) {
     const std::size_t done = content.size();
@@ -42,7 +42,7 @@ Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_b
   }
 }
 
-/// UTF-16 as UTF-8. Surrogates, which no table or setting needs, become question marks.
+/// Converts UTF-16 to UTF-8. Surrogates become question marks, as no table or setting needs them.
 /// @param low  offset of the low byte in each pair
 std::string utf8_of_utf16(std::string_view bytes, std::size_t low) {
   std::string text;

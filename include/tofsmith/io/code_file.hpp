@@ -17,105 +17,104 @@
 
 namespace tofsmith {
 
-/// The code as a JSON document: binary waveforms by their switching times on the unit period,
-/// others by their samples; numbers read back as exactly what they were.
-/// @throws std::invalid_argument if a text is not UTF-8 or the provenance is not finite
+/// Returns the code as a JSON document: binary waveforms by their switching times on the unit
+/// period, other waveforms by their samples. Numbers are read back exactly.
+/// @throws std::invalid_argument if a text is not UTF-8 or a number of the provenance is not finite
 std::string code_to_json(const CodeSet& code);
 
-/// @param file  what errors call it
-/// @throws IoError "file:line:column: .." where it is no JSON, else "file: /json/pointer: .." for
-///         members that are missing, unknown or of the wrong type, lengths that disagree, and
-///         values that no code can have
+/// Reads a code from JSON.
+/// @param file  name for error messages
+/// @throws IoError "file:line:column: ..." for invalid JSON; "file: /json/pointer: ..." for members
+///         that are missing, unknown or of the wrong type, inconsistent lengths, and invalid values
 CodeSet parse_code_json(std::string_view text, std::string_view file = "code.json");
 
-/// How the K columns of an array run through E exposures of several taps.
+/// Order of the K columns of an array for E exposures with several taps.
 enum class TapOrder {
-  blocked,      ///< tap 0 of all exposures, then tap 1 of all exposures, ..
-  interleaved,  ///< all taps of exposure 0, then all taps of exposure 1, ..
+  blocked,      ///< tap 0 of all exposures, then tap 1 of all exposures, ...
+  interleaved,  ///< all taps of exposure 0, then all taps of exposure 1, ...
 };
 
-/// What an NPZ file does not say about its columns.
+/// Interpretation of the columns of an NPZ file, which the file does not contain.
 struct TapLayout {
   int taps = 1;
-  std::optional<TapOrder> order;  ///< must be given for several taps of several exposures: it
-                                  ///< is never guessed
+  std::optional<TapOrder> order;  ///< required for several taps and several exposures
   bool is_signed = false;         ///< demodulations are weights of a mixer, in [-1, 1]
 };
 
-/// Reads the arrays `modfs` and `demodfs`, each (N, K), in the layout that other time-of-flight
-/// projects publish: a column of each for every measurement. A column of two levels, the lower of
-/// which is 0, becomes a binary waveform; modulation keeps its scale. `corrfs` is not needed, but
-/// must have the same shape.
-/// @param file  what errors call it; its stem becomes the code's name
-/// @throws IoError naming file, array, row and column for shapes that disagree, values that no
-///         code can have, taps of one exposure with different modulation, or several taps of
-///         several exposures without an order
+/// Reads the arrays `modfs` and `demodfs`, each (N, K) with one column per measurement, the layout
+/// that other time-of-flight projects publish. Columns with two levels, the lower of which is 0,
+/// become binary waveforms. The scale of the modulation is kept. The array `corrfs` is optional,
+/// but must have the same shape.
+/// @param file  name for error messages; its stem becomes the code's name
+/// @throws IoError naming file, array, row and column for inconsistent shapes, invalid values, taps
+///         of one exposure with different modulations, or a missing order of several taps and
+///         exposures
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
                        const TapLayout& layout = {});
 
-/// The same layout: modulation and demodulation as cell averages, and
-///   corrfs[z, i] = (1/N) sum_n modfs[n, i] demodfs[n + z, i],
-/// the correlation without a camera's impulse responses.
-/// @throws std::invalid_argument if the code has several taps, several exposures and there is no
-///         order
+/// Writes the same layout: modulation and demodulation as cell averages, and the correlation
+/// without the impulse responses of a camera,
+///   corrfs[z, i] = (1/N) sum_n modfs[n, i] demodfs[n + z, i].
+/// @throws std::invalid_argument if the code has several taps and exposures and `order` is missing
 std::vector<std::byte> serialize_code_npz(const CodeSet& code,
                                           std::optional<TapOrder> order = std::nullopt);
 
-/// What load_code() must know about NPZ files with several taps.
+/// Interpretation of NPZ files with several taps, for load_code().
 struct CodeFileOptions {
-  std::optional<int> taps;            ///< values read out of one exposure; none = as the camera's
-  std::optional<TapOrder> tap_order;  ///< never guessed
+  std::optional<int> taps;            ///< measurements per exposure; none: the camera's
+  std::optional<TapOrder> tap_order;  ///< required for several taps and several exposures
 };
 
-/// Reads a code by extension: .json, .npz or .csv. `layout` is for .npz, and whether weights are
-/// signed for .csv too; .json says it itself.
+/// Reads a code by extension: .json, .npz or .csv. `layout` applies to .npz; only its is_signed
+/// applies to .csv. JSON files contain this information.
 /// @throws IoError as parse_code_json() and parse_code_npz(), or if the file cannot be read
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout = {});
 
-/// The waveforms of a code as a CSV table with one row per time sample, which read_code() reads
-/// back:
-///   time_s, modulation_1 .. modulation_E (power over average), demodulation_1 .. demodulation_K
-/// A sample is the mean over its cell, so that duties are exact.
+/// Returns the waveforms of a code as a CSV table that read_code() can read, with one row per time
+/// sample and the columns
+///   time_s, modulation_1 ... modulation_E (power over average), demodulation_1 ... demodulation_K
+/// Samples are cell averages, so that duties are exact.
 std::string waveforms_to_csv(const CodeSet& code, double fundamental_frequency_hz);
 
-/// A code of exposures from the arrays of others: light (N, K), or one for all exposures (N), and
-/// gates (N, K), in this order or with time along the second axis, and of any scale: the brightest
-/// light gets a mean of 1, and gates above 1 are divided by the largest. Columns as in
+/// Reads a code from arrays of other software: light (N, K), or (N) if all exposures are equal, and
+/// gates (N, K), in this order or with time along the second axis, and at any scale. The brightest
+/// light is scaled to a mean of 1, and gates above 1 are divided by the largest. Columns are as in
 /// parse_code_npz().
 /// @param light, gates  .npy files; the stem of `gates` becomes the code's name
 /// @throws IoError as parse_code_npz(), or if all light is zero
 CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesystem::path& gates,
                          const TapLayout& layout = {});
 
-/// Writes a code by extension: .json or .npz. `order` is for .npz.
-/// @throws IoError as AtomicFile, std::invalid_argument as code_to_json(), serialize_code_npz()
+/// Writes a code by extension: .json or .npz. `order` applies to .npz.
+/// @throws IoError as AtomicFile
+/// @throws std::invalid_argument as code_to_json() and serialize_code_npz()
 void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPolicy policy,
                 std::optional<TapOrder> order = std::nullopt);
 
-/// Rows of one exposure from the arrays of others: light (N), or columns that are all the same, and
-/// rows (N, K) or (K, N) of any scale and sign, up to 16. Light is scaled to a mean of 1; nothing
-/// else is changed.
+/// Reads rows of one exposure from arrays of other software: light (N), or several equal columns,
+/// and up to 16 rows (N, K) or (K, N) of any scale and sign. Light is scaled to a mean of 1;
+/// nothing else is changed.
 /// @param light, rows  .npy files; the stem of `rows` becomes the code's name
-/// @throws IoError naming file, row and column for shapes that disagree, light that is negative,
-///         differs between columns or is all zero, and rows that are all zero or too many
+/// @throws IoError naming file, row and column for inconsistent shapes, light that is negative, all
+///         zero or differs between columns, and rows that are all zero or too many
 CodeSet read_rows(const std::filesystem::path& light, const std::filesystem::path& rows);
-/// The same of the arrays `modfs` and `demodfs` of an .npz file.
+/// Reads rows from the arrays `modfs` and `demodfs` of an .npz file.
 CodeSet read_rows(const std::filesystem::path& archive);
 
-/// Reads an atlas of best codes from a file.
+/// Reads an atlas of precomputed codes from a file.
 /// @throws IoError as parse_atlas(), or if the file cannot be read
 std::vector<AtlasEntry> read_atlas(const std::filesystem::path& path);
 
-/// A built-in family, built for the camera; a code of the built-in atlas, on the camera's samples;
-/// or a code from a file as it is there. A camera that reads rows takes an .npz file, and the pair
-/// LIGHT.npy,ROWS.npy, as rows; others take LIGHT.npy,GATES.npy as exposures. A camera of a mixer
-/// takes the demodulations of .npz, .npy and .csv files as weights in [-1, 1].
-/// @throws IoError as read_code(), or if `name_or_path` is neither;
-///         std::invalid_argument for a family that the camera cannot play
+/// Builds a built-in family for the camera, resamples a code of the built-in atlas to the camera's
+/// samples, or reads a code from a file without resampling. Cameras with rows read .npz files and
+/// the pair LIGHT.npy,ROWS.npy as rows; other cameras read LIGHT.npy,GATES.npy as exposures. For
+/// cameras with a mixer, the demodulations of .npz, .npy and .csv files are weights in [-1, 1].
+/// @throws IoError as read_code(), or if `name_or_path` is neither
+/// @throws std::invalid_argument for a family that the camera does not support
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,
                   const CodeFileOptions& options = {});
 
-/// "blocked" or "interleaved". @throws std::invalid_argument for any other word
+/// Parses "blocked" or "interleaved". @throws std::invalid_argument for any other word
 TapOrder parse_tap_order(std::string_view word);
 
 }  // namespace tofsmith

@@ -7,7 +7,7 @@
 
 namespace tofsmith {
 
-/// A text as a field of a CSV file, quoted where it needs it (RFC 4180).
+/// Returns a text as a field of a CSV file, with quotes if necessary (RFC 4180).
 std::string csv_field(std::string_view text);
 
 }  // namespace tofsmith

@@ -9,20 +9,19 @@
 
 namespace tofsmith {
 
-/// What a directory of `tofsmith design` holds.
+/// Contents of a directory of `tofsmith design`.
 struct DesignRecord {
   Camera camera;
   DesignResult result;
 };
 
-/// The output of a design as files:
-///   camera.toml              the camera, defaults filled in, measured responses as samples
-///   design.json              the design document
+/// Directory with the output of a design:
+///   camera.toml              camera with defaults filled in, measured responses as samples
+///   design.json              design document
 ///   details.json             targets and iteration histories, for reports
 ///   codes/NAME.code.json     every candidate
-///   finished/NAME.json       designed codes as they are finished; a later run with the same
-///                            camera, target, options and seed takes them from here; one that is
-///                            damaged is designed again
+///   finished/NAME.json       finished designed codes, which a later run with the same camera,
+///                            target, options and seed reuses; damaged files are designed again
 /// NAME is file_name_of() the code's name.
 class DesignDirectory {
  public:
@@ -31,25 +30,25 @@ class DesignDirectory {
   const std::filesystem::path& path() const { return path_; }
   bool holds_design() const;
 
-  /// Keeps finished codes of one design, whose inputs `camera` and `options` are. Creates the
-  /// directory if need be. @throws IoError
+  /// Returns a store of the finished codes of a design with inputs `camera` and `options`. Creates
+  /// the directory if necessary. @throws IoError
   DesignStore store(const Camera& camera, const DesignOptions& options) const;
-  /// @throws IoError if files exist and may not be replaced, or cannot be written
+  /// @throws IoError if files exist and must not be replaced, or cannot be written
   void write(const Camera& camera, const DesignResult& result, const DesignOptions& options,
              OutputPolicy policy) const;
-  /// @throws IoError naming the file and what is wrong with it
+  /// @throws IoError naming the file and the error
   DesignRecord read() const;
 
  private:
   std::filesystem::path path_;
 };
 
-/// What requirements found as files:
-///   as_it_is.code.json    the code that the camera does best with as it is
-///   QUANTITY.code.json    of bandwidth, power and exposure: the code that suffices,
-///   QUANTITY.camera.toml  and the camera with as much of it; neither where nothing suffices
-///   requirements.json     requirements_document(), last
-/// @throws IoError if files exist and may not be replaced, or cannot be written
+/// Writes the result of a requirement search into a directory:
+///   as_it_is.code.json    best code for the unchanged camera
+///   QUANTITY.code.json    for bandwidth, power and exposure: the code that meets the requirement,
+///   QUANTITY.camera.toml  and the camera with the required value; omitted if not reachable
+///   requirements.json     requirements_document(), written last
+/// @throws IoError if files exist and must not be replaced, or cannot be written
 void write_requirements(const std::filesystem::path& directory, const Camera& camera,
                         const Requirements& found, const RequirementOptions& options,
                         OutputPolicy policy);

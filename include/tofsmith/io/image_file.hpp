@@ -14,35 +14,35 @@
 
 namespace tofsmith {
 
-/// Light of an sRGB value, both in [0, 1]. @see IEC 61966-2-1
+/// Converts an sRGB value to linear light, both in [0, 1]. @see IEC 61966-2-1
 double linear_from_srgb(double srgb);
 /// Inverse of linear_from_srgb().
 double srgb_from_linear(double linear);
 
-/// Luminance of linear light with Rec. 709 (sRGB) primaries.
+/// Returns the luminance of linear light with Rec. 709 (sRGB) primaries.
 constexpr double luminance_rec709(double red, double green, double blue) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 
-/// One number per pixel, as the file holds it, by the file's extension:
+/// Reads one number per pixel, unconverted, by extension:
 ///   .npy   float16, float32 or float64 of shape (H, W)
-///   .npz   the same, of the array `name`, or of the only one
-///   .exr   the channel `name`, "Z" or "Y", or the only one, or R, G and B if all are equal
+///   .npz   the same types, from the array `name` or the only array
+///   .exr   the channel `name`, "Z" or "Y", the only channel, or R, G and B if all are equal
 ///   .pfm   grey
-/// @param name  what the image shows, such as "depth" or "offset"
-/// @throws IoError if the extension is another, or the file is not such an image
+/// @param name  content of the image, such as "depth" or "offset"
+/// @throws IoError for other extensions, or if the file is not such an image
 Image<float> read_float_image(const std::filesystem::path& path, std::string_view name);
-/// Such an image called "kernel", of which a StrayLight can be made. @throws IoError also if not
+/// Reads an image named "kernel" for a StrayLight. @throws IoError also for an invalid kernel
 Image<float> read_stray_light(const std::filesystem::path& path);
 
-/// Writes float32; in .npz the array is called `name`, in .exr the channel is "Z" for depth and
+/// Writes float32. The array in .npz is named `name`; the channel in .exr is "Z" for depth and
 /// `name` otherwise.
 /// @throws std::invalid_argument if the image is empty
-/// @throws IoError if the extension is not one of the above, or as AtomicFile does
+/// @throws IoError as AtomicFile, or for other extensions
 void write_float_image(const std::filesystem::path& path, const Image<float>& image,
                        std::string_view name, OutputPolicy policy);
 
-/// Values as a PNG file holds them, (H, W, C), last axis fastest.
+/// Values of a PNG file, (H, W, C), last axis fastest.
 struct PngImage {
   int height = 0;
   int width = 0;
@@ -50,44 +50,47 @@ struct PngImage {
   int bit_depth = 8;  ///< 8 or 16
   std::vector<std::uint16_t> values;
 
-  /// The value that stands for full white: 255 or 65535.
+  /// Returns the value of full white: 255 or 65535.
   int max_value() const { return bit_depth == 16 ? 65535 : 255; }
 };
 
-/// Palettes are looked up and values of fewer than 8 bits spread to 8; nothing else is changed.
-/// @param file  what errors call it
-/// @throws IoError if the file is damaged, a side above 65536 or the pixels above 2^28
+/// Decodes a PNG. Palettes are resolved and values of fewer than 8 bits are scaled to 8 bits; other
+/// values are unchanged.
+/// @param file  name for error messages
+/// @throws IoError if the file is damaged, a side exceeds 65536 or the number of pixels 2^28
 PngImage parse_png(std::span<const std::byte> content, std::string_view file);
 PngImage read_png(const std::filesystem::path& path);
 
-/// @throws std::invalid_argument if a member is outside what its comment says, or a value above
+/// @throws std::invalid_argument if a member is outside its documented range, or a value exceeds
 ///         max_value()
 std::vector<std::byte> serialize_png(const PngImage& image);
-/// @throws IoError as AtomicFile does
+/// @throws IoError as AtomicFile
 void write_png(const std::filesystem::path& path, const PngImage& image, OutputPolicy policy);
 
-/// How the numbers of an image file relate to light.
+/// Transfer function of the values of an image file.
 enum class Transfer { srgb, linear };
 
-/// Albedo, shape (H, W), as the Rec. 709 luminance of a picture:
+/// Reads albedo, shape (H, W), as the Rec. 709 luminance of an image:
 ///   .png   8 or 16 bits, grey or RGB, alpha ignored; 1.0 is full white
 ///   .npy   floats, (H, W) or (H, W, 3), linear
 ///   .exr   "Y", the only channel, or R, G and B, linear
 ///   .pfm   grey or RGB, linear
-/// @param png_transfer  PNG files rarely say; photographs are sRGB, measured albedo may be linear
-/// @throws IoError if the extension is another, or the file is not such an image
+/// @param png_transfer  transfer function of PNG files, which rarely specify it: sRGB for
+///         photographs, often linear for measured albedo
+/// @throws IoError for other extensions, or if the file is not such an image
 Image<float> read_albedo(const std::filesystem::path& path, Transfer png_transfer = Transfer::srgb);
 
-/// Albedo in [0, 1] from what a picture holds. Radiance of a render can exceed 1; then the picture
-/// is scaled down as a whole.
-/// @param file  what errors call it
-/// @param depth_m  empty, or of the picture's size: where nothing returns (NaN) albedo may be
-///                 unknown (NaN) too, and becomes 0
+/// Converts an image to albedo in [0, 1]. If the image has values above 1, such as rendered
+/// radiance, the whole image is scaled down.
+/// @param file  name for error messages
+/// @param depth_m  empty, or of the same size: where depth is NaN (no return), albedo may be NaN
+///         and becomes 0
 /// @throws IoError naming the first pixel that is negative or not finite
 Image<float> albedo_of_picture(Image<float> picture, std::string_view file,
                                const Image<float>& depth_m = {});
 
-/// Ambient light of every pixel relative to the scene's, of the same files as read_albedo().
+/// Reads the ambient light of every pixel relative to that of the scene, from the same files as
+/// read_albedo().
 /// @throws IoError as read_albedo(), or naming the first pixel that is negative or not finite
 Image<float> read_ambient_scale(const std::filesystem::path& path,
                                 Transfer png_transfer = Transfer::srgb);

@@ -16,7 +16,7 @@
 
 namespace tofsmith {
 
-/// What one item of an array is.
+/// Type of the items of an array.
 enum class NpyType {
   boolean,
   int8,
@@ -27,24 +27,24 @@ enum class NpyType {
   uint16,
   uint32,
   uint64,
-  float16,  ///< IEEE half precision; C++ has no type for its items, which to_floats() converts
+  float16,  ///< IEEE half precision; has no C++ type, to_floats() converts it
   float32,
   float64
 };
 
-/// Bytes that one item takes.
+/// Returns the size of an item [bytes].
 std::size_t item_size(NpyType type);
-/// NumPy's name of the type, such as "float32" or "bool".
+/// Returns NumPy's name of the type, such as "float32" or "bool".
 std::string_view name_of(NpyType type);
-/// Returns true for floats of any size.
+/// Returns true for floating-point types.
 bool is_float(NpyType type);
 
-/// Length of every axis, slowest first; empty for a single number.
+/// Length of every axis, slowest first; empty for a scalar.
 using NpyShape = std::vector<std::size_t>;
-/// As Python writes it: "(480, 640, 4)".
+/// Returns the shape in Python notation: "(480, 640, 4)".
 std::string describe_shape(const NpyShape& shape);
 
-/// The type under which items of C++ type `Item` are stored.
+/// Type of array items of C++ type `Item`.
 template <typename Item>
 inline constexpr NpyType npy_type_of = Item::is_no_type_of_numpy;
 template <>
@@ -68,14 +68,14 @@ inline constexpr NpyType npy_type_of<float> = NpyType::float32;
 template <>
 inline constexpr NpyType npy_type_of<double> = NpyType::float64;
 
-/// A dense array as NumPy stores it: items of this machine's byte order, last axis fastest.
+/// A dense array in NumPy's layout: native byte order, last axis fastest.
 class NpyArray {
  public:
-  /// An array of shape (0,).
+  /// Creates an array of shape (0,).
   NpyArray() : NpyArray(NpyType::float64, {0}) {}
-  /// Zeros. @throws std::invalid_argument if the shape has more bytes than memory has addresses
+  /// Creates an array of zeros. @throws std::invalid_argument if its size exceeds the address space
   NpyArray(NpyType type, NpyShape shape);
-  /// A copy of `values`. @throws std::invalid_argument unless they are as many as `shape` says
+  /// Copies `values`. @throws std::invalid_argument if their number differs from that of `shape`
   template <typename Item>
   static NpyArray of(NpyShape shape, std::span<const Item> values) {
     NpyArray array(npy_type_of<Item>, std::move(shape));
@@ -86,20 +86,20 @@ class NpyArray {
   NpyType type() const { return type_; }
   const NpyShape& shape() const { return shape_; }
   std::size_t axes() const { return shape_.size(); }
-  /// Number of items.
+  /// Returns the number of items.
   std::size_t size() const { return bytes_.size() / item_size(type_); }
 
   std::span<const std::byte> bytes() const { return bytes_; }
   std::span<std::byte> bytes() { return bytes_; }
 
-  /// The items. @throws std::invalid_argument if they are of another type; bool reads as uint8
+  /// Returns the items; booleans as uint8. @throws std::invalid_argument if the type differs
   template <typename Item>
   std::span<const Item> as() const {
     check_type(npy_type_of<Item>);
     return {reinterpret_cast<const Item*>(bytes_.data()), size()};
   }
 
-  /// The items, converted from whatever they are.
+  /// Returns the items, converted from any type.
   std::vector<double> to_doubles() const;
   std::vector<float> to_floats() const;
 
@@ -112,22 +112,22 @@ class NpyArray {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads format versions 1.0 to 3.0 in either byte order; Fortran order is turned into C order.
-/// @param file  what errors call it
+/// Reads format versions 1.0 to 3.0 in either byte order. Fortran order is converted to C order.
+/// @param file  name for error messages
 /// @throws IoError at a byte offset if the header is malformed, the items are objects, records,
-///         text or complex, or the data is not exactly as long as the header says
+///         text or complex numbers, or the length of the data differs from the header
 NpyArray parse_npy(std::span<const std::byte> content, std::string_view file);
 NpyArray read_npy(const std::filesystem::path& path);
 
-/// Format version 1.0, little endian, C order, byte for byte as NumPy 1.24 writes it.
+/// Writes format version 1.0, little endian, C order, with the same bytes as NumPy 1.24.
 std::vector<std::byte> serialize_npy(const NpyArray& array);
-/// @throws IoError as AtomicFile does
+/// @throws IoError as AtomicFile
 void write_npy(const std::filesystem::path& path, const NpyArray& array, OutputPolicy policy);
 
-/// Reads an NPY file item by item, for recordings larger than memory.
+/// Reads parts of an NPY file, for recordings larger than memory.
 class NpyReader {
  public:
-  /// Reads the header and checks that the file is as long as it says.
+  /// Reads the header and checks the length of the file.
   /// @throws IoError as read_npy()
   explicit NpyReader(const std::filesystem::path& path);
   ~NpyReader();
@@ -135,15 +135,15 @@ class NpyReader {
 
   NpyType type() const;
   const NpyShape& shape() const;
-  /// True if the first axis is the fastest in the file.
+  /// Returns true if the first axis is the fastest in the file.
   bool fortran_order() const;
 
-  /// The whole array.
+  /// Reads the whole array.
   NpyArray read_all() const;
-  /// Fills `into` with items from item `first` on, in the order in which the file has them and in
-  /// this machine's byte order: memory is the caller's.
-  /// @throws std::invalid_argument if there are not as many, or `into` ends within an item
-  /// @throws IoError if the file cannot be read or became shorter
+  /// Reads items starting at item `first` into the memory `into`, in the order of the file and in
+  /// native byte order.
+  /// @throws std::invalid_argument if there are too few items, or `into` does not end with an item
+  /// @throws IoError if the file cannot be read or has become shorter
   void read_items(std::size_t first, std::span<std::byte> into) const;
 
  private:
@@ -151,18 +151,18 @@ class NpyReader {
   std::unique_ptr<State> state_;
 };
 
-/// Writes an NPY file of a known shape piece by piece, in pieces that need not end where an axis
-/// does. The file appears at commit(), as with AtomicFile.
+/// Writes an NPY file of a given shape in pieces of any number of items. The file appears at
+/// commit(), as with AtomicFile.
 class NpyItemWriter {
  public:
-  /// @throws IoError as AtomicFile does
+  /// @throws IoError as AtomicFile
   NpyItemWriter(const std::filesystem::path& path, NpyType type, const NpyShape& shape,
                 OutputPolicy policy);
 
-  /// Appends whole items of this machine's byte order, in C order.
-  /// @throws std::invalid_argument if there are more than the shape has room for
+  /// Appends items in native byte order and C order.
+  /// @throws std::invalid_argument if they exceed the shape
   void append(std::span<const std::byte> items);
-  /// Gives the file its name. Call it once, last.
+  /// Completes and renames the file. Must be called once, last.
   /// @throws std::invalid_argument if items are missing
   void commit();
 
@@ -172,35 +172,34 @@ class NpyItemWriter {
   std::size_t missing_bytes_;
 };
 
-/// Most that one of them may hold, unless more is asked for [bytes]: an image of all pixels that
-/// are read, in float64.
+/// Default maximum size of one array of an archive [bytes]: an image with the maximum number of
+/// pixels in float64.
 inline constexpr std::uint64_t max_npz_array_bytes = std::uint64_t{1} << 29;
-/// Most that the arrays of one archive may hold together once unpacked [bytes]. A few kilobytes of
-/// archive can unpack to any size, so there must be an end.
+/// Maximum total unpacked size of the arrays of an archive [bytes]. The limit is necessary because
+/// a few kilobytes can unpack to any size.
 inline constexpr std::uint64_t max_npz_bytes = std::uint64_t{1} << 34;
 
-/// The arrays of an NPZ archive, stored or deflated, unpacked one by one as they are asked for.
-/// @note one reader must not be used by two threads at a time
+/// Reads the arrays of an NPZ archive, stored or deflated, and unpacks each on request.
+/// @note not safe for concurrent use
 class NpzReader {
  public:
-  /// @throws IoError if this is no ZIP archive, a name comes twice, or the arrays together are
-  ///         larger than max_npz_bytes
+  /// @throws IoError if the file is not a ZIP archive, a name occurs twice, or the total size of
+  ///         the arrays exceeds max_npz_bytes
   explicit NpzReader(const std::filesystem::path& path);
   /// @param content  must outlive the reader
-  /// @param file     what errors call it
+  /// @param file     name for error messages
   NpzReader(std::span<const std::byte> content, std::string_view file);
   ~NpzReader();
   NpzReader(NpzReader&&) noexcept;
 
-  /// Names of the arrays, without the ".npy" they carry inside, in the archive's order.
+  /// Returns the names of the arrays, without the ".npy" of the archive, in the archive's order.
   const std::vector<std::string>& names() const;
   bool contains(std::string_view name) const;
-  /// What an array takes once unpacked, its header included [bytes].
+  /// Returns the unpacked size of an array, including its header [bytes].
   /// @throws IoError if there is no such array
   std::uint64_t unpacked_bytes(std::string_view name) const;
-  /// @throws IoError if there is no such array (says which there are), it is larger than
-  /// `max_bytes`
-  ///         or damaged, or as parse_npy()
+  /// @throws IoError as parse_npy(), if there is no such array (lists the existing ones), if it is
+  ///         larger than `max_bytes`, or if it is damaged
   NpyArray read(std::string_view name, std::uint64_t max_bytes = max_npz_array_bytes) const;
 
  private:
@@ -210,17 +209,17 @@ class NpzReader {
 
 using NpzArrays = std::map<std::string, NpyArray>;
 
-/// All arrays of an archive. @throws IoError as NpzReader
+/// Reads all arrays of an archive. @throws IoError as NpzReader
 NpzArrays parse_npz(std::span<const std::byte> content, std::string_view file);
 NpzArrays read_npz(const std::filesystem::path& path);
 
 enum class NpzCompression { stored, deflated };
 
-/// The same arrays give the same bytes on any day.
+/// Writes an archive. Equal arrays give equal bytes, independent of the date.
 /// @throws std::invalid_argument if there are no arrays or a name is empty
 std::vector<std::byte> serialize_npz(const NpzArrays& arrays,
                                      NpzCompression compression = NpzCompression::stored);
-/// @throws IoError as AtomicFile does
+/// @throws IoError as AtomicFile
 void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, OutputPolicy policy,
                NpzCompression compression = NpzCompression::stored);
 

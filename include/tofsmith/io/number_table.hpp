@@ -13,69 +13,70 @@
 
 namespace tofsmith {
 
-/// Separator of the whole part and the fraction of a number in a text.
+/// Decimal separator of the numbers in a text.
 enum class DecimalMark { automatic, point, comma };
 
 constexpr std::array<std::string_view, 3> words_of(DecimalMark /*any*/) {
   return {"auto", "point", "comma"};
 }
-/// "auto", "point" or "comma". @throws std::invalid_argument for any other word
+/// Parses "auto", "point" or "comma". @throws std::invalid_argument for any other word
 DecimalMark parse_decimal_mark(std::string_view word);
 
 /// Constraints on the interpretation of a text as a table.
 struct NumberTableOptions {
   DecimalMark decimal = DecimalMark::automatic;
-  std::size_t min_columns = 1;  ///< fewer are only accepted if the text has no other interpretation
+  std::size_t min_columns = 1;  ///< fewer only if there is no other interpretation of the text
   std::size_t max_columns = std::numeric_limits<std::size_t>::max();  ///< same for more
 };
 
-/// A table of numbers, as instruments, spreadsheets and users write it.
+/// A table of numbers from instruments, spreadsheets or users.
 struct NumberTable {
-  std::vector<std::string> names;        ///< of the columns, from the line above the first row
-  std::vector<std::string> upper_names;  ///< from the line above `names`; either may be empty
-  Eigen::MatrixXd values;                ///< (rows, columns), each is_measured()
-  std::vector<std::size_t> lines;        ///< of the file, counted from 1, one per row
+  std::vector<std::string> names;        ///< of the columns, above the first row; may be empty
+  std::vector<std::string> upper_names;  ///< from the line above `names`; may be empty
+  Eigen::MatrixXd values;                ///< (rows, columns), each value is_measured()
+  std::vector<std::size_t> lines;        ///< line numbers of the rows in the file, from 1
   std::size_t first_column = 1;          ///< number in the file of the first column of values
   std::vector<std::vector<std::string>> header;  ///< cells above the rows and to their left
-  std::vector<std::string> notes;                ///< how the file was interpreted
+  std::vector<std::string> notes;                ///< on the interpretation of the file
 
-  /// Index of the column with a name (also without its unit, in any case) or a number in the file.
-  /// @param file  what errors call it
-  /// @throws IoError if there is none, or several of the name
+  /// Returns the index of the column with a name (case-insensitive, unit optional) or with a number
+  /// in the file.
+  /// @param file  name for error messages
+  /// @throws IoError if there is no such column, or several with the name
   Eigen::Index column_of(std::string_view name_or_number, std::string_view file) const;
-  /// Number of columns and names for messages: "3 columns (X s, CH1 V, CH2 V)".
+  /// Returns the number and names of the columns for messages: "3 columns (X s, CH1 V, CH2 V)".
   std::string describe_columns() const;
 };
 
-/// Reads columns between tabs, semicolons, commas or blanks, with decimal points or commas. Fields
-/// may have quotes, lines may end with separators. Lines of text may precede the rows, the last two
-/// of which may name the columns; a header may also fill the columns left of the numbers. The
-/// separators are found by reading the text each way. A text with two interpretations, such as
-/// lines of "1,5", is refused unless its header, rising whole numbers or the options settle it.
-/// Empty lines and lines that begin with '#' are skipped.
-/// @param file  what errors call it
-/// @throws IoError "file:line:column: .." for a field that is not is_measured(), rows of different
-///         lengths, no row at all, or two interpretations
+/// Reads columns separated by tabs, semicolons, commas or blanks, with decimal points or commas.
+/// Fields may be quoted, and lines may end with separators. Lines of text may precede the rows; the
+/// last two of them may name the columns. Header columns may also precede the numbers. The
+/// separators are determined by trying each possibility. A text with two interpretations, such as
+/// lines of "1,5", is rejected unless its header, increasing integers or the options resolve the
+/// ambiguity. Empty lines and lines that begin with '#' are skipped.
+/// @param file  name for error messages
+/// @throws IoError "file:line:column: ..." for a field that is not is_measured(), rows of different
+///         lengths, a text without rows, or two interpretations
 NumberTable parse_number_table(std::string_view text, std::string_view file,
                                const NumberTableOptions& options = {});
 NumberTable read_number_table(const std::filesystem::path& path,
                               const NumberTableOptions& options = {});
 
-/// Reads a table of one column, or of one next to a counter of the rows. @throws IoError also for
-/// several columns
+/// Reads a table of one column, optionally preceded by a row counter.
 /// @param content  content of the column, for errors: "the temperatures"
+/// @throws IoError as read_number_table(), or for several columns
 NumberTable read_number_column(const std::filesystem::path& path, std::string_view content,
                                DecimalMark decimal = DecimalMark::automatic);
 
-/// Returns whether a file has an extension of such tables: .csv .txt .tsv .dat, in any case.
+/// Returns true for the extensions of number tables: .csv .txt .tsv .dat, case-insensitive.
 bool is_number_table(const std::filesystem::path& path);
 
-/// Returns whether a number can be a measured value: finite, and not one of the values by which
-/// SCPI instruments report infinity (9.9e37) and not-a-number (9.91e37).
+/// Returns true if a number can be a measured value: finite, and not one of the values that SCPI
+/// instruments report for infinity (9.9e37) and not-a-number (9.91e37).
 bool is_measured(double number);
 
-/// Seconds per unit of a column's name: "time_ns", "Time (us)", "delay [ps]", "second"; 0 if the
-/// name has no unit of time.
+/// Returns the seconds per unit of a column's name: "time_ns", "Time (us)", "delay [ps]", "second";
+/// 0 if the name has no unit of time.
 double seconds_per_unit(std::string_view column_name);
 
 }  // namespace tofsmith

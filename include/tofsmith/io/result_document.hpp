@@ -15,38 +15,38 @@
 
 namespace tofsmith {
 
-/// A code's depth error and how far its origin was moved for it.
+/// Depth error of a code, and the rotation of the code's origin that was used.
 struct EvaluatedCode {
   DepthErrorReport error;
   int rotation_bin = 0;
-  /// Of DecodeMethod::ml: the error by zncc in the same trials, to compare with.
+  /// For DecodeMethod::ml: the error of zncc in the same trials, for comparison.
   std::optional<DepthErrorReport> zncc_error;
-  /// On perturbed cameras, if that was asked for.
+  /// On perturbed cameras, if requested.
   std::optional<RobustnessReport> robustness;
 };
 
-/// What generators make of each waveform, as JSON: a list of objects.
+/// Returns the generator limits and errors of each waveform as a JSON list of objects.
 std::string generators_document(const std::vector<GeneratorReport>& reports);
 
-/// What `tofsmith evaluate --json` prints: version, seed, trials, the camera with its defaults
-/// filled in, the decoder, and one entry per code with its depth errors and bounds. Beside what it
-/// is compared with stand the ratios of its errors to it; a code's robustness stands in its entry.
+/// Returns the output of `tofsmith evaluate --json`: version, seed, trials, the camera with its
+/// defaults filled in, the decoder, and one entry per code with depth errors, bounds, their ratios
+/// to the errors, and robustness.
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options);
 
-/// What `tofsmith design --json` prints: the same with one entry per candidate, the name of the
-/// best, and how each designed code compares with its target.
+/// Returns the output of `tofsmith design --json`: evaluation_document() with one entry per
+/// candidate, the name of the best code, and a comparison of each designed code with its target.
 std::string design_document(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options);
 
-/// What `tofsmith require --json` prints: camera and options, the error as it is, what of each
-/// quantity suffices and what the bound excludes, and the error over bandwidth and power.
+/// Returns the output of `tofsmith require --json`: camera and options, the present error, the
+/// required value and the bound of each quantity, and the error over bandwidth and power.
 std::string requirements_document(const Camera& camera, const Requirements& found,
                                   const RequirementOptions& options);
 
-/// What `tofsmith multipath` found, as JSON: per code, per signal, every cell; what a code cannot
-/// do is null.
-/// @param scene  what became of a scene, by mean delay of its multipath light; null: none
+/// Returns the result of `tofsmith multipath` as JSON: per code and signal, every cell; unsupported
+/// cells are null.
+/// @param scene  errors in a scene by mean delay of its multipath light; null: none
 std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,
                                const MultipathErrorOptions& options,
                                const MultipathScene* scene = nullptr);

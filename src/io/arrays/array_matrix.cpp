@@ -15,7 +15,7 @@
 namespace tofsmith {
 namespace {
 
-/// The columns of a text except a first one that numbers the samples or holds their times.
+/// Returns the columns of a text without a first column of sample numbers or times.
 Eigen::MatrixXd correlation_columns_of(const std::filesystem::path& path,
                                        std::vector<std::string>& notes) {
   const NumberTable table = read_number_table(path, {.min_columns = 2});
@@ -41,7 +41,7 @@ int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view
   if (columns % layout.taps != 0)
     throw IoError(file, fmt::format("found {} columns; expected a multiple of taps = {}", columns,
                                     layout.taps));
-  const bool has_order = layout.taps > 1 && columns > layout.taps;  // one exposure has none to tell
+  const bool has_order = layout.taps > 1 && columns > layout.taps;
   if (has_order && !layout.order)
     throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
                                     "expected --tap-order blocked or interleaved",

@@ -13,11 +13,11 @@
 namespace tofsmith {
 namespace {
 
-// Noise of the transforms that such files were made with, of the largest value.
+// Rounding errors of the Fourier transforms that created such files, relative to the largest value.
 constexpr double noise_share = 1e-9;
-constexpr Eigen::Index max_time_bins = 65536;  // as a camera's samples
+constexpr Eigen::Index max_time_bins = 65536;  // as the samples of cameras
 
-/// One light for all rows from (N), (N, 1), (1, N) or columns that are all the same.
+/// Returns the common light of all rows from (N), (N, 1), (1, N) or several equal columns.
 Eigen::VectorXd light_of(Eigen::MatrixXd light, const std::string& place) {
   if (light.rows() == 1) light.transposeInPlace();
   const double near = noise_share * light.cwiseAbs().maxCoeff();
@@ -36,7 +36,7 @@ Eigen::VectorXd light_of(Eigen::MatrixXd light, const std::string& place) {
   return one;
 }
 
-/// Weights (N, K), turned over if they come as (K, N).
+/// Returns the weights as (N, K); (K, N) is transposed.
 Eigen::MatrixXd rows_of_matrix(Eigen::MatrixXd rows, Eigen::Index time_bins,
                                const std::string& place) {
   const Eigen::Index found_rows = rows.rows(), found_columns = rows.cols();

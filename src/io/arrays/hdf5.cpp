@@ -17,11 +17,10 @@
 namespace tofsmith {
 namespace {
 
-/// The library may be built without threads in mind. Recursive: a data set that is refused is
-/// closed while it is being opened.
+/// The HDF5 library may be built without thread safety. The mutex is recursive because a rejected
+/// data set is closed while it is being opened.
 std::recursive_mutex hdf5_mutex;
 
-/// An identifier of the library, closed at the end.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -42,7 +41,8 @@ class Handle {
   Close close_;
 };
 
-/// While it lives, the library keeps quiet: errors are thrown here, with its words.
+/// Suppresses error output of the library in its scope; errors are thrown with the library's
+/// message.
 class Quiet {
  public:
   Quiet() {
@@ -58,7 +58,7 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-/// What the library says of its last error: the innermost words.
+/// Returns the innermost message of the library's last error.
 std::string last_words() {
   std::string words;
   const auto keep = [](unsigned, const H5E_error2_t* error, void* data) -> herr_t {
@@ -72,7 +72,7 @@ std::string last_words() {
 std::optional<NpyType> number_type(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   if (H5Tget_class(type) == H5T_FLOAT) {
-    if (bytes == 2 || bytes == 4) return NpyType::float32;  // the library converts halves exactly
+    if (bytes == 2 || bytes == 4) return NpyType::float32;  // exact conversion by HDF5
     if (bytes == 8) return NpyType::float64;
     return {};
   }
@@ -117,7 +117,6 @@ hid_t native_type(NpyType type) {
   }
 }
 
-/// A data set of numbers in a file.
 struct Listed {
   std::string name;
   NpyShape shape;
@@ -131,7 +130,7 @@ NpyShape shape_of(hid_t dataset) {
   return {sizes.begin(), sizes.end()};
 }
 
-/// Data sets of numbers with two to four axes. Links to other files are not followed.
+/// Lists numeric data sets with two to four axes. Links to other files are not followed.
 std::vector<Listed> list_datasets(hid_t file) {
   std::vector<Listed> found;
   // The type of `info` is H5O_info_t in HDF5 1.10 and H5O_info1_t from 1.12 on.
@@ -165,7 +164,7 @@ std::string describe(const std::vector<Listed>& list) {
   return fmt::format("the data sets {}", fmt::join(words, ", "));
 }
 
-/// @throws IoError unless one of them is meant
+/// @throws IoError if the choice is ambiguous or does not exist
 std::string chosen_name(const std::vector<Listed>& list, const std::string& asked,
                         const std::string& file) {
   if (asked.empty() && list.size() == 1) return list.front().name;
@@ -179,7 +178,6 @@ std::string chosen_name(const std::vector<Listed>& list, const std::string& aske
                                                   asked, describe(list)));
 }
 
-/// An open data set and what is known of it.
 struct Dataset {
   std::string file;
   std::string name;
@@ -208,7 +206,7 @@ void Dataset::read_box(const std::vector<hsize_t>& start, const std::vector<hsiz
     throw error(fmt::format("cannot be read: {}", last_words()));
 }
 
-/// A stretch of items is a few boxes: whole slices of as slow an axis as begin and end there.
+/// Reads a range of items as a few boxes: whole slices of the slowest axis that fits the range.
 void Dataset::read_items(std::size_t first, std::span<std::byte> into) const {
   const std::lock_guard lock(hdf5_mutex);
   const Quiet quiet;
@@ -233,14 +231,14 @@ void Dataset::read_items(std::size_t first, std::span<std::byte> into) const {
   }
 }
 
-/// What a chunk takes unpacked [bytes]; 0 if the data set lies in one piece.
+/// Returns the unpacked size of a chunk [bytes]; 0 if the data set is contiguous.
 std::uint64_t chunk_bytes(hid_t dataset, const NpyShape& shape, std::size_t item) {
   const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
   if (H5Pget_layout(properties) != H5D_CHUNKED) return 0;
   std::vector<hsize_t> chunk(shape.size());
   if (H5Pget_chunk(properties, static_cast<int>(chunk.size()), chunk.data()) < 0) return 0;
   std::uint64_t bytes = item;
-  for (const hsize_t size : chunk) bytes *= size;  // HDF5 has no chunk of more than 4 GB
+  for (const hsize_t size : chunk) bytes *= size;  // HDF5 limits chunks to 4 GB
   return bytes;
 }
 
@@ -256,7 +254,7 @@ Handle open_file(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored))
     throw IoError(path.string(), "found no file; expected an HDF5 file");
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // with what a damaged file left open
+  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // closes open objects, too
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (file < 0)
     throw IoError(path.string(),
@@ -264,10 +262,9 @@ Handle open_file(const std::filesystem::path& path) {
   return file;
 }
 
-/// @param cache_bytes  for chunks
 Handle open_dataset(hid_t file, const std::string& name, std::size_t cache_bytes) {
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-  constexpr std::size_t slots = 12421;  // a prime, many times the chunks that the cache holds
+  constexpr std::size_t slots = 12421;  // a prime, much larger than the number of chunks
   H5Pset_chunk_cache(access, slots, cache_bytes, H5D_CHUNK_CACHE_W0_DEFAULT);
   const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t,
                          void*) -> herr_t { return -1; };

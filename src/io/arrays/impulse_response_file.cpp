@@ -15,10 +15,9 @@
 namespace tofsmith {
 namespace {
 
-// Of a step: room for times that were written with few digits.
+// Relative to the time step: allows for times written with few digits.
 constexpr double time_tolerance = 0.01;
 
-/// The step of equally spaced times.
 double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
   const Eigen::Index last = time_s.size() - 1;
   if (last < 1) throw IoError(file, "found one time; expected at least two to tell the step");
@@ -37,7 +36,7 @@ double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
 void read_text(const std::filesystem::path& path, std::optional<double> time_step_s,
                ImpulseResponse& response) {
   const NumberTable table = read_number_table(path);
-  // Times are compared with a given step; a counter of samples has none to compare.
+  // Times are compared with a given step. This is not possible for sample numbers.
   const SampleTimeOptions counted{.time_step_s = time_step_s};
   const TimedSamples samples = timed_samples_of(
       table, path.string(), counts_samples(table, 0) ? counted : SampleTimeOptions{});

@@ -27,7 +27,7 @@ bool can_be_table(Eigen::Index samples, Eigen::Index measurements) {
          measurements <= max_measurements;
 }
 
-/// The matrix as (N, K).
+/// Transposes the matrix to (N, K) if necessary.
 void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<TableAxes> axes,
           std::vector<std::string>& notes) {
   const Eigen::Index rows = matrix.rows(), columns = matrix.cols();
@@ -51,7 +51,7 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
                     place, rows, columns, rows, columns));
 }
 
-/// Largest difference between two samples, as a share of the largest value.
+/// Returns the largest difference between two samples, relative to the largest value.
 double distance(const Eigen::MatrixXd& matrix, Eigen::Index a, Eigen::Index b) {
   const double largest = matrix.cwiseAbs().maxCoeff();
   return largest > 0.0 ? (matrix.row(a) - matrix.row(b)).cwiseAbs().maxCoeff() / largest : 0.0;
@@ -80,7 +80,7 @@ void drop_repeated_end(Eigen::MatrixXd& matrix, const std::string& place,
                   place, last, 100.0 / static_cast<double>(last)));
 }
 
-/// A list of one number per column; empty if the archive has none.
+/// Returns a list with one number per column; empty if the archive has none.
 Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const char* name,
                         Eigen::Index columns) {
   if (!archive.contains(name)) return {};
@@ -98,8 +98,8 @@ Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const
   return Eigen::Map<const Eigen::VectorXd>(values.data(), columns);
 }
 
-/// A number that stands alone in the archive; none: not there.
-/// @param is_valid, rule  whether the number is valid, and in words
+/// Returns a scalar of the archive; none if it is missing.
+/// @param is_valid, rule  validity of the number, and its description
 template <typename Check>
 std::optional<double> number(const NpzReader& archive, const std::string& file, const char* name,
                              const Check& is_valid, std::string_view rule) {
@@ -124,8 +124,8 @@ std::optional<int> whole_number(const NpzReader& archive, const std::string& fil
   return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
-/// What an archive of calibrated functions says of its taps: `taps`, side by side. A word of the
-/// user's on their order must agree.
+/// Returns the tap layout of calibrated functions, whose taps are adjacent according to `taps`. A
+/// user- defined order must agree.
 TapLayout layout_of(const NpzReader& archive, const std::string& file, const TapLayout& given) {
   const std::optional<int> taps = whole_number(archive, file, "taps");
   if (!taps) return given;
@@ -149,7 +149,7 @@ void note_unused(const NpzReader& archive, const std::string& file,
     notes.push_back(fmt::format("{}: not used: {}", file, fmt::join(unused, ", ")));
 }
 
-/// Columns exposure by exposure, the taps of each side by side.
+/// Sorts columns by exposure, with the taps of each adjacent.
 void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::string& file) {
   if (layout.taps > 1 && table.columns() > layout.taps && !layout.order)
     throw IoError(file, fmt::format("found {0} columns of a camera of {1} taps; expected every tap "

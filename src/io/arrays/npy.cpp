@@ -110,7 +110,7 @@ std::vector<std::byte> serialize_npy(const NpyArray& array) {
 
 void write_npy(const std::filesystem::path& path, const NpyArray& array, OutputPolicy policy) {
   AtomicFile file(path, policy);
-  if constexpr (host_is_little_endian) {  // no copy of what may be gigabytes
+  if constexpr (host_is_little_endian) {  // avoids copying arrays of several gigabytes
     file.write(serialize_npy_header(array.type(), array.shape()));
     file.write(array.bytes());
   } else {

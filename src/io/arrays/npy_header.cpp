@@ -101,7 +101,7 @@ class HeaderLiteral {
     expect('(');
     while (peek() != ')') {
       shape.push_back(length());
-      // One axis needs its comma: (3,) is a tuple, (3) is a number.
+      // A tuple of one element needs a comma: (3,) is a tuple, (3) is a number.
       if (peek() != ')' || shape.size() == 1) expect(',');
     }
     expect(')');
@@ -138,7 +138,7 @@ class HeaderLiteral {
     return cursor_.take_text(static_cast<std::size_t>(end - rest.begin()), "header");
   }
 
-  /// The next character that is no space; '\0' at the end.
+  /// Returns the next character that is not a blank; '\0' at the end.
   char peek() {
     skip_spaces();
     return cursor_.at_end() ? '\0' : std::to_integer<char>(cursor_.rest()[0]);
@@ -177,7 +177,6 @@ void check_length(const NpyHeader& header, std::uint64_t file_bytes, std::string
                             header.data_bytes, describe_shape(header.shape), name_of(header.type)));
 }
 
-/// Copies items whose first axis runs fastest to where the last one does.
 void transpose_from_fortran(const NpyShape& shape, std::size_t item,
                             std::span<const std::byte> from, std::span<std::byte> to) {
   NpyShape stride(shape.size()), index(shape.size(), 0);
@@ -234,7 +233,8 @@ std::string serialize_npy_header(NpyType type, const NpyShape& shape) {
   std::string literal =
       fmt::format("{{'descr': '{}{}', 'fortran_order': False, 'shape': {}, }}",
                   entry.bytes == 1 ? '|' : '<', entry.code, describe_shape(shape));
-  // NumPy leaves room for 21 digits of the first axis, and ends data-aligned after a newline.
+  // NumPy reserves 21 digits for the first axis, and pads the header to an aligned size with a
+  // newline.
   if (!shape.empty()) literal.append(21 - fmt::format("{}", shape[0]).size(), ' ');
   constexpr std::size_t alignment = 64, prefix = 10;
   literal.append(alignment - (prefix + literal.size() + 1) % alignment, ' ');
@@ -261,7 +261,7 @@ void restore_host_order(const NpyHeader& header, NpyArray& array) {
 }
 
 std::optional<std::size_t> npy_byte_count(NpyType type, const NpyShape& shape) {
-  // Zero items make any other axis harmless, so look for a zero before multiplying.
+  // An array with a zero axis is empty, even if the product of the other axes overflows.
   if (std::find(shape.begin(), shape.end(), std::size_t{0}) != shape.end()) return 0;
   std::size_t count = item_size(type);
   for (const std::size_t length : shape)

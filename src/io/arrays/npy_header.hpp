@@ -14,11 +14,11 @@
 
 namespace tofsmith {
 
-/// One line per NpyType, in its order.
+/// Properties of each NpyType, in its order.
 struct NpyTypeEntry {
   NpyType type;
   std::string_view name;
-  std::string_view code;  ///< NumPy's letter and size, without the byte order
+  std::string_view code;  ///< NumPy's type code without the byte order
   std::size_t bytes;      ///< per item
 };
 inline constexpr std::array<NpyTypeEntry, 12> npy_types = {{
@@ -36,7 +36,7 @@ inline constexpr std::array<NpyTypeEntry, 12> npy_types = {{
     {NpyType::float64, "float64", "f8", 8},
 }};
 
-/// What stands before the items of an NPY file.
+/// Header of an NPY file.
 struct NpyHeader {
   NpyType type = NpyType::float64;
   bool foreign_byte_order = false;
@@ -46,24 +46,24 @@ struct NpyHeader {
   std::size_t data_bytes = 0;
 };
 
-/// A header is never longer than this; it holds three short entries and padding [bytes].
+/// Maximum length of a header, which contains three short entries and padding [bytes].
 inline constexpr std::size_t max_npy_header_bytes = 12 + 65536;
 
-/// @param start  the file's first bytes, max_npy_header_bytes of them if it has that many
-/// @param file_bytes  size of the whole file, against which the shape is checked
+/// @param start  first bytes of the file, up to max_npy_header_bytes
+/// @param file_bytes  size of the file, for comparison with the shape
 /// @throws IoError at a byte offset
 NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_bytes,
                            std::string_view file);
 
-/// Its length depends on the lengths of all axes but the first, so that a growing array can
-/// write it again in place.
+/// Returns a header whose length does not depend on that of the first axis, so that a growing array
+/// can update it in place.
 std::string serialize_npy_header(NpyType type, const NpyShape& shape);
 
-/// Items of `array` stand as in the file: brings them to this machine's byte order, C order, and
-/// bools to 0 and 1. The array's shape may be a slice of the file's.
+/// Converts items from the order of the file to native byte order and C order, and booleans to 0
+/// and 1. The shape of the array may be a slice of that of the file.
 void restore_host_order(const NpyHeader& header, NpyArray& array);
 
-/// Items x bytes; nothing if that is more than memory has addresses.
+/// Returns the size of the items [bytes]; none if it exceeds the address space.
 std::optional<std::size_t> npy_byte_count(NpyType type, const NpyShape& shape);
 
 }  // namespace tofsmith

@@ -19,7 +19,7 @@
 
 namespace tofsmith {
 
-/// Named, for the state of a reader holds one.
+/// Not in the unnamed namespace, because NpzReader::State has a member of this type.
 struct DiscardNpzArchive {
   void operator()(zip_t* archive) const { zip_discard(archive); }
 };
@@ -57,7 +57,7 @@ Archive open_archive(Source source, int flags, std::string_view file) {
   ZipError error;
   Archive archive(source ? zip_open_from_source(source.get(), flags, error.get()) : nullptr);
   if (!archive) throw IoError(file, fmt::format("cannot read as an NPZ archive: {}", error.text()));
-  (void)source.release();  // the archive owns it now
+  (void)source.release();  // the archive owns the source now
   return archive;
 }
 
@@ -74,7 +74,7 @@ struct NpzReader::State {
   std::vector<std::byte> unpack(std::size_t index) const;
 };
 
-/// Notes names and sizes of all entries and refuses what cannot be a set of arrays.
+/// Reads names and sizes of all entries and rejects invalid archives.
 void NpzReader::State::read_directory() {
   std::uint64_t total = 0;
   const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
@@ -112,8 +112,8 @@ std::vector<std::byte> NpzReader::State::unpack(std::size_t index) const {
   };
   const Entry entry(zip_fopen_index(archive.get(), index, 0));
   if (!entry) throw damaged(zip_strerror(archive.get()));
-  // Grows with what really comes, not with what the directory claims. One read more than there
-  // should be data makes libzip compare the checksum.
+  // The buffer grows with the data that is read, not with the size in the directory. Reading one
+  // byte past the expected end makes libzip verify the checksum.
   constexpr std::size_t block = std::size_t{1} << 22;
   std::vector<std::byte> content;
   for (;;) {
@@ -179,10 +179,10 @@ NpzArrays read_all(const NpzReader& reader) {
   return arrays;
 }
 
-/// The NPY file of an array in two pieces, so that its items need not be copied.
+/// NPY files of arrays in two pieces each, so that items are not copied.
 struct Entries {
   std::list<std::string> headers;
-  std::list<std::vector<std::byte>> swapped;  // items of machines that are big-endian
+  std::list<std::vector<std::byte>> swapped;  // items on big-endian machines
 
   std::array<zip_buffer_fragment_t, 2> pieces(const NpyArray& array) {
     std::string& header = headers.emplace_back(serialize_npy_header(array.type(), array.shape()));
@@ -192,27 +192,27 @@ struct Entries {
       swap_byte_order(copy, item_size(array.type()));
       items = copy;
     }
-    const auto bytes = [](const void* data) {  // libzip only reads them
+    const auto bytes = [](const void* data) {  // libzip does not modify the data
       return const_cast<zip_uint8_t*>(static_cast<const zip_uint8_t*>(data));
     };
     return {{{bytes(header.data()), header.size()}, {bytes(items.data()), items.size()}}};
   }
 };
 
-/// Where the bytes of a new archive go: libzip's own file goes by a name drawn by OpenSSL, which
-/// crashes where it finds no memory.
+/// Destination of a new archive. It replaces libzip's own temporary file, whose name is generated
+/// by OpenSSL, which crashes if memory is exhausted.
 class ArchiveTarget {
  public:
-  /// Writes bytes over earlier ones or at the end, never beyond it.
+  /// Overwrites bytes or appends them at the end.
   using WriteAt = std::function<void(std::uint64_t offset, std::span<const std::byte>)>;
   explicit ArchiveTarget(WriteAt write_at) : write_at_(std::move(write_at)) {}
 
-  /// For one archive, which owns it. This must outlive the archive.
+  /// Returns a source for one archive, which owns it. This object must outlive the archive.
   Source source() {
     return Source(zip_source_function_create(&ArchiveTarget::call, this, nullptr));
   }
 
-  /// What a write threw, behind libzip's back.
+  /// Rethrows an exception of a write, which cannot pass through libzip.
   void rethrow() const {
     if (thrown_) std::rethrow_exception(thrown_);
   }
@@ -250,7 +250,7 @@ class ArchiveTarget {
       case ZIP_SOURCE_ROLLBACK_WRITE:
       case ZIP_SOURCE_REMOVE:
       case ZIP_SOURCE_FREE:
-        return 0;  // nothing is read: the archive is new
+        return 0;  // the archive is new, so nothing is read
       default:
         return -1;
     }
@@ -275,7 +275,6 @@ class ArchiveTarget {
   std::exception_ptr thrown_;
 };
 
-/// Packs arrays into a new archive.
 void pack(const NpzArrays& arrays, NpzCompression compression, ArchiveTarget& target,
           std::string_view file) {
   Archive archive = open_archive(target.source(), ZIP_CREATE | ZIP_TRUNCATE, file);
@@ -283,7 +282,7 @@ void pack(const NpzArrays& arrays, NpzCompression compression, ArchiveTarget& ta
     target.rethrow();
     if (!good) throw IoError(file, zip_strerror(archive.get()));
   };
-  Entries entries;  // libzip reads them at zip_close
+  Entries entries;  // read by zip_close
   for (const auto& [name, array] : arrays) {
     const auto pieces = entries.pieces(array);
     zip_source_t* source =
@@ -301,7 +300,7 @@ void pack(const NpzArrays& arrays, NpzCompression compression, ArchiveTarget& ta
                                    0) == 0);
   }
   check(zip_close(archive.get()) == 0);
-  (void)archive.release();  // zip_close freed it
+  (void)archive.release();  // freed by zip_close
 }
 
 void check_names(const NpzArrays& arrays) {
@@ -330,7 +329,7 @@ std::vector<std::byte> serialize_npz(const NpzArrays& arrays, NpzCompression com
 
 void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, OutputPolicy policy,
                NpzCompression compression) {
-  AtomicFile file(path, policy);  // before the work of packing, so that a bad path fails at once
+  AtomicFile file(path, policy);  // open first, so that an invalid path fails before packing
   check_names(arrays);
   ArchiveTarget target([&](std::uint64_t offset, std::span<const std::byte> bytes) {
     file.write_at(offset, bytes);

@@ -25,7 +25,7 @@
 namespace tofsmith {
 namespace {
 
-/// One way of reading a text; delimiter ' ' means any blanks.
+/// Interpretation of a text; delimiter ' ' means any blanks.
 struct Dialect {
   char delimiter;
   char decimal;
@@ -33,12 +33,11 @@ struct Dialect {
 
 struct Cell {
   std::string_view text;
-  std::size_t column;  // of the line, counted from 1
+  std::size_t column;  // in the line, counted from 1
 };
 
 using Cells = std::vector<Cell>;
 
-/// Cells of a line, without empty ones at its end.
 Cells cells_of(std::string_view line, char delimiter) {
   const std::string_view ends = delimiter == ' ' ? " \t\r" : std::string_view(&delimiter, 1);
   const std::string_view padding = delimiter == '\t' ? " \r" : " \t\r";
@@ -59,7 +58,7 @@ Cells cells_of(std::string_view line, char delimiter) {
   return cells;
 }
 
-/// The number in a cell, which may be NaN or infinite.
+/// Parses the number in a cell, which may be NaN or infinite.
 std::optional<double> number_of(std::string_view text, char decimal) {
   std::string copy;
   if (decimal == ',') {
@@ -78,14 +77,14 @@ std::optional<double> number_of(std::string_view text, char decimal) {
   return result.ec == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-/// Cells [begin, end) of each row.
+/// Range [begin, end) of the cells of each row.
 struct Columns {
   std::size_t begin = 0, end = 0;
   std::size_t count() const { return end - begin; }
   auto operator<=>(const Columns&) const = default;
 };
 
-/// The columns of a line that holds numbers and empty cells left of them only.
+/// Returns the columns of a line that contains only numbers, optionally after empty cells.
 std::optional<Columns> columns_of_row(const Cells& cells, char decimal) {
   Columns columns{0, cells.size()};
   while (columns.begin < columns.end && cells[columns.begin].text.empty()) ++columns.begin;
@@ -94,7 +93,6 @@ std::optional<Columns> columns_of_row(const Cells& cells, char decimal) {
   return columns.count() > 0 ? std::optional(columns) : std::nullopt;
 }
 
-/// The columns that most lines have.
 Columns most_frequent_columns(const std::vector<TextLine>& lines, Dialect dialect) {
   struct Count {
     std::size_t lines = 0, first = 0;
@@ -111,7 +109,7 @@ Columns most_frequent_columns(const std::vector<TextLine>& lines, Dialect dialec
   return best == counts.end() ? Columns{} : best->first;
 }
 
-/// The numbers of a row. The cells left of its columns may hold a header, which begins with text.
+/// Parses the numbers of a row. The cells to their left may contain a header that begins with text.
 std::optional<std::vector<double>> row_of(const Cells& cells, Columns columns, char decimal) {
   if (cells.size() != columns.end || columns.count() == 0) return std::nullopt;
   const auto first = std::ranges::find_if(cells, [](const Cell& c) { return !c.text.empty(); });
@@ -127,7 +125,7 @@ std::optional<std::vector<double>> row_of(const Cells& cells, Columns columns, c
   return numbers;
 }
 
-/// A text as one dialect reads it, up to the first line that does not fit.
+/// A text in one dialect, up to the first line that is not a row.
 struct Reading {
   Dialect dialect;
   Columns columns;
@@ -148,7 +146,7 @@ Reading reading_of(const std::vector<TextLine>& lines, Dialect dialect) {
   };
   const auto first = std::ranges::find_if(lines, has_columns);
   reading.first = static_cast<std::size_t>(first - lines.begin());
-  // Rows next to a header may precede.
+  // The first rows may be next to a header.
   while (reading.first > 0 && reading.row(lines[reading.first - 1])) --reading.first;
   std::size_t end = reading.first;
   while (end < lines.size() && reading.row(lines[end])) ++end;
@@ -163,7 +161,6 @@ std::string place_of(std::string_view file, const TextLine& line, std::size_t co
 
 constexpr std::string_view no_rows = "found no row of numbers; expected at least one";
 
-/// Reports a line that is no row although one was expected there.
 [[noreturn]] void refuse_line(const TextLine& line, const Reading& reading, std::size_t first_line,
                               std::string_view file) {
   const Cells cells = reading.cells(line);
@@ -177,7 +174,7 @@ constexpr std::string_view no_rows = "found no row of numbers; expected at least
                             reading.columns.end, first_line));
 }
 
-/// Returns whether "12,5" is two columns: the first numbers are whole and rise by equal steps.
+/// Returns true if "12,5" is two columns because the first numbers are integers with equal steps.
 bool first_column_counts(const std::vector<TextLine>& lines, const Reading& reading) {
   double last = 0.0, step = 0.0;
   for (std::size_t r = 0; r < reading.rows; ++r) {
@@ -190,12 +187,11 @@ bool first_column_counts(const std::vector<TextLine>& lines, const Reading& read
   return reading.rows >= 3;
 }
 
-/// Returns whether a cell has digits after a zero, "05": the part after a decimal comma.
+/// Returns true for digits after a zero, "05", which can only follow a decimal comma.
 bool is_fraction(std::string_view text) {
   return text.size() > 1 && text[0] == '0' && std::ranges::all_of(text, is_digit);
 }
 
-/// Returns whether the second column has numbers such as "05", which are fractions.
 bool second_column_is_fraction(const std::vector<TextLine>& lines, const Reading& reading) {
   for (std::size_t r = 0; r < reading.rows && reading.columns.count() > 1; ++r) {
     const Cells cells = reading.cells(lines[reading.first + r]);
@@ -205,7 +201,7 @@ bool second_column_is_fraction(const std::vector<TextLine>& lines, const Reading
   return false;
 }
 
-/// Commas as delimiters or as decimal marks, where both can be read.
+/// Decides whether commas are delimiters or decimal marks if both are possible.
 Reading settle_commas(const std::vector<TextLine>& lines, const Reading& delimiters,
                       const Reading& decimals, std::string_view file) {
   const std::size_t names =
@@ -222,7 +218,7 @@ Reading settle_commas(const std::vector<TextLine>& lines, const Reading& delimit
                             trimmed(line.text), delimiters.columns.count()));
 }
 
-/// All ways of reading the text that its characters allow.
+/// Returns all readings that the characters of the text allow.
 std::vector<Reading> readings_of(const std::vector<TextLine>& lines, std::string_view text,
                                  DecimalMark decimal) {
   const auto has = [&](char c) { return text.find(c) != std::string_view::npos; };
@@ -233,14 +229,14 @@ std::vector<Reading> readings_of(const std::vector<TextLine>& lines, std::string
     if (decimal == DecimalMark::automatic && mark == ',' && !has(',')) continue;
     for (const char delimiter : {'\t', ';', ',', ' '}) {
       if (delimiter != ' ' && !has(delimiter)) continue;
-      if (delimiter == ',' && mark == ',' && !has('"')) continue;  // only quotes tell them apart
+      if (delimiter == ',' && mark == ',' && !has('"')) continue;  // ambiguous
       readings.push_back(reading_of(lines, {delimiter, mark}));
     }
   }
   return readings;
 }
 
-/// The one dialect in which the text is a table of numbers.
+/// Returns the only dialect in which the text is a table of numbers.
 Reading chosen_reading(const std::vector<TextLine>& lines, std::string_view text,
                        std::string_view file, const NumberTableOptions& options) {
   std::vector<Reading> readings = readings_of(lines, text, options.decimal);
@@ -249,7 +245,7 @@ Reading chosen_reading(const std::vector<TextLine>& lines, std::string_view text
   };
   const Reading best = *std::ranges::max_element(readings, {}, rank);
   if (best.rows == 0) throw IoError(file, no_rows);
-  // Rows that another dialect reads are no header and no end.
+  // Rows of another dialect cannot be a header or follow the table.
   std::erase_if(readings, [&](const Reading& r) {
     return !r.complete || r.rows < best.rows || r.first > best.first;
   });
@@ -259,7 +255,7 @@ Reading chosen_reading(const std::vector<TextLine>& lines, std::string_view text
     return r.columns.count() >= options.min_columns && r.columns.count() <= options.max_columns;
   };
   if (std::ranges::any_of(readings, fits)) std::erase_if(readings, std::not_fn(fits));
-  // Readings that split more mean the same, except that commas may be either.
+  // Readings with more columns are equivalent, except for the two meanings of commas.
   const Reading* point = nullptr;
   const Reading* comma = nullptr;
   for (const Reading& reading : readings) {
@@ -273,8 +269,8 @@ Reading chosen_reading(const std::vector<TextLine>& lines, std::string_view text
   return settle_commas(lines, *point, *comma, file);
 }
 
-/// Refuses lines above the first row that were meant as rows: only numbers, or a number first and
-/// as many cells as a row.
+/// Rejects lines above the first row that were intended as rows: only numbers, or a number followed
+/// by as many cells as in a row.
 void check_header(const std::vector<TextLine>& lines, const Reading& reading,
                   std::string_view file) {
   for (std::size_t i = 0; i < reading.first; ++i) {
@@ -290,7 +286,7 @@ void check_header(const std::vector<TextLine>& lines, const Reading& reading,
   }
 }
 
-/// Refuses several numbers with decimal commas between commas, "2900,0000,2000,0756".
+/// Rejects several numbers with decimal commas, separated by commas: "2900,0000,2000,0756".
 void refuse_split_fractions(const std::vector<TextLine>& lines, const Reading& reading,
                             std::string_view file) {
   if (reading.dialect.delimiter != ',' || reading.dialect.decimal != '.') return;
@@ -313,7 +309,7 @@ void refuse_split_fractions(const std::vector<TextLine>& lines, const Reading& r
                               trimmed(found->text)));
 }
 
-/// Names of the columns in a line: text, or nothing, or behind the first the numbers of channels.
+/// Returns the names of the columns in a line: text, empty, or channel numbers after the first.
 std::vector<std::string> names_in(const Cells& cells, const Reading& reading) {
   const Columns columns = reading.columns;
   if (cells.size() < columns.end) return {};
@@ -374,7 +370,7 @@ constexpr EnumWords<DecimalMark, 3> mark_words("DecimalMark", "decimal mark",
 DecimalMark parse_decimal_mark(std::string_view word) { return mark_words.parse(word); }
 
 bool is_measured(double number) {
-  constexpr double least_code = 9.89e37;  // 9.9e37, also when it was rounded
+  constexpr double least_code = 9.89e37;  // below 9.9e37, to allow for rounding
   return std::abs(number) < least_code;
 }
 

@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Targets, histories and messages of a designed code: what only reports need.
+/// Returns the targets, histories and messages of a designed code, which only reports need.
 Json details_json(const Candidate& candidate) {
   Json details = {{"message", candidate.message}};
   if (candidate.search) details["search"] = fields_json(*candidate.search);
@@ -45,7 +45,6 @@ Json details_json(const Candidate& candidate) {
   return details;
 }
 
-/// @param samples  how many each target must have
 void read_details(const JsonReader& details, int samples, Candidate& candidate) {
   candidate.message = details.member("message").text();
   const std::size_t measurements = candidate.per_measurement.size();
@@ -68,16 +67,17 @@ void read_details(const JsonReader& details, int samples, Candidate& candidate) 
       candidate.per_measurement[k].history.push_back(row_from_json<FactorizeIteration>(entry));
 }
 
-/// The camera with its measured responses as samples: what it takes to know it without their files.
+/// Returns the camera with measured responses as samples, independent of their files.
 Camera self_contained(Camera camera) {
   camera.light.impulse_response.file.clear();
   camera.sensor.impulse_response.file.clear();
   return camera;
 }
 
-/// Everything that determines a designed code, as text.
+/// Returns a hash of all inputs that determine a designed code.
 std::string design_key(const Camera& camera, DesignOptions options) {
-  // Codes are judged afresh, and are called by how many exposures they have.
+  // Codes are evaluated again and named by their number of exposures, so these options do not
+  // matter.
   options.trials = 0;
   options.outlier_threshold_m = 0.0;
   if (!options.exposures.empty()) options.exposures.assign(1, 0);  // = {0} makes GCC 14 warn
@@ -94,7 +94,7 @@ fs::path code_path(const fs::path& directory, const std::string& name) {
   return directory / "codes" / (file_name_of(name) + ".code.json");
 }
 
-/// A code must be what its file is called by and fit the camera, or reports could not draw it.
+/// Checks that a code has its file's name and fits the camera, as reports require.
 void check_code(const Candidate& candidate, const std::string& name, const Camera& camera,
                 const fs::path& path) {
   const std::size_t reported = candidate.per_measurement.size();
@@ -140,11 +140,11 @@ Candidate finished_from_json(const JsonReader& json, const fs::path& path, const
   return candidate;
 }
 
-/// Finished candidates, or none if they were designed from other inputs.
+/// Reads finished candidates; none if they were designed from other inputs.
 std::vector<Candidate> read_finished(const fs::path& path, const std::string& key,
                                      const std::string& name, const Camera& camera) {
   const nlohmann::json document = read_json(path);
-  const std::string file = path.string();  // the reader refers to it
+  const std::string file = path.string();  // referenced by the reader
   const JsonReader json(document, file);
   std::vector<Candidate> candidates;
   if (json.member("key").text() != key) return candidates;
@@ -169,7 +169,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
         try {
           return read_finished(path, key, name, camera);
         } catch (const IoError&) {
-          return {};  // damaged: designing again costs minutes and replaces it
+          return {};  // damaged: design the code again and replace the file
         }
       },
       .save =
@@ -187,7 +187,7 @@ void DesignDirectory::write(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options, OutputPolicy policy) const {
   make_output_directory(path_ / "codes");
   std::error_code
-      ignored;  // design.json is gone while the others change: a design in parts is none
+      ignored;  // remove design.json first, so that incomplete directories are not read as designs
   if (policy == OutputPolicy::overwrite) fs::remove(path_ / "design.json", ignored);
   write_file_atomically(path_ / "camera.toml", camera_to_toml(self_contained(camera)), policy);
   for (const Candidate& c : result.candidates)
@@ -196,7 +196,7 @@ void DesignDirectory::write(const Camera& camera, const DesignResult& result,
   for (const Candidate& c : result.candidates)
     if (c.is_designed()) details[c.code.name()] = details_json(c);
   write_file_atomically(path_ / "details.json", details.dump(1), policy);
-  // Last, since its presence says that the design is complete.
+  // Written last, because its presence marks a complete design.
   write_file_atomically(path_ / "design.json", design_document(camera, result, options), policy);
 }
 

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// @param plane  what follows the code's name: "", "-filtered", ..
+/// @param plane  suffix after the code's name: "", "-filtered", ...
 std::string plane_file_name(const std::string& light, const std::string& code,
                             std::string_view plane = "") {
   return fmt::format("{}-{}{}.npy", file_name_of(light), file_name_of(code), plane);
@@ -55,7 +55,6 @@ SceneError error_from_json(const JsonReader& json) {
           .outlier_threshold_m = length_m("outlier_threshold_m")};
 }
 
-/// A plane of the scene's size.
 Image<float> read_image_plane(const fs::path& path, std::string_view what,
                               const SceneImage& truth) {
   Image<float> plane = read_float_image(path, what);
@@ -79,7 +78,7 @@ SceneImage read_truth(const fs::path& directory) {
   return truth;
 }
 
-/// The plane whose file a member names.
+/// Reads the plane from the file named by a member.
 Image<float> read_plane_file(const JsonReader& json, std::string_view member, std::string_view what,
                              const fs::path& directory, const SceneImage& truth) {
   const std::string file = json.member(member).text();
@@ -121,7 +120,7 @@ Json write_decoding(const SceneDecoding& decoding, const std::string& light,
 
 void write_scene_result(const fs::path& directory, const SceneResult& scene, OutputPolicy policy) {
   make_output_directory(directory);
-  std::error_code ignored;  // scene.json is gone while the others change
+  std::error_code ignored;  // remove scene.json first, as its presence marks a complete scene
   if (policy == OutputPolicy::overwrite) fs::remove(directory / "scene.json", ignored);
   write_float_image(directory / "true_depth.npy", scene.truth.depth_m, "depth", policy);
   write_float_image(directory / "albedo.npy", scene.truth.albedo, "albedo", policy);

@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The default of a key; null if there is none.
 Json default_of(const KeyDescription& described, const Json& defaults) {
   if (described.may_be_absent || !described.key.applies) return nullptr;
   const Json::json_pointer place("/" + [&] {
@@ -44,7 +43,7 @@ Json key_json(const KeyDescription& described, const Json& defaults) {
   return entry;
 }
 
-/// @param its  with the default of every key
+/// @param its  contains the default of every key
 template <typename Struct>
 std::string keys_json(Struct its) {
   KeyList list;

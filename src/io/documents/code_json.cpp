@@ -20,12 +20,12 @@ using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::string_view format_name = "tofsmith-code";
 constexpr int format_version = 1;
-constexpr int max_samples = 65536;    // as a camera's
-constexpr int max_harmonic = 2048;    // as families'
-constexpr int max_measurements = 64;  // as decoders take
-constexpr double tolerance = 1e-9;    // as CodeSet's
+constexpr int max_samples = 65536;    // as for cameras
+constexpr int max_harmonic = 2048;    // as for families
+constexpr int max_measurements = 64;  // limit of decoders
+constexpr double tolerance = 1e-9;    // as for CodeSet
 
-/// Harmonics that are not 0, each as [n, Re c_n, Im c_n].
+/// Writes the nonzero harmonics as [n, Re c_n, Im c_n].
 OrderedJson cosines_to_json(const Eigen::VectorXcd& coefficients) {
   OrderedJson harmonics = OrderedJson::array();
   for (Eigen::Index n = 1; n < coefficients.size(); ++n)
@@ -86,8 +86,8 @@ Waveform read_binary(const JsonReader& json, double highest) {
   }
 }
 
-/// x(t) = mean + 2 Re sum of c_n exp(2 pi i n t).
-/// @param lowest, highest  limits of its values
+/// Reads x(t) = mean + 2 Re sum of c_n exp(2 pi i n t).
+/// @param lowest, highest  limits of x
 Waveform read_cosines(const JsonReader& json, double lowest, double highest) {
   json.only({"kind", "mean", "harmonics"});
   Eigen::VectorXcd coefficients(1);
@@ -108,7 +108,6 @@ Waveform read_cosines(const JsonReader& json, double lowest, double highest) {
   return waveform;
 }
 
-/// @param highest  largest value the waveform may take
 Waveform read_waveform(const JsonReader& json, int samples, double highest) {
   const JsonReader kind = json.member("kind");
   if (kind.text() == "binary") return read_binary(json, highest);
@@ -117,7 +116,8 @@ Waveform read_waveform(const JsonReader& json, int samples, double highest) {
   kind.mistyped("\"binary\", \"sampled\" or \"cosines\"");
 }
 
-/// The drive of a mixer: of sampled weights, or 1 while the weight is 1 and else 0.
+/// Reads the drive of a mixer: (w + 1) / 2 for sampled weights w; binary: 1 while the weight is 1,
+/// else 0.
 Waveform read_drive(const JsonReader& json, int samples) {
   const JsonReader kind = json.member("kind");
   if (kind.text() == "sampled")
@@ -127,7 +127,6 @@ Waveform read_drive(const JsonReader& json, int samples) {
   return read_waveform(json, samples, 1.0);
 }
 
-/// Weights of the rows of one exposure, (N, K).
 Eigen::MatrixXd read_rows(const JsonReader& json, int samples, int count) {
   constexpr double any = std::numeric_limits<double>::max();
   const auto list = json.elements(static_cast<std::size_t>(count), "as many as /taps says");
@@ -164,7 +163,7 @@ void check_format(const JsonReader& json) {
     version.mistyped(fmt::format("{}: a newer tofsmith wrote this file", format_version));
 }
 
-/// The function that a field of CodeSet::create() belongs to ("demodulation 3 minimum").
+/// Returns the waveform to which a field of CodeSet::create() refers ("demodulation 3 minimum").
 JsonReader place_of_field(const JsonReader& json, std::string_view field) {
   for (const std::string_view list : {"modulation", "demodulation"}) {
     if (!field.starts_with(list)) continue;

@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-/// "file:line:column", both counted from 1, of a byte counted from 0.
+/// Converts a byte offset to "file:line:column", line and column counted from 1.
 std::string place_of(std::string_view text, std::size_t byte, std::string_view file) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;
@@ -19,7 +19,7 @@ std::string place_of(std::string_view text, std::size_t byte, std::string_view f
   return fmt::format("{}:{}:{}", file, line, before.size() - line_start + 1);
 }
 
-/// The library's message without its own code and place, which ours replaces.
+/// Returns the library's message without its code and position.
 std::string_view problem_of(std::string_view message) {
   const std::size_t place = message.find("column ");
   const std::size_t colon = place == std::string_view::npos ? place : message.find(": ", place);
@@ -64,8 +64,8 @@ std::string indented(const Json& value, const std::string& indent) {
   return fmt::format("{}{}\n{}{}", list ? '[' : '{', text, indent, list ? ']' : '}');
 }
 
-/// A value to the right of "key =". JSON's numbers, texts and lists of them are TOML's, but for
-/// the DEL character.
+/// Formats a value to the right of "key =". Numbers, strings and lists in JSON are valid TOML,
+/// except for the DEL character.
 std::string toml_value(const Json& value) {
   if (value.is_object()) {
     std::string text;
@@ -90,7 +90,7 @@ nlohmann::json parse_json(std::string_view text, std::string_view file) {
                                       deepest));
     return true;
   };
-  // The parser takes it as the end of the text, whatever follows.
+  // The parser would treat a zero byte as the end of the text.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     throw IoError(place_of(text, zero, file), "found a byte of 0; expected a document in JSON");
   try {
@@ -99,7 +99,7 @@ nlohmann::json parse_json(std::string_view text, std::string_view file) {
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     throw IoError(place_of(text, byte, file), problem_of(error.what()));
   } catch (const nlohmann::json::exception& error) {
-    throw IoError(file, error.what());  // such as a number out of range
+    throw IoError(file, error.what());  // e.g. a number out of range
   }
 }
 

@@ -18,7 +18,7 @@ namespace tofsmith {
 
 namespace {
 
-// Names of the same value in files of OpenCV and its users, of ROS and of Kalibr, as
+// Names of each value in files of OpenCV and its users, of ROS and of Kalibr, as
 // letters_and_digits().
 using Names = std::initializer_list<std::string_view>;
 const Names matrix_names = {"cameramatrix", "intrinsicmatrix", "intrinsics", "intrinsic", "k", "m",
@@ -35,7 +35,7 @@ const Names width_names = {"imagewidth", "width"};
 const Names height_names = {"imageheight", "height"};
 const Names size_names = {"imagesize", "resolution", "size"};
 
-/// One camera of a file, by the name under which users select it; "" of the only one.
+/// One camera of a file, with the name by which users select it; "" for a single camera.
 struct NamedCamera {
   std::string name;
   CalibrationFile file;
@@ -54,7 +54,7 @@ std::vector<NamedCamera> cameras_in(const CalibrationFile& file) {
   return cameras;
 }
 
-/// @param preferred  camera of a file that has several if `name` is empty; itself empty: none
+/// @param preferred  camera to use if `name` is empty and the file has several; empty: none
 CalibrationFile select_camera(const CalibrationFile& file, std::vector<NamedCamera> cameras,
                               std::string_view name, std::string_view preferred = "") {
   if (name.empty()) name = preferred;
@@ -79,7 +79,6 @@ std::optional<int> whole(const CalibrationFile& file, Names names) {
   return node ? std::optional(file.whole(node, *names.begin())) : std::nullopt;
 }
 
-/// Kalibr's camera_model.
 void check_pinhole(const CalibrationFile& file) {
   if (const YAML::Node node = file.find({"cameramodel"}))
     if (const std::string& word = node.Scalar(); word != "pinhole" && word != "fisheye")
@@ -88,7 +87,7 @@ void check_pinhole(const CalibrationFile& file) {
                                   word));
 }
 
-/// The nine numbers of a matrix, or Kalibr's fx fy cx cy.
+/// Reads the nine numbers of a matrix, or Kalibr's fx fy cx cy.
 void read_matrix(const CalibrationFile& file, Lens& lens) {
   const YAML::Node node = file.find(matrix_names);
   if (!node) file.fail("found no camera_matrix, or K; expected the nine numbers of a pinhole");
@@ -105,7 +104,7 @@ void read_matrix(const CalibrationFile& file, Lens& lens) {
   lens.fx_px = k[0], lens.cx_px = k[2], lens.fy_px = k[4], lens.cy_px = k[5];
 }
 
-/// The model that the file states, if any. Kalibr's radtan is OpenCV's with four numbers.
+/// Returns the model of the file, if any. Kalibr's radtan is OpenCV's model with four coefficients.
 std::optional<DistortionModel> model_of(const CalibrationFile& file) {
   if (const YAML::Node node = file.find({"distortionmodel"})) {
     const std::string word = letters_and_digits(node.Scalar());
@@ -149,7 +148,7 @@ void read_distortion(const CalibrationFile& file, std::optional<DistortionModel>
   lens.distortion = std::move(distortion);
 }
 
-/// Width and height; ROS writes 0 where it does not know them.
+/// Reads width and height; ROS writes 0 for unknown sizes.
 void read_size(const CalibrationFile& file, Lens& lens) {
   lens.width_px = whole(file, width_names);
   lens.height_px = whole(file, height_names);
@@ -162,7 +161,7 @@ void read_size(const CalibrationFile& file, Lens& lens) {
     lens.width_px = lens.height_px = std::nullopt;
 }
 
-/// Pixels of calibrations are those of whole images.
+/// Rejects binned and cropped images, as pixel coordinates refer to whole images.
 void check_whole_images(const CalibrationFile& file) {
   for (const char* key : {"binning_x", "binning_y"})
     if (const YAML::Node node = file.find({letters_and_digits(key)});
@@ -175,7 +174,8 @@ void check_whole_images(const CalibrationFile& file) {
       file.fail(offset, fmt::format("roi.{}: expected 0: images that are not cut", key));
 }
 
-/// The cameras of an Azure Kinect by the ends of their places: D0, the depth camera, and PV0.
+/// Lists the cameras of an Azure Kinect by the end of their location: D0 (the depth camera) and
+/// PV0.
 std::vector<NamedCamera> azure_kinect_cameras(const CalibrationFile& file, const YAML::Node& list) {
   std::vector<NamedCamera> cameras;
   for (const YAML::Node& camera : list) {
@@ -188,15 +188,15 @@ std::vector<NamedCamera> azure_kinect_cameras(const CalibrationFile& file, const
   return cameras;
 }
 
-/// The value of a key that must be there.
 YAML::Node required(const CalibrationFile& file, const YAML::Node& table, const char* key) {
   if (!table.IsMap() || !table[key])
     file.fail(table, fmt::format("found no {}; expected the calibration of an Azure Kinect", key));
   return table[key];
 }
 
-/// The factory calibration of an Azure Kinect: lengths are in widths and heights of the sensor,
-/// from its corner. @see Azure Kinect Sensor SDK, src/calibration/calibration.c
+/// Reads the factory calibration of an Azure Kinect. Lengths are relative to the width and height
+/// of the sensor, measured from its corner. @see Azure Kinect Sensor SDK,
+/// src/calibration/calibration.c
 Lens read_azure_kinect(const CalibrationFile& file) {
   const YAML::Node intrinsics = required(file, file.root(), "Intrinsics");
   const YAML::Node list = required(file, intrinsics, "ModelParameters");

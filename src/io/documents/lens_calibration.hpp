@@ -10,25 +10,26 @@
 
 namespace tofsmith {
 
-/// Returns the lens of a calibration file:
+/// Reads the lens of a calibration file:
 /// - OpenCV's FileStorage as YAML, XML or JSON: `camera_matrix`, `distortion_coefficients`,
 ///   `fisheye_model`, `image_width`, `image_height` and other spellings of these names,
 /// - ROS, a camera's file or a camera_info message: `K`, `D`, `distortion_model`, `width`,
-/// `height`,
+///   `height`,
 /// - Kalibr's camchain: `intrinsics`, `distortion_coeffs`, `distortion_model`, `resolution`,
 /// - the factory calibration of an Azure Kinect (JSON).
-/// There is no distortion if all its numbers are 0.
-/// @param source_name  path of the file, or its name in errors
-/// @param model        of files without one, in which four numbers are ambiguous; none: opencv
-/// @param camera       one of several cameras, such as "cam1", or "2" of cameraMatrix2; empty: the
-///                     only one, or the depth camera of an Azure Kinect
-/// @throws IoError "file:line:column: .." for syntax errors, missing values, several cameras,
-/// skewed
-///         pixels, tilted sensors, other models, and images that are binned or cut
+///
+/// If all distortion coefficients are 0, the lens has no distortion.
+/// @param source_name  path, or name for error messages
+/// @param model        for files without a model, in which four coefficients are ambiguous; none:
+///         opencv
+/// @param camera       selects one of several cameras, such as "cam1", or "2" for cameraMatrix2;
+///         empty: the only one, or the depth camera of an Azure Kinect
+/// @throws IoError "file:line:column: ..." for syntax errors, missing values, several cameras,
+///         skewed pixels, tilted sensors, other models, and binned or cropped images
 Lens parse_lens_calibration(std::string_view text, std::string_view source_name,
                             std::optional<DistortionModel> model = {},
                             std::string_view camera = {});
-/// The same of a file. @throws IoError, also if it cannot be read
+/// Reads the lens from a file. @throws IoError, also if it cannot be read
 Lens read_lens_calibration(const std::filesystem::path& path,
                            std::optional<DistortionModel> model = {}, std::string_view camera = {});
 

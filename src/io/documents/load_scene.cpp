@@ -64,7 +64,6 @@ StagedScene staged_scene(const SceneSource& source, SceneKind kind) {
   return framed_mesh(read_mesh(source.scene), source.scale_m.value_or(1.0), width, height);
 }
 
-/// A picture that goes with a scene must have its size.
 void require_size(const Image<float>& picture, const std::string& file, const SceneImage& scene,
                   const std::string& scene_file) {
   if (picture.height == scene.height() && picture.width == scene.width()) return;
@@ -118,7 +117,7 @@ LoadedScene load_scene(const SceneSource& source, const std::optional<Lens>& len
     }
     scene.image.validate();
     return scene;
-  } catch (const std::invalid_argument& error) {  // what files hold, not what was typed
+  } catch (const std::invalid_argument& error) {  // the error is in a file, not in an argument
     throw IoError(source.scene, error.what());
   }
 }

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// What `report` is compared with, and how many times as large its errors are.
+/// Returns the zncc errors and the ratios of the errors of `report` to them.
 Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
   const auto over = [](const Estimate& error, const Estimate& other) {
     return error.value / other.value;

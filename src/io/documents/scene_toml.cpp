@@ -31,7 +31,7 @@ void read_share(TableReader& table, std::string_view key, double& number) {
     table.fail(key, fmt::format("found {}; expected a number in [0, 1]", number));
 }
 
-/// What a file that the scene names holds; problems of that file get the place of its name.
+/// Reads a file named in the scene. Errors are reported at the position of its name.
 template <typename Read>
 auto read_named_file(TableReader& table, std::string_view key, Read&& read) {
   std::string name;
@@ -83,7 +83,6 @@ void read_texture_fields(TableReader& table, Texture& texture) {
   read_positive(table, "period_m", texture.period_m);
 }
 
-/// What every shape has.
 void read_surface(TableReader& table, Texture& texture) {
   if (table.contains("texture")) table.refuse({"albedo"}, "no texture beside it");
   read_share(table, "albedo", texture.albedo);
@@ -170,7 +169,7 @@ void read_view(TableReader& table, PinholeView& view) {
   }
 }
 
-/// Axes of a camera that looks at a point, its rows level: the world's y axis is down.
+/// Returns the axes of a camera that looks at a point, with level rows: the world's y axis is down.
 Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d across = Eigen::Vector3d::UnitY().cross(direction);
   if (!(direction.norm() > 0.0))
@@ -184,7 +183,7 @@ Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& d
   return axes;
 }
 
-/// Where a shape turns about unless the file says another place: its middle.
+/// Default rotation centre of a shape: its middle.
 Eigen::Vector3d middle_of(const Plane& plane) { return plane.point; }
 Eigen::Vector3d middle_of(const Box& box) { return box.centre; }
 Eigen::Vector3d middle_of(const Sphere& sphere) { return sphere.centre; }
@@ -214,7 +213,6 @@ void read_camera(TableReader& table, StagedScene& scene) {
   scene.camera_motion = read_motion(table, position_m);
 }
 
-/// All shapes of one kind.
 template <typename Read>
 void read_shapes(TableReader& table, std::string_view key, StagedScene& scene, Read&& read) {
   table.tables(key, [&](TableReader& inner) {

@@ -7,12 +7,11 @@
 
 namespace tofsmith {
 
-/// Returns an XML document, as OpenCV's FileStorage writes it, as YAML: a map with the root
-/// element. An element of elements is a map, or a list if all are named `_`; an element of several
-/// words is a list, of one word a scalar. Attributes and comments are left out. Every word stays on
-/// its line.
-/// @param name  path of the file, or its name in errors
-/// @throws IoError "file:line: .." where tags do not match
+/// Converts an XML document of OpenCV's FileStorage to YAML: a map with the root element. Elements
+/// with children become maps, or lists if all children are named `_`; elements with several words
+/// become lists, with one word scalars. Attributes and comments are omitted. Line numbers are kept.
+/// @param name  path, or name for error messages
+/// @throws IoError "file:line: ..." if tags do not match
 std::string yaml_of_storage_xml(std::string_view text, std::string_view name);
 
 }  // namespace tofsmith

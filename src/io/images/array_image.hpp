@@ -15,18 +15,18 @@ namespace tofsmith {
 /// @throws IoError unless the array holds floats, shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
-/// `name` if an array is called so, else the name of the only one.
+/// Returns `name` if an array has it, else the name of the only array.
 /// @throws IoError if there is neither
 std::string name_called_or_only(const NpzReader& archive, std::string_view name,
                                 std::string_view file);
-/// The array called `name`, or the only one. @throws IoError if there is neither
+/// Reads the array `name`, or the only one. @throws IoError if there is neither
 NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
                               std::string_view file);
 
 /// @throws IoError unless the array holds floats
 void require_floats(const NpyArray& array, std::string_view file);
 
-/// @throws IoError if the image has colours
+/// @throws IoError if the image has colour channels
 Image<float> image_from_pfm(PfmImage pfm, std::string_view file);
 
 /// @throws std::invalid_argument if the image is empty

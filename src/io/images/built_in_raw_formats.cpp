@@ -12,7 +12,6 @@
 namespace tofsmith {
 namespace {
 
-/// By the camera's name.
 const std::map<std::string, std::string>& known_formats() {
   static const std::map<std::string, std::string> formats = {
       {"arducam-tof",
@@ -33,7 +32,6 @@ const std::map<std::string, std::string>& known_formats() {
   return formats;
 }
 
-/// Why another camera has none.
 std::string reason_of(const std::string& camera) {
   if (camera == "kinect-v2")
     return "its columns are interleaved and its numbers go through a table (libfreenect2 unpacks "
@@ -50,7 +48,7 @@ std::vector<std::string> built_in_raw_format_names() {
 }
 
 std::string built_in_raw_format_toml(const std::string& camera) {
-  static_cast<void>(built_in_camera(camera));  // refuses unknown names
+  static_cast<void>(built_in_camera(camera));  // rejects unknown names
   const auto found = known_formats().find(camera);
   if (found != known_formats().end()) return found->second;
   reject("camera", camera,

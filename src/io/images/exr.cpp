@@ -25,7 +25,7 @@
 namespace tofsmith {
 namespace {
 
-// The layout is described in "OpenEXR File Layout", openexr.com.
+// Layout: "OpenEXR File Layout", openexr.com.
 
 constexpr std::uint32_t magic = 20000630;
 constexpr std::uint32_t version_mask = 0xff, tiled_flag = 0x200, long_names_flag = 0x400,
@@ -58,7 +58,7 @@ void note_data_window(ByteCursor value, Layout& layout, std::string_view file) {
   check_image_size(file, layout.height, layout.width);
 }
 
-/// @return how many bytes they take
+/// @return size of the channel list [bytes]
 std::uint64_t note_channels(ByteCursor value, Layout& layout) {
   const std::size_t begin = value.position();
   constexpr std::uint32_t half_type = 1, float_type = 2;
@@ -72,7 +72,7 @@ std::uint64_t note_channels(ByteCursor value, Layout& layout) {
     const std::uint32_t type = value.take_u32_little("a channel");
     if (type != half_type && type != float_type)
       value.fail(fmt::format("channel '{}' holds integers; expected half or float", name));
-    value.take(4, "a channel");  // a hint for compression, and padding
+    value.take(4, "a channel");  // compression hint and padding
     const std::uint32_t x = value.take_u32_little("a channel");
     const std::uint32_t y = value.take_u32_little("a channel");
     if (x != 1 || y != 1)
@@ -91,7 +91,7 @@ void note_tiles(ByteCursor value, Layout& layout) {
                            layout.tile_height, layout.tile_width, max_image_side));
 }
 
-/// Every tile has an 8-byte entry in the file's offset table.
+/// Checks the number of tiles, each of which has an 8-byte entry in the offset table.
 void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
   if (layout.tile_width == 0) return;
   const std::uint64_t across = (layout.width - 1) / layout.tile_width + 1;
@@ -101,8 +101,8 @@ void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCu
         fmt::format("found {} x {} tiles; expected no more than the file can hold", down, across));
 }
 
-/// A flat image can be packed almost without end, so a bound on the ratio alone would refuse small
-/// ones; the ratio is what a constant image reaches in large DWA blocks.
+/// Checks the unpacked size. Small constant images reach any compression ratio, so the ratio is
+/// checked for large images only; its limit is that of a constant image in large DWA blocks.
 void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
   constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, max_ratio = 65536,
                           max_bytes = std::uint64_t{1} << 30;
@@ -118,8 +118,8 @@ void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const Byt
                     layout.channels, layout.height, layout.width, file_bytes));
 }
 
-/// The library reads an attribute as long as its type is, whatever size stands ahead of it, and
-/// goes on behind that: where the two differ, it takes any bytes for sizes.
+/// The library ignores the size of an attribute and reads as much as its type needs. A wrong size
+/// would make it interpret arbitrary bytes as sizes.
 void check_attribute_size(ByteCursor value, std::string_view type, std::uint64_t size) {
   struct Known {
     std::string_view type;
@@ -148,9 +148,9 @@ void check_attribute_size(ByteCursor value, std::string_view type, std::uint64_t
     value.fail(fmt::format("found {} bytes of type '{}'; expected {}", size, type, expected));
 }
 
-/// Walks over the header of an OpenEXR file before the OpenEXR library sees it, because the library
-/// takes memory for whatever sizes a damaged header claims.
-/// @throws IoError at a byte offset if the file is not what parse_exr() reads
+/// Checks the header of an OpenEXR file before the OpenEXR library reads it, because the library
+/// allocates memory for any sizes in a damaged header.
+/// @throws IoError at a byte offset if parse_exr() does not support the file
 void check_exr_layout(std::span<const std::byte> content, std::string_view file) {
   ByteCursor cursor(content, file);
   if (cursor.take_u32_little("the OpenEXR magic") != magic)

@@ -15,20 +15,20 @@
 
 namespace tofsmith {
 
-/// Planes of one size by channel name; usual names are "Z" for depth, "Y" for grey, "R", "G", "B".
+/// Planes of equal size by channel name; usually "Z" for depth, "Y" for grey, "R", "G", "B".
 using ExrPlanes = std::map<std::string, Image<float>>;
 
-/// Every channel of a flat single-part OpenEXR image, half or float, over its data window.
-/// @param file  what errors call it
-/// @throws IoError if the file is damaged, deep, of several parts, has integer or subsampled
-///         channels or more than 64 of them, or is larger than the limits of image_limits.hpp
+/// Reads all channels of a flat single-part OpenEXR image, half or float, in its data window.
+/// @param file  name for error messages
+/// @throws IoError if the file is damaged, deep or multi-part, has integer or subsampled channels
+///         or too many of them, or exceeds the limits of image_limits.hpp
 ExrPlanes parse_exr(std::span<const std::byte> content, std::string_view file);
 ExrPlanes read_exr(const std::filesystem::path& path);
 
-/// Float channels, ZIP compressed.
+/// Writes float channels with ZIP compression.
 /// @throws std::invalid_argument if there are no planes, a name is empty, or sizes differ
 std::vector<std::byte> serialize_exr(const ExrPlanes& planes);
-/// @throws IoError as AtomicFile does
+/// @throws IoError as AtomicFile
 void write_exr(const std::filesystem::path& path, const ExrPlanes& planes, OutputPolicy policy);
 
 }  // namespace tofsmith

@@ -15,15 +15,16 @@
 namespace tofsmith {
 namespace {
 
-// The OpenEXR convention for distance along the viewing axis; other planes carry their own names.
+// OpenEXR's convention for distance along the viewing axis; other channels have the name of the
+// image.
 std::string exr_channel(std::string_view name) { return name == "depth" ? "Z" : std::string(name); }
 
-/// Bit by bit, so that NaN equals NaN.
+/// Compares bits, so that NaN equals NaN.
 bool same_pixels(const Image<float>& a, const Image<float>& b) {
   return std::memcmp(a.pixels.data(), b.pixels.data(), a.size() * sizeof(float)) == 0;
 }
 
-/// Renderers write depth under several names, or three times as if it were a colour.
+/// Selects the depth plane. Renderers use several names, or write depth to R, G and B.
 Image<float> only_plane(ExrPlanes planes, std::string_view name, const std::string& file) {
   for (const std::string& usual : {std::string(name), std::string("Z"), std::string("Y")})
     if (const auto found = planes.find(usual); found != planes.end())

@@ -11,14 +11,14 @@
 
 namespace tofsmith {
 
-/// Returns true for the characters that separate words of PGM and PFM files.
+/// Returns true for the white space between words of PGM and PFM files.
 inline bool is_space(std::byte byte) {
   const char c = std::to_integer<char>(byte);
   return c == ' ' || c == '\n' || c == '\r' || c == '\t';
 }
 
-/// Returns the next word and skips the one white space that ends it. Comments run from # to the end
-/// of the line.
+/// Returns the next word and skips the single white space that ends it. Comments extend from # to
+/// the end of the line.
 inline std::string_view take_word(ByteCursor& cursor, std::string_view what) {
   constexpr std::size_t longest = 64;
   while (!cursor.at_end()) {

@@ -22,7 +22,6 @@ std::size_t row_bytes(const PfmImage& image) {
          sizeof(float);
 }
 
-/// Rows from the bottom row of one image to the top row of the other.
 void copy_flipped(const std::byte* from, std::byte* to, std::size_t rows, std::size_t row_bytes) {
   for (std::size_t row = 0; row < rows; ++row)
     std::memcpy(to + row * row_bytes, from + (rows - 1 - row) * row_bytes, row_bytes);

@@ -12,30 +12,29 @@
 
 namespace tofsmith {
 
-/// A float image, (H, W, C), last axis fastest, top row first (the file has the bottom row first).
+/// Float image, (H, W, C), last axis fastest, top row first (files have the bottom row first).
 struct PfmImage {
   int height = 0;
   int width = 0;
   int channels = 1;  ///< 1 grey, 3 RGB
-  /// Size of the scale in the header. Programs disagree on its meaning: it is reported, not
-  /// applied.
+  /// Absolute scale in the header. It is not applied, as programs disagree on its meaning.
   double scale = 1.0;
   std::vector<float> values;
 };
 
-/// Reads either byte order.
-/// @param file  what errors call it
-/// @throws IoError if the header is malformed, the data is not exactly as long as it says, or the
-///         image is larger than the limits of image_limits.hpp
+/// Reads a PFM of either byte order.
+/// @param file  name for error messages
+/// @throws IoError if the header is malformed, the length of the data differs from it, or the image
+///         exceeds the limits of image_limits.hpp
 PfmImage parse_pfm(std::span<const std::byte> content, std::string_view file);
 PfmImage read_pfm(const std::filesystem::path& path);
 
 enum class PfmByteOrder { little_endian, big_endian };
 
-/// @throws std::invalid_argument if a member is outside what its comment says
+/// @throws std::invalid_argument if a member is outside its documented range
 std::vector<std::byte> serialize_pfm(const PfmImage& image,
                                      PfmByteOrder order = PfmByteOrder::little_endian);
-/// @throws IoError as AtomicFile does
+/// @throws IoError as AtomicFile
 void write_pfm(const std::filesystem::path& path, const PfmImage& image, OutputPolicy policy);
 
 }  // namespace tofsmith

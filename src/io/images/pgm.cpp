@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-/// P5: one byte per number, or two with the high one first.
+/// P5: one byte per number, or two in big-endian order.
 void take_binary(ByteCursor& cursor, NpyArray& image) {
   const auto found = cursor.rest();
   if (found.size() != image.bytes().size())
@@ -24,7 +24,6 @@ void take_binary(ByteCursor& cursor, NpyArray& image) {
   if (host_is_little_endian) swap_byte_order(image.bytes(), item_size(image.type()));
 }
 
-/// P2: decimal numbers.
 void take_text(ByteCursor& cursor, NpyArray& image, unsigned max_value) {
   for (std::size_t i = 0; i < image.size(); ++i) {
     const auto number = take_number<unsigned>(cursor, "the number of a pixel");

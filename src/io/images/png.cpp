@@ -15,8 +15,8 @@
 namespace tofsmith {
 namespace {
 
-// libpng allows its error callback to leave by an exception, which passes through its C frames to
-// ours; the destructors here free what it holds.
+// libpng permits its error callback to throw. The exception passes through libpng's C frames, and
+// the destructors here free its memory.
 [[noreturn]] void throw_error(png_structp png, png_const_charp message) {
   throw IoError(*static_cast<const std::string*>(png_get_error_ptr(png)),
                 fmt::format("damaged PNG: {}", message));
@@ -34,7 +34,6 @@ void append_to_vector(png_structp png, png_bytep data, png_size_t count) {
   out.insert(out.end(), bytes, bytes + count);
 }
 
-/// What libpng reads or writes a file with.
 template <bool reads>
 class PngFile {
  public:
@@ -65,7 +64,7 @@ class PngFile {
 using PngReader = PngFile<true>;
 using PngWriter = PngFile<false>;
 
-/// Deflate packs at most 1032 bytes into one, so a small file cannot hold a large image.
+/// Deflate compresses by a factor of at most 1032, so a small file cannot contain a large image.
 void check_unpacked_size(std::size_t unpacked, std::size_t packed, std::string_view file) {
   if (unpacked / 1032 > packed)
     throw IoError(file, fmt::format("the image needs {} bytes; expected at most what a file of {} "
@@ -121,7 +120,7 @@ PngImage parse_png(std::span<const std::byte> content, std::string_view file) {
 
   if (image.bit_depth == 8) {
     image.values.assign(bytes.begin(), bytes.end());
-  } else {  // big end first
+  } else {  // big endian
     image.values.resize(bytes.size() / 2);
     for (std::size_t i = 0; i < image.values.size(); ++i)
       image.values[i] = static_cast<std::uint16_t>(bytes[2 * i] << 8 | bytes[2 * i + 1]);

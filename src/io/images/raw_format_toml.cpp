@@ -14,8 +14,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Keys of bytes before and after something are one another's nearest words: for a wrong one, all
-/// of them are listed.
+/// For a wrong key ending in "_bytes", lists all such keys, because the most similar one is often
+/// not the intended one.
 void refuse_unknown_gaps(const TomlDocument& document, RawFormat format) {
   KeyNames known;
   describe(known, format);

@@ -24,7 +24,7 @@
 namespace tofsmith {
 namespace {
 
-/// Unpacking, or turning axes round, takes a second copy for a while.
+/// Unpacking or transposing temporarily needs a second copy.
 void check_memory(std::uint64_t bytes, const RawReadOptions& options, const std::string& file,
                   std::string_view what) {
   if (bytes <= options.max_in_memory / 2) return;
@@ -44,7 +44,7 @@ NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions&
   return archive.read(name, options.max_in_memory);
 }
 
-/// Of a file that holds one array, without a name.
+/// Rejects a data set name for a file with one unnamed array.
 void refuse_dataset(const std::filesystem::path& path, const RawReadOptions& options) {
   if (options.dataset.empty()) return;
   throw IoError(path.string(), fmt::format("found a file of one array without a name; expected "
@@ -57,8 +57,8 @@ std::uint64_t bytes_of(const NpyReader& reader) {
                          std::uint64_t{item_size(reader.type())}, std::multiplies<>());
 }
 
-/// What numbers of a file are decoded as: the types of RawView as they are, others in the smallest
-/// that holds them (64-bit ones up to 2^53).
+/// Returns the type for decoding: types of RawView unchanged, others as the smallest type that can
+/// represent them (64-bit integers up to 2^53).
 NpyType decoded_type(NpyType stored) {
   switch (stored) {
     case NpyType::uint8:
@@ -81,7 +81,7 @@ NpyArray in_type(NpyArray array, NpyType type) {
   return NpyArray::of<double>(array.shape(), array.to_doubles());
 }
 
-/// (H, W) and (F, H, W) as what a planar file of one measurement is.
+/// Converts (H, W) and (F, H, W) to the planar shape with one measurement.
 NpyShape with_measurements(const NpyShape& shape, const std::string& file) {
   if (shape.size() == 2) return {1, shape[0], shape[1]};
   if (shape.size() == 3) return {shape[0], 1, shape[1], shape[2]};
@@ -279,7 +279,6 @@ RawView RawFramesReader::rows_as_stored(int frame, int first_row, int rows,
   return view_of(buffer.data(), rows, rows);
 }
 
-/// The rows as the file's items.
 void RawFramesReader::read_stored_rows(int frame, int first_row, int rows,
                                        std::vector<std::byte>& buffer) const {
   const bool planar = layout_ == RawLayout::planar;
@@ -305,7 +304,6 @@ RawView RawFramesReader::rows_in_memory(int frame, int first_row, int rows) cons
   return view_of(first, rows, height());
 }
 
-/// The parts' rows one after another.
 RawView RawFramesReader::rows_of_parts(int frame, int first_row, int rows,
                                        std::vector<std::byte>& buffer) const {
   const std::size_t bytes = static_cast<std::size_t>(rows) * row_bytes() / parts_.size();
@@ -323,7 +321,7 @@ RawView RawFramesReader::rows_of_parts(int frame, int first_row, int rows,
   return view;
 }
 
-/// @param rows_of_a_plane  from one measurement's image to the next, if the layout is planar
+/// @param rows_of_a_plane  rows between the images of two measurements, for planar layout
 RawView RawFramesReader::view_of(const std::byte* data, int rows, int rows_of_a_plane) const {
   const auto view = [&](const auto* numbers) {
     const bool planar = layout_ == RawLayout::planar;
@@ -340,7 +338,7 @@ RawView RawFramesReader::view_of(const std::byte* data, int rows, int rows_of_a_
       return view(reinterpret_cast<const std::uint16_t*>(data));
     case NpyType::float64:
       return view(reinterpret_cast<const double*>(data));
-    default:  // checked_raw_sizes() lets no other type through
+    default:  // checked_raw_sizes() rejects other types
       return view(reinterpret_cast<const float*>(data));
   }
 }

@@ -16,7 +16,6 @@
 namespace tofsmith {
 namespace {
 
-/// The sizes that a shape has in a layout.
 struct Axes {
   std::size_t frames, height, width, measurements;
 };
@@ -50,7 +49,6 @@ void check_measurements(const NpyShape& shape, const RawReadOptions& options,
                                        : ""));
 }
 
-/// Smallest and largest number of a type of whole numbers.
 struct NumberRange {
   double lowest = 0.0, highest = 0.0;
 };
@@ -81,7 +79,7 @@ std::optional<NumberRange> range_of(const RawFormat& format) {
                                   numbers, key, marker, rule));
 }
 
-/// @param range   of whole numbers; none: of floats
+/// @param range   of integers; none: floats
 /// @param digits  bits of a float's mantissa
 void check_markers(const RawMarkers& markers, const std::optional<NumberRange>& range, int digits,
                    std::string_view numbers, const std::string& file) {

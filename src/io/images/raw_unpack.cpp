@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a dump out of their bytes.
 #include <algorithm>
 #include <array>
 
@@ -13,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// The number that a word of `bits` bits encodes.
+/// Decodes the number in a word of `bits` bits.
 double counted(std::uint64_t word, const RawFormat& format) {
   if (!format.is_signed) return static_cast<double>(word);
   const int sign = format.sign_bit_index();
@@ -24,7 +23,7 @@ double counted(std::uint64_t word, const RawFormat& format) {
                                  : rest - (std::int64_t{1} << sign));
 }
 
-/// Little end first in memory, whatever the file's order.
+/// Loads a value in the byte order of the file.
 template <typename Value>
 Value load(const std::byte* from, bool big_endian) {
   if (!big_endian) return load_little_endian<Value>(from);
@@ -60,8 +59,8 @@ void unpack_halves(const RawFormat& format, const std::byte* from, std::span<dou
   }
 }
 
-/// Groups of 4 (RAW10, RAW14) or 2 (RAW12) numbers: their high bytes, then their low bits, those of
-/// the first number lowest.
+/// Unpacks groups of 4 (RAW10, RAW14) or 2 (RAW12) numbers: their high bytes, followed by their low
+/// bits, lowest for the first number.
 void unpack_mipi(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
   const std::size_t group = format.bits == 12 ? 2 : 4;
   const int low_bits = format.bits - 8;
@@ -83,7 +82,7 @@ void unpack_stream(const RawFormat& format, std::span<const std::byte> row, int 
                    std::span<double> numbers) {
   const bool low_first = format.packing == RawPacking::lsb_first;
   const std::uint64_t mask = mask_of(format.bits);
-  std::uint64_t held = 0;  // bits read but not used yet: the next one lowest, or highest of `count`
+  std::uint64_t held = 0;  // unused bits: the next one is the lowest, or the highest of `count`
   int count = 0;
   std::size_t next = 0;
   const auto take_byte = [&] {

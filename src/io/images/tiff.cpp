@@ -21,7 +21,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Tags and their values are defined by the TIFF 6.0 specification.
+// Tags and values are defined by the TIFF 6.0 specification.
 enum class Tag : std::uint16_t {
   image_width = 256,
   image_length = 257,
@@ -42,7 +42,7 @@ enum class Tag : std::uint16_t {
 
 unsigned byte_at(Bytes bytes, std::size_t at) { return std::to_integer<unsigned>(bytes[at]); }
 
-/// Section 9. @return at most `size` bytes
+/// PackBits, Section 9. @return at most `size` bytes
 std::vector<std::byte> unpack_bits(Bytes packed, std::size_t size) {
   std::vector<std::byte> out;
   for (std::size_t at = 0; at < packed.size() && out.size() < size;) {
@@ -59,10 +59,10 @@ std::vector<std::byte> unpack_bits(Bytes packed, std::size_t size) {
   return out;
 }
 
-/// Section 13. @return at most `size` bytes and the rest of one string
+/// LZW, Section 13. @return at most `size` bytes plus the rest of the last string
 std::vector<std::byte> unpack_lzw(Bytes packed, std::size_t size) {
   constexpr unsigned clear = 256, end = 257, first = 258, most = 4096;
-  // A string is a stretch of the output: the string before it and one byte more.
+  // A string is a range of the output: the previous string and the next byte.
   std::array<std::size_t, most> start{}, length{};
   std::vector<std::byte> out;
   std::size_t at = 0, last_start = 0, last_length = 0;
@@ -90,7 +90,7 @@ std::vector<std::byte> unpack_lzw(Bytes packed, std::size_t size) {
     last_length = code < clear ? 1 : length[code];
     if (code < clear) out.push_back(static_cast<std::byte>(code));
     for (std::size_t i = 0; code > end && i < last_length; ++i) out.push_back(out[start[code] + i]);
-    // Codes become wider one code early.
+    // The code width increases one code early.
     while (width < 12 && next + 1 >= 1U << width) ++width;
   }
   return out;
@@ -119,7 +119,7 @@ std::optional<NpyType> type_of(unsigned format, unsigned bits) {
   return std::nullopt;
 }
 
-/// Differences along a row become numbers.
+/// Undoes horizontal differencing.
 template <typename Number>
 void add_up(std::span<std::byte> bytes, std::size_t row_numbers) {
   for (std::size_t i = 0; i * sizeof(Number) < bytes.size(); ++i) {
@@ -187,7 +187,7 @@ std::uint32_t TiffImage::number(std::size_t at, std::size_t bytes) const {
 void TiffImage::read_tag(std::size_t at) {
   const std::uint32_t type = number(at + 2, 2), count = number(at + 4, 4);
   const std::size_t bytes = type == 1 ? 1 : type == 3 ? 2 : type == 4 ? 4 : 0;
-  if (bytes == 0) return;  // no integers
+  if (bytes == 0) return;  // not an integer type
   const std::size_t values = std::uint64_t{count} * bytes <= 4 ? at + 8 : number(at + 8, 4);
   if (count > content_.size() / bytes)
     fail(fmt::format("byte {}: found a tag of {} values; expected fewer", at, count));
@@ -207,7 +207,6 @@ std::uint32_t TiffImage::value(Tag tag, std::optional<std::uint32_t> absent) con
   return absent && !tags_.contains(tag) ? *absent : list(tag).front();
 }
 
-/// @param size  bytes of the block
 std::vector<std::byte> TiffImage::unpacked(std::size_t block, std::size_t size, bool tiled) const {
   const auto &offsets = list(tiled ? Tag::tile_offsets : Tag::strip_offsets),
              &counts = list(tiled ? Tag::tile_byte_counts : Tag::strip_byte_counts);
@@ -272,7 +271,6 @@ TiffImage::Blocks TiffImage::blocks() const {
   return all;
 }
 
-/// Numbers of a block in this machine's byte order.
 std::vector<std::byte> TiffImage::numbers_of(std::size_t block, std::size_t rows, const Blocks& all,
                                              std::size_t item) const {
   std::vector<std::byte> bytes = unpacked(block, rows * all.width * item, all.tiled);
@@ -287,7 +285,7 @@ std::vector<std::byte> TiffImage::numbers_of(std::size_t block, std::size_t rows
 NpyArray TiffImage::numbers() const {
   const std::size_t width = value(Tag::image_width), height = value(Tag::image_length);
   check_image_size(file_, height, width);
-  constexpr std::size_t largest_ratio = 4096;  // of numbers to packed bytes; LZW has the largest
+  constexpr std::size_t largest_ratio = 4096;  // numbers per packed byte; LZW has the largest ratio
   if (width * height / largest_ratio > content_.size())
     fail(fmt::format("found {} x {} pixels; expected fewer in a file of {} bytes", height, width,
                      content_.size()));

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Embree 3 (Debian 12) and 4 (Debian 13) differ in the query of a packet of rays. CMake looks for
-// version 4 first, too.
+// Embree 3 (Debian 12) and 4 (Debian 13) have different functions for ray packets. CMake also
+// prefers version 4.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Finds the nearest hit of each active ray (-1; others 0) of a packet of similar rays.
+/// Finds the nearest hit of each active ray (-1; inactive: 0) in a packet of similar rays.
 inline void intersect_coherent(const int* active, RTCScene scene, RTCRayHit8& packet) {
 #if RTC_VERSION_MAJOR >= 4
   RTCIntersectArguments arguments;

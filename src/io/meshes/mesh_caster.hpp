@@ -26,11 +26,11 @@ using EmbreeScene = EmbreeOwner<RTCScene, rtcReleaseScene>;
 /// @throws std::runtime_error
 EmbreeDevice new_embree_device();
 
-/// One mesh, ready for packets of rays.
+/// Intersects packets of rays with one mesh.
 ///
-/// The hierarchy works in single precision: in coordinates about the mesh's own centre, in units
-/// of its own size, and on rays that start where they reach it, so that neither the mesh's place
-/// nor the camera's distance costs digits. It only names the triangle.
+/// Embree works in single precision. To keep its accuracy independent of the position of mesh and
+/// camera, coordinates are relative to the mesh's centre, in units of its size, and rays start
+/// where they reach its bounding sphere. Embree only selects the triangle.
 class MeshCaster : public MeshSearch {
  public:
   /// @param mesh  must outlive the caster
@@ -40,7 +40,7 @@ class MeshCaster : public MeshSearch {
              std::int32_t shape) const override;
 
  private:
-  /// A triangle of the world; weights of corners b and c are gradient . (point - corner).
+  /// Triangle in world coordinates; the weights of corners b and c are gradient . (point - corner).
   struct Facet {
     Eigen::Vector3d corner, normal, gradient_b, gradient_c;
     std::uint32_t triangle;
@@ -50,9 +50,9 @@ class MeshCaster : public MeshSearch {
 
   EmbreeDevice device_;  ///< outlives scene_
   const Mesh* mesh_;
-  std::vector<Facet> facets_;  ///< triangles without area are left out
+  std::vector<Facet> facets_;  ///< without triangles of zero area
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  double radius_m_ = 0.0;  ///< of a sphere about centre_ that holds the mesh
+  double radius_m_ = 0.0;  ///< of a sphere about centre_ that encloses the mesh
   EmbreeScene scene_;
 };
 

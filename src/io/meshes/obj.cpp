@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// Cuts the next line off a text. A backslash at the end of a line joins the next one to it.
+/// Removes the next line from a text. A backslash at the end of a line continues it.
 std::string next_line(std::string_view& text, int& lines) {
   std::string line;
   for (bool more = true; more && !text.empty();) {
@@ -28,7 +28,6 @@ std::string next_line(std::string_view& text, int& lines) {
   return line;
 }
 
-/// How many of each there are, so far or in all.
 struct ObjCounts {
   std::int64_t vertices = 0, texture_coordinates = 0, normals = 0;
 };
@@ -78,7 +77,7 @@ class ObjReader {
     throw IoError(fmt::format("{}:{}", file_, line_), problem);
   }
 
-  /// The numbers of a line, at least `least` of them and as many as `first` holds.
+  /// Reads at least `least` numbers of a line and stores as many as fit into `first`.
   template <std::size_t n>
   void read_numbers(std::string_view rest, std::string_view what, std::size_t least,
                     std::array<float, n>& first) const {
@@ -106,8 +105,8 @@ class ObjReader {
     read_numbers(rest, "texture coordinate", 1, soup_.textures.emplace_back());
   }
 
-  /// One of the numbers of a corner "7/3/-1"; a negative one counts back from the last.
-  /// From 0 on.
+  /// Parses one index of a corner "7/3/-1" and returns it counted from 0. Negative indices count
+  /// back from the last element.
   std::uint32_t take_index(std::string_view& corner, std::string_view what, std::int64_t so_far,
                            std::int64_t all) const {
     std::int64_t index = 0;

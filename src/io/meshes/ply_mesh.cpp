@@ -21,7 +21,7 @@ namespace {
 
 bool is_integer(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
 
-/// Whether it is whole, and of the size that an integer of a PLY may have.
+/// Returns true for an integer in the range of PLY's integer types.
 bool is_index(double number) {
   return number >= -0x1p31 && number < 0x1p32 && number == std::floor(number);
 }
@@ -31,7 +31,7 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 struct Property {
   std::string name;
   PlyType type = PlyType::float32;
-  std::optional<PlyType> count;  ///< of a list
+  std::optional<PlyType> count;  ///< type of the count of a list; none: not a list
 };
 
 struct Element {
@@ -45,7 +45,7 @@ struct Header {
   std::vector<Element> elements;
 };
 
-/// The header of a PLY file with any elements and lists, line by line.
+/// Reads the header of a PLY file with any elements and lists.
 class HeaderReader {
  public:
   explicit HeaderReader(ByteCursor& cursor) : cursor_(cursor) {}
@@ -99,7 +99,7 @@ class HeaderReader {
     const char* end = words[2].data() + words[2].size();
     const auto result = std::from_chars(words[2].data(), end, element.rows);
     if (result.ec != std::errc() || result.ptr != end) fail("expected a count, an integer >= 0");
-    if (element.rows > cursor_.rest().size())  // every row takes a byte or more
+    if (element.rows > cursor_.rest().size())  // every row has at least one byte
       fail(fmt::format("found {} rows announced, but the file has only {} bytes more", element.rows,
                        cursor_.rest().size()));
     return element;
@@ -127,10 +127,9 @@ class HeaderReader {
   std::size_t start_ = 0;
 };
 
-/// Where the numbers of rows go.
 class SoupFiller {
  public:
-  /// @throws IoError where vertices have no place
+  /// @throws IoError if vertices have no positions
   SoupFiller(const Header& header, const ByteCursor& cursor) {
     for (const Element& element : header.elements) {
       if (element.name != "vertex") continue;
@@ -205,7 +204,7 @@ void read_binary_row(ByteCursor& cursor, const Element& element, bool big_endian
         property.count ? take_number(cursor, *property.count, big_endian, "the length of a list")
                        : 1.0;
     if (count < 0) cursor.fail_at(start, "found a list of negative length");
-    if (count > static_cast<double>(cursor.rest().size()))  // each takes a byte or more
+    if (count > static_cast<double>(cursor.rest().size()))  // every item has at least one byte
       cursor.fail_at(start, fmt::format("found a list of {} numbers, but the file has only {} "
                                         "bytes more",
                                         count, cursor.rest().size()));
@@ -219,7 +218,7 @@ void read_text_row(ByteCursor& cursor, const Element& element, SoupFiller& fille
   const std::size_t start = cursor.position();
   if (cursor.at_end()) cursor.fail(fmt::format("the file ends here; expected {}", element.name));
   std::string_view text(reinterpret_cast<const char*>(cursor.rest().data()), cursor.rest().size());
-  if (text.find('\n') == std::string_view::npos) {  // the last line may do without its end
+  if (text.find('\n') == std::string_view::npos) {  // the last line may lack its newline
     text = cursor.take_text(text.size(), element.name);
   } else {
     text = cursor.take_until('\n', element.name);

@@ -14,14 +14,13 @@ namespace tofsmith {
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::size_t ply_item_size(PlyType type);
-/// Reads the number at `item`, little endian.
+/// Returns the number at `item`, stored in little-endian order.
 double ply_number(const std::byte* item, PlyType type);
-/// The type called "uchar", "float32" and so on; none for other words.
+/// Returns the type named "uchar", "float32" etc.; none for other words.
 std::optional<PlyType> ply_type_of(std::string_view word);
 
-/// Words of a line, separated by blanks.
+/// Splits a line into words separated by blanks.
 std::vector<std::string_view> words_of_ply(std::string_view line);
-/// Words of the next header line.
 std::vector<std::string_view> words_of_ply_line(ByteCursor& cursor);
 
 }  // namespace tofsmith

@@ -15,7 +15,7 @@ double turn_of(const Point& a, const Point& b, const Point& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// In the plane along whose normal (Newell's) the polygon is widest, counterclockwise.
+/// Projects a polygon along its (Newell) normal, counterclockwise.
 std::vector<Point> flattened(std::span<const std::array<float, 3>> corners) {
   const auto at = [&](std::size_t i) -> Eigen::Vector3d {
     const auto& p = corners[i % corners.size()];
@@ -33,7 +33,6 @@ std::vector<Point> flattened(std::span<const std::array<float, 3>> corners) {
   return points;
 }
 
-/// The corners that are left, in a ring.
 class Ring {
  public:
   explicit Ring(std::vector<Point> points) : points_(std::move(points)), left_(points_.size()) {
@@ -87,7 +86,7 @@ class Ring {
 
   std::vector<Point> points_;
   std::vector<std::uint32_t> next_, last_;
-  std::vector<std::uint32_t> standing_back_;  // at first; one that is cut off does no harm
+  std::vector<std::uint32_t> standing_back_;  // concave corners of the original polygon
   std::size_t left_;
   std::int64_t tests_left_ = 4096 * static_cast<std::int64_t>(left_);
 };

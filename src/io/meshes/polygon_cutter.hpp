@@ -9,10 +9,10 @@
 
 namespace tofsmith {
 
-/// Triangles of a polygon in space, as indices of its corners: ears are clipped in the plane that
-/// fits it, so that corners may stand back; a polygon that crosses itself becomes a fan. Time grows
-/// with the number of corners.
-/// @param corners  three or more
+/// Triangulates a polygon in space and appends the triangles as indices of its corners. Ears are
+/// clipped in the plane that fits the polygon, so that it may be concave. Self-intersecting
+/// polygons become a triangle fan. The run time is limited to a multiple of the number of corners.
+/// @param corners  at least three
 void cut_into_triangles(std::span<const std::array<float, 3>> corners,
                         std::vector<std::array<std::uint32_t, 3>>& triangles);
 

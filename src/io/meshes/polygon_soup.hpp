@@ -14,36 +14,38 @@
 
 namespace tofsmith {
 
-/// Polygons as a mesh file has them.
+/// Polygons of a mesh file.
 struct PolygonSoup {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<float, 2>> textures;
-  std::vector<std::uint32_t> position_of;  ///< index of every corner's position
-  std::vector<std::uint32_t> texture_of;   ///< of its texture coordinates; none: it has none
-  std::vector<std::size_t> face_end;       ///< of every polygon the corner behind its last one
+  std::vector<std::uint32_t> position_of;  ///< index of each corner's position
+  std::vector<std::uint32_t> texture_of;  ///< index of each corner's texture coordinates, or `none`
+  std::vector<std::size_t> face_end;      ///< index of the first corner after each polygon
 };
 
-// Readers of mesh files. All throw IoError with the line or byte, what was found and what was
-// expected; what they hold is a small multiple of the file.
+// Readers of mesh files. All throw IoError with the line or byte, the value found and the value
+// expected. Their memory is a small multiple of the file's size.
 
-/// Vertices are three or more finite numbers; faces have three or more corners, whose indices name
-/// vertices, texture coordinates and normals that are there. Everything else is skipped.
+/// Reads vertices with at least three finite numbers, and faces with at least three corners, whose
+/// indices must refer to existing vertices, texture coordinates and normals. Other lines are
+/// skipped.
 PolygonSoup parse_obj(std::string_view text, std::string_view file);
 
-/// Any elements and lists, text or binary of either byte order; exactly the rows announced.
+/// Reads any elements and lists, text or binary in either byte order, with exactly the announced
+/// rows.
 PolygonSoup parse_ply_mesh(std::span<const std::byte> content, std::string_view file);
 
-/// Binary: as long as its count of triangles says. Text: ends with its endsolid.
+/// Reads a binary file with the announced number of triangles, or text that ends with endsolid.
 PolygonSoup parse_stl(std::span<const std::byte> content, std::string_view file);
 
-/// Cuts polygons into triangles and joins corners of the same place and texture coordinates, which
-/// are kept if every corner has them.
-/// @throws IoError for no polygons, positions that are not finite, and indices that name none
+/// Triangulates polygons and merges corners with equal position and texture coordinates, which are
+/// kept if all corners have them.
+/// @throws IoError if there are no polygons, positions are not finite, or indices are out of range
 TriangleMesh triangles_of(const PolygonSoup& soup, std::string_view file);
 
-/// Cuts the next word off a line, at blanks; "" at its end.
+/// Removes the next word from a line and returns it; "" at the end of the line.
 std::string_view next_word(std::string_view& line);
 
 }  // namespace tofsmith

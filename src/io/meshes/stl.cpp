@@ -23,7 +23,6 @@ void add_corner(const std::array<float, 3>& position, PolygonSoup& soup) {
   soup.positions.push_back(position);
 }
 
-/// @param content  a header, a count, and as many triangles
 PolygonSoup read_binary(std::span<const std::byte> content) {
   PolygonSoup soup;
   for (std::size_t at = header_bytes; at < content.size(); at += triangle_bytes) {
@@ -42,7 +41,6 @@ PolygonSoup read_binary(std::span<const std::byte> content) {
   return soup;
 }
 
-/// Text, line by line.
 class TextReader {
  public:
   TextReader(std::string_view text, std::string_view file) : text_(text), file_(file) {}

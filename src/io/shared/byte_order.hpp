@@ -15,7 +15,7 @@ inline constexpr bool host_is_little_endian = std::endian::native == std::endian
 /// Reverses the bytes of each item of `item_size` bytes.
 void swap_byte_order(std::span<std::byte> bytes, std::size_t item_size);
 
-/// The value stored little end first at `from`, wherever it is aligned.
+/// Loads a little-endian value from unaligned memory.
 template <typename Value>
 Value load_little_endian(const std::byte* from) {
   std::byte raw[sizeof(Value)];
@@ -26,7 +26,7 @@ Value load_little_endian(const std::byte* from) {
   return value;
 }
 
-/// Stores `value` little end first at `to`, wherever it is aligned.
+/// Stores a little-endian value to unaligned memory.
 template <typename Value>
 void store_little_endian(Value value, std::byte* to) {
   std::memcpy(to, &value, sizeof(Value));

@@ -9,11 +9,11 @@
 
 namespace tofsmith {
 
-/// The extension in lower case, with its dot; "" without one.
+/// Returns the extension in lower case, with its dot; "" if there is none.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// The same, when it is one of `known`.
-/// @throws IoError that names the file and lists `known`
+/// Returns the extension in lower case if it is one of `known`.
+/// @throws IoError naming the file and listing `known`
 std::string known_extension(const std::filesystem::path& path,
                             std::initializer_list<std::string_view> known);
 

@@ -10,19 +10,18 @@
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/statistics.hpp"
 
-// Structs as JSON objects, and back, by their fields (core/fields.hpp). Numbers that are not finite
-// are null; in lists, structs of nothing but doubles are lists themselves.
+// Conversion of structs to and from JSON objects by their fields (core/fields.hpp). Numbers that
+// are not finite become null. In lists, structs that contain only doubles become lists.
 namespace tofsmith {
 
-/// An estimate as an object of its own.
 nlohmann::ordered_json estimate_json(const Estimate& estimate);
 
-/// Adds a field to an object: an estimate "x_m" as that and "x_se_m", its standard error; a plain
-/// value that is optional only if it is there.
+/// Adds a field to an object. An estimate "x_m" is written as "x_m" and its standard error
+/// "x_se_m". Absent optional values are omitted.
 template <typename Value>
 void write_field(nlohmann::ordered_json& object, const Field<Value>& field);
 
-/// All fields but those with one of the marks.
+/// Writes all fields except those with one of the marks `but`.
 template <typename Struct>
 nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(FieldMark::apart)) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
@@ -32,7 +31,7 @@ nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(Fie
   return object;
 }
 
-/// The numbers of a struct as a list.
+/// Returns the numbers of a struct as a list.
 template <typename Struct>
 nlohmann::ordered_json row_json(const Struct& its) {
   nlohmann::ordered_json row = nlohmann::ordered_json::array();
@@ -40,8 +39,8 @@ nlohmann::ordered_json row_json(const Struct& its) {
   return row;
 }
 
-/// The same fields back, but those that are FieldMark::apart.
-/// @throws IoError naming file and member that is missing or outside the range of the field
+/// Inverse of fields_json(), without FieldMark::apart fields.
+/// @throws IoError naming file and member if it is missing or outside the range of the field
 template <typename Struct>
 Struct fields_from_json(const JsonReader& json);
 template <typename Struct>
@@ -49,7 +48,7 @@ Struct row_from_json(const JsonReader& json);
 
 namespace detail {
 
-/// A number in a range; null is infinity if the range includes infinity.
+/// Reads a number in a range; null is infinity if the range includes infinity.
 double read_number(const JsonReader& json, const Range& range);
 int read_integer(const JsonReader& json, const Range& range);
 void read_estimate(const JsonReader& object, const Field<Estimate>& field);
@@ -174,7 +173,7 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
   } else if constexpr (std::is_enum_v<Type>) {
     object[name] = name_of(field.value);
   } else if constexpr (std::is_same_v<Type, double>) {
-    // A bound of 0 bounds nothing.
+    // A bound of 0 means that there is no bound.
     if (field.is(FieldMark::bound) && field.is(FieldMark::may_be_null) && field.value == 0.0)
       object[name] = nullptr;
     else

@@ -25,7 +25,8 @@ void FieldReader::visit(const Key& key, const Value& value) {
                  [&](const InputPath& input) {
                    table().value(key.name, input.path);
                    if (input.path.empty()) return;
-                   // Absolute, so that the struct can be written elsewhere and read back.
+                   // Absolute, so that the struct can be written to another directory and read
+                   // back.
                    const auto path =
                        std::filesystem::absolute(table().resolve(key.name, input.path));
                    input.path = path.lexically_normal().string();
@@ -40,7 +41,7 @@ bool FieldReader::wants(const Key& key, bool /*is_there*/) { return table().cont
 
 bool FieldReader::enter_part(const Key& /*key*/, std::span<const std::string> names,
                              bool /*is_there*/) {
-  // Every name becomes known, so that a wrong one gets the nearest as a suggestion.
+  // Checks all names, so that each becomes known as a suggestion for misspelled keys.
   return std::count_if(names.begin(), names.end(),
                        [&](const auto& name) { return table().contains(name); }) > 0;
 }

@@ -12,14 +12,15 @@
 
 namespace tofsmith {
 
-/// Reads described structs from a TOML document. Keys that the document does not contain keep their
-/// values. Errors are those of TableReader.
+/// Reads described structs from a TOML document. Values of missing keys are unchanged. Errors are
+/// as in TableReader.
 class FieldReader : public FieldVisitor {
  public:
   /// @param table  must outlive the reader, and must be finished by the caller
   explicit FieldReader(TableReader& table) : outer_(table) {}
 
-  /// Files named by keys, as absolute paths, by the full name of the key such as "lens.rays".
+  /// Absolute paths of files named in the document, by the full name of the key, such as
+  /// "lens.rays".
   const std::map<std::string, std::filesystem::path>& files() const { return files_; }
 
  protected:
@@ -34,7 +35,7 @@ class FieldReader : public FieldVisitor {
   TableReader& table() { return inner_.empty() ? outer_ : inner_.back(); }
 
   TableReader& outer_;
-  std::list<TableReader> inner_;  ///< tables that were entered, the present one last
+  std::list<TableReader> inner_;  ///< tables that were entered, the current one last
   std::map<std::string, std::filesystem::path> files_;
 };
 

@@ -10,7 +10,7 @@
 namespace tofsmith {
 
 /// Writes described structs as a JSON object, in the order of the description. Absent values and
-/// empty tables are left out; NaN and infinity in lists of raw numbers are words.
+/// empty tables are omitted. NaN and infinity in lists of raw numbers are written as words.
 class FieldWriter : public FieldVisitor {
  public:
   const nlohmann::ordered_json& document() const { return tables_.front(); }
@@ -30,7 +30,6 @@ class FieldWriter : public FieldVisitor {
   std::vector<std::string> names_;
 };
 
-/// The struct as a JSON object.
 template <typename Struct>
 nlohmann::ordered_json described_json(Struct its) {
   FieldWriter writer;

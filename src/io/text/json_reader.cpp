@@ -14,7 +14,6 @@
 namespace tofsmith {
 namespace {
 
-/// What stands in the file, for "found ..".
 std::string describe(const nlohmann::json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("a list of {}", value.size());
@@ -40,7 +39,7 @@ void JsonReader::mistyped(std::string_view expected) const {
 
 double JsonReader::number() const {
   if (!value_->is_number()) mistyped("a number");
-  return value_->get<double>();  // JSON has no infinity, and the parser refuses what overflows
+  return value_->get<double>();  // JSON has no infinity, and the parser rejects overflow
 }
 
 double JsonReader::number(double low, double high, double tolerance) const {

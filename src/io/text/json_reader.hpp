@@ -11,29 +11,29 @@
 
 namespace tofsmith {
 
-/// One value of a JSON document and its place in it. Every member throws IoError
-/// "file: /json/pointer: found ..; expected ..".
+/// Value of a JSON document and its path. Every member throws IoError "file: /json/pointer: found
+/// ...; expected ...".
 class JsonReader {
  public:
-  /// The whole document. Both must outlive the reader. @param file  what errors call it
+  /// Reads a document. Both arguments must outlive the reader. @param file  name in error messages
   JsonReader(const nlohmann::json& document, std::string_view file);
 
   double number() const;
-  /// A number of [low, high], give or take `tolerance`.
+  /// Returns a number in [low, high], with a tolerance.
   double number(double low, double high, double tolerance) const;
   bool is_null() const { return value_->is_null(); }
   bool boolean() const;
   int integer(int low, int high) const;
   std::uint64_t unsigned_integer() const;
   std::string text() const;
-  /// The value as a document of its own.
+  /// Returns the value as a JSON document.
   std::string dump() const { return value_->dump(); }
 
-  /// Elements of a list. @param count  how many there must be, and `because` why
+  /// Returns the elements of a list. @param count  required number; `because` explains it in errors
   std::vector<JsonReader> elements() const;
   std::vector<JsonReader> elements(std::size_t count, std::string_view because) const;
 
-  /// Refuses members of an object other than these, with the nearest of them.
+  /// Rejects other members of an object, with the most similar known one.
   void only(std::initializer_list<std::string_view> members) const;
   JsonReader member(std::string_view name) const;
   std::optional<JsonReader> optional_member(std::string_view name) const;

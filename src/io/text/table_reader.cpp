@@ -19,7 +19,7 @@
 namespace tofsmith {
 namespace {
 
-/// JSON's quoting is TOML's for valid text.
+/// JSON's quoting of valid text is also valid in TOML.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -52,7 +52,7 @@ std::string one_line(const toml::node& node) {
   return out.str();
 }
 
-/// A long list is named by its beginning.
+/// Describes a setting by its beginning if it is long.
 std::string describe_setting(std::string_view setting) {
   constexpr std::size_t longest = 160;
   if (setting.size() <= longest) return fmt::format("setting '{}'", setting);
@@ -61,7 +61,8 @@ std::string describe_setting(std::string_view setting) {
   return fmt::format("setting '{}..'", setting.substr(0, end));
 }
 
-/// Keys of `change` replace those of `base`. Nodes are moved: copies forget where they stood.
+/// Overrides the keys of `base` by the keys of `change`. Nodes are moved, because copies lose their
+/// position.
 void lay_over(toml::table& base, toml::table&& change) {
   for (auto&& [key, node] : change) {
     toml::table* inner = node.as_table();
@@ -70,12 +71,12 @@ void lay_over(toml::table& base, toml::table&& change) {
       lay_over(*below, std::move(*inner));
       continue;
     }
-    base.erase(key.str());  // with its key, which remembers the old place
+    base.erase(key.str());  // also erases the key, which stores the old position
     node.visit([&, k = key](auto& value) { base.insert_or_assign(k, std::move(value)); });
   }
 }
 
-/// `key = word` as `key = "word"`.
+/// Converts `key = word` to `key = "word"`.
 std::optional<std::string> with_quotes(const std::string& setting) {
   const std::size_t begin = setting.find_first_not_of(' ', setting.find('=') + 1);
   if (setting.find('=') == std::string::npos || begin == std::string::npos) return std::nullopt;
@@ -87,8 +88,8 @@ std::optional<std::string> with_quotes(const std::string& setting) {
   return fmt::format("{}\"{}\"", setting.substr(0, begin), word);
 }
 
-/// Every part of a dotted key is a table in a table, and what follows them down calls itself: keys
-/// of so many parts are no key of ours.
+/// Rejects keys with very many parts. Each part of a dotted key nests one table deeper, and tables
+/// are traversed recursively.
 void refuse_long_keys(std::string_view text, std::string_view source_name) {
   constexpr int max_parts = 32;
   int line = 1, parts = 1;
@@ -121,14 +122,14 @@ toml::table parse_setting(const std::string& setting) {
   } catch (const toml::parse_error& error) {
     if (const auto quoted = with_quotes(setting)) try {
         return toml::parse(*quoted, describe_setting(setting));
-      } catch (const toml::parse_error&) {  // the first message is about what the user wrote
+      } catch (const toml::parse_error&) {  // report the first error, of the user's text
       }
     throw IoError(describe_setting(setting),
                   fmt::format("{}; expected key = value", error.description()));
   }
 }
 
-/// The key of a setting that ends in its sign, "sensor.full_well_e=".
+/// Returns the key of a setting that ends with the equals sign, "sensor.full_well_e=".
 std::optional<std::string> key_left_out(std::string_view setting) {
   const std::size_t end = setting.find_last_not_of(" \t");
   if (end == std::string_view::npos || setting[end] != '=') return std::nullopt;
@@ -139,7 +140,7 @@ std::optional<std::string> key_left_out(std::string_view setting) {
   return std::string(before.substr(first, last - first + 1));
 }
 
-/// Takes a dotted key out of the tables that hold it.
+/// Removes a dotted key from the tables that contain it.
 void leave_out(toml::table& root, std::string_view key, std::string_view setting) {
   toml::table* table = &root;
   for (std::string_view rest = key;;) {
@@ -161,7 +162,6 @@ void leave_out(toml::table& root, std::string_view key, std::string_view setting
   }
 }
 
-/// What stands in the file, for "found ..".
 std::string describe(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "a list";

@@ -11,15 +11,14 @@
 
 namespace tofsmith {
 
-/// What names of a depth correction's arrays begin with: correction_height,
-/// correction_known_field_m.
+/// Prefix of the arrays of a depth correction: correction_height, correction_known_field_m.
 inline constexpr std::string_view correction_prefix = "correction_";
 
-/// Adds an array for each field of the correction.
+/// Adds one array per field of the correction.
 void add_correction(const DepthCorrection& correction, NpzArrays& arrays);
 
-/// The correction that an archive holds; none: it holds none.
-/// @throws IoError naming file and array for what is missing, of another shape, or invalid
+/// Reads the depth correction of an archive; none if it has none.
+/// @throws IoError naming file and array if it is missing, invalid or of another shape
 std::optional<DepthCorrection> correction_of(const NpzReader& archive, const std::string& file);
 
 }  // namespace tofsmith

@@ -12,10 +12,10 @@
 
 namespace tofsmith {
 
-/// Properties of a record that its table may lack.
+/// Properties of a record that its table may not contain.
 struct SampleTimeOptions {
-  std::optional<double> time_step_s;  ///< then no times are read
-  std::optional<double> time_unit_s;  ///< of a column of times whose name has no unit
+  std::optional<double> time_step_s;  ///< if set, times in the table are ignored
+  std::optional<double> time_unit_s;  ///< unit of a column of times whose name has none
   std::string column;                 ///< name or number of the column of values
 };
 
@@ -26,16 +26,17 @@ struct TimedSamples {
   std::vector<std::string> notes;
 };
 
-/// Finds values and times in a table: a column of times, or values alone or next to a sample
-/// counter with the sampling interval in the header.
-/// @throws IoError if the column of values is open, or a counter comes without a sampling interval
+/// Finds values and times in a table: a column of times, or values only or next to a sample counter
+/// with the sampling interval in the header.
+/// @throws IoError if the column of values is ambiguous, or the sampling interval of a counter
+///         missing
 TimedSamples timed_samples_of(const NumberTable& table, const std::string& file,
                               const SampleTimeOptions& options);
 
-/// Returns whether a column has no unit of time and increases by 1 from row to row.
+/// Returns true if a column has no unit of time and increases by 1 from row to row.
 bool counts_samples(const NumberTable& table, Eigen::Index column);
 
-/// Returns whether the name of a column is "time" or has a unit of time.
+/// Returns true if the name of a column is "time" or has a unit of time.
 bool is_named_time(const NumberTable& table, Eigen::Index column);
 
 }  // namespace tofsmith

@@ -8,17 +8,17 @@
 
 namespace tofsmith {
 
-/// @param file  what errors call it
-/// @throws IoError "file:line:column: .." at the first character that is no JSON
+/// @param file  name for error messages
+/// @throws IoError "file:line:column: ..." at the first syntax error
 nlohmann::json parse_json(std::string_view text, std::string_view file);
 
-/// JSON for people to read: one member a line, while lists of plain values and what stands in
-/// lists stay on one line. Numbers read back as exactly what they were.
+/// Formats JSON with one member per line; lists of plain values, and elements of lists, are on one
+/// line. Numbers are read back exactly.
 /// @throws std::invalid_argument if a text is not UTF-8
 std::string format_json(const nlohmann::ordered_json& document);
 
-/// A document of tables as TOML: plain values first, then one section for each table; tables in
-/// tables are written in braces.
+/// Formats a document as TOML: plain values first, then one section per table. Nested tables are in
+/// braces.
 /// @throws std::invalid_argument if a text is not UTF-8
 std::string format_toml(const nlohmann::ordered_json& document);
 

@@ -9,10 +9,10 @@
 
 namespace tofsmith {
 
-/// A lens under the keys of a camera file.
+/// Returns a lens with the keys of a camera file.
 nlohmann::ordered_json lens_document(const Lens& lens);
 
-/// The same back, unchecked. @throws IoError naming file and member
+/// Inverse of lens_document(), without checking values. @throws IoError naming file and member
 Lens lens_from_json(const JsonReader& lens);
 
 }  // namespace tofsmith

@@ -19,8 +19,8 @@ inline void append_key(std::string& key, const Waveform& waveform) {
     fmt::format_to(std::back_inserter(key), ";{}", sample);
 }
 
-/// Appends a value, all fields of a struct by name but those set from above, as text that differs
-/// where the value does: what finished work is found again by.
+/// Appends a value as unambiguous text: all fields of a struct by name, except
+/// FieldMark::from_above. Finished work is looked up by the result.
 template <typename Value>
 void append_key(std::string& key, const Value& value) {
   if constexpr (HasFields<const Value>) {

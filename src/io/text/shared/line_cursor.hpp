@@ -10,21 +10,21 @@
 
 namespace tofsmith {
 
-/// Walks through the lines of a text, whatever ends them; every error names file and line.
+/// Reads the lines of a text with any line endings. Errors contain file and line.
 class LineCursor {
  public:
   LineCursor(std::string_view text, std::string_view file) : text_(text), file_(file) {}
 
   bool at_end() const { return position_ >= text_.size(); }
-  /// The next line without its end and without blanks around it.
+  /// Returns the next line without its end and surrounding blanks.
   /// @throws IoError at the end of the text
   std::string_view next();
-  /// Nothing but blank lines may follow.
+  /// Rejects anything but blank lines at the current position.
   void expect_end();
-  /// The text behind the lines read so far.
+  /// Returns the offset of the first line that was not read.
   std::size_t position() const { return position_; }
 
-  /// @throws IoError "file:line: problem" about the line that next() gave last
+  /// @throws IoError "file:line: problem" for the line last returned by next()
   [[noreturn]] void fail(std::string_view problem) const;
 
  private:
@@ -40,14 +40,14 @@ struct TextLine {
   std::string_view text;
 };
 
-/// The lines of a text except empty ones and comments, which begin with '#'. Skips a byte order
-/// mark.
+/// Returns the lines of a text except empty ones and comments, which begin with '#'. Skips a byte
+/// order mark.
 std::vector<TextLine> content_lines(std::string_view text);
 
-/// Without blanks around it.
+/// Returns the text without surrounding blanks.
 std::string_view trimmed(std::string_view text);
 
-/// The whole text as a finite number, blanks around it left out.
+/// Parses a text as a finite number, ignoring surrounding blanks.
 std::optional<double> finite_number_in(std::string_view text);
 
 }  // namespace tofsmith

@@ -20,35 +20,34 @@
 
 namespace tofsmith {
 
-/// A value taken out of a TOML file.
+/// Returns the value of a TOML node.
 SettingValue toml_value_of(const toml::node& node, std::string place);
 
-/// A number as TOML writes it: whole ones as integers.
+/// Returns a number in TOML syntax; integers without a fraction.
 SettingValue toml_value_of(double number, std::string place);
 
-/// What a line of a file holds: a number, or else a text.
+/// Returns the content of a line: a number, or else a string.
 SettingValue toml_value_of_line(const std::string& line, std::string place);
 
-/// A TOML file with settings laid over it, which knows where each of its values was written.
+/// A TOML file with settings applied, which stores the position of each value.
 class TomlDocument {
  public:
-  /// @param source_name  the file's path, or what errors shall call the text
-  /// @throws IoError "file:line:column: .." at the first character that is no TOML
+  /// @param source_name  path, or name for error messages
+  /// @throws IoError "file:line:column: ..." at the first syntax error
   TomlDocument(std::string_view text, std::string_view source_name);
 
-  /// Lays one `key.key = value` over the document, as if the file had said so. A word that is no
-  /// TOML value is a string, so that shells need no second pair of quotes. A table in braces
-  /// replaces the one before; other keys of a table stay. `key.key =` without a value takes the
-  /// key out.
-  /// @throws IoError if that is no TOML, or there is no key to take out
+  /// Applies one setting `key.key = value`. A word that is not a TOML value is a string, so that
+  /// shells need no second pair of quotes. A table in braces replaces the existing one; otherwise
+  /// other keys of a table are kept. `key.key =` without a value removes the key.
+  /// @throws IoError for invalid syntax, or if there is no key to remove
   void apply(const std::string& setting);
 
   const toml::table& root() const { return root_; }
   const std::string& source_name() const { return source_name_; }
-  /// "file:line:column", or "setting 'light.peak_factor=5'".
+  /// Returns "file:line:column", or "setting 'light.peak_factor=5'".
   std::string place_of(const toml::source_region& region) const;
-  /// Where relative paths in this value start: the file's directory, or the current one for a
-  /// setting.
+  /// Returns the base of relative paths in a value: the file's directory, or the current directory
+  /// for a setting.
   std::filesystem::path directory_of(const toml::source_region& region) const;
 
  private:
@@ -58,17 +57,17 @@ class TomlDocument {
   toml::table root_;
 };
 
-/// Reads the fields of one table of a TOML document. A field that is not there keeps the value it
-/// has. Every field that is asked for is known; finish() refuses all others.
+/// Reads the fields of one table of a TOML document. Missing fields keep their values. finish()
+/// rejects keys that were not read.
 ///
-/// Every member throws IoError that names file:line:column, the key, what was found and what was
+/// Every member throws IoError with file:line:column, the key, the value found and the value
 /// expected.
 class TableReader {
  public:
-  /// Where each value that was read stands, by its full key such as "light.peak_factor".
+  /// Positions of all values read, by full key such as "light.peak_factor".
   using Places = std::map<std::string, std::string>;
 
-  /// The whole document. Both must outlive the reader.
+  /// Reads the root table. Both arguments must outlive the reader.
   TableReader(const TomlDocument& document, Places& places);
 
   void value(std::string_view key, bool& target);
@@ -94,22 +93,22 @@ class TableReader {
     if (contains(key)) value(key, target.emplace());
   }
 
-  /// Index of the word in a fixed set; none if the key is not there.
+  /// Returns the index of the word in a fixed set; none if the key is missing.
   std::optional<std::size_t> word(std::string_view key, std::span<const std::string_view> words);
   template <typename Enum, std::size_t Count>
   void choice(std::string_view key, Enum& target, const EnumWords<Enum, Count>& words) {
     if (const auto index = word(key, words.all())) target = static_cast<Enum>(*index);
   }
 
-  /// A list of raw numbers, which may be NaN or infinite: nan, inf, -inf, or these words in quotes.
+  /// Reads raw numbers, which may be NaN or infinite: nan, inf, -inf, or these words in quotes.
   void raw_numbers(std::string_view key, std::vector<double>& target);
 
-  /// A number, or a list of them.
+  /// Reads a number, or a list of numbers.
   void number_or_list(std::string_view key, double& number, std::vector<double>& list);
-  /// A number, or `word`, in which case `is_word`.
+  /// Reads a number, or `word`; then `is_word` is true.
   void number_or_word(std::string_view key, double& number, std::string_view word, bool& is_word);
 
-  /// Reads a nested table when it is there: `fields(TableReader&, Value&)`.
+  /// Reads a nested table if it exists: `fields(TableReader&, Value&)`.
   template <typename Value, typename Fields>
   void table(std::string_view key, Value& target, Fields&& fields) {
     if (auto inner = enter(key)) {
@@ -122,10 +121,10 @@ class TableReader {
     if (contains(key)) table(key, target.emplace(), fields);
   }
 
-  /// The nested table, if it is there.
+  /// Returns the nested table, if it exists.
   std::optional<TableReader> enter(std::string_view key);
-  /// Reads every table of a list of them, [[key]]: `fields(TableReader&)`. They are called key[0],
-  /// key[1] ..
+  /// Reads every table of a list [[key]]: `fields(TableReader&)`. They are named key[0], key[1],
+  /// ...
   template <typename Fields>
   void tables(std::string_view key, Fields&& fields) {
     for (TableReader& inner : enter_each(key)) {
@@ -134,22 +133,22 @@ class TableReader {
     }
   }
 
-  /// The next field must be there. @param example  a value to show the user
+  /// Requires the next field. @param example  a value for the error message
   TableReader& required(std::string_view key, std::string_view example);
-  /// Refuses keys that mean something only under a condition that does not hold.
-  /// @param condition  as the user would write it, such as `kind = "hann"`
+  /// Rejects keys that are only valid under a condition that is not met.
+  /// @param condition  in the user's syntax, such as `kind = "hann"`
   void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
 
   bool contains(std::string_view key);
-  /// The key with the tables that contain it, such as "light.peak_factor".
+  /// Returns the key with its tables, such as "light.peak_factor".
   std::string full(std::string_view key) const { return prefix_ + std::string(key); }
-  /// Where the value of `key` was written, or the table if the key is not there.
+  /// Returns the position of the value of `key`, or of the table if the key is missing.
   std::string place_of(std::string_view key) const;
-  /// The path in `key`, from where it was written.
+  /// Returns the path in `key`, relative to the file that contains it.
   std::filesystem::path resolve(std::string_view key, const std::string& path) const;
-  /// @throws IoError about the value of `key`, or about the table if the key is not there
+  /// @throws IoError about the value of `key`, or about the table if the key is missing
   [[noreturn]] void fail(std::string_view key, std::string_view problem) const;
-  /// Refuses keys that nobody asked for, with the nearest one that was.
+  /// Rejects keys that were not read, with the most similar known one.
   void finish() const;
 
  private:
