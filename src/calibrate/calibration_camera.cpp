@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// T [s] of every column (K); empty where the camera has one exposure for all.
+/// Returns T [s] of every column (K); empty if the camera has a single exposure time.
 Eigen::VectorXd column_exposures_s(const Camera& camera, int columns, int columns_per_exposure) {
   Eigen::VectorXd exposure_s;
   if (camera.exposure_s.each_s.empty()) return exposure_s;

@@ -21,16 +21,16 @@
 namespace tofsmith {
 namespace {
 
-/// Sensor::tap_mismatch of each exposure of two taps, whose changes with delay are opposite: that
-/// of the second over that of the first is -(1 - m / 2) / (1 + m / 2).
-/// @param notes  gets one where taps differ, or where they are not opposite
+/// Computes Sensor::tap_mismatch m of each exposure with two taps. Their changes with delay are
+/// opposite, with ratio -(1 - m / 2) / (1 + m / 2) of the second to the first.
+/// @param notes  receives a note if taps differ significantly, or if they are not opposite
 std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::MatrixXd& error,
                                     std::vector<std::string>& notes) {
   std::vector<Estimate> mismatch;
   for (Eigen::Index i = 0; i + 1 < table.cols(); i += 2) {
     const Eigen::VectorXd a = table.col(i).array() - table.col(i).mean();
     const Eigen::VectorXd b = table.col(i + 1).array() - table.col(i + 1).mean();
-    // The noise of `a` adds to its square.
+    // The noise of `a` adds to its expected square.
     const double size2 = std::max(1e-300, a.squaredNorm() - error.col(i).squaredNorm());
     const double ratio = -a.dot(b) / size2;
     const double variance =
@@ -55,16 +55,15 @@ std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::M
 
 constexpr int max_harmonics = 64;
 
-/// What one sweep is taken apart with.
 struct Workbench {
   const RawFrames& raw;
   DelayGroups groups;
   std::vector<std::size_t> live;
-  Eigen::MatrixXd mean;  // (F, K), of the live pixels
+  Eigen::MatrixXd mean;  // (F, K), over the live pixels
   SweepDrift drift;
   HarmonicBasis basis;
 
-  /// A pixel without the drift of the light and level that it saw.
+  /// Returns the values of a pixel corrected for the drift of light and level.
   Eigen::MatrixXd corrected(std::size_t pixel) const {
     Eigen::MatrixXd values = pixel_values(raw, pixel);
     if (drift.significant) values -= swing(values) / swing(mean) * drift.correction;
@@ -84,7 +83,7 @@ Workbench workbench_of(const DelaySweep& sweep, std::vector<std::size_t> live) {
   Eigen::MatrixXd mean = mean_curve(sweep.frames, live);
   SweepDrift drift = sweep_drift(mean, groups, mean_curve_variance(sweep.frames, groups, live));
   int harmonics = std::min((groups.count() - 1) / 2, max_harmonics);
-  if (!groups.equal_steps) harmonics = std::max(1, harmonics * 3 / 4);  // gaps must stay narrow
+  if (!groups.equal_steps) harmonics = std::max(1, harmonics * 3 / 4);  // bridge gaps
   HarmonicBasis basis(places_of_frames(groups), harmonics);
   return {sweep.frames,    std::move(groups), std::move(live),
           std::move(mean), std::move(drift),  std::move(basis)};
@@ -98,7 +97,7 @@ std::vector<Eigen::MatrixXcf> pixel_harmonics(const Workbench& bench) {
   return harmonics;
 }
 
-/// Pixels that respond with less than a tenth of the usual leave.
+/// Removes pixels with a response below a tenth of the median.
 bool drop_low_pixels(std::vector<std::size_t>& live, const PixelAlignment& alignment,
                      DeadPixels& dead) {
   const double usual = median_of(alignment.gain);
@@ -111,18 +110,18 @@ bool drop_low_pixels(std::vector<std::size_t>& live, const PixelAlignment& align
   return dropped;
 }
 
-/// N rows at j / N.
+/// Returns N rows at j / N.
 Eigen::MatrixXd table_of(const Workbench& bench, const PixelAlignment& alignment) {
   const int rows = bench.groups.count();
   if (!bench.groups.from_zero) return curve_of(alignment.common, rows);
-  // Where rows are measured places, what harmonics leave out (corners, the highest of an even N)
-  // comes from the means themselves.
+  // If rows are measured positions, components that the harmonics do not contain (corners, the
+  // highest harmonic of an even N) are taken from the means.
   const Eigen::MatrixXd mean = bench.mean - bench.drift.correction;
   const Eigen::MatrixXcd unaligned = bench.basis.coefficients(mean);
   return group_means(mean, bench.groups) + curve_of(alignment.common - unaligned, rows);
 }
 
-/// Variance of a raw number at each place (G, K).
+/// Estimates the variance of a raw number at each position (G, K).
 Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& alignment,
                                CalibratedCorrelation& result) {
   const int groups = bench.groups.count(), frames = bench.raw.frames;
@@ -142,7 +141,7 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
       ++used;
     }
     const double values = static_cast<double>(frames) * static_cast<double>(columns);
-    // A pixel's levels, gain and delay are fitted to it; the common curve to all.
+    // Degrees of freedom: each pixel's levels, gain and delay are fitted, and the common curve.
     const double freedom = (values - static_cast<double>(columns) - 2.0) / values *
                            (1.0 - 1.0 / static_cast<double>(bench.live.size()));
     return group_means(sum, bench.groups) / (used * freedom);
@@ -161,7 +160,7 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
         pixels * rest.squaredNorm() /
             (static_cast<double>(frames - groups) * static_cast<double>(columns)));
   }
-  // The upper half of the harmonics, which a band-limited camera leaves to the noise.
+  // Use the upper half of the harmonics, which contains only noise for band-limited cameras.
   result.noise_source = "high harmonics";
   const Eigen::MatrixXcd c = bench.basis.coefficients(mean);
   const Eigen::Index upper = std::max<Eigen::Index>(1, (c.rows() - 1) / 2);
@@ -187,7 +186,7 @@ void set_errors(const Workbench& bench, const PixelAlignment& alignment,
     const double repeats = bench.groups.repeats[static_cast<std::size_t>(g)];
     result.standard_error.row(g) /= repeats;
     if (!bench.drift.significant) continue;
-    const double t = time[g] / repeats;  // what the drift's own errors leave
+    const double t = time[g] / repeats;  // for the error of the drift correction
     result.standard_error.row(g).array() +=
         (t * bench.drift.light.standard_error * signal.row(g).array()).square() +
         std::pow(t * bench.drift.level.standard_error, 2);
@@ -213,7 +212,7 @@ void set_maps(const Workbench& bench, const PixelAlignment& alignment,
   if (raw.pixels_per_frame() == 1) return;
   result.maps.delay_offset_m = Image<float>(raw.height, raw.width, NAN);
   result.maps.gain = Image<float>(raw.height, raw.width, NAN);
-  double geometry_m = 0.0;  // its mean, as the table is that of the mean pixel
+  double geometry_m = 0.0;  // mean geometry, as the table belongs to the mean pixel
   if (!options.geometry_m.empty())
     for (const std::size_t p : bench.live)
       geometry_m += options.geometry_m.pixels[p] / static_cast<double>(bench.live.size());
@@ -227,7 +226,6 @@ void set_maps(const Workbench& bench, const PixelAlignment& alignment,
   }
 }
 
-/// Raw numbers become signal alone: black level off, exposures divided out.
 void set_scale(const Workbench& bench, const CorrelationCalibrationOptions& options,
                CalibratedCorrelation& result) {
   const int columns = bench.raw.measurements;
@@ -252,8 +250,8 @@ void set_scale(const Workbench& bench, const CorrelationCalibrationOptions& opti
   }
 }
 
-/// Twice the standard errors of the table, in percent of the signal's part of the measurements
-/// without ambient light, root mean squares.
+/// Returns twice the standard errors of the table, in percent of the signal's part of the
+/// measurements without ambient light (root mean squares).
 double model_error_percent(const CalibratedCorrelation& found) {
   const MeasuredTable& table = found.table;
   const Eigen::Index columns = table.correlation.cols();
@@ -342,7 +340,7 @@ CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
   CalibratedCorrelation result;
   result.notes = sweep.notes;
 
-  // Pixels that can be used, each against their mean; once more without those that hardly respond.
+  // Align usable pixels with their mean; repeat without pixels of low response.
   std::vector<std::size_t> live = live_pixels(sweep, options, result.dead);
   PixelAlignment alignment = align_pixels(pixel_harmonics(workbench_of(sweep, live)), progress);
   if (drop_low_pixels(live, alignment, result.dead))
@@ -353,7 +351,6 @@ CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
   result.light_drift = bench.drift.light;
   result.level_drift = bench.drift.level;
 
-  // The table and its errors, the maps, and what the taps say of each other.
   result.table.taps = options.differences ? 1 : options.taps;
   result.table.differences = options.differences;
   result.table.correlation = table_of(bench, alignment);

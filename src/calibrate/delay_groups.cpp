@@ -15,9 +15,9 @@
 namespace tofsmith {
 namespace {
 
-constexpr double same = 0.02;  // of a step
+constexpr double same = 0.02;  // relative to a step
 
-/// Median of the steps between neighbouring delays that differ.
+/// Returns the median step between distinct adjacent delays.
 double usual_step(std::vector<double> sorted) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < sorted.size(); ++i)
@@ -38,7 +38,7 @@ DelayGroups delay_groups(const std::vector<double>& delay_periods) {
 
   std::vector<std::size_t> order(delay_periods.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // Just below 1 is 0.
+  // Positions just below 1 are equivalent to 0.
   const auto place_of = [&](std::size_t i) {
     const double place = wrap(delay_periods[i], 1.0);
     return place > 1.0 - tolerance ? place - 1.0 : place;

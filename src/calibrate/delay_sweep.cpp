@@ -33,7 +33,6 @@ double periods_per_number(const DelaySweepOptions& options) {
   return options.unit_scale;
 }
 
-/// One pixel of which row f is frame f.
 RawFrames frames_of(const Eigen::MatrixXd& values) {
   RawFrames frames{.frames = static_cast<int>(values.rows()),
                    .height = 1,
@@ -45,7 +44,6 @@ RawFrames frames_of(const Eigen::MatrixXd& values) {
   return frames;
 }
 
-/// @param notes  receives how the file was interpreted
 std::vector<double> shifts_of(const std::filesystem::path& path, DecimalMark decimal,
                               std::vector<std::string>& notes) {
   if (lower_extension(path) == ".npy") {
@@ -66,9 +64,9 @@ DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions option
     throw IoError(path.string(),
                   "found one column; expected the delay and a value for each "
                   "measurement");
-  // A counter of the rows may precede the delays.
+  // A row counter may precede the delays.
   const Eigen::Index delay = counts_samples(table, 0) && is_named_time(table, 1) ? 1 : 0;
-  // The header's unit, unless one was given.
+  // Use the unit of the header unless one was given.
   if (options.unit == DelayUnit::second && options.unit_scale == 1.0 && !table.names.empty())
     if (const double unit_s = seconds_per_unit(table.names[static_cast<std::size_t>(delay)]);
         unit_s > 0.0)

@@ -24,7 +24,6 @@ namespace {
 
 constexpr int range_parts = 128;
 
-/// The functions that the camera's model says, in the table's own form.
 MeasuredTable nominal_table(const ForwardModel& model, const CodeSet& code, const Camera& camera) {
   MeasuredTable table;
   table.differences = camera.sensor.subtracts();
@@ -57,7 +56,7 @@ DepthFit start(std::vector<ReferenceSample> samples, int height, int width, doub
   return fit;
 }
 
-/// Terms at the phase that the reference and the errors found so far predict.
+/// Computes the terms at the phase predicted from the reference and the current errors.
 void fill_terms(const Eigen::VectorXd& predicted_m, DepthFit& fit) {
   fit.terms.resize(error_terms, fit.size());
   const auto place = [](int at, int n) { return n > 1 ? 2.0 * at / (n - 1) - 1.0 : 0.0; };
@@ -80,9 +79,9 @@ Eigen::VectorXd predicted(const DepthFit& fit, const std::vector<int>& columns,
   return fit.terms.transpose() * all;
 }
 
-constexpr double biweight_reach = 4.685;  // of standard deviations: 95 % as efficient as the mean
+constexpr double biweight_reach = 4.685;  // standard deviations; 95 % efficiency for normal errors
 
-/// Weights by the residuals that coefficients leave: Tukey's biweight.
+/// Computes weights from residuals by Tukey's biweight.
 void weigh(const Eigen::VectorXd& residual_m, DepthFit& fit) {
   std::vector<double> size_m(static_cast<std::size_t>(residual_m.size()));
   for (Eigen::Index i = 0; i < residual_m.size(); ++i)
@@ -94,7 +93,7 @@ void weigh(const Eigen::VectorXd& residual_m, DepthFit& fit) {
   }
 }
 
-/// Reweighted least squares over some columns, with the phase predicted anew.
+/// Solves iteratively reweighted least squares over some columns, updating the predicted phase.
 Eigen::VectorXd solve_robustly(const std::vector<int>& columns, int rounds, DepthFit& fit) {
   const std::vector<int> one_cell(fit.samples.size(), 0);
   Eigen::VectorXd coefficient, fitted_m;
@@ -102,7 +101,7 @@ Eigen::VectorXd solve_robustly(const std::vector<int>& columns, int rounds, Dept
     coefficient = sums_of(fit.terms, fit.error_m, fit.weight, one_cell, 1).front().solve(columns);
     fitted_m = predicted(fit, columns, coefficient);
     weigh(fit.error_m - fitted_m, fit);
-    // Terms of the last round stay those that its coefficients belong to.
+    // Terms are not updated in the last round, as the coefficients belong to them.
     if (round + 1 < rounds && round % 2 == 1) fill_terms(fitted_m, fit);
   }
   return coefficient;
@@ -113,7 +112,8 @@ int part_of(double depth_m, double range_m) {
   return std::min(range_parts - 1, static_cast<int>(share * range_parts));
 }
 
-/// Mean of the nominal depth error and its root mean square around the mean, without outliers [m].
+/// Mean of the nominal depth error and its root mean square deviation from the mean, without
+/// outliers [m].
 struct DepthError {
   double mean_m = 0.0, rms_m = 0.0;
 };
@@ -125,7 +125,6 @@ DepthError error_of(DepthFit& fit) {
           std::sqrt(fit.weight.dot(fit.error_m.cwiseAbs2()) / weights)};
 }
 
-/// In which parts of the nominal range enough samples count.
 std::vector<bool> parts_with_depths(const DepthFit& fit) {
   std::array<int, range_parts> count{};
   int all = 0;
@@ -140,7 +139,8 @@ std::vector<bool> parts_with_depths(const DepthFit& fit) {
   return has;
 }
 
-/// Gaps that the highest harmonic spans belong to what is known.
+/// Returns 1 for parts of the range that are known, else 0. Gaps that are shorter than the
+/// resolution of the highest harmonic are known, too.
 Eigen::VectorXd known_share_of(std::vector<bool> has, int highest_harmonic) {
   const int reach = range_parts / (2 * std::max(1, highest_harmonic) + 1);
   Eigen::VectorXd share(range_parts);
@@ -156,7 +156,8 @@ Eigen::VectorXd known_share_of(std::vector<bool> has, int highest_harmonic) {
   return share;
 }
 
-/// Tiles of pixels, the same in every frame, at least some hundred.
+/// Assigns samples to square tiles of pixels, the same in each frame. The tiles are at most 16
+/// pixels wide, and narrower if there would be fewer than 200 tiles.
 std::vector<int> tiles_of(const DepthFit& fit, int& tiles) {
   constexpr int enough = 200;
   int side = 16;
@@ -169,7 +170,7 @@ std::vector<int> tiles_of(const DepthFit& fit, int& tiles) {
   return tile;
 }
 
-/// Degree of a field that the places of the samples can carry.
+/// Returns the degree of the field that the positions of the samples can determine.
 int degree_within(const DepthFit& fit, std::vector<std::string>& notes) {
   const auto [top, bottom] =
       std::ranges::minmax(each(fit.samples, [](const auto& s) { return double(s.row); }));
@@ -185,7 +186,6 @@ int degree_within(const DepthFit& fit, std::vector<std::string>& notes) {
   return share > 0.3 ? 1 : 0;
 }
 
-/// Influence and its slope of every sample, for the errors.
 Eigen::VectorXd standard_errors(const DepthFit& fit, const std::vector<int>& columns,
                                 const Eigen::VectorXd& residual_m) {
   Eigen::VectorXd slope(fit.size()), influence(fit.size());
@@ -200,9 +200,9 @@ Eigen::VectorXd standard_errors(const DepthFit& fit, const std::vector<int>& col
   return tile_errors(fit.terms, columns, slope, influence, tile, tiles);
 }
 
-/// The model error [%] with which at most 1 % of the pixels that decode to the right depth are
-/// inconsistent, within 20 %. Not all can be consistent, because some see two surfaces. None: the
-/// code has no degrees of freedom.
+/// Returns the smallest model error [%] with which at most 1 % of the pixels with correct depth are
+/// inconsistent, in steps of 20 %. Some pixels are always inconsistent, because they see two
+/// surfaces. None if the code has no degrees of freedom.
 std::optional<double> model_error_percent(const RawFrames& frames, const DepthFit& fit,
                                           const DecodingTable& table, const Progress& progress) {
   RawFrames raw{.frames = 1, .height = 1, .measurements = frames.measurements};
@@ -231,7 +231,7 @@ std::optional<double> model_error_percent(const RawFrames& frames, const DepthFi
   const bool no_error_is_enough = is_enough(0.0);
   if (std::ranges::none_of(residual, [](float r) { return std::isfinite(r); })) return {};
   if (no_error_is_enough) return 0.0;
-  // Steps of 20 %, from 0.05 % to 100 %.
+  // Bisection in steps of 20 %, from 0.05 % to 100 %.
   int too_small = -1, enough = 42;
   const auto percent_of = [](int step) { return std::min(100.0, 0.05 * std::pow(1.2, step)); };
   while (enough - too_small > 1) {
@@ -303,7 +303,7 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
     result.notes.push_back(*note);
 }
 
-/// Along the rays of the camera's pixels. Images of other sizes are refused later, as they are.
+/// Converts z-depth to depth along the camera's rays. Images of other sizes are rejected later.
 ReferenceDepth along_rays(ReferenceDepth z, const Camera& camera, int height, int width) {
   require(camera.lens.has_value(), "lens", "none",
           "must say where pixels look, so that a reference along the axis can be turned");
@@ -331,7 +331,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   const double range_m = camera.range_m();
   const ProgressParts parts(progress, {3.0, 1.0, 1.0}), decoding(parts[0], 2);
 
-  // Each frequency of the code; how far the model's depths are off is found first.
+  // Calibrate each frequency of the code, and compute the error of the uncalibrated model before.
   std::optional<DepthError> nominal;
   if (auto by_frequency = calibrate_frequencies(frames, reference, code, camera)) {
     auto samples =
@@ -353,7 +353,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   }
   const DecodingTable table = make_decoding_table(result.table, camera);
 
-  // Pixels that can be compared, and the direction of delay.
+  // Decode pixels that can be compared, and determine the direction of delay.
   std::vector<ReferenceSample> samples = reference_samples(
       frames, reference, table, result.frequencies.empty() ? parts[0] : decoding[1]);
   result.pixels = static_cast<std::int64_t>(samples.size());
@@ -361,7 +361,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   if (turned) turn_backwards(result.table, samples, range_m);
   result.reversed = result.reversed != turned;
 
-  // All terms, robustly: which pixels count.
+  // Fit all terms robustly to identify outliers.
   DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
   const DepthError error = error_of(fit);
   result.mean_error_m = nominal.value_or(error).mean_m;
@@ -378,7 +378,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   fill_terms(Eigen::VectorXd::Zero(fit.size()), fit);
   solve_robustly(all.columns(), 10, fit);
 
-  // Which terms, by what is held out; then those alone.
+  // Choose terms by cross-validation and fit only those.
   report(parts[1], 0.5, "choosing terms");
   const Chosen chosen = choose(fit, highest, all.degree, !result.frequencies.empty());
   const std::vector<int> far_columns = chosen.beyond.columns(), columns = chosen.known.columns();
@@ -422,7 +422,8 @@ Camera with_depth(Camera camera, const CalibratedDepth& found) {
   const double known_m = found.reversed ? -playback.offset_m : playback.offset_m;
   playback.reversed = playback.reversed != found.reversed;
   playback.set_offsets_m(found.offsets_m);
-  // The mean, not the term: where part of the range is known, harmonics share the offset.
+  // Use the mean error: if only part of the range is known, the offset term is correlated with
+  // harmonics.
   if (found.offsets_m.empty()) playback.offset_m = found.mean_error_m + known_m;
   if (!found.contrasts.empty() && camera.sensor.mixes_taps())
     camera.sensor.modulation_contrasts = found.contrasts;

@@ -14,28 +14,28 @@ inline constexpr int max_error_harmonic = 8, max_error_degree = 4, max_error_sig
 inline constexpr int field_terms = (max_error_degree + 1) * (max_error_degree + 2) / 2 - 1;
 inline constexpr int error_terms = 1 + 2 * max_error_harmonic + field_terms + max_error_signal;
 
-/// Which terms of a depth error are looked for.
+/// Terms of a depth error to fit.
 struct TermChoice {
   unsigned harmonics = 0;  ///< bit h - 1: harmonic h
-  int degree = 0;          ///< of the field
-  int signal = 0;          ///< powers of its logarithm
+  int degree = 0;          ///< of the field over rows and columns
+  int signal = 0;          ///< highest power of the logarithm of the signal
 
-  /// Their columns among all error_terms: offset, harmonics, field, signal.
+  /// Returns their columns among all error_terms: offset, harmonics, field, signal.
   std::vector<int> columns() const;
   int size() const { return static_cast<int>(columns().size()); }
 };
 
-/// "offset", "cos 4", "row^2 column", "log signal^2": what a column is called.
+/// Returns the name of a column: "offset", "cos 4", "row^2 column", "log signal^2".
 std::string error_term_name(int column);
 
-/// All terms at one pixel, as DepthErrorTerms defines them.
+/// Computes all terms for one pixel, see DepthErrorTerms.
 void fill_error_terms(double phase_rad, double row, double column, double log_signal,
                       double* terms);
 
-/// The coefficients of chosen columns as terms of a correction.
+/// Converts the coefficients of chosen columns to the terms of a correction.
 DepthErrorTerms terms_of(const TermChoice& choice, const Eigen::VectorXd& coefficient);
 
-/// Sums of weighted least squares: what they need of any number of samples.
+/// Sums for weighted least squares over any number of samples.
 struct NormalSums {
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(error_terms, error_terms);
   Eigen::VectorXd moment = Eigen::VectorXd::Zero(error_terms);
@@ -43,22 +43,21 @@ struct NormalSums {
   double weight = 0.0;
 
   void add(const NormalSums& other);
-  /// Least squares over some columns.
+  /// Returns the least squares solution for some columns.
   Eigen::VectorXd solve(const std::vector<int>& columns) const;
-  /// Weighted sum of squares that coefficients of some columns leave.
+  /// Returns the weighted residual sum of squares for coefficients of some columns.
   double left(const std::vector<int>& columns, const Eigen::VectorXd& coefficient) const;
 };
 
-/// Sums over samples, cell by cell.
 /// @param terms   (error_terms, samples)
 /// @param cell    of each sample, in [0, cells)
 std::vector<NormalSums> sums_of(const Eigen::MatrixXd& terms, const Eigen::VectorXd& error_m,
                                 const Eigen::VectorXd& weight, const std::vector<int>& cell,
                                 int cells);
 
-/// Standard errors of coefficients whose residuals may be alike within a tile: the sandwich of sums
-/// by tiles.
-/// @param slope  derivative of each sample's influence by its residual
+/// Computes standard errors of coefficients whose residuals may be correlated within tiles
+/// (cluster-robust sandwich estimator).
+/// @param slope  derivative of each sample's influence with respect to its residual
 /// @param influence  weight times residual
 Eigen::VectorXd tile_errors(const Eigen::MatrixXd& terms, const std::vector<int>& columns,
                             const Eigen::VectorXd& slope, const Eigen::VectorXd& influence,

@@ -8,7 +8,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Weighted means of cells.
 struct CellMeans {
   explicit CellMeans(std::size_t cells) : sum(cells), weight(cells) {}
 
@@ -16,7 +15,7 @@ struct CellMeans {
     sum[cell] += w * value;
     weight[cell] += w;
   }
-  double of(std::size_t cell) const { return sum[cell] / weight[cell]; }  // 0 / 0: not a number
+  double of(std::size_t cell) const { return sum[cell] / weight[cell]; }  // NaN for empty cells
 
   std::vector<double> sum, weight;
 };

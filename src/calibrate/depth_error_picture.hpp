@@ -6,9 +6,9 @@
 
 namespace tofsmith {
 
-/// The errors of a fit and what it leaves of them.
-/// @param offset_m  mean error, taken off beside the fit's start
-/// @param fitted_m  of every sample
+/// Returns the errors of a fit and its residuals.
+/// @param offset_m  mean error, subtracted in addition to the start of the fit
+/// @param fitted_m  fitted error of every sample
 DepthErrorPicture picture_of(const DepthFit& fit, const Eigen::VectorXd& fitted_m, double offset_m);
 
 }  // namespace tofsmith

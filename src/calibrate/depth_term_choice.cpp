@@ -13,7 +13,8 @@ namespace {
 
 constexpr int slabs = 4, checkers = 2;
 
-/// Cells of held-out samples: the colour of a checkerboard of blocks, and a quarter of the range.
+/// Assigns samples to cells for cross-validation: colour of a checkerboard and quarter of the
+/// range.
 std::vector<int> cells_of(const DepthFit& fit) {
   const auto at_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
   std::array<double, slabs - 1> border_m{};
@@ -48,16 +49,16 @@ double held_out_rms_m(const std::vector<NormalSums>& sums, const TermChoice& cho
   return std::sqrt(left / std::max(1e-300, weight));
 }
 
-/// Returns whether the terms are as small as depth errors are. If the depths of the reference
-/// cannot separate terms, the terms are far larger and cancel each other.
+/// Returns true if the terms are as small as depth errors can be. Terms that the depths of the
+/// reference cannot separate are far larger and cancel each other.
 bool is_plausible(const NormalSums& all, const TermChoice& choice, double range_m) {
   constexpr double largest_share = 0.1;
   return all.solve(choice.columns()).lpNorm<Eigen::Infinity>() < largest_share * range_m;
 }
 
-/// Returns whether the signal varies apart from the other terms. On targets of one albedo it is a
-/// function of depth, so that its terms and terms in the signal would cancel and mislead on other
-/// scenes.
+/// Returns true if the signal varies independently of the other terms. On targets of one albedo it
+/// is a function of depth, and terms in signal and depth would cancel each other and be wrong in
+/// other scenes.
 bool signal_varies(const NormalSums& all, int highest_harmonic, int degree) {
   constexpr double least_share = 0.02;
   const std::vector<int> others = TermChoice{(1u << highest_harmonic) - 1u, degree, 0}.columns();
@@ -69,7 +70,7 @@ bool signal_varies(const NormalSums& all, int highest_harmonic, int degree) {
   return left(others) > least_share * left({0});
 }
 
-/// Sets of harmonics that errors of usual cameras have; of k equally spaced phases, k and 2 k.
+/// Returns sets of harmonics that are common in cameras; for k equally spaced phases, k and 2 k.
 std::vector<unsigned> harmonic_sets(int highest) {
   const auto set = [](std::initializer_list<int> list) {
     unsigned bits = 0;
@@ -115,8 +116,8 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool pr
       }
   const auto& near = *std::ranges::min_element(candidates, {}, &Candidate::near_m);
   const auto& far = *std::ranges::min_element(candidates, {}, &Candidate::far_m);
-  // Terms in the signal only where they show; of the others usually the most that predict as well,
-  // since a term left out shifts its neighbours.
+  // Include terms in the signal only if they improve the prediction. Of the other terms, use the
+  // most that predict equally well, since omitting a term biases others.
   constexpr double shows = 1.01, as_well = 1.005;
   int signal = near.choice.signal;
   for (const Candidate& c : candidates)

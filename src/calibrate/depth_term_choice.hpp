@@ -10,26 +10,25 @@
 
 namespace tofsmith {
 
-/// What is fitted: samples with the terms of each.
+/// Samples to fit and the terms of each.
 struct DepthFit {
   std::vector<ReferenceSample> samples;
   double range_m = 0.0;
   int height = 0, width = 0;
-  double start_m = 0.0;  // offset ahead of the fit
+  double start_m = 0.0;  // offset subtracted before the fit
   double signal_e_per_s = 1.0, min_signal_e_per_s = 0.0, max_signal_e_per_s = 0.0;
   Eigen::MatrixXd terms;    // (error_terms, samples)
   Eigen::VectorXd error_m;  // depth - reference - start
-  Eigen::VectorXd base;     // weight by predicted noise
-  Eigen::VectorXd weight;   // and by the residual
+  Eigen::VectorXd base;     // weight from the predicted noise
+  Eigen::VectorXd weight;   // base times the weight from the residual
   double scale_m = 0.0;     // robust standard deviation of residuals
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(samples.size()); }
 };
 
-/// The value of a list below which a share of it lies, 0 .. 1.
+/// Returns a quantile of a list; share in [0, 1].
 double quantile_of(std::vector<double> values, double share);
 
-/// A number of each sample.
 template <typename Get>
 std::vector<double> each(const std::vector<ReferenceSample>& samples, const Get& get) {
   std::vector<double> values;
@@ -38,17 +37,17 @@ std::vector<double> each(const std::vector<ReferenceSample>& samples, const Get&
   return values;
 }
 
-/// Terms that count where the reference had depths and beyond, with what they leave on samples held
-/// out [m].
+/// Terms used within and beyond the depths of the reference, with their residuals on held-out
+/// samples [m].
 struct Chosen {
   TermChoice known, beyond;
   double known_rms_m = 0.0, beyond_rms_m = 0.0;
 };
 
-/// Chooses among sets of terms by samples held out: blocks of a checkerboard, and quarters of the
-/// reference's range.
-/// @param prefer_few  of sets that predict equally well, the smallest: for tables whose harmonics
-/// were calibrated, so that few terms are left; otherwise the largest
+/// Selects terms by cross-validation on blocks of a checkerboard and on quarters of the reference's
+/// range.
+/// @param prefer_few  select the smallest of sets that predict equally well, for tables with
+///         calibrated harmonics, which leave few terms; otherwise the largest
 Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool prefer_few);
 
 }  // namespace tofsmith

@@ -77,8 +77,8 @@ Fundamentals fundamentals_of(const CodeSet& code, const Camera& camera,
   return found;
 }
 
-/// Phasors of every frequency in every pixel, S exp(i phase), (F, P); empty if the measurements do
-/// not determine them.
+/// Computes the phasor of each frequency in each pixel, S exp(i phase), (F, P); empty if the
+/// measurements do not determine them.
 Eigen::MatrixXcd phasors_of(const Fundamentals& model, const ReferencePixels& pixels) {
   constexpr double independent = 1e-6;
   const auto frequencies = static_cast<Eigen::Index>(model.repetitions.size());
@@ -104,10 +104,9 @@ Eigen::MatrixXcd phasors_of(const Fundamentals& model, const ReferencePixels& pi
   return phasors;
 }
 
-/// Offset and contrast of every frequency as its phasors have them.
 struct PhasorOffsets {
   std::vector<double> offset_rad, contrast;
-  double agreement = 0.0;  // least over frequencies; 1: phases follow the reference exactly
+  double agreement = 0.0;  // minimum over frequencies; 1 if phases follow the reference exactly
 };
 
 PhasorOffsets offsets_of(const Fundamentals& model, const ReferencePixels& pixels,
@@ -133,10 +132,9 @@ PhasorOffsets offsets_of(const Fundamentals& model, const ReferencePixels& pixel
   return found;
 }
 
-/// The camera with an offset and a contrast for every exposure.
 struct CalibratedCamera {
   Camera camera;
-  std::vector<double> offset_m, contrast;  // of every exposure of the code
+  std::vector<double> offset_m, contrast;  // per exposure of the code
 
   void apply() {
     Playback playback = camera.playback.value_or(Playback());
@@ -156,8 +154,8 @@ std::vector<std::size_t> frequency_of_exposures(const CodeSet& code,
   return frequency;
 }
 
-/// Moves offsets by phases and scales contrasts; the geometric mean of contrasts stays unless one
-/// would exceed 1.
+/// Shifts offsets by phases and scales contrasts. The geometric mean of the contrasts is kept
+/// unless one would exceed 1.
 void adjust(CalibratedCamera& calibrated, const std::vector<std::size_t>& frequency,
             const std::vector<int>& repetitions, const std::vector<double>& offset_rad,
             const std::vector<double>& contrast) {
@@ -182,11 +180,11 @@ std::string list_of(const std::vector<int>& numbers) {
 }
 
 /// Adds the standard errors and the harmonics of a frequency.
-/// @param found   with frequency, offset and contrast
+/// @param found   contains frequency, offset and contrast
 /// @param notes   receives a note on parameters that the frames do not determine
 void add_fit(const HarmonicFit& fit, std::size_t frequency, double period_m,
              CalibratedFrequency& found, std::vector<std::string>& notes) {
-  constexpr int noted_harmonic = 8;  // higher ones hardly matter
+  constexpr int noted_harmonic = 8;  // higher harmonics are negligible
   const std::size_t fundamental = fit.fundamental(frequency);
   const std::complex<double> gain = fit.gain(frequency);
   const double size = std::abs(gain);
@@ -216,7 +214,7 @@ void add_fit(const HarmonicFit& fit, std::size_t frequency, double period_m,
         name, list_of(unknown), period_m));
 }
 
-/// Frequencies of a code in units of f0, in order.
+/// Returns the frequencies of a code in units of f0, in increasing order.
 std::vector<int> repetitions_of(const CodeSet& code) {
   std::set<int> found;
   for (const int e : code.frequency_starts()) found.insert(code.modulation(e).repetitions());
@@ -234,7 +232,7 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
   if (repetitions.size() < 2) return std::nullopt;
   const std::vector<std::size_t> frequency = frequency_of_exposures(code, repetitions);
 
-  // Direction of delay, offsets and contrasts by the phases.
+  // Determine direction of delay, offsets and contrasts from the phases.
   constexpr double agrees = 0.6, clearly = 0.05;
   CalibratedCamera calibrated{
       camera, camera.playback.value_or(Playback()).offsets_of(code, camera.range_m()),
@@ -262,7 +260,7 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
   if (offsets.agreement < agrees) return std::nullopt;
   adjust(calibrated, frequency, repetitions, offsets.offset_rad, offsets.contrast);
 
-  // Harmonics, and the last digits of offsets and contrasts.
+  // Fit harmonics, and refine offsets and contrasts.
   const Fundamentals model = fundamentals_of(code, calibrated.camera, repetitions);
   HarmonicFit fit(model, pixels, code.samples());
   fit.solve();
@@ -276,7 +274,7 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
     contrast.push_back(std::abs(fit.gain(f)));
   }
   adjust(calibrated, frequency, repetitions, offset_rad, contrast);
-  if (camera.sensor.mixes_taps())  // the model has the contrasts of the phases
+  if (camera.sensor.mixes_taps())  // contrasts of the phases are already in the model
     std::ranges::transform(contrast, offsets.contrast, contrast.begin(), std::multiplies());
   double mean_log = 0.0;
   for (const double c : contrast) mean_log += std::log(c) / static_cast<double>(contrast.size());

@@ -23,7 +23,6 @@ Eigen::MatrixXd basis_at(const std::vector<double>& places, int harmonics) {
   return basis;
 }
 
-/// c of the weights of 1, cos and sin.
 Eigen::MatrixXcd complex_of(const Eigen::MatrixXd& weights, int harmonics) {
   Eigen::MatrixXcd c(harmonics + 1, weights.cols());
   c.row(0) = weights.row(0).cast<std::complex<double>>();

@@ -24,15 +24,15 @@ struct ReferencePixels {
   Eigen::Index size() const { return electrons.cols(); }
 };
 
-/// Correlation functions of a camera and the fundamental of each.
+/// Correlation functions of a camera and their fundamentals.
 struct Fundamentals {
-  DecodingTable table;                         // of many rows
+  DecodingTable table;                         // with many rows
   std::vector<int> repetitions;                // of every frequency, in units of f0
   std::vector<std::size_t> frequency;          // of every measurement
   std::vector<std::complex<double>> harmonic;  // of every measurement
 
   int measurements() const { return table.measurements(); }
-  /// Row of correlation functions at a depth (K), between two rows of the table.
+  /// Returns the correlation functions at a depth (K), interpolated between rows of the table.
   Eigen::VectorXd at(double depth_m) const {
     const auto rows = static_cast<double>(table.samples());
     const double row = (depth_m / table.range_m - std::floor(depth_m / table.range_m)) * rows;
@@ -46,11 +46,11 @@ struct Fundamentals {
   }
 };
 
-/// Fit of deviations from correlation functions, b_h of every frequency: see
-/// calibrate_frequencies(). Columns are their real and imaginary parts.
+/// Fit of deviations b_h from the correlation functions for each frequency, see
+/// calibrate_frequencies(). Columns are the real and imaginary parts of b_h.
 class HarmonicFit {
  public:
-  /// @param rows  N, which limits the harmonics
+  /// @param rows  N, which limits the number of harmonics
   HarmonicFit(const Fundamentals& model, const ReferencePixels& pixels, int rows);
 
   void solve();
@@ -64,20 +64,20 @@ class HarmonicFit {
     const auto at = 2 * static_cast<Eigen::Index>(term);
     return {deviation_[at], deviation_[at + 1]};
   }
-  /// Index of the term of the fundamental of a frequency.
+  /// Returns the index of the term of a frequency's fundamental.
   std::size_t fundamental(std::size_t frequency) const;
-  /// Factor by which the fundamental of a frequency differs from that of the model, 1 + b_1.
+  /// Returns the ratio of a frequency's fundamental to that of the model, 1 + b_1.
   std::complex<double> gain(std::size_t frequency) const {
     return 1.0 + deviation(fundamental(frequency));
   }
-  /// Standard errors of the real and the imaginary part of a deviation.
+  /// Returns the standard errors of the real and the imaginary part of a deviation.
   std::array<double, 2> standard_errors(std::size_t term) const;
-  /// Standard error of Re b_1 of a frequency relative to its mean over all frequencies.
+  /// Returns the standard error of Re b_1 of a frequency relative to its mean over all frequencies.
   double contrast_error(std::size_t frequency) const;
-  /// Returns whether the frames determine a deviation better than the prior does. Of a fundamental,
-  /// the phase counts.
+  /// Returns true if the frames determine a deviation better than the prior does. For fundamentals,
+  /// the phase is tested.
   bool is_determined(std::size_t term) const;
-  /// Change of the correlation functions by the deviations at a depth (K).
+  /// Returns the change of the correlation functions by the deviations at a depth (K).
   Eigen::VectorXd added(double depth_m) const { return functions(depth_m) * deviation_; }
 
  private:
@@ -85,20 +85,20 @@ class HarmonicFit {
     Eigen::MatrixXd gram;    // (columns, columns)
     Eigen::MatrixXd moment;  // (columns, tiles)
   };
-  /// Terms of one pixel in the sums.
   struct PixelTerms {
-    Eigen::MatrixXd design;    // (K, columns), weighted, without what signal and ambient explain
-    Eigen::VectorXd residual;  // (K), in the same way
+    Eigen::MatrixXd design;  // (K, columns), weighted, with signal and ambient light projected out
+    Eigen::VectorXd residual;  // (K), weighted and projected in the same way
     bool is_valid = false;
   };
 
   Eigen::Index columns() const { return 2 * static_cast<Eigen::Index>(terms_.size()); }
-  /// The measurements do not determine the mean contrast, because the brightness of the scene is
-  /// not known: it stays.
+  /// Returns the inverse prior covariance. The mean contrast is kept fixed, because it cannot be
+  /// distinguished from the unknown brightness of the scene.
   Eigen::MatrixXd prior_information() const;
   Eigen::MatrixXd information_of(const Sums& sums) const;
 
-  /// Derivatives of the correlation functions by the deviations at a depth (K, columns).
+  /// Returns the derivatives of the correlation functions by the deviations at a depth (K,
+  /// columns).
   Eigen::MatrixXd functions(double depth_m) const;
 
   PixelTerms terms_of(Eigen::Index pixel) const;
@@ -108,7 +108,7 @@ class HarmonicFit {
   void for_each_pixel(const Add& add) const;
   Sums all_sums() const;
 
-  /// Weights by the residuals, and their usual size.
+  /// Updates the weights and the misfit from the residuals.
   void weigh();
 
   void estimate_errors();
@@ -123,7 +123,7 @@ class HarmonicFit {
   Eigen::MatrixXd covariance_;
   Eigen::VectorXd posterior_;  // variances, with the prior
   std::vector<double> weight_;
-  double misfit_ = 1.0;  // usual variance of a residual over that of its noise
+  double misfit_ = 1.0;  // median variance of residuals relative to their noise
 };
 
 }  // namespace tofsmith

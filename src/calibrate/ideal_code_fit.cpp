@@ -29,7 +29,6 @@ Eigen::MatrixXcd harmonics_of(const Eigen::MatrixXd& table, int harmonics) {
   return c;
 }
 
-/// The camera without anything that limits a waveform.
 Camera unlimited_camera(Camera camera) {
   camera.light.impulse_response = camera.sensor.impulse_response = {};
   camera.light.edge_jitter_s = camera.sensor.edge_jitter_s = 0.0;
@@ -45,7 +44,7 @@ Camera unlimited_camera(Camera camera) {
   return camera;
 }
 
-/// What both arms, alike, pass of harmonic n.
+/// Returns the transfer of harmonic n by two equal arms.
 double both_arms(Kind kind, double parameter_hz, double frequency_hz) {
   const ImpulseResponse response{.kind = kind, .f_max_hz = parameter_hz, .cutoff_hz = parameter_hz};
   return std::norm(response.transfer(frequency_hz));
@@ -57,7 +56,7 @@ Eigen::MatrixXcd limited(Eigen::MatrixXcd c, Kind kind, double parameter_hz, dou
   return c;
 }
 
-/// y against x: least squares over scale and delay.
+/// Least squares fit of y by x over scale and delay.
 struct Match {
   double left = INFINITY;  // |y - scale x(u - delay)|^2
   double scale = 0.0;
@@ -73,7 +72,6 @@ Match match(const Eigen::MatrixXcd& y, const Eigen::MatrixXcd& x) {
   return {y.squaredNorm() - best.value * best.value / size, best.value / size, -best.shift};
 }
 
-/// The code's exposures in another order.
 Eigen::MatrixXcd ordered(const Eigen::MatrixXcd& x, const std::vector<int>& order, int taps) {
   Eigen::MatrixXcd result(x.rows(), x.cols());
   for (std::size_t e = 0; e < order.size(); ++e)
@@ -82,7 +80,8 @@ Eigen::MatrixXcd ordered(const Eigen::MatrixXcd& x, const std::vector<int>& orde
   return result;
 }
 
-/// Direction, sign and order that fit best without a response; leaves x so turned.
+/// Finds direction, sign and order with the smallest residual without a response, and applies them
+/// to x.
 void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeFit& fit) {
   const Eigen::MatrixXcd original = x;
   std::vector<int> order(static_cast<std::size_t>(x.cols() / taps));
@@ -95,7 +94,7 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
         Eigen::MatrixXcd turned = ordered(reversed ? original.conjugate() : original, order, taps);
         if (inverted) turned = -turned;
         const Match found = match(y, turned);
-        // The plain reading wins a tie, which symmetric codes have.
+        // Symmetric codes give ties, in which the first variant (unchanged) wins.
         if (found.left >= min_left - 1e-6 * y.squaredNorm()) continue;
         min_left = found.left;
         x = std::move(turned);
@@ -106,7 +105,7 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
   } while (permute && std::next_permutation(order.begin(), order.end()));
 }
 
-/// Least of a function on an interval of logarithms.
+/// Golden-section search for a minimum.
 double golden(double low, double high, const std::function<double(double)>& f) {
   constexpr double share = 0.6180339887498949;
   double a = high - share * (high - low), b = low + share * (high - low);
@@ -143,7 +142,8 @@ void fit_response(const Eigen::MatrixXcd& y, const Eigen::MatrixXcd& x, double f
     best = found;
     fit.response = {.kind = kind};
     (kind == Kind::hann ? fit.response.f_max_hz : fit.response.cutoff_hz) = std::exp(log_hz);
-    // Curvature over the log of the parameter, noise as the residual.
+    // Standard error from the curvature over the logarithm of the parameter, and the residual as
+    // noise.
     const double move = 1e-2;
     const double curvature =
         (left(log_hz + move) - 2 * found.left + left(log_hz - move)) / (move * move);
@@ -226,7 +226,7 @@ std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
 
 Camera with_fit(Camera camera, const IdealCodeFit& fit, const std::vector<Estimate>& tap_mismatch) {
   camera.light.impulse_response = camera.sensor.impulse_response = fit.response;
-  // A shift below this is one that the fit cannot tell from none.
+  // Smaller shifts are not significant.
   constexpr double least_delay_periods = 1e-3;
   Playback playback{.reversed = fit.reversed, .inverted = fit.inverted};
   if (std::abs(fit.delay_periods) >= least_delay_periods)

@@ -16,8 +16,8 @@
 namespace tofsmith {
 namespace {
 
-/// Peaks of a response, the highest first: each at least 15 % of the highest and 5 `noise_rms`,
-/// with a valley below 70 % of its height between it and every higher one.
+/// Finds peaks of a response, highest first: at least 15 % of the highest and 5 `noise_rms`, and
+/// separated from all higher peaks by a valley below 70 % of their height.
 std::vector<ResponsePeak> peaks_of(const ImpulseResponse& response, double noise_rms) {
   constexpr double lowest = 0.15, deepest_valley = 0.7;
   const std::vector<double>& h = response.samples;
@@ -76,7 +76,8 @@ Excitation excitation_of(const Eigen::VectorXd& values) {
                                                               : Excitation::pulse;
 }
 
-/// A pulse across the ends of a record of a whole period is moved to its first third.
+/// Rotates a record of a whole period whose pulse wraps around its ends, so that the pulse is at
+/// one third of the record.
 void unroll(CalibratedResponse& result, Eigen::VectorXd& values) {
   Index peak = 0;
   values.maxCoeff(&peak);
@@ -96,13 +97,12 @@ void unroll(CalibratedResponse& result, Eigen::VectorXd& values) {
       "round");
 }
 
-/// Where in the record the response is.
 struct Place {
-  Index centre = 0;    // of the peak, or of half the step
+  Index centre = 0;    // peak, or half of the step
   double width = 1.0;  // full width at half maximum of the response [samples]
 };
 
-/// From the points at which a smoothed pulse passes half its height.
+/// Locates a smoothed pulse by the points at half its height.
 Place place_of_pulse(const Eigen::VectorXd& values) {
   Place place;
   const double middle = median_of_all(values);
@@ -114,7 +114,7 @@ Place place_of_pulse(const Eigen::VectorXd& values) {
   return place;
 }
 
-/// From the points at which a smoothed step passes 10 %, 50 % and 90 %: the width of a Gaussian.
+/// Locates a smoothed step by the points at 10 %, 50 % and 90 %; the width is that of a Gaussian.
 Place place_of_step(const Eigen::VectorXd& values) {
   const Index tenth = std::max<Index>(1, values.size() / 10);
   const double base = median_of_all(values.head(tenth)), top = median_of_all(values.tail(tenth));
@@ -128,7 +128,7 @@ Place place_of_step(const Eigen::VectorXd& values) {
           std::max(1.0, static_cast<double>(crossing(0.9) - crossing(0.1)) / rise_per_width)};
 }
 
-/// The quiet values ahead of the response, or, if there are too few, behind a pulse.
+/// Returns the values before the response, or, if there are too few, those after a pulse.
 Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitation,
                              const Place& place) {
   constexpr Index min_samples = 8;
@@ -144,7 +144,7 @@ Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitatio
   return {};
 }
 
-/// First and last value of the smoothed response that stand out of the noise, with room.
+/// Returns the range of significant values of the smoothed response, with a margin.
 std::pair<Index, Index> support_of(const Eigen::VectorXd& response, const Place& place,
                                    double noise_of_smoothed, Index smoothing) {
   const Eigen::VectorXd smooth = moving_average(response, smoothing);
@@ -162,7 +162,6 @@ std::pair<Index, Index> support_of(const Eigen::VectorXd& response, const Place&
   return {std::max<Index>(0, first - room), std::min(smooth.size() - 1, last + room)};
 }
 
-/// What stands out of the noise, as an impulse response.
 ResponseWindow window_of(const CalibratedResponse& result, const Eigen::VectorXd& values,
                          const Eigen::VectorXd& variance, double background_variance,
                          const Place& place) {
@@ -182,7 +181,7 @@ ResponseWindow window_of(const CalibratedResponse& result, const Eigen::VectorXd
   const auto [first, last] = support_of(response, place, smoothed_noise, smoothing);
   window.values = response.segment(first, last - first + 1);
   window.variance = variance.segment(first, last - first + 1);
-  if (is_step) {  // levels outside are known much better than single values
+  if (is_step) {  // end levels are known much better than single values
     window.values[0] = values[first + 1] - result.background;
     window.values[window.values.size() - 1] = result.background + result.height - values[last];
   }
@@ -191,7 +190,7 @@ ResponseWindow window_of(const CalibratedResponse& result, const Eigen::VectorXd
   return window;
 }
 
-/// A period over a whole multiple of N, fine enough for the response.
+/// Returns a period over a multiple of N, fine enough for the response.
 double output_step_s(const ResponseCalibrationOptions& options, double width_s, double span_s) {
   constexpr double steps_per_width = 16.0, max_samples = 16384.0;
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
@@ -219,9 +218,9 @@ void fit_kinds(CalibratedResponse& result, const Eigen::VectorXd& values,
   std::ranges::stable_sort(result.fits, {}, &ParametricResponse::residual_rms);
 }
 
-/// Number of equal highest values of a pulse that was clipped; 0 if it was not. The top of a pulse
-/// that is only rounded to steps q falls by 4 q, a parabola, over half as many values again on
-/// either side. A clipped one falls faster.
+/// Returns the number n of equal highest values if a pulse was clipped, else 0. If values are only
+/// rounded to steps q, the top is a parabola, which falls by 4 q over the next n / 2 values on
+/// either side. A clipped pulse falls faster.
 Index clipped_values(const Eigen::VectorXd& values) {
   constexpr Index fewest = 3;
   constexpr double steeper = 2.0;
@@ -267,7 +266,7 @@ double bandwidth_hz(const ImpulseResponse& response) {
   response.validate("response");
   require(response.kind != ImpulseResponse::Kind::none, "response.kind", "none",
           "must be a response, whose bandwidth is finite");
-  // 1 / 64 of a scale at which every kind has lost next to nothing.
+  // Frequency step: 1/64 of a scale at which every kind has negligible loss.
   const double scale_hz =
       response.kind == ImpulseResponse::Kind::hann ? response.f_max_hz
       : response.kind == ImpulseResponse::Kind::file
@@ -299,7 +298,7 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.record = std::move(record);
   Eigen::VectorXd values = result.record.values;
 
-  // What it answers to, which way round, and where.
+  // Determine the excitation, its sign and position.
   result.excitation = options.excitation.value_or(excitation_of(values));
   const bool is_step = result.excitation == Excitation::step;
   const Index tenth = std::max<Index>(1, values.size() / 10);
@@ -315,7 +314,6 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   const Eigen::VectorXd smooth = moving_average(values, smoothing);
   place = is_step ? place_of_step(smooth) : place_of_pulse(smooth);
 
-  // Its background and its noise.
   const Eigen::VectorXd quiet = quiet_values(values, result.excitation, place);
   result.background = result.record.counts ? quiet.mean() : median_of_all(quiet);
   result.height = is_step ? median_of_all(values.tail(tenth)) - result.background
@@ -330,10 +328,10 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.snr_db = 20 * std::log10(result.height / result.noise_rms);
   Eigen::VectorXd variance =
       Eigen::VectorXd::Constant(values.size(), result.noise_rms * result.noise_rms);
-  if (result.record.counts)  // of photons: the mean, here that of the neighbours
+  if (result.record.counts)  // variance = mean, estimated from adjacent values
     variance = moving_average(values, std::max<Index>(3, smoothing)).cwiseMax(variance);
 
-  // The three kinds, then the response itself.
+  // Fit the parametric kinds, then denoise the measured response.
   fit_kinds(result, values, variance, place, sign);
   const double background_variance =
       result.noise_rms * result.noise_rms / static_cast<double>(quiet.size());
@@ -348,7 +346,6 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.response_centre_s = denoised.response_centre_s;
   result.delay_s = denoised.centre_s;
 
-  // What the user should know.
   result.peaks = peaks_of(result.response, denoised.noise_rms);
   for (std::size_t i = 1; i < result.peaks.size(); ++i)
     result.notes.push_back(fmt::format(
@@ -368,7 +365,7 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
         name_of(result.fits.front().response.kind), 100 * result.fits.front().residual_rms,
         100 * result.noise_rms / result.height));
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
-  // A second peak costs however sharp each of them is.
+  // A second peak degrades the response even if both peaks are narrow.
   const bool is_short = std::ranges::all_of(
       result.peaks, [&](const auto& peak) { return std::abs(peak.time_s) < 2 * grid_s; });
   if (width_s < 2 * grid_s && is_short)

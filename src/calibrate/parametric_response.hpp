@@ -6,19 +6,19 @@
 
 namespace tofsmith {
 
-/// A record to which parametric responses are fitted; it rises.
+/// Record of a rising pulse or step for parametric fits.
 struct ResponseFitProblem {
   Excitation excitation = Excitation::pulse;
   Eigen::VectorXd values;
   Eigen::VectorXd weights;   ///< 1 / variance, up to a common factor
   double time_step_s = 0.0;  ///< [s]
-  double place_s = 0.0;      ///< of the peak or of half the step, from the first value, roughly [s]
-  double width_s = 0.0;      ///< full width at half maximum of the response, roughly [s]
+  double place_s = 0.0;      ///< approximate time of peak or half step, from the first value [s]
+  double width_s = 0.0;      ///< approximate full width at half maximum of the response [s]
 };
 
-/// Weighted least squares over place, width, height and background, by Levenberg-Marquardt from
-/// three widths. Pulses are taken as averages over a sample. fit and residual_rms are in the units
-/// of the values.
+/// Fits position, width, height and background by weighted least squares (Levenberg-Marquardt with
+/// three initial widths). Values of pulses are averages over a sample. fit and residual_rms are in
+/// the units of the values.
 /// @param kind  hann, gaussian or lowpass
 ParametricResponse fit_parametric_response(ImpulseResponse::Kind kind,
                                            const ResponseFitProblem& problem);

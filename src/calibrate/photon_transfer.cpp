@@ -15,9 +15,8 @@ namespace tofsmith {
 namespace {
 
 constexpr double rounding_dn2 = 1.0 / 12.0;
-constexpr double max_clipped = 1e-4;  // share of pixels at the limit that a point may have
+constexpr double max_clipped = 1e-4;  // maximum share of pixels at the limit for a valid point
 
-/// Values of one measurement of a frame that are numbers.
 struct PairStatistics {
   RunningStatistics mean, difference, raw;
   std::size_t clipped = 0, pixels = 0;
@@ -41,7 +40,7 @@ PairStatistics statistics_of(const RawFrames& raw, int first, int measurement, d
   return s;
 }
 
-/// Number at which pixels pile up, or the highest of all.
+/// Returns the number at which pixels accumulate, or the highest number.
 double limit_of(const std::vector<RawFrames>& levels, bool& piled_up) {
   double highest = -INFINITY;
   for (const RawFrames& raw : levels)
@@ -55,7 +54,7 @@ double limit_of(const std::vector<RawFrames>& levels, bool& piled_up) {
       else if (static_cast<double>(value) >= highest - 8.5)
         ++near_top;
     }
-  // A tail thins out; a limit gathers.
+  // The tail of a distribution decreases, whereas clipping accumulates pixels at the top.
   piled_up = at_top >= 32 && at_top > near_top;
   return highest;
 }
@@ -84,8 +83,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, double averaged,
       const PairStatistics s = statistics_of(raw, f, k, limit);
       if (s.pixels < 16) continue;
       PhotonTransferPoint point{.mean_dn = s.mean.mean(), .dark = dark};
-      // A change of light between the two frames is a constant of the difference and not in its
-      // variance.
+      // A change of light between the frames shifts the mean of the difference, not its variance.
       const double variance = 0.5 * averaged * s.difference.variance();
       point.variance_dn2 = {variance,
                             variance * std::sqrt(2.0 / static_cast<double>(s.pixels - 1))};
@@ -95,7 +93,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, double averaged,
     }
 }
 
-/// variance - rounding = a + b (mean - black): weights of the fitted variance, three rounds.
+/// Line variance - rounding = a + b (mean - black), with iteratively updated weights.
 struct FittedLine {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
@@ -168,7 +166,7 @@ void set_full_well(bool piled_up, PhotonTransfer& result) {
     return;
   }
   const double span_dn = result.saturation_dn - result.black_level_dn.value;
-  // The number of the limit is known to its rounding.
+  // The limit is known to within rounding.
   const double error_dn = std::hypot(std::sqrt(rounding_dn2), result.black_level_dn.standard_error);
   result.full_well_e = Estimate{span_dn * result.gain_e_per_dn.value,
                                 std::hypot(span_dn * result.gain_e_per_dn.standard_error,
@@ -176,17 +174,17 @@ void set_full_well(bool piled_up, PhotonTransfer& result) {
 }
 
 void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
-  // The read noise of all buckets is in a number.
+  // A number contains the read noise of all buckets.
   const double a = line.value[0] / result.buckets, b = line.value[1];
   require(b > 0.0 && b > 3 * std::sqrt(line.covariance(1, 1)), "rise of variance with the mean", b,
           "must be > 0 by 3 standard errors: the levels must differ in light");
-  // Points that scatter more than their numbers of pixels say have errors as large as they do.
+  // Increase the errors if points scatter more than their pixel numbers predict.
   const Eigen::DiagonalMatrix<double, 2> of_one(1.0 / result.buckets, 1.0);
   const Eigen::Matrix2d covariance =
       of_one * line.covariance * of_one * std::max(1.0, line.reduced_chi2);
   const double gain = 1.0 / b;
   result.gain_e_per_dn = {gain, std::sqrt(covariance(1, 1)) / (b * b)};
-  const double black_error_dn2 = b * result.black_level_dn.standard_error;  // moves a
+  const double black_error_dn2 = b * result.black_level_dn.standard_error;  // affects a
   if (a <= 0.0) {
     result.read_noise_e = {0.0, gain * std::sqrt(std::sqrt(covariance(0, 0)))};
     result.notes.emplace_back("the read noise is too small to be separated from rounding");
@@ -245,7 +243,7 @@ PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFr
 Camera with_noise(Camera camera, const PhotonTransfer& found) {
   camera.sensor.gain_e_per_dn = found.gain_e_per_dn.value;
   camera.sensor.read_noise_e = found.read_noise_e.value;
-  // In differences the black level cancels.
+  // The black level cancels in differences.
   if (camera.sensor.readout != Readout::difference)
     camera.sensor.black_level_dn = std::max(0.0, found.black_level_dn.value);
   camera.sensor.adc_bits = found.adc_bits;

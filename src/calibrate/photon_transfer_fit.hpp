@@ -6,15 +6,17 @@
 
 namespace tofsmith {
 
-/// @throws std::invalid_argument unless the frames are pairs, of the size of `first`, of enough
+/// @throws std::invalid_argument unless the frames are pairs, have the size of `first` and enough
 ///         pixels
 void check_pairs(const RawFrames& raw, const RawFrames& first, const char* name);
 
-/// Gain and read noise from the points of `result`, whose black level and buckets are known; with
-/// notes. @throws std::invalid_argument if they are too few, or their variance does not rise
+/// Fits gain and read noise to the points of `result`, whose black level and buckets are set; adds
+/// notes. @throws std::invalid_argument if there are too few points or their variance does not
+/// increase
 void fit_photon_transfer(PhotonTransfer& result);
 
-/// Bits as given, or the fewest usual ones that hold a number, with a note.
+/// Sets the bits as given, or the smallest usual number that can represent `highest_dn`, with a
+/// note.
 void set_adc_bits(const PhotonTransferOptions& options, double highest_dn, PhotonTransfer& result);
 
 }  // namespace tofsmith

@@ -9,22 +9,22 @@
 
 namespace tofsmith {
 
-/// Harmonics of pixels against those of their common curve: c_p = gain_p advanced(C, delay_p).
+/// Harmonics of pixels relative to a common curve: c_p = gain_p advanced(C, delay_p).
 struct PixelAlignment {
-  std::vector<double> delay_periods;  ///< by how much each pixel decodes too far; mean 0
+  std::vector<double> delay_periods;  ///< excess depth of each pixel; mean 0
   std::vector<double> gain;           ///< mean 1
   Eigen::MatrixXcd common;            ///< C (H + 1, K)
 };
 
-/// Shift [periods] at which the sum over n of s_n exp(-2 pi i n shift) has its largest real part,
-/// and that part. s (H + 1), of which s_0 does not count.
+/// Shift [periods] that maximizes the real part of sum over n of s_n exp(-2 pi i n shift), and the
+/// maximum. s (H + 1); s_0 is ignored.
 struct BestShift {
   double shift = 0.0;
   double value = 0.0;
 };
 BestShift best_shift(const Eigen::VectorXcd& s);
 
-/// Alternates between pixels and their common curve until delays stay within 1e-9 periods.
+/// Alternates between pixels and their common curve until delays change by less than 1e-9 periods.
 /// @param pixels  c of each pixel (H + 1, K)
 PixelAlignment align_pixels(const std::vector<Eigen::MatrixXcf>& pixels, const Progress& progress);
 

@@ -16,8 +16,8 @@
 namespace tofsmith {
 namespace {
 
-constexpr double equal_steps = 0.01;  // of a step: room for times written with few digits
-constexpr double longest_gap = 10.0;  // steps
+constexpr double equal_steps = 0.01;  // of a step: allows for times with few digits
+constexpr double longest_gap = 10.0;  // in steps
 constexpr Eigen::Index min_values = 16;
 
 double median_step(const Eigen::VectorXd& time_s) {
@@ -26,7 +26,6 @@ double median_step(const Eigen::VectorXd& time_s) {
   return median_of(std::move(steps));
 }
 
-/// Values at equal steps along the straight lines between those measured.
 Eigen::VectorXd resampled(const Eigen::VectorXd& time_s, const Eigen::VectorXd& values,
                           double step_s) {
   const double span_s = time_s[time_s.size() - 1] - time_s[0];
@@ -61,7 +60,7 @@ void set_times(ResponseRecord& record, const Eigen::VectorXd& time_s,
     largest = std::max(largest, std::abs(gap_s - step_s));
   }
   record.start_time_s = time_s[0];
-  // The mean step: few digits in a file make the median one of two neighbours.
+  // Use the mean step, because rounded times make the median step one of two adjacent values.
   const double mean_step_s =
       (time_s[time_s.size() - 1] - time_s[0]) / static_cast<double>(time_s.size() - 1);
   double strayed = 0.0;

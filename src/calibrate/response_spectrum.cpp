@@ -14,15 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-/// Sum of h[i] exp(-2 pi j f t_i), t from the first value.
+/// Returns the sum of h[i] exp(-2 pi j f t_i), with t from the first value.
 std::complex<double> transform_at(const ResponseWindow& window, double frequency_hz) {
   const std::complex<double> turn = std::polar(1.0, -2 * pi * frequency_hz * window.time_step_s);
-  std::complex<double> sum = 0.0;  // Horner
+  std::complex<double> sum = 0.0;
   for (Eigen::Index i = window.values.size() - 1; i >= 0; --i) sum = sum * turn + window.values[i];
   return sum;
 }
 
-/// A difference of neighbours is an average over the step between them.
+/// Returns the transfer of differencing, which averages the derivative over one step.
 double differencing(const ResponseWindow& window, double frequency_hz) {
   const double x = pi * frequency_hz * window.time_step_s;
   return !window.differentiated || x == 0.0 ? 1.0 : std::sin(x) / x;
@@ -33,12 +33,12 @@ double gain_at(const ResponseWindow& window, double frequency_hz) {
          differencing(window, frequency_hz);
 }
 
-/// Standard deviation of gain_at by first-order propagation.
+/// Returns the standard deviation of gain_at() by first-order propagation.
 double gain_error_at(const ResponseWindow& window, double frequency_hz) {
   const Eigen::Index count = window.values.size();
   const std::complex<double> value = transform_at(window, frequency_hz);
   const double total = window.values.sum(), gain = std::abs(value) / total;
-  Eigen::VectorXd slope(count);  // of the gain by each value of the response
+  Eigen::VectorXd slope(count);  // derivative of the gain by each value of the response
   for (Eigen::Index i = 0; i < count; ++i) {
     const double phase = -2 * pi * frequency_hz * window.time_step_s * static_cast<double>(i);
     slope[i] =
@@ -55,14 +55,13 @@ double gain_error_at(const ResponseWindow& window, double frequency_hz) {
   return std::sqrt(variance) / differencing(window, frequency_hz);
 }
 
-/// Sum of the noise of the values at coefficient k of M.
+/// Returns the noise power in coefficient k of M.
 double noise_power(const ResponseWindow& window, int k, int coefficients) {
   const double white = window.variance.sum();
   if (!window.differentiated) return white;
   return 4 * std::pow(std::sin(pi * k / coefficients), 2) * white;
 }
 
-/// Mean of the neighbours within `reach`.
 double smoothed_power(const Eigen::VectorXcd& spectrum, Eigen::Index k, Eigen::Index reach) {
   const Eigen::Index first = std::max<Eigen::Index>(0, k - reach);
   const Eigen::Index last = std::min(spectrum.size() - 1, k + reach);
@@ -103,10 +102,10 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
   Eigen::VectorXcd spectrum;
   PeriodicTransform(coefficients).forward(padded, spectrum);
 
-  // 1 - noise / power, and nothing from where noise reigns.
+  // Wiener filter: 1 - noise / power, and 0 above the frequency at which noise dominates.
   const Eigen::Index reach = coefficients / length;
   Eigen::Index kept = 1;
-  double left = 0.0;  // noise
+  double left = 0.0;  // remaining noise
   Eigen::VectorXcd filtered = spectrum;
   for (; kept < spectrum.size(); ++kept) {
     const double noise = noise_power(window, static_cast<int>(kept), coefficients);
@@ -117,7 +116,7 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
     filtered[kept] *= pass / differencing(window, frequency_hz);
     left += 2 * pass * pass * noise;
   }
-  // A sharp end would ring: the last third fades.
+  // Taper the last third, as a sharp cut-off would cause ringing.
   const Eigen::Index fading = kept / 3;
   for (Eigen::Index k = kept - fading; k < kept; ++k)
     filtered[k] *= std::pow(
@@ -142,7 +141,7 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
     moment_s += t_s * samples[i];
   }
   const double centre_s = moment_s / samples.sum();
-  // The same points, moved so that the centre falls on one of them.
+  // Shift the sampling points so that the centre is one of them.
   const double offset_s = centre_s - time_step_s * std::floor(centre_s / time_step_s);
   const double first_s = offset_s - time_step_s * std::ceil(offset_s / time_step_s);
   for (Eigen::Index i = 0; i < count; ++i)

@@ -12,46 +12,44 @@
 
 namespace tofsmith {
 
-/// Straight-line change of light and level over a sweep.
+/// Linear drift of light and level during a sweep.
 struct SweepDrift {
-  bool known = false;  ///< repeats tell it, with errors
+  bool known = false;  ///< the sweep has repeated delays that determine it, with errors
   bool significant = false;
-  Estimate light;              ///< share, from the first to the last frame
-  Estimate level;              ///< raw numbers, from the first to the last frame
-  Eigen::MatrixXd correction;  ///< to take off the mean curve (F, K)
+  Estimate light;              ///< relative change from the first to the last frame
+  Estimate level;              ///< change of raw numbers from the first to the last frame
+  Eigen::MatrixXd correction;  ///< to subtract from the mean curve (F, K)
 };
 
-/// Time of frame f, from -1/2 to 1/2.
+/// Returns the time of a frame, scaled to [-1/2, 1/2].
 double sweep_time(int frame, int frames);
 
-/// Mean of the frames of each group (G, K).
+/// Returns the mean of the frames of each group (G, K).
 Eigen::MatrixXd group_means(const Eigen::MatrixXd& curve, const DelayGroups& groups);
 
-/// Least squares of light and level against the differences within groups.
+/// Fits light and level to the differences within groups by least squares.
 /// @param curve           mean over pixels (F, K)
-/// @param noise_variance  of its values, if pixels tell it; 0: from what the fit leaves
+/// @param noise_variance  of its values, if pixels determine it; 0: from the residual of the fit
 SweepDrift sweep_drift(const Eigen::MatrixXd& curve, const DelayGroups& groups,
                        double noise_variance);
 
-inline constexpr std::size_t enough_pixels = 8;  ///< to take noise from
+inline constexpr std::size_t enough_pixels = 8;  ///< minimum to estimate noise from pixels
 
-/// All frames of one pixel (F, K).
 Eigen::MatrixXd pixel_values(const RawFrames& raw, std::size_t pixel);
 
-/// Pixels that can be used; the others are counted by why they cannot.
+/// Returns the usable pixels and counts the others by reason.
 /// @throws std::invalid_argument if there is none
 std::vector<std::size_t> live_pixels(const DelaySweep& sweep,
                                      const CorrelationCalibrationOptions& options,
                                      DeadPixels& dead);
 
-/// Mean of those pixels (F, K).
 Eigen::MatrixXd mean_curve(const RawFrames& raw, const std::vector<std::size_t>& live);
 
-/// Size of the part of a curve that changes with delay.
+/// Returns the size of the part of a curve that depends on delay.
 double swing(const Eigen::MatrixXd& curve);
 
-/// Variance of the mean curve, from how differently pixels change between two frames of one delay;
-/// 0 if there are none or too few pixels.
+/// Returns the variance of the mean curve, from differences between pixels in their change between
+/// two frames of one delay; 0 without such frames or with too few pixels.
 double mean_curve_variance(const RawFrames& raw, const DelayGroups& groups,
                            const std::vector<std::size_t>& live);
 

@@ -12,41 +12,41 @@
 
 namespace tofsmith {
 
-/// What the camera says of a sweep that it took: taps, read-out, range, black level, clipping and
-/// exposures.
+/// Returns the options for a sweep recorded by the camera: taps, readout, range, black level,
+/// clipping and exposures.
 CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySweep& sweep);
 
-/// How much farther a flat target, square to the axis at that distance [m], is in each pixel than
-/// on the axis [m] (H, W).
-/// @throws std::invalid_argument unless the camera has a lens, which says where pixels look
+/// Returns the additional distance of a flat target, perpendicular to the axis at the given
+/// distance [m], in each pixel relative to the axis [m] (H, W).
+/// @throws std::invalid_argument unless the camera has a lens, which determines the rays
 Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int height, int width);
 
-/// What the camera says of the noise of frames that it took: bits and the black level,
-/// unless dark frames say it.
+/// Returns the options for the noise of frames recorded by the camera: bits, and the black level
+/// unless there are dark frames.
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames);
 
-/// Whose response was recorded.
+/// Arm of a recorded response.
 enum class ResponseArm {
   light,
   sensor,
-  system,  ///< of both arms together: kept in the light's, and the sensor has none
+  system,  ///< both arms together: stored as the light's, the sensor has none
 };
 
-/// "light", "sensor", "system". @throws std::invalid_argument for any other word
+/// Parses "light", "sensor" or "system". @throws std::invalid_argument for any other word
 ResponseArm parse_response_arm(std::string_view word);
-/// "file", "hann", "gaussian", "lowpass": the measured response or a fit.
+/// Parses "file" (the measured response), "hann", "gaussian" or "lowpass" (a fit).
 /// @throws std::invalid_argument for any other word
 ImpulseResponse::Kind parse_response_kind(std::string_view word);
 
-/// The measured response (kind file) or the fit of that kind.
+/// Returns the measured response (kind file) or the fit of a kind.
 ImpulseResponse response_of(const CalibratedResponse& found, ImpulseResponse::Kind kind);
-/// The camera whose arm responds like that.
+/// Returns the camera with an arm's response replaced.
 Camera with_response(Camera camera, const ImpulseResponse& response, ResponseArm arm);
 
-/// Where the measured response of a camera's file is kept: NAME-response.csv beside NAME.toml.
+/// Returns the path for the measured response of a camera: NAME-response.csv next to NAME.toml.
 std::filesystem::path response_path(const std::filesystem::path& camera_path);
-/// Writes a measured response beside a camera's file; returns it with that name. A fit is returned
-/// as it is. @throws IoError as AtomicFile does
+/// Writes a measured response to that path and returns it with the file name. A fit is returned
+/// unchanged. @throws IoError as AtomicFile
 ImpulseResponse write_response_beside(const std::filesystem::path& camera_path,
                                       ImpulseResponse response, OutputPolicy policy);
 

@@ -12,19 +12,19 @@
 
 namespace tofsmith {
 
-/// The lines of a table of what fits a record, headings first, of the terms of a depth error, and
-/// of what a sensor's noise is. Terms that are not told apart are left out, but for a last line on
-/// them.
+/// Return the rows of a table, headings first, for the fits of a record, the terms of a depth
+/// error, and the noise of a sensor. Parameters that are not determined are only listed in a last
+/// row.
 std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found);
 std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& found);
-/// Offset, contrast and harmonics of each frequency, as rows with a header; empty for a single
-/// frequency.
+/// Returns offset, contrast and harmonics of each frequency, as rows with a header; empty for a
+/// single frequency.
 std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& found);
 std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
 
-/// Pages of calibrations: what was found, as tables and figures, and the notes.
-/// @param source        what was calibrated, such as the file of a record
-/// @param command_line  as typed, to be shown on the page; may be empty
+/// Return pages with the results of calibrations as tables and figures, and with notes.
+/// @param source        name of the data, e.g. the file of a record
+/// @param command_line  the user's command, shown on the page; may be empty
 Page response_report(const CalibratedResponse& found, const std::string& source,
                      const std::string& command_line);
 Page correlation_report(const CalibratedCorrelation& found, const std::vector<IdealCodeFit>& fits,

@@ -17,18 +17,18 @@
 
 namespace tofsmith {
 
-/// What an instrument recorded of a response, equally spaced in time.
+/// An instrument's record of a response, with a constant time step.
 struct ResponseRecord {
   Eigen::VectorXd values;     ///< in units of the instrument
   double time_step_s = 0.0;   ///< [s], > 0
   double start_time_s = 0.0;  ///< of the first value [s]
-  bool counts = false;        ///< values are numbers of photons, whose variance is their mean
+  bool counts = false;        ///< values are photon counts, whose variance equals their mean
   std::vector<std::string> notes;
 };
 
 /// Properties of a record that its file does not contain.
 struct ResponseRecordOptions {
-  std::optional<double> time_step_s;  ///< needed for values without times
+  std::optional<double> time_step_s;  ///< required for values without times
   std::optional<double> time_unit_s;
   std::string column;
   DecimalMark decimal = DecimalMark::automatic;
@@ -43,32 +43,31 @@ auto fields_of(ConstOrNot<ResponseRecordOptions> auto& o) {
       Field("decimal", o.decimal, Help{"decimal mark of a text"}));
 }
 
-/// Reads text (see number_table.hpp) with times and values, or values alone, or a NumPy array
-/// of one axis. Times that are not equally spaced are resampled onto their median step along
-/// straight lines, with a note. Whole numbers from 0 on are taken as counts.
-/// @throws IoError naming file and line for times that do not rise, a gap of more than 10 steps, a
-///         value that is not finite, several columns of values without a choice, or fewer than 16
+/// Reads text (see number_table.hpp) with times and values, or with values only, or a NumPy array
+/// with one axis. Unequally spaced times are resampled to the median step by linear interpolation,
+/// with a note. Integers >= 0 are treated as counts.
+/// @throws IoError naming file and line for times that do not increase, gaps of more than 10 steps,
+///         values that are not finite, an ambiguous column of values, or fewer than 16 values
 ResponseRecord read_response_record(const std::filesystem::path& path,
                                     const ResponseRecordOptions& options = {});
 
-/// What the arm answered to.
+/// Input of the arm during the record.
 enum class Excitation {
   pulse,  ///< a pulse much shorter than the response
-  step,   ///< a switch on, or off; the response is its derivative
+  step,   ///< switching on or off; the response is the derivative of the record
 };
 
 constexpr std::array<std::string_view, 2> words_of(Excitation /*any*/) { return {"pulse", "step"}; }
-/// "pulse", "step".
+/// Returns "pulse" or "step".
 std::string_view name_of(Excitation excitation);
-/// @throws std::invalid_argument for any other word
+/// Inverse of name_of(). @throws std::invalid_argument for any other word
 Excitation parse_excitation(std::string_view name);
 
 /// Options of calibrate_impulse_response().
 struct ResponseCalibrationOptions {
   std::optional<Excitation> excitation;
   double fundamental_frequency_hz = 15e6;  ///< f0 of the camera
-  int samples = 240;                       ///< N of the camera; the response comes out in steps of
-                                           ///< a period over a whole multiple of it
+  int samples = 240;  ///< N of the camera; the step of the result is a period over a multiple of N
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -81,55 +80,57 @@ auto fields_of(ConstOrNot<ResponseCalibrationOptions> auto& o) {
       Field("samples", o.samples, FieldMark::from_above));
 }
 
-/// A parametric kind of response fitted to a record.
+/// A parametric response fitted to a record.
 struct ParametricResponse {
   ImpulseResponse response;   ///< hann, gaussian or lowpass
   Estimate parameter_hz;      ///< its f_max_hz or cutoff_hz
   Estimate bandwidth_hz;      ///< -3 dB
-  double residual_rms = 0.0;  ///< of the record less the fit, over the height of the record
+  double residual_rms = 0.0;  ///< of the record minus the fit, relative to the height of the record
   Eigen::VectorXd fit;        ///< at the times of the record, in its units
 };
 
 struct ResponsePeak {
-  double time_s = 0.0;  ///< from the highest
-  double height = 0.0;  ///< over that of the highest
+  double time_s = 0.0;  ///< relative to the highest peak
+  double height = 0.0;  ///< relative to the highest peak
 };
 
-/// What is known of an arm by a record.
+/// Result of calibrate_impulse_response().
 struct CalibratedResponse {
   Excitation excitation = Excitation::pulse;
-  bool falling = false;            ///< the pulse points down, or the step is a switch off
-  double background = 0.0;         ///< ahead of the response, in units of the record
-  double height = 0.0;             ///< of pulse or step above it
-  double noise_rms = 0.0;          ///< of the record where nothing happens
-  double snr_db = 0.0;             ///< 20 log10(height / noise)
-  double delay_s = 0.0;            ///< where the response's centre of gravity was in the record [s]
-  ImpulseResponse response;        ///< kind "file", de-noised, its centre of gravity on a sample
-  double response_centre_s = 0.0;  ///< which comes that long after its first: what it delays [s]
-  Estimate bandwidth_hz;           ///< -3 dB of the measured response itself
-  std::vector<ParametricResponse> fits;  ///< the least residual first
-  std::vector<ResponsePeak> peaks;       ///< the highest first; two or more are kept, with a note
-  ResponseRecord record;                 ///< as it was used
+  bool falling = false;      ///< negative pulse, or a step down
+  double background = 0.0;   ///< before the response, in units of the record
+  double height = 0.0;       ///< of pulse or step above the background
+  double noise_rms = 0.0;    ///< of the record outside the response
+  double snr_db = 0.0;       ///< 20 log10(height / noise)
+  double delay_s = 0.0;      ///< centre of gravity of the response in the record [s]
+  ImpulseResponse response;  ///< kind "file", denoised, with its centre of gravity on a sample
+  double response_centre_s = 0.0;  ///< delay of its centre of gravity from its first sample [s]
+  Estimate bandwidth_hz;           ///< -3 dB bandwidth of the measured response
+  std::vector<ParametricResponse> fits;  ///< by increasing residual
+  std::vector<ResponsePeak> peaks;  ///< by decreasing height; several peaks are kept, with a note
+  ResponseRecord record;            ///< as used
   std::vector<std::string> notes;
 
-  /// Whether the best fit describes the record to its noise: residual within 1.3 noise_rms.
+  /// Returns true if the best fit agrees with the record within its noise: residual below 1.3
+  /// noise_rms.
   bool fit_is_good() const;
 };
 
-/// First frequency [Hz] at which a response passes 1/sqrt(2) of what it passes at 0.
+/// Returns the lowest frequency [Hz] at which the transfer function falls to 1/sqrt(2) of its value
+/// at 0.
 /// @throws std::invalid_argument for kind none, or if there is no such frequency
 double bandwidth_hz(const ImpulseResponse& response);
 
-/// Impulse response of an arm from a record of how it answers to a pulse or a step.
-///   1. Find what it answers to, its background (medians ahead of it and behind) and its noise.
-///   2. Fit hann, gaussian and lowpass to the record itself by weighted least squares over place,
-///      width, height and background; errors from the curvature and the residual.
-///   3. Differentiate a step. Keep what stands out of the noise, from its first to its last point.
-///   4. De-noise: Wiener's filter 1 - noise / power on the smoothed spectrum, nothing beyond the
-///      first frequency at which noise reigns.
-///   5. Move the centre of gravity onto a sample and resample by the spectrum's trigonometric
-///   polynomial.
-/// @throws std::invalid_argument if nothing stands out of the noise, or the options are invalid
+/// Calibrates the impulse response of an arm from a record of its response to a pulse or a step.
+///   1. Detect the excitation, the background (median before and after the response) and the noise.
+///   2. Fit hann, gaussian and lowpass to the record by weighted least squares over position,
+///      width, height and background. Standard errors follow from curvature and residual.
+///   3. Differentiate a step. Keep the range between the first and the last significant value.
+///   4. Denoise with a Wiener filter, 1 - noise / power of the smoothed spectrum, up to the first
+///      frequency at which noise dominates.
+///   5. Move the centre of gravity to a sample and resample by the trigonometric polynomial of the
+///      spectrum.
+/// @throws std::invalid_argument if no value is significant, or the options are invalid
 CalibratedResponse calibrate_impulse_response(ResponseRecord record,
                                               const ResponseCalibrationOptions& options = {});
 

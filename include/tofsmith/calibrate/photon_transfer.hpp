@@ -33,61 +33,64 @@ auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
             Help{"number of equal frames that each frame is already the mean of"}));
 }
 
-/// Mean and variance of one pair of frames of one measurement; of differences, of those that
-/// collected about the same light.
+/// Mean and variance of one measurement in a pair of frames; for differences, of numbers with about
+/// the same light.
 struct PhotonTransferPoint {
-  double mean_dn = 0.0;    ///< over both frames and all pixels; of differences the light [DN]
-  Estimate variance_dn2;   ///< of one frame in time [DN^2]
+  double mean_dn = 0.0;    ///< over both frames and all pixels; for differences the light [DN]
+  Estimate variance_dn2;   ///< temporal, of one frame [DN^2]
   bool dark = false;       ///< of the dark frames
-  bool saturated = false;  ///< too close to the limit to count in the fit
+  bool saturated = false;  ///< too close to the limit to be used in the fit
 };
 
-/// Noise of a sensor from pairs of frames of the same light:
+/// Noise of a sensor from pairs of frames with the same light:
 ///   variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12
 struct PhotonTransfer {
   Estimate gain_e_per_dn;               ///< [e/DN]
   Estimate read_noise_e;                ///< [e]
   Estimate black_level_dn;              ///< [DN]
-  std::optional<Estimate> full_well_e;  ///< [e], if frames reach it before the converter's end
-  double saturation_dn = 0.0;           ///< highest number seen, or where numbers are clipped
+  std::optional<Estimate> full_well_e;  ///< [e], if reached below the converter's maximum
+  double saturation_dn = 0.0;  ///< highest number, or the number at which numbers are clipped
   int adc_bits = 0;
-  int buckets = 1;            ///< that a raw number is of: 2 where differences are read
-  double reduced_chi2 = 0.0;  ///< of the fit: near 1 where the model holds
+  int buckets = 1;            ///< buckets per raw number: 2 if differences are read
+  double reduced_chi2 = 0.0;  ///< of the fit: near 1 if the model is valid
   std::vector<PhotonTransferPoint> points;
   std::vector<std::string> notes;
 };
 
-/// Photon transfer. Each two frames of a recording that follow one another saw the same light; the
-/// difference of the two leaves out what is fixed in a pixel, half its variance is that in time.
-/// The darkest and dark frames fix read noise, the rise of variance with the mean the gain.
-///   1. Black level: mean of the dark frames, or as given.
-///   2. Mean and variance of every pair and measurement; a change of light between the two frames
-///      of a pair is taken out.
-///   3. Full well: where pixels pile up at one number below the converter's last.
-///   4. Straight line by weighted least squares, weights from the expected variance; read noise
-///      from its value at black, less 1/12 of rounding.
-/// @param levels  one recording per level of light or one of them all, raw numbers of single taps
-///                (not differences), an even number of frames
-/// @param dark    frames without light; may have no frames if the black level is given
-/// @throws std::invalid_argument if frames are no pairs, sizes differ, the black level is unknown,
-///         or the levels do not differ
+/// Computes gain and read noise by the photon transfer method (EMVA 1288). Two consecutive frames
+/// of a recording must have the same light. Their difference does not contain the fixed pattern,
+/// and half its variance is the temporal variance of one frame. The variance of dark frames
+/// determines the read noise, its increase with the mean the gain.
+///   1. Black level: mean of the dark frames, or given.
+///   2. Mean and variance of every pair and measurement, corrected for a change of light between
+///      the two frames.
+///   3. Full well: a number below the converter's maximum at which pixels accumulate.
+///   4. Straight line by weighted least squares, with weights from the expected variance. Its
+///      value at black, minus 1/12 for rounding, is the variance of the read noise.
+/// @param levels  one recording per light level, or one of all levels: raw numbers of single taps
+///         (not differences), an even number of frames
+/// @param dark    frames without light; may be empty if the black level is given
+/// @throws std::invalid_argument if frames are not paired, sizes differ, the black level is
+///         unknown, or the levels do not differ
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
                                const PhotonTransferOptions& options = {});
 
-/// The same of a camera that reads the differences of two buckets, whose mean says nothing of shot
-/// noise: both together collected the light that the code asks for where a pixel decodes to.
+/// Computes the noise of a camera that reads the differences of two buckets. Their mean does not
+/// determine the shot noise, so the light of both buckets is computed from the code at the decoded
+/// depth:
 ///   light_k       = T_k S shot_chi_k(z) [DN]
 ///   variance_k    = 2 read_noise^2 / gain^2 + light_k / gain + 2/12 [DN^2]
-/// Pixels count whose difference is 8 times its noise and, if `adc_bits` is given, whose buckets
-/// (with `black_level_dn`) stay 5 % below the converter's last number; the weaker light of one
-/// frame of a pair is taken out. Light from elsewhere is not known, so there should be none.
+/// Pixels are used if the difference exceeds its noise by a factor of 8 and, if `adc_bits` is
+/// given, their buckets (with `black_level_dn`) stay 5 % below the converter's maximum. A change of
+/// light between the frames of a pair is corrected. Ambient light is unknown, so there should be
+/// none.
 /// @param table  of the code on the camera
-/// @throws std::invalid_argument also if measurements are not the code's
+/// @throws std::invalid_argument also if the number of measurements differs from the code's
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
                                const DecodingTable& table,
                                const PhotonTransferOptions& options = {});
 
-/// The camera with what was found: gain, read noise, black level, bits and full well.
+/// Returns the camera with the calibrated gain, read noise, black level, bits and full well.
 Camera with_noise(Camera camera, const PhotonTransfer& found);
 
 }  // namespace tofsmith

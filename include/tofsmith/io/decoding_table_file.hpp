@@ -28,10 +28,9 @@ CodeSet load_camera_code(const std::string& code, const Camera& camera,
 struct DecodingTableOptions {
   CodeFileOptions file;           ///< taps and their order
   std::optional<double> range_m;  ///< unambiguous range of a measured table [m]; none: the camera's
-  std::optional<MeasuredAmbient>
-      ambient;                    ///< ambient gains of a measured table; none: the file's, or equal
-  std::optional<TableAxes> axes;  ///< axes of a measured table; none: (N, K) if possible
-  bool keep_end_point = false;    ///< keep a last sample of a measured table that equals the first
+  std::optional<MeasuredAmbient> ambient;  ///< of a measured table; none: the file's, or equal
+  std::optional<TableAxes> axes;           ///< axes of a measured table; none: (N, K) if possible
+  bool keep_end_point = false;  ///< keep a last sample of a measured table that equals the first
   /// Order of the exposures in the frames, as Playback::order; empty: as in the code or table.
   std::vector<int> order;
   bool reversed = false;  ///< delay runs in the opposite direction to code, camera or table

@@ -124,8 +124,8 @@ std::optional<int> whole_number(const NpzReader& archive, const std::string& fil
   return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
-/// Returns the tap layout of calibrated functions, whose taps are adjacent according to `taps`. A
-/// user- defined order must agree.
+/// Returns the tap layout of calibrated functions: `taps` adjacent columns per exposure. An order
+/// given by the user must agree.
 TapLayout layout_of(const NpzReader& archive, const std::string& file, const TapLayout& given) {
   const std::optional<int> taps = whole_number(archive, file, "taps");
   if (!taps) return given;

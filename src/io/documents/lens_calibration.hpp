@@ -13,8 +13,8 @@ namespace tofsmith {
 /// Reads the lens of a calibration file:
 /// - OpenCV's FileStorage as YAML, XML or JSON: `camera_matrix`, `distortion_coefficients`,
 ///   `fisheye_model`, `image_width`, `image_height` and other spellings of these names,
-/// - ROS, a camera's file or a camera_info message: `K`, `D`, `distortion_model`, `width`,
-///   `height`,
+/// - ROS, a camera's file or a camera_info message: `K`, `D`, `distortion_model`, `width`
+///   and `height`,
 /// - Kalibr's camchain: `intrinsics`, `distortion_coeffs`, `distortion_model`, `resolution`,
 /// - the factory calibration of an Azure Kinect (JSON).
 ///
