@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """tofsmith: design, simulate and decode coding functions of continuous-wave time-of-flight cameras.
 
-The same words as the C++ library, the command line and the files: `Camera`, `CodeSet`, `evaluate`,
-`design`, `capture`, `Decoder`. SI units inside: names end in _m, _s, _hz, _e (photo-electrons),
-_e_per_s, _bin. Errors of arguments are ValueError or TypeError, of files OSError; long work takes
-`progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (HTML, for
-notebooks). Gradients for learning: `tofsmith.torch` (PyTorch). Waveform generators:
-`tofsmith.instruments` (PyVISA). The paper's figures: `tofsmith.paper`.
+Names are the same as in C++, on the command line and in files: `Camera`, `CodeSet`, `evaluate`,
+`design`, `capture`, `Decoder`. All quantities are in SI units; names end in _m, _s, _hz, _e
+(photo-electrons), _e_per_s or _bin. Invalid arguments raise ValueError or TypeError, file errors
+OSError. Long computations accept `progress` and stop on Ctrl-C.
+
+Submodules: `tofsmith.plot` (figures with matplotlib), `tofsmith.figures` (HTML figures for
+notebooks), `tofsmith.torch` (gradients for PyTorch), `tofsmith.instruments` (waveform generators
+through PyVISA), `tofsmith.paper` (figures of the paper).
 
 Examples
 --------
@@ -169,22 +171,21 @@ def __getattr__(name: str) -> _ModuleType:
 
 
 def build_info() -> dict[str, str | list[str]]:
-    """What was built, how and from what: the words of ``tofsmith --version``.
+    """Returns the version and configuration of the build, as printed by ``tofsmith --version``.
 
     Returns
     -------
     dict
         ``version``; ``commit``, 12 digits with ``+dirty`` if files differed, or ``unknown``;
         ``compiler``; ``build_type``; ``library``, ``shared`` or ``static``; ``targets``,
-        instruction sets with kernels of their own, best first; ``features``, what can be left out
-        and was not.
+        instruction sets with specialized kernels, best first; ``features``, the optional features
+        of this build.
     """
     return _tofsmith.build_info()
 
 
 def set_threads(threads: int) -> None:
-    """At most so many threads work from now on; 0: as many as there are cores. Results do not
-    depend on it."""
+    """Limits the number of threads; 0: one per core. Results do not depend on it."""
     _tofsmith.set_threads(_check.whole(threads, "threads", 0, 65536))
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Waveforms that a camera actually plays: effects of its generators and impulse responses."""
+"""Actual waveforms of a camera: effects of its generators and impulse responses."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def generator_report(code: CodeLike, camera: CameraLike) -> list[GeneratorReport
     Returns
     -------
     list of GeneratorReport
-        One for each waveform that a generator plays, light first; empty without generators.
+        One for each waveform of a generator, light first; empty without generators.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def generator_report(code: CodeLike, camera: CameraLike) -> list[GeneratorReport
 
 
 def actual_waveforms(code: CodeLike, camera: CameraLike) -> tuple[list[Waveform], list[Waveform]]:
-    """Returns the waveforms that the camera's generators play, ahead of its impulse responses.
+    """Returns the waveforms of the camera's generators, before its impulse responses.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def actual_waveforms(code: CodeLike, camera: CameraLike) -> tuple[list[Waveform]
     Raises
     ------
     ValueError
-        If the generator can play no pulse of a modulation.
+        If the generator cannot generate a pulse of a modulation.
     """
     camera = camera_of(camera)
     arms = _tofsmith.actual_waveforms(code_of(code, camera)._handle, camera._handle)

@@ -20,15 +20,15 @@ def light_of(signal_e_per_s: float, ambient_e_per_s: float) -> tuple[float, floa
 
 
 class CramerRaoBound:
-    """How well any unbiased estimator can measure depth with one code, signal and ambient light
-    unknown; see docs/bounds.md.
+    """Cramer-Rao bound on the depth error of unbiased estimators for one code, with unknown signal
+    and ambient light; see docs/bounds.md.
 
     Parameters
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
     of_variance_too : bool
-        Also count the information in the size of the noise (under 0.1 % more).
+        Include the information in the variance of the noise (less than 0.1 %).
     """
 
     def __init__(
@@ -39,22 +39,24 @@ class CramerRaoBound:
         self._handle = _tofsmith.CramerRaoBound(handle, camera._handle, bool(of_variance_too))
 
     def sigma_m(self, signal_e_per_s: float, ambient_e_per_s: float) -> FloatArray:
-        """Smallest standard deviation [m] at the middles of equal cells of the range.
+        """Returns the minimum standard deviation [m] at the centres of equal cells of the range.
 
-        There are 4 cells per bin, or more where the highest harmonics of the code need them.
+        There are at least 4 cells per bin, depending on the harmonics of the code.
         """
         return self._handle.sigma_m(*light_of(signal_e_per_s, ambient_e_per_s))
 
     def mae_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
     ) -> float:
-        """Mean absolute error over depth [m]; also over a signal scaled uniformly in (0, 1)."""
+        """Returns the mean absolute error over depth [m]; with `uniform_albedo`, also over signals
+        scaled by a factor uniform in (0, 1)."""
         light = light_of(signal_e_per_s, ambient_e_per_s)
         return self._handle.mae_m(*light, bool(uniform_albedo))
 
 
 class ReceiverBound:
-    """How well any code at all can do on a camera, in a number of exposures; docs/bounds.md."""
+    """Bound on the depth error of any code on a camera, for a number of exposures;
+    docs/bounds.md."""
 
     def __init__(self, camera: CameraLike, exposures: int) -> None:
         count = _check.whole(exposures, "exposures", 1, 1_000_000)
@@ -63,21 +65,21 @@ class ReceiverBound:
     def mae_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
     ) -> float:
-        """Mean absolute error over depth [m]; 0 without impulse responses."""
+        """Returns the mean absolute error over depth [m]; 0 without impulse responses."""
         light = light_of(signal_e_per_s, ambient_e_per_s)
         return self._handle.mae_m(*light, bool(uniform_albedo))
 
 
 class HistogramBound:
-    """How well depth can be measured with all time bins of the light of rows of one exposure: no
-    rows of that light do better; docs/rows.md.
+    """Lower bound on the depth error of all rows with the light of one exposure, from measuring all
+    time bins separately; docs/rows.md.
 
     Parameters
     ----------
     code : CodeSet, name of a family or file
-        Rows, of which the light counts.
+        Rows; only their light is used.
     camera : Camera, or the name of a built-in camera or camera file
-        One with `sensor.readout` = "rows".
+        With `sensor.readout` = "rows".
     """
 
     def __init__(self, code: CodeLike, camera: CameraLike) -> None:
@@ -87,13 +89,14 @@ class HistogramBound:
     def mae_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
     ) -> float:
-        """Mean absolute error over depth [m]."""
+        """Returns the mean absolute error over depth [m]."""
         light = light_of(signal_e_per_s, ambient_e_per_s)
         return self._handle.mae_m(*light, bool(uniform_albedo))
 
 
 class DirectTofBound:
-    """What the camera's light alone allows, to an ideal direct time-of-flight receiver."""
+    """Bound on the depth error of an ideal direct time-of-flight receiver with the camera's
+    light."""
 
     def __init__(self, camera: CameraLike) -> None:
         self._handle = _tofsmith.DirectTofBound(camera_of(camera)._handle)
@@ -101,6 +104,7 @@ class DirectTofBound:
     def mae_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
     ) -> float:
-        """Mean absolute error over depth [m]; 0 where the light has no impulse response."""
+        """Returns the mean absolute error over depth [m]; 0 if the light has no impulse
+        response."""
         light = light_of(signal_e_per_s, ambient_e_per_s)
         return self._handle.mae_m(*light, bool(uniform_albedo))

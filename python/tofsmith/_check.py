@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments as users give them: what is wrong is refused by name, with what is needed."""
+"""Checks of user arguments. Errors name the argument, the value and the requirement."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ import numpy.typing as npt
 
 Kind = TypeVar("Kind")
 Path = Union[str, "os.PathLike[str]"]
-#: Called now and then with the share of work that is done and what is being done; False stops.
+#: Called regularly with the completed fraction and the current step; returning False cancels.
 Progress = Optional[Callable[[float, str], Optional[bool]]]
 FloatArray = npt.NDArray[np.float64]
-#: Raw numbers in one array, or one array a measurement.
+#: Raw numbers in one array, or one array per measurement.
 RawLike = Union[npt.NDArray[Any], Sequence[npt.NDArray[Any]]]
 
 
 def shown(value: object) -> str:
-    """What was given, in a few words."""
+    """Describes a value for error messages."""
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and dtype {value.dtype}"
     text = repr(value)
@@ -29,14 +29,14 @@ def shown(value: object) -> str:
 
 
 def instance(value: object, kind: type[Kind], name: str) -> Kind:
-    """`value`, which must be of class `kind`."""
+    """Returns `value`, which must be of class `kind`."""
     if isinstance(value, kind):
         return value
     raise TypeError(f"{name}: got {shown(value)}; needs a tofsmith.{kind.__name__}")
 
 
 def path(value: Path, name: str = "path") -> str:
-    """A file's name."""
+    """Returns the name of a file."""
     try:
         text = os.fspath(value)
     except TypeError:
@@ -47,7 +47,7 @@ def path(value: Path, name: str = "path") -> str:
 
 
 def paths(value: Any, name: str) -> list[str]:
-    """Names of files, of one or of a list."""
+    """Returns the names of one or more files."""
     if isinstance(value, (list, tuple)):
         return [path(file, f"{name}[{k}]") for k, file in enumerate(value)]
     return [path(value, name)]
@@ -60,7 +60,7 @@ def text(value: object, name: str) -> str:
 
 
 def whole(value: Any, name: str, least: int, most: int = 2**31 - 1) -> int:
-    """A whole number of a range; numbers of NumPy and 1e4 too."""
+    """Returns an integer in a range; also accepts NumPy numbers and floats such as 1e4."""
     if isinstance(value, (float, np.floating)) and float(value).is_integer():
         value = int(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
@@ -79,7 +79,7 @@ def number(value: Any, name: str) -> float:
 
 
 def numbers(value: Any, name: str) -> Optional[list[float]]:
-    """A list of numbers; one number is a list of it, None stays."""
+    """Returns a list of numbers; converts a single number to a list and keeps None."""
     if value is None:
         return None
     several = [value] if np.ndim(value) == 0 else list(value)
@@ -93,8 +93,8 @@ def one_of(value: object, name: str, words: tuple[str, ...]) -> str:
 
 
 def without_mask(value: Any) -> Any:
-    """Masked numbers as NaN, which is what invalid ones are here; whole numbers become floats
-    then. Anything else as it is."""
+    """Replaces masked numbers by NaN, converting integers to floats if necessary. Returns other
+    values unchanged."""
     if not isinstance(value, np.ma.MaskedArray):
         return value
     mask = np.broadcast_to(np.asarray(value.mask), value.shape)
@@ -106,7 +106,7 @@ def without_mask(value: Any) -> Any:
 
 
 def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
-    """An array of real numbers with as many axes as `axes`, such as "(N, K)", names."""
+    """Returns an array of real numbers with the number of axes in `axes`, such as "(N, K)"."""
     if isinstance(value, (str, os.PathLike)):
         raise TypeError(f"{name}: got {shown(value)}; needs real numbers, {axes}, not the "
                         "name of a file (read_depth(), read_raw() and numpy.load() read them)")
@@ -122,7 +122,7 @@ def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
 
 
 def means(averaged: Any, raw: npt.NDArray[Any], is_planar: bool) -> Optional[npt.NDArray[Any]]:
-    """Of how many measurements each pixel of `raw` is the mean, or all are; None: of one."""
+    """Returns the number of measurements averaged into each pixel of `raw`; None: one."""
     if averaged is not None and np.ndim(averaged) == 0 and raw.ndim in (3, 4):
         shape = raw.shape[:-3] + raw.shape[-2:] if is_planar else raw.shape[:-1]
         return np.full(shape, number(averaged, "averaged"), np.float32)
@@ -131,7 +131,7 @@ def means(averaged: Any, raw: npt.NDArray[Any], is_planar: bool) -> Optional[npt
 
 
 def finite_array(value: Any, name: str, axes: str) -> FloatArray:
-    """As real_array(), of finite numbers, as float64."""
+    """As real_array(), for finite numbers, as float64."""
     array = np.asarray(real_array(value, name, axes), dtype=np.float64)
     if not np.isfinite(array).all():
         index = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
@@ -141,7 +141,8 @@ def finite_array(value: Any, name: str, axes: str) -> FloatArray:
 
 
 def frames(value: Any, name: str) -> npt.NDArray[np.float32]:
-    """Raw frames as float32; numbers that are not finite stay: they are of dead pixels."""
+    """Returns raw frames as float32. Numbers that are not finite are kept: they mark dead
+    pixels."""
     return np.asarray(real_array(value, name, "(F, H, W, K)"), dtype=np.float32)
 
 
@@ -154,8 +155,8 @@ def progress(value: Progress) -> Progress:
 
 
 def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
-    """Raw numbers where they are, and whether they are planar; a list of arrays, one a measurement,
-    is put together. int8, int16 and float16 come as float32, larger whole numbers as float64."""
+    """Returns raw numbers without copying, and whether they are planar. A list with one array per
+    measurement is stacked. int8, int16 and float16 become float32, larger integers float64."""
     is_planar = one_of(layout, "layout", ("interleaved", "planar")) == "planar"
     if isinstance(raw, (list, tuple)):
         raw, is_planar = _together(raw), True
@@ -168,7 +169,7 @@ def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
 
 
 def _numpy_array(value: Any, name: str, needed: str) -> npt.NDArray[Any]:
-    """What NumPy makes an array of (torch, xarray, ..), masked numbers as NaN."""
+    """Converts array-likes (torch, xarray, ...) to NumPy, with NaN for masked numbers."""
     value = without_mask(value)
     if not isinstance(value, np.ndarray) and hasattr(value, "__array__"):
         value = np.asarray(value)
@@ -180,7 +181,7 @@ def _numpy_array(value: Any, name: str, needed: str) -> npt.NDArray[Any]:
 
 
 def _together(given: Sequence[Any]) -> npt.NDArray[Any]:
-    """(H, W) each to (K, H, W), (F, H, W) each to (F, K, H, W)."""
+    """Stacks arrays (H, W) to (K, H, W), or (F, H, W) to (F, K, H, W)."""
     arrays = [_numpy_array(a, f"raw[{k}]", "a numpy.ndarray") for k, a in enumerate(given)]
     for k, array in enumerate(arrays):
         if array.ndim not in (2, 3):

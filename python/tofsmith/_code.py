@@ -18,11 +18,12 @@ from ._waveform import Waveform
 
 
 class CodeSet:
-    """A set of coding functions: E modulations and K = E x taps demodulations. Immutable; pickles.
+    """A set of coding functions: E modulations and K = E x taps demodulations. Immutable,
+    picklable.
 
-    Measurement i belongs to exposure i // taps and tap i % taps. Modulation is emitted over average
-    power (mean at most 1), demodulation is sensor gain in [0, 1], or the weight of a mixer in
-    [-1, 1].
+    Measurement i belongs to exposure i // taps and tap i % taps. The modulation is the emitted
+    power over average power (mean at most 1). The demodulation is the sensor gain in [0, 1], or the
+    weight of a mixer in [-1, 1].
 
     See Also
     --------
@@ -53,25 +54,26 @@ class CodeSet:
         name: str = "code",
         signed: bool = False,
     ) -> CodeSet:
-        """A code from samples. A column of two levels, the lower of which is 0, becomes binary.
+        """Creates a code from samples. Columns with two levels, the lower of which is 0, become
+        binary.
 
         Parameters
         ----------
         modulation : array_like, shape (N, E)
             Values >= 0 with mean at most 1 in every column.
         demodulation : array_like, shape (N, E * taps)
-            Values in [0, 1], the taps of an exposure side by side; of a mixer weights in [-1, 1].
+            Values in [0, 1], with the taps of an exposure adjacent; for mixers weights in [-1, 1].
         taps : int
-            Values read out of one exposure.
+            Measurements per exposure.
         name : str
         signed : bool
-            For cameras with `sensor.demodulation` = "signed": weights of a mixer, of one tap. A
-            column of -1 and 1 becomes binary.
+            For cameras with `sensor.demodulation` = "signed": weights of a mixer, with one tap.
+            Columns of -1 and 1 become binary.
 
         Raises
         ------
         ValueError
-            Naming the array and the rule it breaks.
+            Naming the array and the violated rule.
         """
         light = _check.finite_array(modulation, "modulation", "(N, E)")
         sensor = _check.finite_array(demodulation, "demodulation", "(N, K)")
@@ -93,14 +95,14 @@ class CodeSet:
     def from_rows(
         cls, light: npt.ArrayLike, rows: npt.ArrayLike, *, name: str = "rows"
     ) -> CodeSet:
-        """Rows of one exposure: K weighted sums of the light in N time bins, all of the same light.
+        """Creates rows of one exposure: K weighted sums of the light in N time bins.
 
         For cameras with `sensor.readout` = "rows".
 
         Parameters
         ----------
         light : array_like, shape (N,)
-            Values >= 0 of any scale; becomes light of mean 1.
+            Values >= 0 of any scale; scaled to a mean of 1.
         rows : array_like, shape (N, K) or (K, N)
             Weights of the time bins, of any sign and scale, K up to 16.
         name : str
@@ -108,7 +110,7 @@ class CodeSet:
         Raises
         ------
         ValueError
-            Naming light or row and the rule it breaks.
+            Naming light or row and the violated rule.
         """
         return cls._of(
             _tofsmith.CodeSet.from_rows(
@@ -128,7 +130,8 @@ class CodeSet:
         taps: int = 1,
         name: str = "code",
     ) -> CodeSet:
-        """A code from E modulations and E * taps demodulations on `samples` per period."""
+        """Creates a code from E modulations and E * taps demodulations, with `samples` per
+        period."""
         return cls._of(
             _tofsmith.CodeSet.create(
                 _check.text(name, "name"),
@@ -141,13 +144,13 @@ class CodeSet:
 
     @classmethod
     def from_json(cls, text: str, file: str = "code.json") -> CodeSet:
-        """A code from the text of a .code.json file; errors call it `file`."""
+        """Reads a code from the text of a .code.json file; `file` is its name in errors."""
         return cls._of(
             _tofsmith.CodeSet.parse(_check.text(text, "text"), _check.text(file, "file"))
         )
 
     def to_json(self) -> str:
-        """The code as a .code.json file; numbers read back as exactly what they were."""
+        """Returns the code as the text of a .code.json file; numbers are read back exactly."""
         return self._handle.to_json()
 
     @property
@@ -161,77 +164,80 @@ class CodeSet:
 
     @property
     def taps(self) -> int:
-        """Values read out of one exposure; rows, where they are read out."""
+        """Measurements per exposure; for rows, their number."""
         return self._handle.taps()
 
     @property
     def is_rows(self) -> bool:
-        """Whether the measurements are weighted sums of the light of one exposure."""
+        """True if the measurements are weighted sums of the light of one exposure."""
         return self._handle.is_rows()
 
     @property
     def is_signed(self) -> bool:
-        """Whether the demodulations are weights of a mixer, in [-1, 1]."""
+        """True if the demodulations are weights of a mixer, in [-1, 1]."""
         return self._handle.is_signed()
 
     @property
     def exposures(self) -> int:
-        """E."""
+        """E, number of exposures."""
         return self._handle.exposures()
 
     @property
     def measurements(self) -> int:
-        """K = E x taps."""
+        """K = E x taps, number of measurements."""
         return self._handle.measurements()
 
     @property
     def peak(self) -> float:
-        """The peak factor that the code needs."""
+        """Peak factor of the modulation."""
         return self._handle.peak()
 
     @property
     def modulation(self) -> FloatArray:
-        """Cell averages (N, E)."""
+        """Cell averages of the modulation (N, E)."""
         return self._handle.modulation_samples()
 
     @property
     def demodulation(self) -> FloatArray:
-        """Cell averages (N, K): gains in [0, 1], weights of a mixer in [-1, 1], or rows."""
+        """Cell averages (N, K) of the demodulation: gains in [0, 1], mixer weights in [-1, 1], or
+        rows."""
         return self._handle.demodulation_samples()
 
     def modulation_waveforms(self) -> list[Waveform]:
-        """The E modulation functions."""
+        """Returns the E modulation functions."""
         return [Waveform._of(self._handle.modulation(e)) for e in range(self.exposures)]
 
     def demodulation_waveforms(self) -> list[Waveform]:
-        """The K demodulation functions; of a mixer what drives it, x in [0, 1] of a weight 2 x - 1."""
+        """Returns the K demodulation functions; for a mixer its drive (w + 1) / 2 in [0, 1]."""
         return [Waveform._of(self._handle.demodulation(i)) for i in range(self.measurements)]
 
     @property
     def provenance(self) -> dict[str, Any]:
-        """Where the code comes from: method, camera, seed, version, residuals, depth_error_m."""
+        """Origin of the code: method, camera, seed, version, residuals, depth_error_m."""
         return self._handle.provenance()
 
     def renamed(self, name: str) -> CodeSet:
         return CodeSet._of(self._handle.renamed(_check.text(name, "name")))
 
     def resampled(self, samples: int) -> CodeSet:
-        """The same waveforms on another number of samples."""
+        """Returns the same waveforms with another number of samples."""
         return CodeSet._of(self._handle.resampled(_check.whole(samples, "samples", 1)))
 
     def rotated(self, rotation_bin: int) -> CodeSet:
-        """Moves the origin of depth: correlation'(z) = correlation(z + rotation_bin)."""
+        """Returns the code with another origin of depth: correlation'(z) = correlation(z +
+        rotation_bin)."""
         return CodeSet._of(
             self._handle.rotated(_check.whole(rotation_bin, "rotation_bin", -(2**31)))
         )
 
     def with_signed_weights(self) -> CodeSet:
-        """For a mixer: every gain d becomes the weight 2 d - 1; taps must be 1."""
+        """Returns the code for a mixer: every gain d becomes the weight 2 d - 1. Requires taps =
+        1."""
         return CodeSet._of(self._handle.with_signed_weights())
 
     def with_two_buckets(self) -> CodeSet:
-        """With the complement of every demodulation read out of the same exposure; taps must be
-        1."""
+        """Returns the code with the complement of every demodulation as second tap of the same
+        exposure. Requires taps = 1."""
         return CodeSet._of(self._handle.with_two_buckets())
 
     def __eq__(self, other: object) -> bool:
@@ -253,7 +259,7 @@ class CodeSet:
         return code_picture(self, self.modulation, self.demodulation, self.taps)
 
 
-#: Where a code is asked for, the name of a family or a file will do.
+#: A code, or the name of a family or file.
 CodeLike = Union[CodeSet, Path]
 
 
@@ -261,24 +267,24 @@ def code_of(code: CodeLike, camera: CameraLike) -> CodeSet:
     if isinstance(code, Camera) or code in _tofsmith.built_in_camera_names():
         raise TypeError(f"code: got {_check.shown(code)}, a camera; needs a code: does the camera "
                         "come second?")
-    if isinstance(code, (str, os.PathLike)):  # as commands do, at the camera's samples
+    if isinstance(code, (str, os.PathLike)):  # as the command line does, with the camera's samples
         loaded, samples = load_code(code, camera), camera_of(camera).samples
         return loaded if loaded.samples == samples else loaded.resampled(samples)
     return _check.instance(code, CodeSet, "code")
 
 
 def list_families() -> list[tuple[str, str, str]]:
-    """All built-in families: pattern of names, one that can be built, what it is."""
+    """Returns all built-in families: name pattern, an example, description."""
     return _tofsmith.list_families()
 
 
 def build_family(name: str, camera: CameraLike) -> CodeSet:
-    """The family `name`, built for the camera: within its peak, on its samples and taps.
+    """Builds a family for the camera, with its peak factor, samples and taps.
 
     Raises
     ------
     ValueError
-        For an unknown family, with the nearest known one, or one the camera cannot play.
+        For an unknown family, with the most similar known one, or one the camera does not support.
     """
     return CodeSet._of(
         _tofsmith.build_family(_check.text(name, "name"), camera_of(camera)._handle)
@@ -286,14 +292,14 @@ def build_family(name: str, camera: CameraLike) -> CodeSet:
 
 
 def require_fits(code: CodeSet, camera: CameraLike) -> None:
-    """Raises ValueError unless `code` can be played and read out on `camera`, saying why not."""
+    """Raises ValueError, with the reason, unless the camera supports `code`."""
     _tofsmith.require_fits(
         _check.instance(code, CodeSet, "code")._handle, camera_of(camera)._handle
     )
 
 
 def why_not_playable(code: CodeSet, camera: CameraLike) -> Optional[str]:
-    """Why `code` cannot be played and read out on `camera`; None: it can."""
+    """Returns the reason why the camera does not support `code`; None if it does."""
     return _tofsmith.why_not_playable(
         _check.instance(code, CodeSet, "code")._handle, camera_of(camera)._handle
     )
@@ -306,7 +312,7 @@ def load_code(
     taps: Optional[int] = None,
     tap_order: Optional[str] = None,
 ) -> CodeSet:
-    """A family, built for the camera, or a code from a file as it is there.
+    """Builds a family for the camera, or reads a code from a file without changing it.
 
     Parameters
     ----------
@@ -314,16 +320,16 @@ def load_code(
         Family, .code.json or .npz (modfs, demodfs, each (N, K)).
     camera : Camera or its name
     taps : int, optional
-        Of .npz: values read out of one exposure; None: as the camera's.
+        For .npz: measurements per exposure; None: the camera's.
     tap_order : {"blocked", "interleaved"}, optional
-        Of .npz with several taps: never guessed.
+        Order of the columns; required for .npz with several taps.
 
     Raises
     ------
     OSError
-        Naming the file and the place.
+        Naming the file and the position of the error.
     ValueError
-        For a family that the camera cannot play.
+        For a family that the camera does not support.
     """
     return CodeSet._of(
         _tofsmith.load_code(
@@ -336,7 +342,7 @@ def load_code(
 
 
 def read_code(path: Path, *, taps: int = 1, tap_order: Optional[str] = None) -> CodeSet:
-    """A code from a .code.json or .npz file; see load_code()."""
+    """Reads a code from a .code.json or .npz file; see load_code()."""
     return CodeSet._of(
         _tofsmith.read_code(_check.path(path), _check.whole(taps, "taps", 1, 64), tap_order)
     )

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Loads the compiled part; says which Debian package to install if a component's library is missing.
+"""Loads the compiled module. If a library is missing, the error names its Debian package.
 
-Imported before everything that uses the compiled part.
+Imported before all modules that use the compiled module.
 """
 
 import re
 
 
 def explained(error: ImportError) -> ImportError:
-    """The error, with the package that has the library it misses."""
+    """Adds the package with the missing library to an import error."""
     missing = re.match(r"libtofsmith_(\w+)\.so\.([\d.]+): cannot open", str(error))
     if missing is None:
         return error

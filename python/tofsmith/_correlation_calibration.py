@@ -22,13 +22,12 @@ from ._reports import Estimate
 
 @dataclass(frozen=True)
 class DelaySweep:
-    """Frames of a flat target at known delays that run through a whole period, in the order in
-    which they were taken.
+    """Frames of a flat target at known delays that cover a whole period, in order of time.
 
     Attributes
     ----------
     delay_periods : ndarray, shape (F,)
-        Of each frame, in periods of f0; any real.
+        One per frame, in periods of f0; any real number.
     frames : ndarray, shape (F, H, W, K)
         Raw numbers; H = W = 1 for a table of means.
     notes : list of str
@@ -41,8 +40,8 @@ class DelaySweep:
 
 @dataclass(frozen=True)
 class DeadPixels:
-    """Pixels left out, each counted once: not a number in some frame, the same number in all,
-    clipped in some, responding with less than a tenth of the usual."""
+    """Number of excluded pixels by reason, each counted once: not a number in some frame, the same
+    number in all, clipped in some, or a response below a tenth of the median."""
 
     not_a_number: int
     constant: int
@@ -56,32 +55,33 @@ class DeadPixels:
 
 @dataclass(frozen=True)
 class CalibratedCorrelation:
-    """What is known of a camera by a sweep.
+    """Result of calibrate_correlation() from a delay sweep.
 
     Attributes
     ----------
     correlation, standard_error : ndarray, shape (N, K)
-        Of the usual pixel [raw numbers]: row n at depth_bin = n; and the error of each value.
+        Correlation functions of the average pixel [raw numbers], with row n at depth_bin = n, and
+        their standard errors.
     model_error_percent : float
-        Twice the standard errors, in percent of the signal, root mean squares. A Decoder of
-        decoding_table() tolerates it.
+        Twice the standard errors in percent of the signal (root mean square), which a Decoder of
+        decoding_table() tolerates.
     ambient_gain, exposure_s, black_level : ndarray, shape (K,) or (0,)
-        As of a measured table; empty: the camera's.
+        As in a measured table; empty: the camera's.
     taps : int
     delay_offset_m, gain : ndarray of float32, shape (H, W) or (0, 0)
-        Of each pixel: by how much it decodes too far [m], mean 0, and its response, mean 1; NaN:
-        dead. Decoder.decode() takes both. Of a table of means there are none.
+        Excess depth [m] of each pixel, with mean 0, and response, with mean 1; NaN for dead pixels.
+        Decoder.decode() accepts both. Empty for a table of means.
     delay_error_m, gain_error : float
-        Standard errors of a usual pixel's.
+        Standard errors of delay and gain of a pixel.
     dead : DeadPixels
     light_drift, level_drift : Estimate, optional
-        Change of the light over the sweep, as a share, and of the level [raw numbers]; None: no
-        delay was measured twice.
+        Relative change of the light and change of the level [raw numbers] during the sweep; None
+        without repeated delays.
     drift_corrected : bool
     tap_mismatch : list of Estimate
-        Of each exposure of two taps.
+        One per exposure with two taps.
     noise_rms : float
-        Of one raw number [raw numbers].
+        Noise of a raw number [raw numbers].
     noise_source : str
         pixels, repeats or high harmonics.
     notes : list of str
@@ -109,7 +109,7 @@ class CalibratedCorrelation:
     _handle: _tofsmith.CalibratedCorrelation = field(repr=False, compare=False)
 
     def decoding_table(self, camera: CameraLike) -> DecodingTable:
-        """What a Decoder takes, on a camera that says range, exposure, noise and read-out."""
+        """Returns the table for a Decoder, with the camera's range, exposure, noise and readout."""
         return DecodingTable._of(self._handle.decoding_table(camera_of(camera)._handle))
 
     def write_table(self, path: Path, *, overwrite: bool = False) -> None:
@@ -123,13 +123,13 @@ class CalibratedCorrelation:
         *,
         overwrite: bool = False,
     ) -> None:
-        """Writes what differs from pixel to pixel (.npy .npz .exr .pfm), for `tofsmith decode
+        """Writes the maps of delay offset and gain (.npy .npz .exr .pfm), for `tofsmith decode
         --offset-map --gain-map`.
 
         Raises
         ------
         ValueError
-            Of a table of means, which has no pixels.
+            For a table of means, which has no pixels.
         """
         maps = (("offset", offset_map, self.delay_offset_m), ("gain", gain_map, self.gain))
         for name, path, values in maps:
@@ -161,31 +161,31 @@ def read_delay_sweep(
     tap_order: Optional[str] = None,
     keep_end_point: bool = False,
 ) -> DelaySweep:
-    """A delay sweep from a text (delay and K values per row), a stack of frames (F, H, W, K) with
-    its shifts, or an array (N, K) of equal steps of one period.
+    """Reads a delay sweep: a text with delay and K values per row, frames (F, H, W, K) with their
+    shifts, or an array (N, K) with equal steps over one period.
 
     Parameters
     ----------
     path : str or path
         .csv .txt .npy .npz
     camera : Camera or its name
-        Gives f0, N and taps.
+        Its f0, N and taps are used.
     shifts : str or path, optional
-        Delay of each frame of a stack: a text of one column, or .npy.
+        Delay of each frame: a text with one column, or .npy.
     unit : {"s", "ms", "us", "ns", "ps", "m", "bin", "period"}
-        Of the delays.
+        Unit of the delays.
     decimal : {"auto", "point", "comma"}, optional
     table_axes : {"nk", "kn"}, optional
-        Of an array.
+        Axes of an array: (N, K) or (K, N).
     tap_order : {"blocked", "interleaved"}, optional
-        How the columns of an array run through several taps.
+        Order of the columns of an array with several taps.
     keep_end_point : bool
-        The last row of an array that repeats the first is one of its own.
+        Keep a last row of an array that equals the first.
 
     Raises
     ------
     OSError
-        Naming file and place of what does not fit.
+        Naming the file and the position of the error.
     """
     options = {
         "shifts": None if shifts is None else _check.path(shifts, "shifts"),
@@ -242,39 +242,39 @@ def calibrate_correlation(
     code: Optional[CodeLike] = None,
     progress: Progress = None,
 ) -> Union[CalibratedCorrelation, CalibratedDepth]:
-    """Correlation functions of a camera, and delay and gain of every pixel, from a flat target at
-    known delays.
+    """Calibrates the correlation functions of a camera, and delay and gain of every pixel, from a
+    flat target at known delays.
 
     Parameters
     ----------
     sweep : DelaySweep, str or path
-        A path: as read_delay_sweep() reads it without options.
+        A path is read by read_delay_sweep() with default options.
     camera : Camera or its name
-        The one that took it: range, taps, read-out, exposures.
+        Camera of the recording: range, taps, readout, exposures.
     dark : array_like, shape (F, H, W, K), optional
-        Frames with the light off, the room as in the sweep.
+        Frames without active light, otherwise with the conditions of the sweep.
     black_level, saturation_level : float, optional
-        Raw number without light, where there are no dark frames, and from which on numbers are
-        clipped; None: the camera's.
+        Raw number without light (instead of `dark`), and number at which values are clipped; None:
+        the camera's.
     target_distance_m : float, optional
-        Of a flat target square to the axis, whose slant is taken out of the offset map; needs the
-        camera's lens.
+        Distance of a flat target perpendicular to the axis. Its geometry is subtracted from the
+        offset map, which requires the camera's lens.
     geometry_m : array_like, shape (H, W), optional
-        Instead: depth of the target in each pixel less that on the axis [m].
+        Alternative: depth of the target in each pixel minus that on the axis [m].
     reference : str or path, or array_like, shape (H, W), (F, H, W) or (F,), optional
-        Instead of delays: depth along the ray that the frames should show [m], NaN where it is not
-        known, or a distance for each frame. `sweep` then is frames (F, H, W, K) or their file, and
-        what comes back is a CalibratedDepth: the error of `code` against it.
+        Alternative to delays: true radial depth of the frames [m], NaN where unknown, or one
+        distance per frame. `sweep` is then frames (F, H, W, K) or their file, and the result is a
+        CalibratedDepth with the error of `code`.
     reference_kind : {"radial", "z"}
-        The reference is depth along the ray, or along the axis, which the camera's lens turns.
+        Reference depth along the ray, or along the axis (requires the camera's lens).
     code : CodeSet, name or file, optional
-        With a reference: what the camera played.
+        Code of the recording; required with a reference.
     progress : callable, optional
 
     Raises
     ------
     ValueError
-        If delays leave a gap in the period, sizes disagree, or no live pixel is left.
+        If delays leave a gap in the period, sizes differ, or no live pixel is left.
 
     Examples
     --------

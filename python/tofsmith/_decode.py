@@ -33,33 +33,33 @@ from ._scene import lens_dict
 
 @takes(DecodeOptions)
 class Decoder:
-    """Depth from raw measurements. Immutable, safe to use from many threads at once.
+    """Decodes raw measurements to depth. Immutable and thread-safe.
 
     Parameters
     ----------
     code : CodeSet, DecodingTable, name of a family or file
-        A DecodingTable is used as it is. A file as DecodingTable.load() takes it.
+        A DecodingTable is used unchanged. Files are read by DecodingTable.load().
     camera : Camera or its name
-        Needed unless `code` is a DecodingTable, for which it only says the lens.
+        Required unless `code` is a DecodingTable, for which only the lens is used.
     method : {"zncc", "ml", "unwrap", "two-return", "tail"}
-        zncc for any code; ml by maximum likelihood, slower; unwrap for sinusoids of one or more
-        frequencies; two-return and tail where light comes back twice or trails off, for codes of
-        many independent means.
+        zncc supports any code; ml is maximum likelihood, slower; unwrap is for sinusoids of one or
+        more frequencies; two-return and tail are for multipath, and require codes with many
+        independent measurements.
     unwrap_weights : {"variance", "frequency"}, optional
-        Of unwrap.
+        Weights of the frequencies, for unwrap.
     device : str, optional
-        OpenCL device that averages, filters and decodes: "cpu" (none); "gpu", the first one;
+        OpenCL device for averaging, filtering and decoding: "cpu" (none); "gpu", the first GPU;
         "auto", the first GPU for frames with a spatial filter, else the CPU; or a number or part
         of a name. Only zncc runs on devices. See docs/gpu.md.
     multipath : dict, optional
         For two-return and tail: keys of MultipathOptions; see docs/multipath.md.
     **options
-        As DecodeOptions.
+        As in DecodeOptions.
 
     Raises
     ------
     ValueError
-        If the method cannot decode the code, or an option breaks a rule.
+        If the method does not support the code, or an option is invalid.
     OSError
         If there is no such device, or it fails.
 
@@ -120,7 +120,7 @@ class Decoder:
 
     @property
     def device(self) -> str:
-        """Name of the device that decodes, or cpu."""
+        """Name of the decoding device, or cpu."""
         return self._handle.device()
 
     @property
@@ -141,41 +141,39 @@ class Decoder:
         mixed: Optional[str] = None,
         progress: Progress = None,
     ) -> DepthImage:
-        """Decodes one frame or a stack on all threads. Raw numbers are read where they are,
-        whatever the strides.
+        """Decodes one frame or a stack on all threads. Raw numbers with any strides are not copied.
 
         Parameters
         ----------
         raw : ndarray, or a list of them
-            float32, float64, uint16 or uint8 (other whole numbers are copied), (H, W, K) or
-            (F, H, W, K); planar: (K, H, W) or (F, K, H, W); a list has one array a measurement, in
-            their order, (H, W) or (F, H, W) each. Electrons, or counts where the camera has an ADC.
-            NaN and infinity make a pixel invalid.
+            float32, float64, uint16 or uint8 (other integers are copied), (H, W, K) or (F, H, W,
+            K); planar: (K, H, W) or (F, K, H, W). A list has one array (H, W) or (F, H, W) per
+            measurement, in order. Values are electrons, or counts if the camera has an ADC. NaN and
+            infinity make a pixel invalid.
         layout : {"interleaved", "planar"}
-            Never guessed.
+            Not inferred from the shape.
         planes : iterable of str, optional
-            Names of planes of DepthImage; others are not computed. None: the usual ones.
+            Planes of DepthImage to compute. None: the default planes.
         out : DepthImage, optional
-            Planes to write into: C order, of the frame's shape; instead of `planes`.
+            Planes to write to, instead of `planes`: C order, with the frame's shape.
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional
-            Of how many equal measurements the numbers of each pixel are the mean, > 0, so that
-            their noise is so much smaller: of frames averaged by hand, or of Filter.apply(). For
-            the latter `filter` is better: it accounts for the direction of the noise that "normal"
-            and "strong" leave, without which confidence is up to 0.12 too high.
+            Number of measurements averaged into each pixel, > 0, which reduces the noise variance:
+            for averaged frames, or the output of Filter.apply(). For the latter prefer `filter`,
+            which accounts for the correlated noise after "normal" and "strong"; otherwise
+            confidence is up to 0.12 too high.
         delay_offset_m, gain : array_like, shape (H, W), or float, optional
-            By how much each pixel decodes too far [m], and its response over a usual one's; NaN
-            marks a dead pixel.
+            Excess depth of each pixel [m], and its relative response; NaN marks a dead pixel.
         filter : {"light", "normal", "strong"}, dict or Filter, optional
-            Pixels of the same depth are added before they are decoded, as by Filter. A dict holds
-            its options, with "strength" among them; a Filter must be of the same code and camera.
+            Averages pixels of the same depth before decoding. A dict contains options of Filter,
+            including "strength"; a Filter must be made for the same code and camera.
         mixed : {"label", "snap", "drop"}, optional
-            Finds pixels at edges of depth that see two surfaces and gives them the status mixed:
-            label keeps their depth, snap gives them that of the nearest pixel of the surface with
-            more light, drop leaves them none. With `filter`, frames are filtered once more without
-            them. Needs depth, predicted standard deviation and status among the planes. See
-            docs/filtering.md.
+            Detects pixels at depth edges that see two surfaces and sets their status to mixed:
+            label keeps their depth, snap replaces it by that of the nearest pixel of the brighter
+            surface, drop removes it. With `filter`, frames are filtered again without these pixels.
+            Requires the planes depth, predicted standard deviation and status. See
+            docs/filtering.md. docs/filtering.md.
         progress : callable, optional
-            Called with (fraction, step); False stops.
+            Called with (fraction, step); returning False cancels.
 
         Returns
         -------
@@ -185,13 +183,13 @@ class Decoder:
         Raises
         ------
         ValueError
-            For another dtype or shape.
+            For an invalid dtype or shape.
         Interrupted
-            If `progress` says so; Ctrl-C raises KeyboardInterrupt.
+            If `progress` cancels; Ctrl-C raises KeyboardInterrupt.
 
         Notes
         -----
-        The same bits for any number of threads and any layout.
+        Results are identical for any number of threads and any layout.
         """
         array, is_planar = _check.raw_array(raw, layout)
         image = self._new_planes(array, is_planar, planes) if out is None else planes_of(
@@ -229,36 +227,35 @@ class Decoder:
         progress: Progress = None,
         **options: Unpack[DecodeRequest],
     ) -> DecodedRecording:
-        """Decodes a recording of any length into files, in memory that does not grow with it, as
-        `tofsmith decode` does.
+        """Decodes a recording of any length to files, with constant memory, as `tofsmith decode`.
 
         Parameters
         ----------
         raw : str or path, or a list of them
-            .npy, .npz or .h5, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes. A list
-            has one file per measurement, in their order, (H, W) or (F, H, W) each, or grey images
-            (.png .tiff .pgm).
+            .npy, .npz or .h5, (H, W, K) or (F, H, W, K), or a dump described by `raw_format`. A
+            list has one file per measurement, in order: (H, W) or (F, H, W), or grey images (.png
+            .tiff .pgm).
         output : str or path
-            .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
-            of each; .ply, .pcd (organized): points with planes as scalars. Files of several frames
-            get numbers: name-03.npz.
+            .npy .pfm .png (16 bits, mm): depth only; .npz: one array per plane; .exr: one channel
+            per plane; .ply, .pcd (organized): points with planes as scalars. For several
+            frames, file names contain the frame number: name-03.npz.
         raw_format : str or path, optional
             A .raw.toml file; see docs/raw_formats.md.
         time_filter : int or dict, optional
-            Averages the frames before, or means of frames, as long as they stay the same, as
-            TimeFilter does: max_frames, or a dict with keys of TimeFilterOptions.
+            Averages previous frames while the scene is static, as TimeFilter: max_frames, or a dict
+            with keys of TimeFilterOptions.
         filter : {"light", "normal", "strong"} or dict, optional
-            Averages measurements of the same depth before decoding, as Filter does: a strength, or a
-            dict of "strength" ("normal") and keys of FilterOptions.
+            Averages measurements of the same depth before decoding, as Filter: a strength, or a
+            dict with "strength" ("normal") and keys of FilterOptions.
         rays : str or path, optional
-            Rays of points and z as the camera's maker gives them, in place of its lens (.npy): (H,
-            W, 2) of x/z and y/z, or (H, W, 3) of directions; pixels of NaN are invalid.
+            Rays for points and z-depth, instead of the camera's lens (.npy): x/z and y/z (H, W, 2),
+            or directions (H, W, 3); pixels with NaN are invalid.
         overwrite : bool
-            Replace files that are there; never an input.
+            Replace existing files, except inputs.
         progress : callable, optional
-            Called with (fraction, step); False stops.
+            Called with (fraction, step); returning False cancels.
         **options
-            As DecodeRequest.
+            As in DecodeRequest.
 
         Returns
         -------
@@ -267,15 +264,16 @@ class Decoder:
         Raises
         ------
         ValueError
-            For a request that cannot be, naming the argument, before anything is written.
+            For an invalid request, naming the argument, before any output is written.
         OSError
-            If a file cannot be read or written, exists, or a frame needs more than `memory_mb`.
+            If a file cannot be read or written or exists, or a frame requires more than
+            `memory_mb`.
         Interrupted
-            If `progress` says so; frames that are finished keep their files.
+            If `progress` cancels; finished frames are kept.
 
         Notes
         -----
-        The same bytes for any number of threads and any memory.
+        Files are identical for any number of threads and any memory.
         """
         given = request_options(options, raw_format=raw_format, time_filter=time_filter,
                                 filter=filter, rays=rays)
@@ -299,26 +297,27 @@ class Decoder:
         progress: Progress = None,
         **options: Unpack[StreamOptions],
     ) -> DecodedStream:
-        """Decodes frames as they come, each handed on before the next is read, in the memory of a
-        few frames, as `tofsmith decode - -o -` does: from a pipe, a socket, a running camera.
+        """Decodes frames from a pipe, socket or running camera, as `tofsmith decode - -o -`. Every
+        frame is passed on before the next is read; memory is limited to a few frames.
 
         Parameters
         ----------
         source : binary file object
-            Its header, then frame after frame, as `raw_format` describes them: what subprocess
-            gives as `stdout`, sys.stdin.buffer, socket.makefile("rb"). It must wait for data.
+            Its header, then frames as described by `raw_format`: e.g. `stdout` of subprocess,
+            sys.stdin.buffer, socket.makefile("rb"). It must block until data is available.
         sink : callable, or binary file object
-            Called with the planes of each frame, a dict of arrays (H, W) by the words of `outputs`;
-            False stops. A file object gets the bytes of these planes, one after another: float32,
-            status and returns uint8, bin int32, little end first.
+            Called with the planes of each frame, a dict of arrays (H, W) with the names in
+            `outputs`; returning False stops. A file object receives the bytes of these planes in
+            sequence: float32, status and returns uint8, bin int32, little endian. status and
+            returns uint8, bin int32, little end first.
         raw_format : str or path
             A .raw.toml file; see docs/raw_formats.md.
         time_filter, filter, rays
-            As decode_recording() takes them.
+            As in decode_recording().
         progress : callable, optional
-            Called with (fraction, step); False stops.
+            Called with (fraction, step); returning False cancels.
         **options
-            As StreamOptions.
+            As in StreamOptions.
 
         Returns
         -------
@@ -327,15 +326,15 @@ class Decoder:
         Raises
         ------
         ValueError
-            For a request that cannot be, or a stream that does not wait.
+            For an invalid request, or a stream that does not block.
         OSError
-            If the stream ends within a frame or ahead of the first, or a file cannot be read.
+            If the stream ends before the first frame or within a frame, or a file cannot be read.
         Interrupted
-            If `progress` says so. What `source` and `sink` raise passes on.
+            If `progress` cancels. Exceptions of `source` and `sink` are passed on.
 
         Notes
         -----
-        The same numbers as decode_recording() gives.
+        Results are identical to the output of decode_recording().
 
         Examples
         --------
@@ -357,8 +356,8 @@ class Decoder:
             _check.progress(progress)))
 
     def decode_depth_bins(self, measurements: npt.ArrayLike) -> FloatArray:
-        """Positions in [0, N) [bins], refined between bins, of many pixels: (.., K) to (..); one
-        thread. NaN where a measurement is NaN or infinite."""
+        """Returns positions in [0, N) [bins], interpolated between bins, for measurements (..., K),
+        with shape (...); single-threaded. NaN for measurements that are NaN or infinite."""
         array = np.asarray(measurements)
         if array.ndim < 1 or array.dtype.kind not in "fiu":
             raise ValueError(f"measurements: got {_check.shown(array)}; needs numbers of shape "
@@ -385,7 +384,7 @@ class Decoder:
 def _decoder_with_lens(
     table: DecodingTable, options: dict[str, Any], lens: Optional[dict[str, Any]]
 ) -> Decoder:
-    """A pickled decoder."""
+    """Restores a pickled decoder."""
     decoder = Decoder(table, **options)
     decoder._lens = lens
     return decoder
@@ -403,7 +402,10 @@ def decode(
     mixed: Optional[str] = None,
     progress: Progress = None,
 ) -> DepthImage:
-    """Decoder(code, camera, method=method).decode(raw, ..): keep a Decoder for many frames."""
+    """Decodes as Decoder(code, camera, method=method).decode(raw, ...).
+
+    Create a Decoder to decode many frames.
+    """
     decoder = Decoder(code, camera, method=method)
     return decoder.decode(raw, layout=layout, planes=planes, filter=filter, mixed=mixed,
                           progress=progress)

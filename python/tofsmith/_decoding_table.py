@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a decoder needs to know of a code on a camera, or of a measured table."""
+"""Properties of a code on a camera, or of a measured table, that decoding requires."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._notebook import table_picture
 
 
 class DecodingTable:
-    """Everything a decoder needs to know of a code on a camera.
+    """Properties of a code on a camera that a decoder requires.
 
     See Also
     --------
@@ -27,9 +27,9 @@ class DecodingTable:
 
     _handle: _tofsmith.DecodingTable
     _notes: list[str] = []
-    #: Files it was read from, which no output may replace.
+    #: Input files of the table, which no output may replace.
     _inputs: list[str] = []
-    #: How it was made, for pickle: a class method's name, its arguments and keywords.
+    #: Construction, for pickle: name of a class method, its arguments and keywords.
     _made: Optional[tuple[str, tuple[Any, ...], dict[str, Any]]] = None
 
     def __init__(self) -> None:
@@ -59,43 +59,44 @@ class DecodingTable:
         order: Optional[Sequence[int]] = None,
         reversed: bool = False,
     ) -> DecodingTable:
-        """The table of a family, of a code's file, or of a file of measured correlation functions,
-        as `tofsmith decode --code` takes them.
+        """Loads the table of a family, a code file, or a file of measured correlation functions, as
+        `tofsmith decode --code`.
 
         Parameters
         ----------
         code : str or path
-            Name of a family, or a file: .json .npz of a code; .npz .npy .csv of a measured table.
+            Name of a family, or a file: .json or .npz for a code; .npz, .npy or .csv for measured
+            tables.
         camera : Camera or its name
         range_m : float, optional
-            Depth of a measured table [m]; None: the camera's.
+            Unambiguous range of a measured table [m]; None: the camera's.
         ambient : {"equal", "mean", "none"}, optional
-            What constant light adds to the columns of a measured table; None: what the file says,
-            or the same to all.
+            Response of the columns of a measured table to constant light; None: from the file, or
+            equal.
         axes : {"nk", "kn"}, optional
-            Of a measured table: samples by measurements, or the other way.
+            Axes of a measured table: (N, K) or (K, N).
         keep_end_point : bool
-            Keep a measured table's last sample though it equals the first.
+            Keep a last sample of a measured table that equals the first.
         taps : int, optional
-            Of an .npz file; None: the camera's.
+            Taps of an .npz file; None: the camera's.
         tap_order : {"blocked", "interleaved"}, optional
-            How the columns of an .npz file run; never guessed.
+            Order of the columns of an .npz file; not inferred.
         order : sequence of int, optional
-            Exposures of the code or table in the order in which frames have them.
+            Order in which the exposures of the code or table occur in frames.
         reversed : bool
-            Delay runs against what code, camera or table say.
+            Delay runs in the opposite direction to code, camera or table.
 
         Returns
         -------
         DecodingTable
-            With what should be known of it in `notes`.
+            With warnings in `notes`.
 
         Raises
         ------
         OSError
-            If the file cannot be read, or its table distinguishes no depths.
+            If the file cannot be read, or its table does not distinguish any depths.
         ValueError
-            If a code is given what only measured tables need.
+            If options for measured tables are given for a code.
         """
         options = {
             "range_m": range_m,
@@ -119,7 +120,7 @@ class DecodingTable:
 
     @classmethod
     def of_code(cls, code: CodeLike, camera: CameraLike) -> DecodingTable:
-        """The table of a code on a camera."""
+        """Returns the table of a code on a camera."""
         camera = camera_of(camera)
         handle = code_of(code, camera)._handle
         table = cls._of(_tofsmith.DecodingTable.of_code(handle, camera._handle))
@@ -136,28 +137,28 @@ class DecodingTable:
         taps: int = 1,
         ambient: Optional[str] = None,
     ) -> DecodingTable:
-        """The table of measured correlation functions.
+        """Returns the table of measured correlation functions.
 
         Parameters
         ----------
         correlation : array_like, shape (N, K)
-            chi up to one common factor, row n at depth_bin = n, the end point left out, the taps of
-            an exposure side by side.
+            chi up to a common factor, row n at depth_bin = n, without the end point, with the taps
+            of an exposure adjacent.
         camera : Camera or its name, optional
-            Gives range, exposure, noise, saturation and read-out. None: equal exposures, raw
+            Its range, exposure, noise, saturation and readout are used. None: equal exposures, raw
             numbers without read noise.
         range_m : float, optional
-            Depth of the whole table [m]; needed without a camera.
+            Unambiguous range of the table [m]; required without a camera.
         taps : int
             Columns per exposure.
         ambient : {"equal", "mean", "none"}, optional
-            What constant light adds: the same to all columns (the default), as much as the mean of
-            the column, or nothing.
+            Response of the columns to constant light: equal (the default), proportional to their
+            mean, or zero.
 
         Raises
         ------
         ValueError
-            If depths cannot be distinguished, or table and camera do not fit.
+            If depths cannot be distinguished, or table and camera are inconsistent.
         """
         table = _check.finite_array(correlation, "correlation", "(N, K)")
         if camera is None:
@@ -199,43 +200,43 @@ class DecodingTable:
 
     @property
     def notes(self) -> list[str]:
-        """What should be known of it, where it was loaded: depths that look the same, a last sample
-        that was dropped, ambient light that was taken to be equal."""
+        """Warnings from loading the table: ambiguous depths, a last sample that was dropped,
+        ambient gains that were assumed to be equal."""
         return list(self._notes)
 
     @property
     def correlation(self) -> FloatArray:
-        """chi, (N, K)."""
+        """Correlation functions chi (N, K)."""
         return self._handle.correlation()
 
     @property
     def ambient_gain(self) -> FloatArray:
-        """kappa (K,)."""
+        """Ambient gains kappa (K,)."""
         return self._handle.ambient_gain()
 
     @property
     def exposure_s(self) -> FloatArray:
-        """T [s] (K,)."""
+        """Exposure times T [s] (K,)."""
         return self._handle.exposure_s()
 
     @property
     def range_m(self) -> float:
-        """Depth of a whole period [m]."""
+        """Unambiguous range [m]."""
         return self._handle.range_m()
 
     def ambiguous_depths(self) -> FloatArray:
-        """Pairs of depths that look the same [m], (pairs, 2); decoders answer with the first."""
+        """Returns pairs of indistinguishable depths [m], (pairs, 2); decoders return the first."""
         return self._handle.ambiguous_depths()
 
 
 def _remade(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> DecodingTable:
-    """A pickled table: its file is read again, if it had one."""
+    """Restores a pickled table, reading its file again if it has one."""
     table: DecodingTable = getattr(DecodingTable, name)(*arguments, **keywords)
     return table
 
 
 def table_of(code: CodeLike | DecodingTable, camera: Optional[CameraLike]) -> DecodingTable:
-    """What a decoder is made of: a table as it is, a code or a file on a camera."""
+    """Returns the table itself, or that of a code or file on a camera."""
     if isinstance(code, DecodingTable):
         return code
     if camera is None:

@@ -22,15 +22,16 @@ from ._reports import Estimate
 
 @dataclass(frozen=True)
 class CalibratedFrequency:
-    """One frequency of a code, as reference depth determines it.
+    """Calibration of one frequency of a code from reference depth.
 
     Attributes
     ----------
     frequency_hz : float
     offset_m : Estimate
-        Constant that the camera adds to the depth of this frequency.
+        Constant excess depth of this frequency.
     contrast : Estimate
-        Amplitude relative to that of the camera's model. The geometric mean of all frequencies is 1.
+        Amplitude relative to that of the camera's model. The geometric mean of all frequencies is
+        1.
     harmonics : dict of int to (Estimate, Estimate)
         Harmonics of the frequency beyond the camera's model, as shares of the fundamental's
         amplitude, in phase with its maximum and in quadrature. Only determined ones are listed.
@@ -44,34 +45,35 @@ class CalibratedFrequency:
 
 @dataclass(frozen=True)
 class CalibratedDepth:
-    """What reference depth says of a camera.
+    """Result of calibrate_correlation() with reference depth.
 
     Attributes
     ----------
     reversed : bool
-        Delay runs backwards; the table does, too.
+        True if delay runs backwards, also in the table.
     frequencies : list of CalibratedFrequency
-        One per frequency of the code; the table contains these values. Empty for a single frequency.
+        One per frequency of the code; the table contains these values. Empty for a single
+        frequency.
     terms : dict of str to Estimate
-        Of the known part of the range [m]: offset, cos 4, sin 4, row, row^2 column, log signal, ..
-        A 95 % interval is +- 1.96 standard errors.
+        For the known part of the range [m]: offset, cos 4, sin 4, row, row^2 column, log signal,
+        ... A 95 % confidence interval is +- 1.96 standard errors.
     far_terms : list of str
-        Those that count beyond it.
+        Terms used beyond the known part.
     known_share : float
-        Of the range in which the reference had depths.
+        Share of the range that the reference covers.
     mean_error_m : float
-        Of the nominal depth, in [-range / 2, range / 2].
+        Mean error of the nominal depth, in [-range / 2, range / 2].
     rms_before_m, rms_m, far_rms_m : float
-        Of its error, but for the mean, ahead of the correction; left on blocks of pixels held out; and left
-        by the far terms on parts of the range held out [m].
+        Root mean square error [m]: before the correction, without the mean; after it, on held-out
+        blocks of pixels; and with the far terms, on held-out parts of the range.
     outlier_share : float
-        Of the pixels, which count for nothing.
+        Share of the pixels, which are ignored.
     model_error_percent : float, optional
-        With which at most 1 % of the pixels with the right depth are inconsistent [% of the signal],
-        within 20 %. A Decoder of decoding_table() tolerates it. None: the code has no degrees of
-        freedom.
+        Model error [% of the signal] with which at most 1 % of the pixels with correct depth are
+        inconsistent, in steps of 20 %. A Decoder of decoding_table() tolerates it. None if the code
+        has no degrees of freedom.
     pixels : int
-        That were compared.
+        Number of compared pixels.
     notes : list of str
     """
 
@@ -91,11 +93,12 @@ class CalibratedDepth:
     _handle: _tofsmith.CalibratedDepth = field(repr=False, compare=False)
 
     def decoding_table(self, camera: CameraLike) -> DecodingTable:
-        """The nominal functions with the correction, for a Decoder, which then takes it off."""
+        """Returns the nominal functions with the correction, which a Decoder subtracts from
+        depth."""
         return DecodingTable._of(self._handle.decoding_table(camera_of(camera)._handle))
 
     def camera(self, camera: CameraLike) -> Camera:
-        """The camera with the offsets, contrasts and the direction of delay that were found."""
+        """Returns the camera with the calibrated offsets, contrasts and direction of delay."""
         return Camera._of(self._handle.camera(camera_of(camera)._handle))
 
     def write_table(self, path: Path, *, overwrite: bool = False) -> None:
@@ -105,8 +108,8 @@ class CalibratedDepth:
     def write_report(
         self, path: Path, *, source: str = "frames", overwrite: bool = False
     ) -> None:
-        """Writes the page of `tofsmith calibrate correlation --reference --report` (.html): the error
-        over depth and over the image, before and after, and its terms."""
+        """Writes the page of `tofsmith calibrate correlation --reference --report` (.html): errors
+        over depth and image, before and after the correction, and its terms."""
         self._handle.write_report(
             _check.path(path), _check.text(source, "source"), bool(overwrite)
         )
@@ -120,7 +123,7 @@ def calibrate_depth(
     reference_kind: str = "radial",
     progress: Progress = None,
 ) -> CalibratedDepth:
-    """calibrate_correlation() with a reference."""
+    """Implements calibrate_correlation() with a reference."""
     camera = camera_of(camera)
     if isinstance(frames, (str, os.PathLike)):
         frames = read_raw(frames)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a decoder says about every pixel."""
+"""Results of decoding per pixel."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ._notebook import depth_picture
 
 class PixelStatus(IntEnum):
     """Outcome of a pixel; if several apply, the first of invalid, saturated, no_return, low_signal,
-    inconsistent, ambiguous. mixed occurs only where mixed pixels are searched for."""
+    inconsistent, ambiguous. mixed occurs only if mixed pixels are searched for."""
 
     ok = 0
     invalid = 1
@@ -32,7 +32,7 @@ class PixelStatus(IntEnum):
 
 
 class ReturnStatus(IntEnum):
-    """How many returns a pixel shows."""
+    """Number of returns in a pixel."""
 
     none = 0
     single = 1
@@ -52,7 +52,7 @@ class DepthImage(DecodedPlanes):
             np.array_equal(plane, others[name], equal_nan=plane.dtype.kind == "f")
             for name, plane in mine.items())
 
-    __hash__ = None  # type: ignore[assignment]  # its planes may be written to
+    __hash__ = None  # type: ignore[assignment]  # planes are mutable
 
     def __repr__(self) -> str:
         planes = self.planes()
@@ -70,7 +70,7 @@ class DepthImage(DecodedPlanes):
         return depth_picture(self, self.depth_m)
 
     def planes(self) -> dict[str, npt.NDArray[Any]]:
-        """The planes there are, by name."""
+        """Returns the existing planes by name."""
         named = ((name, getattr(self, name)) for name in plane_types)
         return {name: plane for name, plane in named if plane is not None}
 

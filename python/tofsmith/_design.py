@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Codes designed for a camera."""
+"""Design of codes for a camera."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from ._reports import DepthErrorReport, RobustnessReport, OperatingMultipathRepo
 
 @dataclass(frozen=True)
 class MeasurementReport:
-    """One measurement of a designed code and, if it has one, how it compares with its target. The
-    arrays (iterations,) are of the random start that came closest."""
+    """One measurement of a designed code and its comparison with the target, if any. Arrays
+    (iterations,) belong to the best random start."""
 
     residual_rms: float
     smallest_residual_rms: float
@@ -39,8 +39,8 @@ class MeasurementReport:
 
 @dataclass(frozen=True)
 class SearchRecord:
-    """How a code was searched for: `error_m` (steps,) as it fell over `work` (steps,), whether no
-    other code of the searched kind is better (`proved`), and an account of what was searched."""
+    """Progress of a code search: `error_m` (steps,) over `work` (steps,), whether the code is
+    provably optimal among the searched kind (`proved`), and a summary of the search space."""
 
     work_unit: str
     error_name: str
@@ -52,7 +52,7 @@ class SearchRecord:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A code that competes for the camera.
+    """A candidate code for the camera.
 
     Attributes
     ----------
@@ -60,24 +60,24 @@ class Candidate:
     method : str
         family, naive, reference, atlas, factorize, optimize or search.
     ranking_error_m : float
-        What candidates are ranked by [m]: depth error, robustness and multipath weighed in.
+        Ranking criterion [m]: depth error, including robustness and multipath.
     error : DepthErrorReport
     rotation_bin : int
-        How far the origin of depth was moved.
+        Rotation of the origin of depth.
     iterations : int
     seconds : float
-        Time it took to design.
+        Duration of the design [s].
     target : ndarray, shape (N, K) or (0, 0)
-        What it was factorized for.
+        Target of the factorization.
     per_measurement : list of MeasurementReport
-        Of designed codes.
+        For designed codes.
     search : SearchRecord, optional
-        Of optimized and searched codes.
+        For optimized and searched codes.
     message : str
-        One line on how it came out.
+        One line on the result.
     robustness : RobustnessReport, optional
     multipath : OperatingMultipathReport, optional
-        On cameras with `operating.multipath`.
+        For cameras with `operating.multipath`.
     """
 
     code: CodeSet
@@ -96,7 +96,7 @@ class Candidate:
 
     @property
     def is_designed(self) -> bool:
-        """Made for this camera; not a family, a reference or a naive code."""
+        """True for codes designed for this camera, not a family, reference or naive code."""
         return bool(self.per_measurement)
 
     def __repr__(self) -> str:
@@ -105,17 +105,17 @@ class Candidate:
 
 @dataclass(frozen=True)
 class DesignResult:
-    """All candidates of a camera, and which one has the least `ranking_error_m`.
+    """All candidates for a camera, ranked by `ranking_error_m`.
 
     Attributes
     ----------
     candidates : list of Candidate
     best : int
-        Index of the winner.
+        Index of the best candidate.
     left_out : list of str
-        Codes and methods that the camera cannot use, with the reason.
+        Codes and methods that the camera does not support, with the reason.
     explanation : list of str
-        Why the winner won.
+        Why the best candidate was chosen.
     """
 
     candidates: list[Candidate]
@@ -125,19 +125,19 @@ class DesignResult:
     _handle: Optional[_tofsmith.FinishedDesign] = field(default=None, repr=False, compare=False)
 
     def write(self, directory: Path, *, overwrite: bool = False) -> None:
-        """Writes the directory that `tofsmith design -o` does: codes, figures and report.html.
+        """Writes the directory of `tofsmith design -o`: codes, figures and report.html.
 
         Raises
         ------
         OSError
-            If it holds a design and `overwrite` is not set, or cannot be written.
+            If it contains a design and `overwrite` is not set, or cannot be written.
         ValueError
-            Of a result that was pickled, which keeps its figures only.
+            For a result that was pickled, which keeps only its numbers.
         """
         self._finished().write(_check.path(directory, "directory"), bool(overwrite))
 
     def write_report(self, path: Path, *, overwrite: bool = False) -> None:
-        """Writes the report page alone (.html); raises as write()."""
+        """Writes only the report page (.html); raises as write()."""
         self._finished().write_report(_check.path(path), bool(overwrite))
 
     def _finished(self) -> _tofsmith.FinishedDesign:
@@ -154,11 +154,11 @@ class DesignResult:
         return self.candidates[self.best]
 
     def by_ranking_error(self) -> list[Candidate]:
-        """All candidates, the least error first."""
+        """Returns all candidates by increasing error."""
         return sorted(self.candidates, key=lambda c: c.ranking_error_m)
 
     def __getitem__(self, name: str) -> Candidate:
-        """The candidate of that name; KeyError names those there are."""
+        """Returns the candidate with a name; KeyError lists the existing names."""
         for candidate in self.candidates:
             if candidate.code.name == name:
                 return candidate
@@ -199,7 +199,7 @@ def target_of(target: Target, camera: Camera, normalize: bool) -> _tofsmith.Targ
 
 
 def suggested_exposures(camera: CameraLike, method: str = "best") -> list[int]:
-    """Numbers of exposures that suit a method of design on a camera."""
+    """Returns suitable numbers of exposures for a design method on a camera."""
     return _tofsmith.suggested_exposures(camera_of(camera)._handle, _check.text(method, "method"))
 
 
@@ -213,23 +213,23 @@ def design(
     progress: Progress = None,
     **options: Unpack[DesignOptions],
 ) -> DesignResult:
-    """Designs codes for a camera, lets baselines compete, and picks by the camera's depth error.
+    """Designs codes for a camera and ranks them with standard codes by the camera's depth error.
 
     Parameters
     ----------
     camera : Camera or its name
     target : str, path, CodeSet or ndarray (N, K), optional
         Correlation functions to factorize instead of Hamiltonian ones: a family, a code, a file of
-        either kind (.code.json; .csv, .txt, .npy or .npz with `corrfs`), or values at equal steps of
-        depth over one period, end point left out.
+        either (.code.json; .csv, .txt, .npy or .npz with `corrfs`), or values at equal steps of
+        depth over one period without its end point.
     normalize : bool
         Rescale the columns of a table to [0, 1].
     effort : float, optional
-        How long to search, 0.01 .. 100 (1): 0.1 for a first look, 3 for the last percent; 0: not at
-        all, method "atlas". Options of the methods below are not scaled.
+        Search effort, 0.01 .. 100 (1): e.g. 0.1 for a first look, 3 for small improvements; 0: no
+        search, method "atlas". Explicit options of the methods are not scaled.
     progress : callable, optional
     **options
-        As DesignOptions; `optimize={"starts": 4, "hops": 0}` for a quick look.
+        As in DesignOptions; `optimize={"starts": 4, "hops": 0}` for a quick look.
 
     Returns
     -------
@@ -238,7 +238,7 @@ def design(
     Raises
     ------
     ValueError
-        For bad options, or a target that the camera cannot play.
+        For invalid options, or a target that the camera does not support.
     """
     camera = camera_of(camera)
     given: dict[str, Any] = {**options, "effort": effort}
@@ -250,8 +250,8 @@ def design(
 
 @dataclass(frozen=True)
 class AtlasEntry:
-    """The best code found for a camera of the atlas: 15 MHz, 0.3 s in all, read noise of 20 e, the
-    paper's light levels.
+    """The best code found for a camera of the atlas: 15 MHz, 0.3 s total exposure, 20 e read noise,
+    light levels of the paper.
 
     Attributes
     ----------
@@ -259,11 +259,11 @@ class AtlasEntry:
     taps, exposures : int
     peak_factor : float
     bandwidth_f0 : float
-        Of both arms [f0]; 0: no limit.
+        Bandwidth of both arms, relative to f0; 0: no limit.
     shortest_pulse_periods : float
-        Of the period; 0: any.
+        Relative to the period; 0: any.
     error : str
-        That it was designed for, linear or circular.
+        Design criterion, linear or circular.
     linear_m, circular_m : float
         Geometric means over the light levels [m].
     """
@@ -280,8 +280,8 @@ class AtlasEntry:
 
 
 def atlas() -> list[AtlasEntry]:
-    """The atlas of best codes, as `tofsmith atlas` lists it. `design(camera, effort=0)` takes the best
-    of the nearest for a camera."""
+    """Returns the atlas of best codes, as listed by `tofsmith atlas`. `design(camera, effort=0)`
+    selects the best code of the most similar cameras in the atlas."""
     def entry_of(fields: dict[str, Any]) -> AtlasEntry:
         code = CodeSet._of(fields.pop("code"))
         return AtlasEntry(code=code, **fields)
@@ -291,22 +291,22 @@ def atlas() -> list[AtlasEntry]:
 
 @dataclass(frozen=True)
 class Sufficiency:
-    """How much of one quantity suffices, all else as the camera has it.
+    """Required value of one quantity, with the other properties of the camera unchanged.
 
     Attributes
     ----------
     quantity : str
         bandwidth, power or exposure.
     factor : float, optional
-        Times the camera's: the least that suffices; None: not even `max_factor` does.
+        Smallest sufficient multiple of the camera's value; None: `max_factor` is not sufficient.
     error_m : float
-        There, or at `max_factor` [m].
+        Error at this factor, or at `max_factor` [m].
     code : CodeSet
-        That reaches it.
+        Code that reaches the error.
     camera : Camera, optional
-        With as much of the quantity.
+        Camera with the required value.
     excluded_below : float, optional
-        Below this factor no code can; None: the bound excludes nothing.
+        Factor below which no code can be sufficient; None: the bound excludes nothing.
     """
 
     quantity: str
@@ -319,8 +319,8 @@ class Sufficiency:
 
 @dataclass(frozen=True)
 class RequirementMap:
-    """Error (bandwidth, power) [m] of the best code found at each bandwidth, over factors of bandwidth
-    and power."""
+    """Depth error (bandwidth, power) [m] of the best code found for each factor of bandwidth and
+    power."""
 
     bandwidth: FloatArray
     power: FloatArray
@@ -329,15 +329,15 @@ class RequirementMap:
 
 @dataclass(frozen=True)
 class Requirements:
-    """What it takes of a camera to measure depth as well as asked.
+    """Result of find_requirements().
 
     Attributes
     ----------
     error_m : float
-        That the camera reaches as it is [m], with `code`.
+        Error of the unchanged camera with `code` [m].
     code : CodeSet
     receiver_bound_mae_m : float, optional
-        What no code undercuts on the camera as it is [m].
+        Lower bound for any code on the unchanged camera [m].
     varied : list of Sufficiency
     map : RequirementMap, optional
     """
@@ -350,8 +350,7 @@ class Requirements:
     _handle: Optional[_tofsmith.FoundRequirements] = field(default=None, repr=False, compare=False)
 
     def write(self, directory: Path, *, overwrite: bool = False) -> None:
-        """Writes the directory that `tofsmith require -o` does: codes, cameras, numbers and
-        report.html.
+        """Writes the directory of `tofsmith require -o`: codes, cameras, numbers and report.html.
 
         Raises
         ------
@@ -372,18 +371,18 @@ def find_requirements(
     progress: Progress = None,
     **options: Unpack[RequirementOptions],
 ) -> Requirements:
-    """The least bandwidth, power and exposure, each by itself, with which a code reaches an error,
-    and below what no code can.
+    """Finds the smallest bandwidth, power and exposure, each by itself, with which a code reaches a
+    depth error, and the values below which no code can reach it.
 
     Parameters
     ----------
     camera : Camera or its name
-        `camera.at_distances(5, albedo=0.3, klux=50)` for the light at a distance.
+        E.g. `camera.at_distances(5, albedo=0.3, klux=50)` for the light at a distance.
     error_m : float
-        Circular depth error that is asked for [m], > 0.
+        Required circular depth error [m], > 0.
     progress : callable, optional
     **options
-        As RequirementOptions.
+        As in RequirementOptions.
 
     Returns
     -------
@@ -392,7 +391,7 @@ def find_requirements(
     Raises
     ------
     ValueError
-        For bad options, or for bandwidth where neither arm has a limit.
+        For invalid options, or for bandwidth if neither arm has a limit.
     """
     given: dict[str, Any] = {**options, "error_m": error_m}
     handle = camera_of(camera)._handle

@@ -24,7 +24,7 @@ def evaluate(
     progress: Progress = None,
     **options: Unpack[EvaluateOptions],
 ) -> DepthErrorReport:
-    """Monte Carlo depth error at every operating point of the camera, with bounds beside it.
+    """Computes the Monte Carlo depth error and its bounds at every operating point of the camera.
 
     Parameters
     ----------
@@ -32,12 +32,12 @@ def evaluate(
     camera : Camera or its name
     progress : callable, optional
     **options
-        As EvaluateOptions.
+        As in EvaluateOptions.
 
     Raises
     ------
     ValueError
-        If the code does not fit, the method cannot decode it, or an option breaks a rule.
+        If the code does not fit, the method does not support it, or an option is invalid.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
@@ -54,14 +54,14 @@ def best_rotation(
     seed: Optional[int] = None,
     progress: Progress = None,
 ) -> tuple[int, FloatArray]:
-    """The origin of depth with the least linear error.
+    """Finds the origin of depth with the smallest linear error.
 
     Returns
     -------
     rotation_bin : int
-        CodeSet.rotated() by so many bins is best.
+        Best argument of CodeSet.rotated().
     linear_geometric_mean_m : ndarray, shape (N,)
-        For each rotation, geometric mean over the operating points [m].
+        Error of each rotation, geometric mean over the operating points [m].
     """
     camera = camera_of(camera)
     options = {"trials": trials, "seed": seed}
@@ -78,16 +78,16 @@ def generator_loss(
     progress: Progress = None,
     **options: Unpack[EvaluateOptions],
 ) -> GeneratorLoss:
-    """What the limits of a camera's waveform generators do to a code.
+    """Computes the loss of depth error due to the limits of a camera's waveform generators.
 
     Parameters
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
-        With generators, such as "prototype"; the camera without them has the nominal waveforms.
+        Camera with generators, such as "prototype". Without them, waveforms are nominal.
     progress : callable, optional
     **options
-        As EvaluateOptions.
+        As in EvaluateOptions.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
@@ -107,14 +107,14 @@ def table_depth_error_m(
     trials: int = 20000,
     seed: int = 1,
 ) -> tuple[float, float]:
-    """Mean circular depth error of a table on frames made from itself, so that measured tables
-    stand beside codes.
+    """Returns the mean circular depth error of a table on frames simulated from itself, for
+    comparison of measured tables with codes.
 
     Parameters
     ----------
     table : DecodingTable
     signal : float
-        In multiples of what the table was measured with; of a code's table S [e/s].
+        In multiples of the signal of the measurement; for a code's table S [e/s].
     ambient_e_per_s : float
     trials, seed : int
 
@@ -136,7 +136,7 @@ def robustness(
     progress: Progress = None,
     **options: Unpack[RobustnessOptions],
 ) -> RobustnessReport:
-    """Judges a code on perturbations of its camera; see docs/robustness.md.
+    """Computes the depth error of a code on perturbations of its camera; see docs/robustness.md.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def robustness(
     camera : Camera or its name
     progress : callable, optional
     **options
-        As RobustnessOptions.
+        As in RobustnessOptions.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle

@@ -20,18 +20,18 @@ from . import _check, _tofsmith
 #: An executor, or a function that starts one and is called again when the executor breaks.
 ExecutorLike = Union[Executor, Callable[[], Executor]]
 
-#: Aim for the work in one piece [s]: a lost worker loses little, and messages cost little.
+#: Target duration of one piece [s]: a lost worker loses little, and the overhead is small.
 PIECE_S = 1.0
 MAX_PIECE_ITEMS = 256
-#: Pieces that are submitted before any worker has answered.
+#: Number of pieces submitted before any worker has answered.
 FIRST_PIECES = 16
-#: A piece that fails this often ends the run.
+#: Maximum number of attempts for a piece, after which the run fails.
 MAX_ATTEMPTS = 4
 
 
 def require_build(build: tuple[str, str]) -> None:
-    """Called in a worker: it must give the same bits as the calling process, whose worker_build()
-    is `build`."""
+    """Checks in a worker that it gives the same results as the calling process, whose
+    worker_build() is `build`."""
     own = _tofsmith.worker_build()
     if own != build:
         raise RuntimeError(
@@ -53,7 +53,7 @@ def _timed(
 ) -> tuple[str, float, Sequence[Any]]:
     """Runs in a worker. Returns the worker's name, the time [s] and the outcomes.
 
-    Dask returns the old result of a call with equal arguments; `attempt` makes them differ."""
+    Dask returns a cached result for calls with equal arguments; `attempt` makes them different."""
     begin = time.perf_counter()
     outcomes = compute(items)
     worker = f"{socket.gethostname()} {os.getpid()} {threading.get_ident()}"
@@ -61,16 +61,16 @@ def _timed(
 
 
 class Dispatcher:
-    """Submits pieces of the items that `claim` returns until it returns none.
+    """Submits pieces of the items returned by `claim` until none are left.
 
     Parameters
     ----------
     compute : callable
-        Items to outcomes; runs in a worker, so it pickles.
+        Computes outcomes of items; runs in a worker, so it must be picklable.
     claim : callable
-        Returns up to a number of items; none if all were returned.
+        Returns up to a given number of items; none if all were returned.
     left : callable
-        Returns how many items `claim` will still return.
+        Returns the number of items that `claim` has not yet returned.
     keep : callable
         Stores outcomes.
     """
@@ -96,8 +96,8 @@ class Dispatcher:
         self._seconds_each = math.inf
 
     def run(self, report: Callable[[], None]) -> None:
-        """Computes all items; calls `report` about 20 times a second, which stops the work by an
-        exception. Outcomes that are there by then are kept."""
+        """Computes all items. Calls `report` about 20 times a second, which may cancel by raising
+        an exception; outcomes available by then are kept."""
         try:
             while self._submit():
                 self._collect(0.05)
@@ -106,7 +106,7 @@ class Dispatcher:
             self._stop()
 
     def _submit(self) -> bool:
-        """Submits up to two pieces for each known worker. Returns whether any is running."""
+        """Submits up to two pieces per known worker. Returns whether any is running."""
         while len(self._running) < max(FIRST_PIECES, 2 * len(self._workers)):
             piece = self._lost.pop() if self._lost else _Piece(self._claim(self._piece_size()))
             if not piece.items:
@@ -122,7 +122,8 @@ class Dispatcher:
         return bool(self._running)
 
     def _piece_size(self) -> int:
-        """PIECE_S of work, and less near the end, so that all workers end together."""
+        """Returns the items for PIECE_S of work, fewer near the end, so that workers end
+        together."""
         share = self._left() // (2 * max(1, len(self._workers)))
         return max(1, min(int(PIECE_S / self._seconds_each), share, MAX_PIECE_ITEMS))
 
@@ -156,7 +157,7 @@ class Dispatcher:
         return outcomes
 
     def _repeat(self, piece: _Piece, error: Exception) -> None:
-        """Has a lost or failed piece submitted again, to a new executor if this one broke."""
+        """Queues a lost or failed piece again, for a new executor if this one broke."""
         piece.attempts += 1
         if piece.attempts == MAX_ATTEMPTS:
             raise RuntimeError(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Codes as files for waveform generators and pattern memories; see docs/formats.md."""
+"""Export of codes to files for waveform generators and pattern memories; see docs/formats.md."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from ._options import takes
 
 @dataclass(frozen=True)
 class WaveformFormat:
-    """A file format of waveforms and what its hardware holds.
+    """A file format of waveforms and the limits of its hardware.
 
     Attributes
     ----------
     name, extension, description : str
     min_points, max_points, multiple_of : int
-        Of a table.
+        Limits on the number of points of a table.
     max_bits : int
-        Of amplitude.
+        Amplitude resolution.
     variants : list of str
-        Ways in which sources disagree about it, the default first.
+        Variants on which sources disagree, the default first.
     """
 
     name: str
@@ -44,18 +44,18 @@ class WaveformFormat:
 
 @dataclass(frozen=True)
 class ExportedCode:
-    """What export_waveforms() wrote.
+    """Result of export_waveforms().
 
     Attributes
     ----------
     files : list of pathlib.Path
-        Tables, and in a directory manifest.json last.
+        Tables; in a directory, followed by manifest.json.
     manifest : dict
-        Format, clock, limits, and what each file holds, as in manifest.json.
+        Format, clock, limits, and content of each file, as in manifest.json.
     camera : Camera
-        With the generators that play the tables: generator_loss(code, camera) says what they cost.
+        Camera with the generators of the tables, for generator_loss(code, camera).
     notes : list of str
-        What a user should know.
+        Warnings for the user.
     """
 
     files: list[FilePath]
@@ -65,7 +65,7 @@ class ExportedCode:
 
 
 def waveform_formats() -> list[WaveformFormat]:
-    """All formats."""
+    """Returns all formats."""
     return [WaveformFormat(**values) for values in _tofsmith.waveform_formats()]
 
 
@@ -79,25 +79,25 @@ def export_waveforms(
     overwrite: bool = False,
     **options: Unpack[ExportOptions],
 ) -> ExportedCode:
-    """Writes all waveforms of a code as tables of a generator or pattern memory.
+    """Writes all waveforms of a code as tables for a generator or pattern memory.
 
     Parameters
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
     output : str or path
-        A directory for the files, made if it is missing; or one file, of a format that holds all
-        waveforms in one.
+        Directory for the files, created if missing; or one file, for formats that store all
+        waveforms in one file.
     format : str
-        One of waveform_formats().
+        Name of one of waveform_formats().
     overwrite : bool
     **options
-        As ExportOptions.
+        As in ExportOptions.
 
     Raises
     ------
     ValueError
-        Naming the option that breaks a rule of the format or of the hardware.
+        Naming the option that violates a rule of the format or hardware.
     OSError
         If a file exists and `overwrite` is not set, or cannot be written.
     """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Correlation functions factorized into pairs of waveforms."""
+"""Factorization of correlation functions into pairs of waveforms."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class FactorizedPair:
     ----------
     modulation, demodulation : Waveform
     residual_rms : float
-        Root mean square over depth of its correlation function minus the target, which is linear
-        between bins.
+        Root mean square over depth of its correlation function minus the target, with linear
+        interpolation between bins.
     start : str
         Start of the search, such as "random 3".
     iterations : int
@@ -76,7 +76,7 @@ class Alternation:
     relaxed : tuple of Waveform
         Modulation and demodulation after the last step, N samples each.
     playable : tuple of Waveform
-        The best projection of all steps to waveforms that the camera can generate.
+        Best projection of all steps to waveforms that the camera can generate.
     objective, relaxed_residual_rms, playable_residual_rms : ndarray
     """
 
@@ -98,12 +98,12 @@ def factorize(
     progress: Progress = None,
     **options: Unpack[FactorizeOptions],
 ) -> list[Factorization]:
-    """Finds waveforms whose correlation functions on the camera come closest to given ones.
+    """Finds waveforms whose correlation functions on the camera approximate given ones.
 
     Parameters
     ----------
     target : str, path, CodeSet or ndarray (N, K)
-        As in design(): the correlation functions, a family or code that has them, or a file.
+        As in design(): correlation functions, or a family, code or file with them.
     camera : Camera or its name
     measurements : sequence of int, optional
         Columns to factorize, counted from 0. None: all.
@@ -113,17 +113,17 @@ def factorize(
         Seed of the random starts.
     progress : callable, optional
     **options
-        As FactorizeOptions.
+        As in FactorizeOptions.
 
     Returns
     -------
     list of Factorization
-        One for each measurement.
+        One per measurement.
 
     Raises
     ------
     ValueError
-        For bad options or a target that does not fit the camera.
+        For invalid options or a target that does not fit the camera.
 
     Notes
     -----

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments that the figures of plot (matplotlib) and figures (HTML) share."""
+"""Arguments shared by the figures of plot (matplotlib) and figures (HTML)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def code_and_camera(code: CodeLike, camera: CameraLike) -> tuple[CodeSet, Camera
 
 
 def reports_of(reports: Reports) -> list[DepthErrorReport]:
-    """One report or several."""
+    """Returns a list of one or more reports."""
     listed = [reports] if isinstance(reports, (DepthErrorReport, Candidate)) else list(reports)
     if not listed:
         raise ValueError("reports: got none; needs at least one DepthErrorReport")
@@ -38,14 +38,15 @@ def reports_of(reports: Reports) -> list[DepthErrorReport]:
 
 
 def kind_of(reports: list[DepthErrorReport], kind: str | None) -> str:
-    """The kind of error that is asked for, or that the camera of the first report asks for."""
+    """Returns the given kind of error, or that of the camera of the first report."""
     return reports[0].kind if kind is None else _check.one_of(kind, "kind", ("linear", "circular"))
 
 
 def error_grid(
     report: DepthErrorReport, kind: str
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Signals (S,), ambient lights (A,), mean depth error and its standard error (S, A) [m]."""
+    """Returns signals (S,), ambient lights (A,), mean depth error and its standard error (S, A)
+    [m]."""
     signal, row = np.unique(report.signal_e_per_s, return_inverse=True)
     ambient, column = np.unique(report.ambient_e_per_s, return_inverse=True)
     values, errors = np.full((2, len(signal), len(ambient)), np.nan)
@@ -58,8 +59,9 @@ def error_grid(
 def error_curve(
     report: DepthErrorReport, kind: str, along: str, at: float | None
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float]:
-    """Along signal or ambient light, the other at the level nearest `at` (the middle unless
-    given): places, errors, standard errors, receiver bounds [m], and that level."""
+    """Returns a section along signal or ambient light, with the other light at the level nearest to
+    `at` (default: the middle level): positions, errors, standard errors, receiver bounds [m],
+    level."""
     _check.one_of(along, "along", ("signal", "ambient"))
     pair = (report.signal_e_per_s, report.ambient_e_per_s)
     x, other = pair if along == "signal" else pair[::-1]
@@ -77,7 +79,7 @@ def error_curve(
 
 
 def error_range(maps_mm: Sequence[FloatArray]) -> tuple[float, float]:
-    """Ends of a logarithmic colour scale that holds all finite values."""
+    """Returns the limits of a logarithmic colour scale that includes all finite values."""
     values = np.concatenate([m[np.isfinite(m)] for m in maps_mm])
     lowest = max(float(values.min()), 1e-6)
     return lowest, max(float(values.max()), 1.001 * lowest)
@@ -86,8 +88,9 @@ def error_range(maps_mm: Sequence[FloatArray]) -> tuple[float, float]:
 def sweep_maps(
     results: SweepResults, x: str, y: str, kind: str
 ) -> tuple[FloatArray, FloatArray, dict[str, FloatArray]]:
-    """Values of two columns of a sweep, (X,) and (Y,), and of every code the geometric mean of its
-    depth errors over all else, (Y, X) [mm]; NaN where fewer rows are finished than elsewhere."""
+    """Returns the values of two columns of a sweep, (X,) and (Y,), and the depth errors of every
+    code, (Y, X) [mm]: geometric means over all other columns; NaN for cells with fewer finished
+    rows."""
     _check.instance(results, SweepResults, "results")
     _check.one_of(kind, "kind", ("linear", "circular"))
     if x == y:
@@ -113,7 +116,7 @@ def sweep_maps(
 
 
 def depth_of(depth: Depth, name: str = "depth") -> npt.NDArray[np.float32]:
-    """A plane of depths [m], (H, W)."""
+    """Returns a depth plane [m], (H, W)."""
     plane = depth.depth_m if isinstance(depth, DepthImage) else depth
     if plane is None:
         raise ValueError(f"{name}: got a DepthImage without depth_m; needs one with it")
@@ -121,7 +124,7 @@ def depth_of(depth: Depth, name: str = "depth") -> npt.NDArray[np.float32]:
 
 
 def named_depths(depths: Any) -> dict[str, npt.NDArray[np.float32]]:
-    """One depth map, or several by name."""
+    """Returns one or more depth maps by name."""
     listed = depths if isinstance(depths, dict) else {"depth": depths}
     if not listed:
         raise ValueError("depths: got none; needs at least one depth map")
@@ -133,5 +136,5 @@ def named_depths(depths: Any) -> dict[str, npt.NDArray[np.float32]]:
 
 
 def is_signed(named: dict[str, npt.NDArray[np.float32]]) -> bool:
-    """Whether the planes are differences of depths: some values are negative."""
+    """Returns True for differences of depths, which have negative values."""
     return any(bool(np.any(plane < 0)) for plane in named.values())

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Raw frames, depth, measured tables and point clouds in files."""
+"""Files of raw frames, depth, measured tables and point clouds."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ def read_raw(
     raw_format: Optional[Path] = None,
     dataset: str = "",
 ) -> npt.NDArray[np.float32]:
-    """Raw frames from .npy, .npz or .h5, or from any dump that a .raw.toml file describes.
+    """Reads raw frames from .npy, .npz or .h5, or from a dump described by a .raw.toml file.
 
     Parameters
     ----------
     path : str or path
     measurements : int, optional
-        K that the code asks for.
+        K of the code; other values are rejected.
     layout : {"interleaved", "planar"}
-        Of the file; never guessed.
+        Layout of the file; not inferred from the shape.
     raw_format : str or path, optional
         A .raw.toml file, see docs/raw_formats.md.
     dataset : str
-        The array of an .npz or data set of an .h5; "": the one called "raw", or the only one.
+        Array of an .npz or data set of an .h5; "": the one named "raw", or the only one.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def read_raw(
     Raises
     ------
     OSError
-        Naming file and place, what was found and what is expected.
+        Naming file and position, the value found and the value expected.
     """
     return _tofsmith.read_raw(
         _check.path(path),
@@ -69,7 +69,7 @@ def write_raw(path: Path, raw: npt.ArrayLike, *, overwrite: bool = False) -> Non
 
 
 def read_depth(path: Path) -> npt.NDArray[np.float32]:
-    """Depth [m] (H, W), NaN where nothing came back; .npy .npz .exr .pfm .png (16 bits, mm)."""
+    """Reads depth [m] (H, W), NaN without return; .npy .npz .exr .pfm .png (16 bits, mm)."""
     return _tofsmith.read_depth(_check.path(path))
 
 
@@ -91,10 +91,10 @@ def write_points(
     Parameters
     ----------
     path : str or path
-    points_m : array_like, shape (.., 3)
+    points_m : array_like, shape (..., 3)
         x, y, z [m].
-    scalars : dict of array_like, shape (..), optional
-        More numbers per point, such as {"intensity": image.signal_e_per_s}.
+    scalars : dict of array_like, shape (...), optional
+        Additional numbers per point, such as {"intensity": image.signal_e_per_s}.
     overwrite : bool
     """
     points = np.asarray(points_m)
@@ -114,7 +114,7 @@ def write_points(
 
 
 def read_correlation_functions(path: Path) -> FloatArray:
-    """Correlation functions (N, K) from a text, .npy or .npz (corrfs), to design for."""
+    """Reads correlation functions (N, K) from a text, .npy or .npz (corrfs), as design target."""
     return _tofsmith.read_correlation_functions(_check.path(path))
 
 
@@ -126,17 +126,17 @@ def read_measured_table(
     table_axes: Optional[str] = None,
     keep_end_point: bool = False,
 ) -> tuple[FloatArray, list[str]]:
-    """A measured correlation table (N, K) from a text, .npy or .npz, and notes on how it was read.
-    DecodingTable.of_measured() decodes with it.
+    """Reads a measured correlation table (N, K) from a text, .npy or .npz, with notes on its
+    interpretation, for DecodingTable.of_measured().
 
     Parameters
     ----------
     path : str or path
     taps : int
     tap_order : {"blocked", "interleaved"}, optional
-        Needed for several taps.
+        Required for several taps.
     table_axes : {"nk", "kn"}, optional
-        Which axis of an array is depth.
+        Axes of an array: (N, K) or (K, N).
     keep_end_point : bool
         Keep a last sample that equals the first.
     """
@@ -149,7 +149,7 @@ def read_measured_table(
 def read_impulse_response(
     path: Path, time_step_s: Optional[float] = None
 ) -> tuple[FloatArray, float]:
-    """A measured impulse response from a text or .npy: samples (T,) and their step [s].
+    """Reads a measured impulse response from a text or .npy: samples (T,) and time step [s].
 
     Examples
     --------

@@ -19,8 +19,8 @@ from ._reports import Estimate
 
 @dataclass(frozen=True)
 class HarmonicRatio:
-    """One harmonic of a measured table against that of an ideal code: amplitudes, and what both
-    arms pass of it (not a number where the code has none)."""
+    """One harmonic of a measured table and of an ideal code: amplitudes, and the transfer of both
+    arms (NaN if the code does not have the harmonic)."""
 
     harmonic: int
     measured: float
@@ -36,23 +36,23 @@ class IdealCodeFit:
     ----------
     code : str
     delay_periods : float
-        By which the measured curves arrive later.
+        Delay of the measured curves relative to the code.
     reversed, inverted : bool
-        Delay runs the other way; all signs are opposite.
+        Delay runs in the opposite direction; all signs are opposite.
     exposure : list of int
-        Of the code that each measured exposure is.
+        Exposure of the code for each measured exposure.
     scale : float
-        Raw numbers of one unit of the code's correlation.
+        Raw numbers per unit of the code's correlation.
     ideal_residual, residual : float
-        Rms left over the rms of the table, without and with a response.
+        Rms residual relative to the rms of the table, without and with a response.
     response : ImpulseResponse
-        Of each of the two arms, both alike.
+        Response of each arm; both are equal.
     parameter_hz : Estimate
         Its f_max_hz or cutoff_hz [Hz].
     fitted : ndarray, shape (N, K)
         Without means.
     harmonics : list of HarmonicRatio
-        1 .. 16.
+        1 to 16.
     """
 
     code: str
@@ -71,7 +71,8 @@ class IdealCodeFit:
     _found: _tofsmith.CalibratedCorrelation = field(repr=False, compare=False)
 
     def camera(self, camera: CameraLike) -> Camera:
-        """The camera whose arms respond as fitted and whose taps differ as measured."""
+        """Returns the camera with the fitted response in both arms and the measured tap
+        mismatch."""
         return Camera._of(self._handle.camera(camera_of(camera)._handle, self._found))
 
     def __repr__(self) -> str:
@@ -86,7 +87,7 @@ def fit_ideal_codes(
     camera: CameraLike,
     codes: Optional[Sequence[CodeLike]] = None,
 ) -> list[IdealCodeFit]:
-    """Ideal codes, and one response of both arms, fitted to a measured table: the least residual
+    """Fits ideal codes, with a common response of both arms, to a measured table; smallest residual
     first.
 
     Parameters
@@ -94,12 +95,12 @@ def fit_ideal_codes(
     found : CalibratedCorrelation
     camera : Camera or its name
     codes : sequence of CodeSet, names or files, optional
-        None: every built-in code of K values.
+        Codes to fit. None: all built-in codes with K measurements.
 
     Raises
     ------
     ValueError
-        If no code has K values.
+        If no code has K measurements.
     """
     _check.instance(found, CalibratedCorrelation, "found")
     camera = camera_of(camera)
@@ -127,9 +128,9 @@ def write_correlation_report(
         .html
     found : CalibratedCorrelation
     fits : sequence of IdealCodeFit
-        As fit_ideal_codes() returns them; none: without codes.
+        As returned by fit_ideal_codes(); empty: without codes.
     source : str
-        What its title calls the sweep.
+        Name of the sweep in the title.
     overwrite : bool
 
     Raises

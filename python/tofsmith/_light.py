@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How light comes back to a pixel, beside its one direct way."""
+"""Multipath light of pixels, in addition to the direct return."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from . import _check
 
 @dataclass(frozen=True)
 class ExponentialTail:
-    """Light that trails off behind the direct return, as in haze or translucent things.
+    """Light that decreases exponentially after the direct return, as in haze or translucent
+    objects.
 
     Attributes
     ----------
     mean_delay_m : float
         [m], > 0 and at most the range of the period.
     ratio : float
-        Signal of all of the tail over that of the direct return, >= 0.
+        Total signal of the tail relative to that of the direct return, >= 0.
     """
 
     mean_delay_m: float = 0.5
@@ -32,17 +33,17 @@ class ExponentialTail:
 
 @dataclass(frozen=True)
 class MultipathReturns:
-    """Any number of multipath returns for every pixel of a scene, as one list, row by row; the arrays
-    of the files that `tofsmith simulate --multipath-file` reads.
+    """Any number of multipath returns for every pixel of a scene, row by row, as in the files of
+    `tofsmith simulate --multipath-file`.
 
     Attributes
     ----------
     first : ndarray of int64, shape (H W + 1,)
-        Pixel i has the returns first[i] .. first[i + 1] - 1.
+        Pixel i has the returns first[i] to first[i + 1] - 1.
     distance_m : ndarray, shape (returns,)
-        Half the way it went [m]; increasing within a pixel, from its depth on.
+        Half the path length [m]; increasing within a pixel, at least its depth.
     ratio : ndarray, shape (returns,)
-        Its signal over that of the pixel's direct return, >= 0.
+        Signal relative to that of the pixel's direct return, >= 0.
     """
 
     first: npt.NDArray[Any]
@@ -52,16 +53,16 @@ class MultipathReturns:
 
 @dataclass(frozen=True)
 class Transients:
-    """Measured responses of a scene to one short pulse: light by distance, as histograms.
+    """Measured responses of a scene to a short pulse: histograms of light over distance.
 
     Attributes
     ----------
     light : ndarray, shape (T,) or (H, W, T)
-        Of each bin, >= 0, any unit: one histogram for all pixels, or one for each.
+        Light of each bin, >= 0, in any unit: one histogram for all pixels, or one per pixel.
     bin_m : float
-        Depth that one bin takes, c / 2 times its time [m].
+        Depth per bin, c / 2 times its duration [m].
     first_m : float
-        Depth at which bin 0 begins, behind the pixel's depth [m].
+        Start of bin 0, relative to the pixel's depth [m].
     """
 
     light: npt.NDArray[Any]
@@ -75,7 +76,7 @@ def light_dict(
     transients: Union[Transients, None],
     depth_m: npt.NDArray[Any],
 ) -> dict[str, Any]:
-    """The arguments of capture() as the compiled part takes them."""
+    """Converts the arguments of capture() for the compiled module."""
     light: dict[str, Any] = {}
     if isinstance(returns, MultipathReturns):
         first = _check.real_array(returns.first, "returns.first", "(H W + 1,)")

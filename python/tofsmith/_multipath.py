@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Depth error where light comes back twice or trails off, and its bound; see docs/multipath.md."""
+"""Depth error with a second return or a tail, and its bound; see docs/multipath.md."""
 
 from __future__ import annotations
 
@@ -22,23 +22,22 @@ from ._options import takes
 
 @dataclass(frozen=True)
 class MultipathCells:
-    """Error of direct depth [m], the shorter way round the range; all arrays of one shape.
+    """Circular error of the direct depth [m]; all arrays have the same shape.
 
     Attributes
     ----------
     ratio, delay_m : ndarray
-        Of the second return, or of the tail, whose mean delay it is.
+        Ratio and delay of the second return, or ratio and mean delay of the tail.
     single_bias_m, single_error_m, single_error_se_m : ndarray
-        Mean of decoded - true, mean of its absolute value and standard error of that, of
-        single-path decoding (zncc).
+        Mean error, mean absolute error and its standard error of single-path decoding (zncc).
     bias_m, error_m, error_se_m : ndarray
-        The same of two-return (tail) decoding; NaN where the code cannot.
+        The same for two-return (tail) decoding; NaN if the code does not support it.
     two_share, unresolved_share : ndarray
-        Of pixels found to hold two returns, and of those found to be more than can be separated.
+        Shares of pixels with two detected returns, and with unresolved multipath.
     cramer_rao_mae_m : ndarray
-        Of MultipathBound.
+        Bound from MultipathBound.
     law_m : ndarray
-        ratio delay_m / (1 + ratio): what single-path decoding is off by, roughly.
+        ratio delay_m / (1 + ratio): approximate bias of single-path decoding.
     """
 
     ratio: FloatArray
@@ -61,19 +60,19 @@ class MultipathCells:
 
 @dataclass(frozen=True)
 class MultipathMaps:
-    """Maps at one signal.
+    """Multipath errors at one signal level.
 
     Attributes
     ----------
     signal_e_per_s : float
         S1.
     points : MultipathCells, shape (ratios, delays)
-        Of second returns.
+        For second returns.
     tails : MultipathCells, shape (ratios, tails)
     single : MultipathCells, shape ()
-        Without a second return: what two-return decoding loses.
+        Without a second return: the loss due to two-return decoding.
     single_by_tail : MultipathCells, shape ()
-        The same by tail decoding, of the middle tail.
+        The same for tail decoding, with the middle tail.
     """
 
     signal_e_per_s: float
@@ -85,16 +84,16 @@ class MultipathMaps:
 
 @dataclass(frozen=True)
 class MultipathErrorReport:
-    """What a code does where light comes back twice.
+    """Multipath errors of a code.
 
     Attributes
     ----------
     code : str
     measurements : int
     why_no_two_returns, why_no_tail : str
-        Empty where that decoding works.
+        Empty if the code supports that decoding.
     maps : list of MultipathMaps
-        One for each signal.
+        One per signal level.
     """
 
     code: str
@@ -127,7 +126,8 @@ def multipath_error(
     progress: Progress = None,
     **options: Unpack[MultipathErrorOptions],
 ) -> MultipathErrorReport:
-    """Bias and error of single-path against two-return and tail decoding, in the camera's noise.
+    """Computes bias and error of single-path, two-return and tail decoding, with the camera's
+    noise.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def multipath_error(
     camera : Camera or its name
     progress : callable, optional
     **options
-        As MultipathErrorOptions; `decoding` as `multipath` of Decoder, without tail_m.
+        As in MultipathErrorOptions; `decoding` as `multipath` of Decoder, without tail_m.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
@@ -146,8 +146,8 @@ def multipath_error(
 
 
 class MultipathBound:
-    """Cramer-Rao bound of direct depth where light comes back twice: two returns pay only where it
-    is below the bias of single-path decoding.
+    """Cramer-Rao bound on the direct depth with multipath. Two-return decoding is only useful where
+    this bound is below the bias of single-path decoding.
 
     Parameters
     ----------
@@ -162,28 +162,28 @@ class MultipathBound:
     def sigma_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, ratio: float, delay_m: float
     ) -> FloatArray:
-        """Smallest standard deviation of direct depth [m] at the middle of each bin (N,), all of
-        (z, delta, S1, S2, A) unknown."""
+        """Returns the minimum standard deviation of the direct depth [m] at the centre of each bin
+        (N,), with (z, delta, S1, S2, A) unknown."""
         second = _check.number(ratio, "ratio"), _check.number(delay_m, "delay_m")
         return self._handle.sigma_m(*light_of(signal_e_per_s, ambient_e_per_s), *second)
 
     def tail_sigma_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, tail: ExponentialTail
     ) -> FloatArray:
-        """The same behind a tail of known mean delay, (N,)."""
+        """Returns the same for a tail of known mean delay, (N,)."""
         _check.instance(tail, ExponentialTail, "tail")
         light = light_of(signal_e_per_s, ambient_e_per_s)
         return self._handle.tail_sigma_m(*light, tail.mean_delay_m, tail.ratio)
 
     def mae_m(self, sigma_m: npt.ArrayLike) -> float:
-        """Mean absolute error over depth [m]: of sqrt(2 / pi) sigma, at each depth held to a
-        quarter of the range."""
+        """Returns the mean absolute error over depth [m]: the mean of sqrt(2 / pi) sigma, limited
+        to a quarter of the range at each depth."""
         return self._handle.mae_m(np.asarray(_check.real_array(sigma_m, "sigma_m", "(N,)"), float))
 
 
 def single_path_bias_m(ratio: float, delay_m: float) -> float:
-    """ratio delay_m / (1 + ratio) [m]: bias of single-path decoding behind a second return that is
-    closer than the correlation functions' features, with every code."""
+    """Returns ratio delay_m / (1 + ratio) [m], the bias of single-path decoding with any code due
+    to a second return with a delay below the resolution of the correlation functions."""
     return _tofsmith.single_path_bias_m(
         _check.number(ratio, "ratio"), _check.number(delay_m, "delay_m")
     )

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What notebooks show of an object: its repr, and a picture where matplotlib is there."""
+"""Notebook representation of objects: repr, and a figure if matplotlib is installed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._plot_style import draw_depth_maps, new_figure, styled
 
 
 def picture_of(value: object, draw: Callable[[], Any]) -> str:
-    """HTML of `value`: its repr, and the matplotlib figure that `draw` returns below it. Without
+    """Returns HTML with the repr of `value` and the matplotlib figure returned by `draw`; without
     matplotlib only the repr."""
     text = f"<code>{html.escape(repr(value))}</code>"
     try:
@@ -31,7 +31,7 @@ def picture_of(value: object, draw: Callable[[], Any]) -> str:
 
 
 def depth_picture(value: object, depth_m: Any) -> str:
-    """HTML of what holds depth, (H, W) or (F, H, W): the first frame."""
+    """Returns HTML for depth (H, W) or (F, H, W), with the first frame."""
     if depth_m is None or not np.isfinite(depth_m).any() or min(np.shape(depth_m)) == 0:
         return f"<code>{html.escape(repr(value))}</code>"
     frame = depth_m if np.ndim(depth_m) == 2 else depth_m[0]
@@ -40,7 +40,7 @@ def depth_picture(value: object, depth_m: Any) -> str:
 
 
 def table_picture(value: object, correlation: Any, range_m: float) -> str:
-    """HTML of what measurements are over depth: correlation functions, (N, K)."""
+    """Returns HTML for correlation functions over depth, (N, K)."""
 
     def draw() -> Any:
         figure = new_figure(None, 4.5, 2.2)
@@ -54,7 +54,7 @@ def table_picture(value: object, correlation: Any, range_m: float) -> str:
 
 
 def camera_picture(value: object, frequency_hz: float, transfer: Any) -> str:
-    """HTML of a camera: how much of each harmonic light and sensor let through together."""
+    """Returns HTML for a camera, with the transfer of each harmonic by both arms."""
 
     def draw() -> Any:
         figure = new_figure(None, 4.5, 2.0)
@@ -69,7 +69,7 @@ def camera_picture(value: object, frequency_hz: float, transfer: Any) -> str:
 
 
 def code_picture(value: object, modulation: Any, demodulation: Any, taps: int) -> str:
-    """HTML of a code: an exposure a row, its modulation and the demodulations of its taps."""
+    """Returns HTML for a code: modulation and demodulation of all taps, one exposure per row."""
 
     def draw() -> Any:
         samples, exposures = modulation.shape

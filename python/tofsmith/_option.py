@@ -10,7 +10,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Option:
-    """A keyword option: its name, its type in words, its default and a sentence about it."""
+    """A keyword option: name, type in words, default and description."""
 
     name: str
     kind: str

@@ -19,15 +19,15 @@ Kind = TypeVar("Kind", bound=Callable[..., Any])
 
 
 def takes(*classes: type[Any], but: Collection[str] = ()) -> Callable[[Kind], Kind]:
-    """Decorator of a function, or of a class, whose `**options` are keys of these dicts: adds them
-    to the signature and, at the entry `**options`, to the docstring. Other names are refused.
+    """Decorator for a function or class whose `**options` are keys of these dicts. Adds the options
+    to the signature and, replacing the entry `**options`, to the docstring. Rejects other names.
 
     Parameters
     ----------
     *classes
         Classes of _option_fields.
     but
-        Options that the function takes in another way.
+        Options that the function has as separate parameters.
     """
     options = [each for of in classes for each in OPTIONS[of] if each.name not in but]
 
@@ -67,7 +67,7 @@ def _with_options(function: Any, options: list[Option]) -> Any:
 
 
 def _documented(text: str | None, options: list[Option]) -> str | None:
-    """The docstring with the options in place of the entry `**options`."""
+    """Replaces the entry `**options` of the docstring by the options."""
     if text is None:
         return None
 

@@ -21,10 +21,9 @@ from ._reports import Estimate
 
 @dataclass(frozen=True)
 class PhotonTransferPoint:
-    """Mean [DN] and variance of one frame in time [DN^2] of one pair of frames of one measurement;
-    whether of the dark frames, and whether too close to the limit to count. Of differences: the
-    light that both buckets collected [DN], and the variance of those that collected about so
-    much."""
+    """Mean [DN] and temporal variance of one frame [DN^2] of one measurement in a pair of frames,
+    and whether it is of the dark frames or too close to saturation. For differences: light of both
+    buckets [DN] and variance of numbers with about the same light."""
 
     mean_dn: float
     variance_dn2: Estimate
@@ -35,21 +34,21 @@ class PhotonTransferPoint:
 @dataclass(frozen=True)
 class PhotonTransfer:
     """Noise of a sensor: variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12;
-    where differences of two buckets are read, 2 read_noise^2 / gain^2 + light / gain + 2/12.
+    for differences of two buckets 2 read_noise^2 / gain^2 + light / gain + 2/12.
 
     Attributes
     ----------
     gain_e_per_dn, read_noise_e, black_level_dn : Estimate
         [e/DN], [e], [DN]
     full_well_e : Estimate, optional
-        [e], if frames reach it before the converter's end.
+        [e], if reached below the converter's maximum.
     saturation_dn : float
-        Highest number seen, or where numbers are clipped.
+        Highest number, or the number at which numbers are clipped.
     adc_bits : int
     buckets : int
-        That a raw number is of: 2 where differences are read.
+        Buckets per raw number: 2 if differences are read.
     reduced_chi2 : float
-        Of the fit: near 1 where the model holds.
+        Misfit of the line: near 1 if the model is valid.
     points : list of PhotonTransferPoint
     notes : list of str
     """
@@ -67,7 +66,8 @@ class PhotonTransfer:
     _handle: _tofsmith.PhotonTransfer = field(repr=False, compare=False)
 
     def camera(self, camera: CameraLike) -> Camera:
-        """The camera with the gain, read noise, black level, bits and full well found."""
+        """Returns the camera with the calibrated gain, read noise, black level, bits and full
+        well."""
         return Camera._of(self._handle.camera(camera_of(camera)._handle))
 
     def write_report(self, path: Path, *, overwrite: bool = False) -> None:
@@ -84,28 +84,27 @@ def photon_transfer(
     code: Optional[CodeLike] = None,
     **options: Unpack[PhotonTransferOptions],
 ) -> PhotonTransfer:
-    """Noise of a sensor from pairs of frames of the same light.
+    """Computes the noise of a sensor from pairs of frames with the same light.
 
     Parameters
     ----------
     levels : array_like, shape (F, H, W, K), or a list of such
-        Each two frames that follow one another saw the same light; several levels of it in one
-        array or in several. Raw numbers of single taps, or differences.
+        Two consecutive frames must have the same light. Different levels may be in one array or in
+        several. Raw numbers of single taps, or differences.
     camera : Camera or its name
     dark : array_like, shape (F, H, W, K), optional
-        Pairs of frames with the light off.
+        Pairs of frames without active light.
     code : CodeSet, name of a family or file, optional
-        What was played: of cameras that read differences, whose shot noise follows from the light
-        that the code collects where each pixel decodes to; with no other light in the room.
+        Code of the recording; required for cameras that read differences, whose shot noise is
+        computed from the code at the decoded depth. There must be no ambient light.
     **options
-        As PhotonTransferOptions.
+        As in PhotonTransferOptions.
 
     Raises
     ------
     ValueError
-        If frames are no pairs, sizes differ, the black level is unknown, the levels do not differ,
-        or the camera reads differences, from whose mean shot noise does not follow, and no `code`
-        is given.
+        If frames are not paired, sizes differ, the black level is unknown, the levels do not
+        differ, or `code` is missing for a camera that reads differences.
 
     Examples
     --------

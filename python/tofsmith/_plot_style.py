@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How the figures of tofsmith.plot look."""
+"""Style of the figures of tofsmith.plot."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Draw = TypeVar("Draw", bound=Callable[..., Any])
 
 
 def styled(draw: Draw) -> Draw:
-    """The function, with figures in our style and the user's as it was."""
+    """Decorates a function to draw figures in our style and restore the user's style."""
     from functools import wraps
 
     @wraps(draw)
@@ -45,7 +45,7 @@ def styled(draw: Draw) -> Draw:
 
         with matplotlib.rc_context(_style):
             figure = draw(*arguments, **keywords)
-            figure.draw_without_rendering()  # ticks are made now, in our style
+            figure.draw_without_rendering()  # creates the ticks in our style
             return figure
 
     return drawn  # type: ignore[return-value]
@@ -57,8 +57,8 @@ def new_figure(
     height_in: float,
     margins: Optional[tuple[float, ...]] = None,
 ) -> Figure:
-    """The given figure, or one of this size. Axes in space collapse under the layout that suits all
-    others: they have margins of their own."""
+    """Returns the given figure, or a new one of this size. Three-dimensional axes do not support
+    the constrained layout and have explicit margins."""
     if figure is not None:
         return figure
     import matplotlib.pyplot as plt
@@ -70,13 +70,13 @@ def new_figure(
 
 
 def grid(panels: int) -> tuple[int, int]:
-    """Rows and columns, at most three of them, as full as can be."""
+    """Returns the number of rows and of columns, at most three, for a full grid."""
     rows = -(-panels // 3)
     return rows, -(-panels // rows)
 
 
 def ten_to(value: float) -> str:
-    """10^3 or 3 10^3, as readers of papers are used to."""
+    """Formats a number as 10^3 or 3 10^3."""
     if value <= 0:
         return f"{value:g}"
     exponent = int(np.floor(np.log10(value) + 1e-9))
@@ -86,12 +86,12 @@ def ten_to(value: float) -> str:
 
 
 def ticked(value: float) -> str:
-    """A value of any size as the tick of a map."""
+    """Formats a value as tick label of a map."""
     return f"{value:.4g}" if 1e-3 <= abs(value) < 1e4 or value == 0 else ten_to(value)
 
 
 def log_ticks_in_plain_numbers(axis: Any) -> None:
-    """1, 10, 100 in place of powers; 2 and 5 too where there are few of them."""
+    """Sets tick labels 1, 10, 100 instead of powers, and 2 and 5 for short axes."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -101,7 +101,7 @@ def log_ticks_in_plain_numbers(axis: Any) -> None:
 
 
 def short(value: float) -> str:
-    """Two digits; whole numbers from 10 on."""
+    """Formats two digits; integers from 10 on."""
     return f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
@@ -112,9 +112,9 @@ def draw_depth_maps(
     columns: Optional[int] = None,
     label: Optional[str] = None,
 ) -> Figure:
-    """Depth planes (H, W) side by side under their names, with one colour scale; see
-    plot.depth_maps(). Pixels without depth are grey. Differences of depths,
-    some of which are negative, have a diverging scale."""
+    """Draws named depth planes (H, W) next to each other with one colour scale; see
+    plot.depth_maps(). Pixels without depth are grey. Differences of depths (with negative values)
+    have a diverging scale."""
     shown = np.concatenate([d[np.isfinite(d)] for d in depths_m.values()])
     low, high = np.percentile(shown, (0.5, 99.5)) if shown.size else (0.0, 1.0)
     signed = bool(np.any(shown < 0))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What decoding of recordings and streams shares: what came of them, and how to ask for it."""
+"""Results and options common to the decoding of recordings and streams."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from ._filter import FilterLike, TimeFilterLike, filter_options, time_filter_opt
 
 @dataclass(frozen=True)
 class DecodedRecording:
-    """What became of a recording.
+    """Result of decoding a recording.
 
     Attributes
     ----------
     files : list of pathlib.Path
-        Of every frame; of a stack, of every plane.
+        One per frame; for a stack one per plane.
     outputs : list of str
-        The planes written.
+        Planes written.
     frames : list of dict
-        How many pixels of every frame have which PixelStatus, by its name; all 0 where `outputs`
-        were asked for without status.
+        Number of pixels per PixelStatus, by name, for every frame; 0 if `outputs` does not include
+        status.
     first_frame : int
-        Number of the first of them in the recording.
+        Number of the first decoded frame in the recording.
     height, width, measurements : int
-        Of every frame.
+        Size of every frame.
     seconds : float
-        That decoding took [s].
+        Duration of decoding [s].
     notes : list of str
-        What should be known: raw numbers taken as electrons, no pixel that has a depth.
+        Warnings: e.g. raw numbers interpreted as electrons, no pixel with a depth.
     """
 
     files: list[FilePath]
@@ -51,19 +51,18 @@ class DecodedRecording:
 
 @dataclass(frozen=True)
 class DecodedStream:
-    """What became of a stream.
+    """Result of decoding a stream.
 
     Attributes
     ----------
     frames : int
-        Decoded and handed on.
+        Number of decoded frames.
     statuses : dict
-        How many of their pixels have which PixelStatus, by its name; all 0 unless status is among
-        the `outputs`.
+        Number of pixels per PixelStatus, by name; 0 if `outputs` does not include status.
     height, width : int
-        Of every frame.
+        Size of every frame.
     seconds : float
-        Until the last was handed on, waiting for them included [s].
+        Time until the last frame was passed on, including waiting [s].
     """
 
     frames: int
@@ -81,7 +80,7 @@ def request_options(
     filter: Optional[FilterLike],
     rays: Optional[Path],
 ) -> dict[str, Any]:
-    """Options of recordings and streams, as the library takes them."""
+    """Converts options of recordings and streams for the library."""
     words = {plane: word for word, plane in plane_words.items()}
     outputs = options.get("outputs")
     return {
@@ -95,5 +94,5 @@ def request_options(
 
 
 def mixed_word(mixed: Optional[str]) -> str:
-    """The word, "" for none."""
+    """Returns the word; "" for None."""
     return "" if mixed is None else _check.one_of(mixed, "mixed", tuple(_tofsmith.mixed_pixels()))

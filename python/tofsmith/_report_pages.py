@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""HTML reports, each one file that needs no network."""
+"""HTML reports, each in one self-contained file."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from ._reports import DepthErrorReport, fields_of
 def write_report(
     directory: Path, path: Optional[Path] = None, *, overwrite: bool = False
 ) -> None:
-    """Writes the report page of a directory that `design -o`, `demo -o` or DesignResult.write()
-    made, as `tofsmith report` does.
+    """Writes the report page for a directory of `design -o`, `demo -o` or DesignResult.write(), as
+    `tofsmith report`.
 
     Parameters
     ----------
     directory : str or path
     path : str or path, optional
-        report.html in the directory unless given.
+        Default: report.html in the directory.
     overwrite : bool
 
     Raises
     ------
     OSError
-        If the directory holds no finished design, or the page exists and `overwrite` is not set.
+        If the directory contains no finished design, or the page exists and `overwrite` is not set.
     """
     folder = _check.path(directory, "directory")
     page = os.path.join(folder, "report.html") if path is None else _check.path(path)
@@ -46,8 +46,8 @@ def write_evaluation_report(
     *,
     overwrite: bool = False,
 ) -> None:
-    """Writes the page of codes evaluated on a camera, as `tofsmith evaluate -o page.html` does:
-    depth errors and bounds, maps over the operating range, waveforms.
+    """Writes the page of codes evaluated on a camera, as `tofsmith evaluate -o page.html`: depth
+    errors and bounds, maps over the operating range, waveforms.
 
     Parameters
     ----------
@@ -56,13 +56,13 @@ def write_evaluation_report(
     codes : CodeSet, name of a family or file, or a sequence of them
     camera : Camera or its name
     reports : DepthErrorReport or a sequence of them
-        Of each code, what evaluate() says of it on that camera.
+        Results of evaluate() for each code on that camera.
     overwrite : bool
 
     Raises
     ------
     ValueError
-        If there are not as many reports as codes, or one is of other operating points.
+        If the numbers of reports and codes differ, or a report has other operating points.
     OSError
         If the page exists and `overwrite` is not set, or cannot be written.
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the depth error of a code."""
+"""Results of evaluating the depth error of codes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._check import FloatArray
 
 
 class Estimate(NamedTuple):
-    """A figure and the standard deviation of its own uncertainty."""
+    """A value and its standard error."""
 
     value: float
     standard_error: float
@@ -24,7 +24,7 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True)
 class DepthErrorMean:
-    """One figure for all operating points, with its standard error [m]."""
+    """Geometric mean of the depth error over all operating points, with its standard error [m]."""
 
     geometric_mean_m: float
     geometric_mean_se_m: float
@@ -34,40 +34,40 @@ class DepthErrorMean:
 
 @dataclass(frozen=True)
 class DepthErrorReport:
-    """Depth error of a code on a camera; arrays have one entry per operating point, (P,), signal by
-    signal.
+    """Depth error of a code on a camera. Arrays have one entry per operating point, (P,), ordered
+    by signal.
 
     Attributes
     ----------
     code : str
     exposures, taps, measurements, samples : int
     trials : int
-        Made per operating point; with a target: at most.
+        Trials per operating point; with a target standard error the maximum.
     points_short_of_target : int
-        Operating points that reached max_trials first.
+        Number of operating points that reached max_trials before the target.
     seed : int
     outlier_threshold_m : float
     signal_e_per_s, ambient_e_per_s : ndarray
-        The operating points [e/s].
+        Operating points [e/s].
     linear_mde_m, linear_se_m : ndarray
-        Mean of the absolute difference of decoded and true depth [m], and its standard error.
+        Mean absolute difference of decoded and true depth [m], and its standard error.
     circular_mde_m, circular_se_m : ndarray
-        Of the shorter way round the range [m].
+        The same for the circular (wrapped) difference [m].
     linear_rmse_m, linear_rmse_se_m, circular_rmse_m, circular_rmse_se_m : ndarray
-        Roots of the mean squares of both, and their standard errors [m].
+        Root mean square of both, and standard errors [m].
     point_trials : ndarray of int64
-        Trials made at each point.
+        Trials at each point.
     outlier_rate : ndarray
-        Share of circular errors beyond the threshold.
+        Share of circular errors above the threshold.
     cramer_rao_mae_m, receiver_bound_mae_m, direct_tof_bound_mae_m : ndarray
-        Bounds of the code, of any code on the camera, of the camera's light [m]; docs/bounds.md.
-        0 where there is none, as without impulse responses.
+        Bounds for the code, for any code on the camera, and for the camera's light [m];
+        docs/bounds.md. 0 if there is no bound, e.g. without impulse responses.
     linear, circular : DepthErrorMean
-        Of mean absolute errors.
+        Means of mean absolute errors.
     linear_rmse, circular_rmse : DepthErrorMean
-        Of root mean square errors.
+        Means of root mean square errors.
     kind : str
-        Which of the two the camera asks for: linear or circular, its `operating.error`.
+        Error used for ranking, the camera's `operating.error`: linear or circular.
     """
 
     code: str
@@ -101,7 +101,7 @@ class DepthErrorReport:
     kind: str
 
     def of(self, kind: str) -> DepthErrorMean:
-        """The figure of `kind`, linear or circular."""
+        """Returns the mean for `kind`, linear or circular."""
         _check.one_of(kind, "kind", ("linear", "circular"))
         return self.linear if kind == "linear" else self.circular
 
@@ -115,20 +115,20 @@ class DepthErrorReport:
 
 @dataclass(frozen=True)
 class RobustnessReport:
-    """Depth error when the camera is not quite what it was said to be: geometric means over its
-    operating points [m]; pairs are (value, standard error).
+    """Depth error if the camera deviates from its description: geometric means over its operating
+    points [m]; pairs are (value, standard error).
 
     Attributes
     ----------
     kind : str
-        linear or circular, as the camera's operating range says.
+        linear or circular, from the camera's operating range.
     nominal_m, worst_calibrated_m, worst_uncalibrated_m : tuple of float
-        On the camera as it was said to be; on the worst, with a decoder that knows it, and with one
-        that does not.
+        For the camera as described; for the worst perturbation, with a decoder that knows the
+        perturbation, and with one that does not.
     names : list of str
-        What was changed.
+        Perturbations.
     calibrated_m, calibrated_se_m, uncalibrated_m, uncalibrated_se_m : ndarray
-        Of each change.
+        For each perturbation.
     """
 
     kind: str
@@ -146,15 +146,15 @@ class RobustnessReport:
 
 @dataclass(frozen=True)
 class OperatingMultipathReport:
-    """Depth error where every pixel has a second return of the camera's `operating.multipath`:
+    """Depth error if every pixel has a second return as in the camera's `operating.multipath`:
     geometric means over its operating points [m], each as (value, standard error).
 
     Attributes
     ----------
     single_path_linear_m, single_path_circular_m : tuple of float
-        Decoded as if light came back once.
+        Decoded with a single return.
     two_return_linear_m, two_return_circular_m : tuple of float, optional
-        Decoded as two returns; None: the code cannot separate them.
+        Decoded with two returns; None if the code cannot separate them.
     """
 
     single_path_linear_m: tuple[float, float]
@@ -165,16 +165,16 @@ class OperatingMultipathReport:
 
 @dataclass(frozen=True)
 class GeneratorLoss:
-    """What the limits of a camera's generators do to a code: all of the same depths and noise.
+    """Depth error of a code with and without generator limits, for the same depths and noise.
 
     Attributes
     ----------
     nominal, actual, uncalibrated : DepthErrorReport
-        On the camera without generators; with them, by a decoder that knows the actual waveforms; with
-        them, by one that assumes the nominal waveforms. Without bounds.
+        Without generators; with generators, with a decoder that knows the actual waveforms; with
+        generators, with a decoder that assumes the nominal waveforms. Without bounds.
     correlation_change : ndarray, shape (K,)
-        Rms difference of the nominal and actual correlation functions, over the rms of the nominal one
-        about its mean.
+        Rms difference of the nominal and actual correlation functions, relative to the rms of the
+        nominal ones about their means.
     """
 
     nominal: DepthErrorReport
@@ -183,11 +183,11 @@ class GeneratorLoss:
     correlation_change: FloatArray
 
     def ratio(self, kind: str = "linear") -> float:
-        """actual / nominal, of the geometric means."""
+        """Returns actual / nominal, of the geometric means."""
         return self.actual.of(kind).geometric_mean_m / self.nominal.of(kind).geometric_mean_m
 
     def uncalibrated_ratio(self, kind: str = "linear") -> float:
-        """uncalibrated / nominal, of the geometric means."""
+        """Returns uncalibrated / nominal, of the geometric means."""
         return self.uncalibrated.of(kind).geometric_mean_m / self.nominal.of(kind).geometric_mean_m
 
 
@@ -200,7 +200,7 @@ def report_of(values: dict[str, Any], camera: Camera) -> DepthErrorReport:
 
 
 def fields_of(report: DepthErrorReport) -> dict[str, Any]:
-    """What report_of() makes the report of again."""
+    """Inverse of report_of()."""
     fields = vars(report) | {name: vars(getattr(report, name)) for name in _means}
     del fields["kind"]
     return fields

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Impulse responses from records of a bench; see docs/calibration.md."""
+"""Impulse responses from bench measurements; see docs/calibration.md."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ._reports import Estimate
 
 @dataclass(frozen=True)
 class ResponseRecord:
-    """What an instrument recorded of a response, equally spaced in time.
+    """An instrument's record of a response, with a constant time step.
 
     Attributes
     ----------
@@ -30,9 +30,9 @@ class ResponseRecord:
     time_step_s : float
         [s], > 0.
     start_time_s : float
-        Of the first value [s].
+        Time of the first value [s].
     counts : bool
-        Values are numbers of photons, whose variance is their mean.
+        Values are photon counts, whose variance equals their mean.
     notes : list of str
     """
 
@@ -45,16 +45,16 @@ class ResponseRecord:
 
 @dataclass(frozen=True)
 class ParametricResponse:
-    """A parametric kind of response fitted to a record.
+    """A parametric response fitted to a record.
 
     Attributes
     ----------
     response : ImpulseResponse
         hann, gaussian or lowpass.
     parameter_hz, bandwidth_hz : Estimate
-        Its f_max_hz or cutoff_hz, and where it is down by 3 dB [Hz].
+        Its f_max_hz or cutoff_hz, and its -3 dB bandwidth [Hz].
     residual_rms : float
-        Of the record less the fit, over the height of the record.
+        Rms of the record minus the fit, relative to the height of the record.
     fit : ndarray, shape (T,)
         At the times of the record, in its units.
     """
@@ -68,35 +68,35 @@ class ParametricResponse:
 
 @dataclass(frozen=True)
 class CalibratedResponse:
-    """What is known of an arm by a record.
+    """Result of calibrate_impulse_response().
 
     Attributes
     ----------
     excitation : str
-        What the arm answered to: pulse or step.
+        Input of the arm: pulse or step.
     falling : bool
-        The pulse points down, or the step is a switch off.
+        Negative pulse, or a step down.
     background, height, noise_rms : float
-        In units of the record: ahead of the response, of pulse or step above it, where nothing
-        happens.
+        In units of the record: level before the response, height of pulse or step above it, noise
+        outside the response.
     snr_db : float
         20 log10(height / noise).
     delay_s : float
-        Where the response's centre of gravity was in the record [s].
+        Centre of gravity of the response in the record [s].
     response : ImpulseResponse
-        De-noised, of kind file; its centre of gravity comes `response_centre_s` [s] after its first
+        Denoised, of kind file. Its centre of gravity is `response_centre_s` [s] after its first
         sample.
     response_centre_s : float
     bandwidth_hz : Estimate
-        -3 dB of the measured response itself [Hz].
+        -3 dB bandwidth of the measured response [Hz].
     fits : list of ParametricResponse
-        The least residual first.
+        By increasing residual.
     fit_is_good : bool
-        The best fit describes the record to its noise.
+        The best fit agrees with the record within its noise.
     peaks : list of (time_s, height)
-        From the highest and over its height, the highest first.
+        Relative to the highest peak, by decreasing height.
     record : ResponseRecord
-        As it was used.
+        As used.
     notes : list of str
     """
 
@@ -118,14 +118,14 @@ class CalibratedResponse:
     _handle: _tofsmith.CalibratedResponse = field(repr=False, compare=False)
 
     def camera(self, camera: CameraLike, *, arm: str = "light", kind: str = "file") -> Camera:
-        """The camera whose arm responds like this.
+        """Returns the camera with the response in one of its arms.
 
         Parameters
         ----------
         camera : Camera or its name
-            The rest of it.
+            Camera to modify.
         arm : {"light", "sensor", "system"}
-            Whose response it is; system: of both together, kept in the light's.
+            Arm of the response; system: both together, stored as the light's.
         kind : {"file", "hann", "gaussian", "lowpass"}
             The measured response, or a fit.
         """
@@ -141,8 +141,8 @@ class CalibratedResponse:
         kind: str = "file",
         overwrite: bool = False,
     ) -> Camera:
-        """Writes that camera (.toml) and, of kind file, NAME-response.csv beside it, as
-        `tofsmith calibrate impulse-response -o` does; returns what the file says.
+        """Writes that camera (.toml) and, for kind file, NAME-response.csv next to it, as `tofsmith
+        calibrate impulse-response -o`. Returns the camera read from the file.
 
         Raises
         ------
@@ -158,7 +158,7 @@ class CalibratedResponse:
         self, path: Path, *, source: str = "a record", overwrite: bool = False
     ) -> None:
         """Writes the page of `tofsmith calibrate impulse-response --report` (.html): record, fits,
-        response and what passes, `source` in its title."""
+        response and transfer function, with `source` in its title."""
         self._handle.write_report(
             _check.path(path), _check.text(source, "source"), bool(overwrite)
         )
@@ -177,18 +177,18 @@ def read_response_record(
     path: Path,
     **options: Unpack[ResponseRecordOptions],
 ) -> ResponseRecord:
-    """A record of an oscilloscope (text of times and values), or a histogram (.npy, values alone).
+    """Reads an oscilloscope record (text of times and values) or a histogram (.npy, values only).
 
     Parameters
     ----------
     path : str or path
     **options
-        As ResponseRecordOptions.
+        As in ResponseRecordOptions.
 
     Raises
     ------
     OSError
-        Naming file and line for what is no record.
+        Naming file and line if it is not a record.
     """
     return ResponseRecord(**_tofsmith.read_response_record(_check.path(path), dict(options)))
 
@@ -199,20 +199,20 @@ def calibrate_impulse_response(
     *,
     excitation: Optional[str] = None,
 ) -> CalibratedResponse:
-    """Impulse response of an arm from a record of how it answers to a pulse or a step.
+    """Calibrates the impulse response of an arm from a record of its response to a pulse or step.
 
     Parameters
     ----------
     record : ResponseRecord, str or path
     camera : Camera or its name
-        Gives f0 and N: the response comes out in steps of a period over a multiple of N.
+        Its f0 and N are used: the step of the response is a period over a multiple of N.
     excitation : {"pulse", "step"}, optional
-        None: found from the record.
+        None: detected from the record.
 
     Raises
     ------
     ValueError
-        If nothing stands out of the noise, or the record is none.
+        If no value exceeds the noise, or the record is invalid.
     OSError
         If a file cannot be read.
 

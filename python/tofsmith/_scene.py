@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes, and what a camera captures of them."""
+"""Scenes, and captures of them by a camera."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ FloatImage = npt.NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Scene:
-    """What a camera looks at, pixel by pixel; all planes are (H, W).
+    """A scene as seen by a camera; all planes are (H, W).
 
     Attributes
     ----------
     depth_m : ndarray
-        Radial distance from the camera [m], > 0; NaN = no return. radial_from_z() makes it of
-        depth along the axis.
+        Radial distance from the camera [m], > 0; NaN without return. radial_from_z() computes it
+        from depth along the axis.
     albedo : ndarray or float, optional
-        Share of light that is reflected, [0, 1]; None: 1. A number is that of all pixels.
+        Reflectance, [0, 1]; None: 1. A number applies to all pixels.
     cosine : ndarray or float, optional
-        Of the angle of incidence, [0, 1]; None: 1.
+        Cosine of the angle of incidence, [0, 1]; None: 1.
     ambient_scale : ndarray or float, optional
-        Ambient light relative to the scene's, >= 0; None: 1.
+        Ambient light relative to that of the capture, >= 0; None: 1.
     lens : Lens, optional
-        The pinhole it is seen through, and how it distorts.
+        Pinhole projection and distortion of the view.
     """
 
     depth_m: npt.NDArray[Any]
@@ -64,7 +64,7 @@ class Scene:
             np.array_equal(plane, others[name], equal_nan=plane.dtype.kind == "f")
             for name, plane in mine.items())
 
-    __hash__ = None  # type: ignore[assignment]  # of arrays, which may be written to
+    __hash__ = None  # type: ignore[assignment]  # arrays are mutable
 
     def __repr__(self) -> str:
         depth_m = np.asarray(self.depth_m)
@@ -79,14 +79,14 @@ class Scene:
 
 
 def built_in_scene_names() -> list[str]:
-    """Scenes that need no files."""
+    """Returns the names of the built-in scenes."""
     return _tofsmith.built_in_scene_names()
 
 
 def built_in_scene(
     name: str, width: int = 320, height: int = 240, *, time_s: Optional[float] = None
 ) -> Scene:
-    """load_scene() of a scene that needs no files."""
+    """Loads a built-in scene; see load_scene()."""
     return load_scene(_check.text(name, "name"), width=width, height=height, time_s=time_s)
 
 
@@ -96,24 +96,24 @@ def load_scene(
     lens: Optional[Lens] = None,
     **options: Unpack[SceneSource],
 ) -> Scene:
-    """A scene by its name or file, as `tofsmith simulate` takes it, ray cast.
+    """Loads a scene by name or file and casts its rays, as `tofsmith simulate`.
 
     Parameters
     ----------
     scene : str or path
-        A built-in scene, a file of shapes and a pinhole (.toml), a mesh (.obj .ply .stl), or a depth
-        image (.npy .npz .exr .pfm, .png in mm).
+        A built-in scene, a file of shapes and a pinhole (.toml), a mesh (.obj .ply .stl), or a
+        depth image (.npy .npz .exr .pfm, .png in mm).
     lens : Lens, optional
-        Of a depth image; 60 degrees wide unless given.
+        For a depth image; default: 60 degrees wide.
     **options
-        As SceneSource.
+        As in SceneSource.
 
     Raises
     ------
     ValueError
-        Naming what does not go with the scene.
+        Naming the option that does not apply to the scene.
     OSError
-        For what is no scene, with the nearest name, and for files that cannot be read.
+        For an unknown scene, with the most similar name, or a file that cannot be read.
     """
     given: dict[str, Any] = dict(options)
     for file in {"image", "ambient_image"} & given.keys():
@@ -125,39 +125,40 @@ def load_scene(
 
 
 def lens_dict(lens: Lens) -> dict[str, Any]:
-    """A lens under the keys of a camera file."""
+    """Returns a lens with the keys of a camera file."""
     _check.instance(lens, Lens, "lens")
-    if lens.rays:  # in place of all other keys
+    if lens.rays:  # replaces all other keys
         return {"rays": lens.rays}
     keys = {key: getattr(lens, key) for key in lens.__dataclass_fields__}
     return {key: value for key, value in keys.items() if value is not None}
 
 
 def lens_from(keys: dict[str, Any]) -> Lens:
-    """The same back."""
+    """Inverse of lens_dict()."""
     fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in keys.items()}
     return Lens(**fields)
 
 
 def centred_lens(width: int, height: int, horizontal_angle_rad: float = pi / 3) -> Lens:
-    """Square pixels, the axis in the middle, so wide between the outer edges of the image."""
+    """Returns a lens with square pixels, a centred axis and a given angle between the outer edges
+    of the image."""
     size = _check.whole(width, "width", 1), _check.whole(height, "height", 1)
     angle = _check.number(horizontal_angle_rad, "horizontal_angle_rad")
     return lens_from(_tofsmith.centred_lens(*size, angle))
 
 
 def radial_from_z(z_m: npt.ArrayLike, lens: Lens) -> FloatImage:
-    """Radial distance [m] from depth along the axis [m], both (H, W); NaN stays NaN."""
+    """Returns radial distance [m] for depth along the axis [m], both (H, W); NaN is kept."""
     return _tofsmith.radial_from_z(_check.real_array(z_m, "z_m", "(H, W)"), lens_dict(lens))
 
 
 def z_from_radial(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
-    """Depth along the axis [m] from radial distance [m], both (H, W); NaN stays NaN."""
+    """Returns depth along the axis [m] for radial distance [m], both (H, W); NaN is kept."""
     return _tofsmith.z_from_radial(_check.real_array(radial_m, "radial_m", "(H, W)"), lens_dict(lens))
 
 
 def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
-    """Points in the camera's frame (x right, y down, z forward) [m] from radial distance.
+    """Returns points in the camera's frame (x right, y down, z forward) [m] for radial distance.
 
     Parameters
     ----------
@@ -167,7 +168,7 @@ def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     Returns
     -------
     ndarray of float32, shape (H, W, 3)
-        NaN where there is no depth.
+        NaN without depth.
     """
     radial = _check.real_array(radial_m, "radial_m", "(H, W)")
     points: FloatImage = _tofsmith.points_m(radial, lens_dict(lens))
@@ -191,36 +192,36 @@ def capture(
     progress: Progress = None,
     **options: Unpack[CaptureOptions],
 ) -> npt.NDArray[np.float32]:
-    """Raw measurements of a scene.
+    """Simulates raw measurements of a scene.
 
     Parameters
     ----------
     scene : Scene, name of a built-in scene, .toml file, or radial distance [m] (H, W)
-        Depth beyond the unambiguous range wraps. Names and files go through the camera's lens and
-        may move, as capture_staged() says; planes have one ray a pixel, and stand still.
+        Depth beyond the unambiguous range wraps. Names and files are captured by capture_staged(),
+        through the camera's lens, and may move; planes have one ray per pixel and are static.
     code : CodeSet, name of a family or file
     camera : Camera or its name
     signal_e_per_s : float, optional
-        S [e/s] of albedo 1 facing the camera at the reference distance; the middle operating
-        point's unless given.
+        S [e/s] for albedo 1 facing the camera at the reference distance. Default: the middle
+        operating point.
     ambient_e_per_s : float, optional
-        A [e/s]; so is this.
+        A [e/s], with the same default.
     stray_light : array_like, shape (2 R + 1, 2 Q + 1), optional
-        Share of a pixel's light that the lens scatters to each other, the middle being the pixel
-        itself; remove_stray_light() takes it off again.
+        Share of a pixel's light that the lens scatters to each other pixel, the centre being the
+        pixel itself. remove_stray_light() corrects it.
     returns : MultipathReturns or sequence of (delay_m, ratio), optional
-        Light that comes back again: of each pixel, or the same behind all pixels.
+        Multipath returns: individual for each pixel, or the same for all pixels.
     tail : ExponentialTail, optional
-        Behind every direct return.
+        Tail of every direct return.
     transients : Transients, optional
-        In place of the direct return: the pixel's signal shared out over a histogram; goes without
-        the two above.
+        Distributes the signal of each pixel over a histogram, instead of the direct return; cannot
+        be combined with `returns` or `tail`.
     bounces, bounce_rays : int, optional
-        1: also light that one other surface sends on, gathered by so many rays a pixel, as
-        bounced_light() says; of a name or file. (0)
+        1: add indirect light over one other surface, sampled by this number of rays per pixel, see
+        bounced_light(); for names and files. (0)
     progress : callable, optional
     **options
-        As CaptureOptions.
+        As in CaptureOptions.
 
     Returns
     -------
@@ -230,9 +231,9 @@ def capture(
     Raises
     ------
     ValueError
-        Naming what does not fit.
+        Naming the invalid argument.
     OSError
-        For what is no scene.
+        For an unknown scene.
     """
     given: dict[str, Any] = {
         **options,
@@ -268,18 +269,18 @@ def capture(
 
 @dataclass(frozen=True)
 class StagedCapture:
-    """Raw measurements of a scene of shapes, with what is true of them.
+    """Raw measurements of a scene of shapes, with the ground truth.
 
     Attributes
     ----------
     raw : ndarray of float32, shape (F, H, W, K)
         Electrons, or counts if the sensor has an ADC.
-    depth_m : ndarray of float32, shape (F, H, W), or (1, H, W) of a scene that stands still
+    depth_m : ndarray of float32, shape (F, H, W), or (1, H, W) for a static scene
         Radial distance along the ray through a pixel's centre, in the middle of each frame [m];
-        NaN = no return.
+        NaN without return.
     near_m, far_m : ndarray of float32, as depth_m
-        Of the rays that a pixel sees through the lens, in all exposures: where they differ by much,
-        its light is mixed.
+        Range of the distances that a pixel sees through the lens in all exposures; a large range
+        means mixed light.
     """
 
     raw: npt.NDArray[np.float32]
@@ -303,21 +304,21 @@ def capture_staged(
     progress: Progress = None,
     **options: Any,
 ) -> StagedCapture:
-    """Raw measurements of shapes through the camera's lens, while they move, if they do.
+    """Simulates raw measurements of shapes through the camera's lens, including motion.
 
-    Each exposure sees the scene as it is in its middle: exposures follow one another with
-    `sensor.readout_gap_s` after each, frames every `sensor.frame_period_s`.
+    The scene is evaluated in the middle of each exposure. Exposures are separated by
+    `sensor.readout_gap_s`, frames start every `sensor.frame_period_s`.
 
     Parameters
     ----------
     scene : name of a built-in scene, .toml file, mesh, or depth image
-        A depth image has one ray a pixel, and stands still.
+        A depth image has one ray per pixel and is static.
     code : CodeSet, name of a family or file
     camera : Camera or its name
     width, height : int, optional
-        Of a built-in scene or a mesh [px] (320 x 240).
+        For a built-in scene or a mesh [px] (320 x 240).
     returns, tail, transients, bounces, bounce_rays, progress
-        As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
+        As in capture(); lists have one entry per ray, `lens.pixel_samples` squared for each pixel.
     **options
         signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
         as in capture().
@@ -351,7 +352,7 @@ def capture_staged(
 
 
 def _bounce_rays(bounces: int, rays: int, returns: Any, transients: Any) -> int:
-    """Rays by which each pixel gathers bounced light; 0: none bounces."""
+    """Returns the rays per pixel for bounced light; 0: none."""
     if bounces not in (0, 1):
         raise ValueError(f"bounces: got {bounces}; needs 0 or 1")
     if bounces and (returns is not None or transients is not None):
@@ -368,18 +369,18 @@ def bounced_light(
     rays: int = 256,
     progress: Progress = None,
 ) -> MultipathReturns:
-    """Light that reaches each pixel over one other surface of the scene, as `simulate --bounces 1`
-    gathers it: surfaces are Lambertian, the source is at the camera's centre.
+    """Computes the light that reaches each pixel over one other surface, as `simulate --bounces 1`:
+    surfaces are Lambertian, the source is at the camera's centre.
 
     Parameters
     ----------
     scene : name of a built-in scene, .toml file, or mesh
     camera : Camera or its name
-        Its lens, and its range, beyond which light is seen whole ranges earlier.
+        Its lens and unambiguous range are used; longer paths wrap.
     width, height : int, optional
-        Of a built-in scene or a mesh [px] (320 x 240).
+        For a built-in scene or a mesh [px] (320 x 240).
     rays : int, optional
-        By which each pixel gathers it, 16 .. 65536.
+        Rays per pixel, 16 .. 65536.
     progress : callable, optional
 
     Examples
@@ -403,7 +404,7 @@ def bounced_light(
 
 
 def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:
-    """The planes of a scene by name, each (H, W)."""
+    """Returns the planes of a scene by name, each (H, W)."""
     names = ("depth_m", "albedo", "cosine", "ambient_scale")
     planes = {name: getattr(scene, name) for name in names}
     for name in names[1:]:
@@ -417,7 +418,7 @@ def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:
 
 
 def scene_named(scene: Any, lens: Optional[Lens]) -> Scene:
-    """A Scene, or that of depths, or by name or file as seen through a lens."""
+    """Returns a Scene from a Scene, depths, or a name or file viewed through a lens."""
     if isinstance(scene, np.ndarray):
         return Scene(scene)
     if isinstance(scene, (str, os.PathLike)):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Light that a lens scatters: measured, and taken off raw numbers; docs/calibration.md."""
+"""Calibration and correction of stray light of a lens; docs/calibration.md."""
 
 from __future__ import annotations
 
@@ -20,18 +20,19 @@ from ._reports import Estimate
 
 @dataclass(frozen=True)
 class CalibratedStrayLight:
-    """What a lens scatters, as a bright target before black shows it.
+    """Result of calibrate_stray_light().
 
     Attributes
     ----------
     kernel : ndarray of float32, shape (2 R + 1, 2 R + 1)
-        Share of a pixel's light that each other gets, its middle the pixel itself.
+        Share of a pixel's light that is scattered to each other pixel, the centre being the pixel
+        itself.
     radius_px, share : list of float, list of Estimate
-        Distances, and the share in each pixel so far away.
+        Distances, and the share scattered to each pixel at that distance.
     total : Estimate
-        Of all light that is scattered.
+        Share of all light that is scattered.
     target_pixels, pixels : int
-        Of the target, and around it.
+        Pixels of the target, and around it.
     notes : list of str
     """
 
@@ -64,24 +65,24 @@ def calibrate_stray_light(
     dark: Optional[npt.ArrayLike] = None,
     progress: Progress = None,
 ) -> CalibratedStrayLight:
-    """Stray light from frames of a small bright target before black.
+    """Calibrates stray light from frames of a small bright target on a black background.
 
     Parameters
     ----------
     frames : array_like, shape (F, H, W, K)
-        Means over them count. Whatever else is bright counts as stray light.
+        Frames are averaged. Other bright objects are mistaken for stray light.
     camera : Camera or its name
-        Whose black level and saturation they have.
+        Its black level and saturation are used.
     dark : array_like, shape (F, H, W, K), optional
-        The same with the target covered.
+        Frames with the target covered.
     progress : callable, optional
-        Called with (fraction, step); False stops.
+        Called with (fraction, step); returning False cancels.
 
     Raises
     ------
     ValueError
-        If nothing is bright, the target is saturated, fewer than 4 pixels or more than a quarter of
-        the image, or the rest is not black.
+        If nothing is bright, the target is saturated, has fewer than 4 pixels or more than a
+        quarter of the image, or the background is not black.
     """
     dark_frames = None if dark is None else _check.frames(dark, "dark")
     handle = _tofsmith.calibrate_stray_light(
@@ -101,31 +102,31 @@ def remove_stray_light(
     *,
     layout: str = "interleaved",
 ) -> npt.NDArray[np.float32]:
-    """Raw numbers without the light that a lens scatters, before anything is decoded.
+    """Removes the light that a lens scatters from raw numbers, before decoding.
 
     Parameters
     ----------
     raw : ndarray, shape (H, W, K) or (F, H, W, K)
-        As Decoder.decode() takes it. Pixels that are saturated or invalid stay as they are.
+        As in Decoder.decode(). Saturated and invalid pixels are unchanged.
     kernel : array_like, shape (2 R + 1, 2 Q + 1)
-        Share of a pixel's light that each other gets: CalibratedStrayLight.kernel. Each >= 0, their
-        sum below 0.5.
+        Share of a pixel's light that is scattered to each other pixel, as
+        CalibratedStrayLight.kernel. Values >= 0 with a sum below 0.5.
     code : CodeSet, DecodingTable, name of a family or file
-        As Decoder takes it.
+        As in Decoder.
     camera : Camera or its name
-        Needed unless `code` is a DecodingTable.
+        Required unless `code` is a DecodingTable.
     layout : {"interleaved", "planar"}
-        Never guessed.
+        Not inferred from the shape.
 
     Returns
     -------
     ndarray of float32, shape (H, W, K) or (F, H, W, K)
-        Of noise about that of `raw`.
+        With about the noise of `raw`.
 
     Raises
     ------
     ValueError
-        For another shape, or shares that are none.
+        For invalid shapes or shares.
     """
     array, is_planar = _check.raw_array(raw, layout)
     return _tofsmith.without_stray_light(

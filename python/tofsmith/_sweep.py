@@ -22,7 +22,7 @@ from ._executor import Dispatcher, ExecutorLike, require_build
 
 @dataclass(frozen=True)
 class SweepResults:
-    """Columns of one length, a row for each finished item and operating point.
+    """Columns of equal length, with one row per finished item and operating point.
 
     Attributes
     ----------
@@ -32,9 +32,9 @@ class SweepResults:
         circular_rmse_m, circular_rmse_se_m, outlier_rate, cramer_rao_mae_m,
         receiver_bound_mae_m, direct_tof_bound_mae_m.
     items, finished, failed, pending : int, optional
-        Of a store: how far the sweep has come.
+        Progress of the sweep, for results from a store.
     failures : list of str
-        One line for each item that could not be finished.
+        One line per failed item.
     """
 
     columns: dict[str, npt.NDArray[Any]]
@@ -46,7 +46,7 @@ class SweepResults:
     failures: list[str] = field(default_factory=list)
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """A column; KeyError names those there are."""
+        """Returns a column; KeyError lists the existing names."""
         if name in self.columns:
             return self.columns[name]
         raise KeyError(f"no column '{name}'; there are {', '.join(self.columns)}")
@@ -58,7 +58,7 @@ class SweepResults:
         return iter(self.columns)
 
     def where(self, **values: Any) -> SweepResults:
-        """The rows in which columns have the given values; numbers within 1e-9."""
+        """Returns the rows whose columns have the given values; numbers within 1e-9 (relative)."""
         kept = np.ones(len(self), bool)
         for name, value in values.items():
             column = self[name]
@@ -71,7 +71,7 @@ class SweepResults:
 
 
 def _texts_joined(arrays: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-    """NAME_index into NAME_names, bytes padded with zeros, become one column of texts."""
+    """Combines NAME_index and NAME_names (bytes padded with zeros) into one column of texts."""
     columns = {}
     for name, array in arrays.items():
         if name.endswith("_index") and f"{name[:-6]}_names" in arrays:
@@ -87,9 +87,9 @@ def _of_store(values: dict[str, Any]) -> SweepResults:
     return SweepResults(_texts_joined(values.pop("arrays")), **values)
 
 
-#: Place in the list, and key.
+#: Position in the list, and key.
 _Item = tuple[int, str]
-#: Key, result, message of a failure, and seconds.
+#: Key, result, error message, and seconds.
 _Outcome = tuple[str, str, str, float]
 
 
@@ -110,7 +110,7 @@ def _run_on_executor(
     run: _tofsmith.SweepRun, sweep: tuple[str, bool], executor: ExecutorLike, threads: int,
     progress: Progress
 ) -> list[str]:
-    """Returns the messages of items that failed."""
+    """Returns the messages of failed items."""
     failures: list[str] = []
     text, source_name = sweep[0], os.path.abspath("sweep")
     if not sweep[1]:
@@ -148,22 +148,22 @@ def run_sweep(
     sweep : str or path
         A TOML file, or its text (with a line break); see docs/sweeps.md.
     store : str or path
-        SQLite file of results, made if it is missing; what is finished there is not computed again.
+        SQLite file of results, created if missing; finished items are not computed again.
     executor : concurrent.futures.Executor or a function that starts one, optional
         Computes the items, in pieces of about one second: a process pool, Dask's
         ``Client.get_executor()``, ``mpi4py.futures.MPIPoolExecutor``. Its workers need the same
         version of tofsmith and the files that the sweep names. Lost pieces are repeated up to
         three times. A function is called again when a pool breaks, because a process pool that
-        lost a worker cannot be used any more. None: all cores of this machine.
+        lost a worker is unusable. None: all cores of this machine.
     threads : int, optional
-        Threads of each worker of the executor; 0: as many as there are cores.
+        Threads of each worker of the executor; 0: one per core.
     progress : callable, optional
-        What is finished when it stops the work is kept.
+        Finished items are kept if it cancels.
 
     Raises
     ------
     OSError
-        For errors in the sweep's file, with line and column, or if the store fails.
+        For errors in the sweep file, with line and column, or if the store fails.
     RuntimeError
         If the executor breaks or a piece fails four times. Finished items are kept.
 
@@ -188,7 +188,7 @@ def run_sweep(
 
 
 def read_sweep(sweep: Path, store: Path, *, progress: Progress = None) -> SweepResults:
-    """The finished items of a sweep; computes nothing."""
+    """Returns the finished items of a sweep without computing."""
     source, is_text = _source(sweep)
     callback = _check.progress(progress)
     return _of_store(_tofsmith.read_sweep(source, is_text, _check.path(store, "store"), callback))
@@ -200,12 +200,12 @@ def _source(sweep: Path) -> tuple[str, bool]:
 
 
 def read_sweep_export(path: Path) -> SweepResults:
-    """Results that `tofsmith sweep --export` wrote: .npz, .csv or .json.
+    """Reads results of `tofsmith sweep --export`: .npz, .csv or .json.
 
     Raises
     ------
     OSError
-        If the file cannot be read or is no such export.
+        If the file cannot be read or is not such an export.
     """
     name = _check.path(path)
     extension = os.path.splitext(name)[1]

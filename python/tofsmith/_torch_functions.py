@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The steps of the compiled part as functions of PyTorch, for codes (B, ..) of checked shapes."""
+"""Steps of the compiled module as PyTorch functions, for codes (B, ...) with checked shapes."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-least_variance_e2 = 1e-6  # below, noise has no gradient
+least_variance_e2 = 1e-6  # below, the noise has no gradient
 
 
 def _arrays(tensors: Any) -> Any:
-    """What the compiled part takes: NumPy arrays of the same memory."""
+    """Converts tensors to NumPy arrays with the same memory."""
     return tuple(None if t is None else t.detach().contiguous().numpy() for t in tensors)
 
 
@@ -23,12 +23,12 @@ def _tensors(arrays: Any, like: Tensor) -> Any:
 
 
 def _codes_of(tensor: Tensor) -> Any:
-    """(.., N, columns) as an array (B, N, columns)."""
+    """Returns (..., N, columns) as an array (B, N, columns)."""
     return tensor.detach().contiguous().numpy().reshape((-1,) + tuple(tensor.shape[-2:]))
 
 
 class Measure(torch.autograd.Function):
-    """Waveforms (.., N, E), (.., N, D) to the tensors of tables (.., N, K), (.., K)."""
+    """Maps waveforms (..., N, E), (..., N, D) to the tensors of tables (..., N, K), (..., K)."""
 
     @staticmethod
     def forward(ctx: Any, steps: Any, modulation: Tensor, demodulation: Tensor) -> Any:
@@ -53,8 +53,8 @@ class Measure(torch.autograd.Function):
 
 
 class Electrons(torch.autograd.Function):
-    """Depths [bin] and light (B, P) and tables to measurements (B, P, K): "mean", "variance", or
-    a capture with noise of a generator."""
+    """Maps depths [bin] and light (B, P) and tables to measurements (B, P, K): "mean", "variance",
+    or a noisy capture with a generator."""
 
     @staticmethod
     def forward(ctx: Any, steps: Any, what: Any, *inputs: Any) -> Tensor:
@@ -93,8 +93,8 @@ class Electrons(torch.autograd.Function):
 
 
 class Decode(torch.autograd.Function):
-    """Electrons (B, P, K), temperatures (B, P) and tables to depths [bin], or where truths are
-    given to sizes of errors (B, P)."""
+    """Maps electrons (B, P, K), temperatures (B, P) and tables to depths [bin], or, with true
+    depths, to absolute errors (B, P)."""
 
     @staticmethod
     def forward(ctx: Any, steps: Any, circular: bool, truth: Optional[Tensor], electrons: Tensor,
@@ -113,13 +113,14 @@ class Decode(torch.autograd.Function):
         by_table, array = ctx.steps.pull_back_decoded(
             _arrays(table), y, temperature_e2, ctx.circular, true_bin, weight)
         by_electrons = torch.from_numpy(array)
-        # S is quadratic in y, so that S / temperature is of degree -1 in one, 2 in the other.
+        # S is quadratic in y, so S / temperature is homogeneous of degree 2 in y and -1 in
+        # temperature.
         by_temperature = (electrons * by_electrons).sum(-1) / (-2 * temperature)
         return (None, None, None, by_electrons, by_temperature, *_tensors(by_table, electrons))
 
 
 class Bound(torch.autograd.Function):
-    """Light (B, L) and tables to deviations (B, L, 4 N)."""
+    """Maps light (B, L) and tables to standard deviations (B, L, 4 N)."""
 
     @staticmethod
     def forward(ctx: Any, steps: Any, signal: Tensor, ambient: Tensor,

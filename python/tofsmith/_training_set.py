@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Raw frames, decoded and true depth of many scenes; see docs/datasets.md."""
+"""Datasets of raw frames, decoded and true depth of many scenes; see docs/datasets.md."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from ._option_fields import CaptureOptions
 from ._options import takes
 from ._scene import Scene, centred_lens, lens_dict, scene_named, scene_planes
 
-#: As of capture(), or a function that returns one when its turn comes.
+#: As in capture(), or a function that returns a scene when called.
 SceneLike = Union[Scene, str, npt.NDArray[Any], Callable[[], Any]]
 
 
 @dataclass(frozen=True)
 class TrainingSetRun:
-    """What became of a training set.
+    """Result of write_training_set().
 
     Attributes
     ----------
     scenes, written, kept : int
-        Of this shard, written now, and found finished.
+        Scenes in this shard, written in this run, and already finished.
     failures : list of str
         "name: problem" of scenes that could not be simulated.
     index : pathlib.Path
-        The list of all that is finished.
+        Index of all finished scenes.
     """
 
     scenes: int
@@ -49,12 +49,12 @@ class TrainingSetRun:
     index: FilePath
 
 
-#: Name, entry of the index, problem, and whether it was written now.
+#: Name, entry of the index, problem, and whether it was written in this run.
 _Outcome = tuple[str, str, str, bool]
 
 
 def _planes(scenes: Mapping[str, SceneLike], lens: Optional[Lens], name: str) -> dict[str, Any]:
-    """Planes and lens of a scene."""
+    """Returns the planes and the lens of a scene."""
     given = scenes[name]
     scene = scene_named(given() if callable(given) else given, lens)
     planes: dict[str, Any] = dict(scene_planes(scene))
@@ -122,36 +122,37 @@ def write_training_set(
     progress: Progress = None,
     **options: Unpack[CaptureOptions],
 ) -> TrainingSetRun:
-    """Captures and decodes every scene; writes KEY.npz (raw, depth_m, true_depth_m, albedo) and
-    KEY.json (parameters) of each, and an index, as `tofsmith simulate` of many scenes does.
+    """Captures and decodes every scene. Writes KEY.npz (raw, depth_m, true_depth_m, albedo) and
+    KEY.json (parameters) for each, and an index, as `tofsmith simulate` for many scenes.
 
     Parameters
     ----------
     directory : str or path
-        Made if it is missing; what is finished there stays.
+        Created if missing; finished scenes are kept.
     scenes : mapping of names to scenes
-        Each as capture() takes it, or a function that returns such a scene when its turn comes, in
-        any thread. Without a lens it is seen through the camera's, or 60 degrees wide.
+        Each as in capture(), or a function that returns a scene, which is called in any thread.
+        Scenes without a lens use the camera's, or a view 60 degrees wide.
     code : CodeSet, name of a family or file
     camera : Camera or its name
     signal_range, ambient_range : (float, float), optional
-        [e/s], drawn log-uniformly for every scene; None: the middle operating point's.
+        [e/s], drawn log-uniformly for every scene; None: the middle operating point.
     shard : (index, count), optional
-        One part of the work, from 1, by the scenes' names.
+        One part of the work, counted from 1, selected by the scenes' names.
     executor : concurrent.futures.Executor or a function that starts one, optional
-        Writes the scenes, as of run_sweep(). Its workers must see the directory under the same
-        path, and functions among the scenes must pickle.
+        Writes the scenes, as in run_sweep(). Its workers must see the directory under the same
+        path, and functions among the scenes must be picklable.
     threads : int, optional
-        Threads of each worker of the executor; 0: as many as there are cores.
+        Threads of each worker of the executor; 0: one per core.
     progress : callable, optional
-        What is finished when it stops the work is kept.
+        Finished scenes are kept if it cancels.
     **options
-        As CaptureOptions. Noise and light depend on `seed` and the scene's name and content alone.
+        As in CaptureOptions. Noise and light depend only on `seed` and the scene's name and
+        content.
 
     Raises
     ------
     ValueError
-        For options that break a rule. A scene that fails is listed in `failures`.
+        For invalid options. Scenes that fail are listed in `failures`.
     OSError
         If a file cannot be written.
     RuntimeError

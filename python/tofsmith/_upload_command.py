@@ -43,7 +43,7 @@ def _text(report: UploadReport, output_on: bool) -> str:
 
 
 def _show_progress(fraction: float, step: str) -> None:
-    """One line on a terminal, cleared at the end."""
+    """Shows progress in one line of a terminal, which is cleared at the end."""
     text = "" if fraction == 1 else f"uploading {100 * fraction:.0f} %  {step}"
     print(f"\r{text[:78]:78}\r", end="", file=sys.stderr, flush=True)
 

@@ -15,7 +15,7 @@ class Waveform:
     """One period of a modulation or demodulation function. Immutable.
 
     Binary waveforms are stored as switching times and sums of cosines as Fourier coefficients, both
-    independent of any grid; all others as N samples, each held over its cell [n, n + 1) / N.
+    independent of any grid; all others as N samples, each constant in its cell [n, n + 1) / N.
     """
 
     _handle: _tofsmith.Waveform
@@ -31,7 +31,7 @@ class Waveform:
 
     @classmethod
     def binary(cls, on_intervals: npt.ArrayLike, level: float = 1.0) -> Waveform:
-        """`level` inside the intervals, 0 elsewhere.
+        """Creates a waveform with `level` inside the intervals and 0 elsewhere.
 
         Parameters
         ----------
@@ -49,12 +49,12 @@ class Waveform:
 
     @classmethod
     def sampled(cls, samples: npt.ArrayLike) -> Waveform:
-        """Values (N,), each held over a cell of the period."""
+        """Creates a waveform from values (N,), each constant in a cell of the period."""
         return cls._of(_tofsmith.Waveform.sampled(_check.finite_array(samples, "samples", "(N,)")))
 
     @classmethod
     def cosines(cls, coefficients: npt.ArrayLike) -> Waveform:
-        """x(t) = c_0 + 2 Re sum_n c_n exp(2 pi i n t), t in periods.
+        """Creates x(t) = c_0 + 2 Re sum_n c_n exp(2 pi i n t), t in periods.
 
         Parameters
         ----------
@@ -79,7 +79,7 @@ class Waveform:
 
     @property
     def level(self) -> float:
-        """Value while on, of a binary waveform."""
+        """Level of a binary waveform while it is on."""
         return self._handle.level()
 
     @property
@@ -111,15 +111,15 @@ class Waveform:
         return self._handle.edges()
 
     def cell_averages(self, samples: int) -> FloatArray:
-        """Means over N cells of the period, (samples,)."""
+        """Returns means over N cells of the period, (samples,)."""
         return self._handle.cell_averages(_check.whole(samples, "samples", 1, 2**24))
 
     def delayed(self, periods: float) -> Waveform:
-        """The waveform, arriving `periods` later."""
+        """Returns the waveform delayed by `periods`."""
         return Waveform._of(self._handle.delayed(_check.number(periods, "periods")))
 
     def complement(self) -> Waveform:
-        """1 - x: what the other bucket of a two-bucket sensor collects."""
+        """Returns 1 - x, the waveform of the other bucket of a two-bucket sensor."""
         return Waveform._of(self._handle.complement())
 
     def __eq__(self, other: object) -> bool:

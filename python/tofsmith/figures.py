@@ -43,13 +43,13 @@ from ._sweep import SweepResults
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure as an HTML page that needs no other file. Notebooks show it."""
+    """A figure as a self-contained HTML page, displayed by notebooks."""
 
     page: str
 
     @property
     def document(self) -> dict[str, Any]:
-        """The data of the figure: values, axes and units."""
+        """Data of the figure: values, axes and units."""
         text = self.page.partition('id="document">')[2].partition("</script>")[0]
         block: dict[str, Any] = json.loads(text)["sections"][0]["blocks"][0]
         return block
@@ -64,13 +64,13 @@ class Figure:
 
 
 def waveforms(code: CodeLike, camera: CameraLike) -> Figure:
-    """Modulation, demodulation and correlation function of every measurement."""
+    """Shows modulation, demodulation and correlation function of every measurement."""
     fitted, camera = code_and_camera(code, camera)
     return Figure(_tofsmith.waveform_figure(fitted.name, fitted._handle, camera._handle))
 
 
 def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike) -> Figure:
-    """The coding curves of some codes in three dimensions, coloured by depth."""
+    """Shows the coding curves of codes in three dimensions, coloured by depth."""
     camera = camera_of(camera)
     listed = list(codes) if isinstance(codes, (list, tuple)) else [codes]
     if not listed:
@@ -80,8 +80,8 @@ def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike)
 
 
 def depth_error_map(reports: Reports, *, kind: Optional[str] = None) -> Figure:
-    """Mean depth error at every operating point, a panel per code. `kind`: linear or circular;
-    None: as the first report's camera asks."""
+    """Shows the mean depth error at every operating point, one panel per code. `kind`: linear or
+    circular; None: that of the first report's camera."""
     listed = reports_of(reports)
     kind = kind_of(listed, kind)
     signal, ambient, _, _ = error_grid(listed[0], kind)
@@ -99,8 +99,8 @@ def depth_error_curves(
     at: Optional[float] = None,
     kind: Optional[str] = None,
 ) -> Figure:
-    """Mean depth error along signal or ambient light, the other at the level nearest `at`. `kind`:
-    linear or circular; None: as the first report's camera asks."""
+    """Shows the mean depth error along signal or ambient light, with the other light at the level
+    nearest to `at`. `kind`: linear or circular; None: that of the first report's camera."""
     listed = reports_of(reports)
     kind = kind_of(listed, kind)
     curves = [(r.code, *error_curve(r, kind, along, at)) for r in listed]
@@ -118,8 +118,8 @@ def depth_error_curves(
 
 
 def sweep_map(results: SweepResults, x: str, y: str, *, kind: str = "linear") -> Figure:
-    """Mean depth error [mm] over two columns of numbers of a sweep: the geometric mean over all else
-    that varies, a panel per code."""
+    """Shows the mean depth error [mm] over two numeric columns of a sweep: geometric means over the
+    other columns, one panel per code."""
     across, up, maps = sweep_maps(results, x, y, kind)
     x_ticks, y_ticks = [f"{v:.4g}" for v in across], [f"{v:.4g}" for v in up]
     errors_m = [np.asarray(values_mm / 1e3, np.float64) for values_mm in maps.values()]
@@ -128,8 +128,8 @@ def sweep_map(results: SweepResults, x: str, y: str, *, kind: str = "linear") ->
 
 
 def depth_maps(depths: Union[Depth, dict[str, Depth]]) -> Figure:
-    """Depth maps side by side: one, or several of one shape by name. Differences of depths, some of
-    which are negative, have a diverging scale with zero in the middle."""
+    """Shows one depth map, or several of equal shape by name. Differences of depths (with negative
+    values) have a diverging scale centred at zero."""
     named = named_depths(depths)
     title = "Depth difference" if is_signed(named) else "Depth"
     return Figure(_tofsmith.image_figure(title, list(named), list(named.values()), is_signed(named)))
@@ -138,7 +138,7 @@ def depth_maps(depths: Union[Depth, dict[str, Depth]]) -> Figure:
 def point_cloud(
     depth: Depth, lens: Lens, values: Optional[npt.ArrayLike] = None, *, label: str = "depth"
 ) -> Figure:
-    """Points in the camera's frame, coloured by radial distance or by `values` (H, W)."""
+    """Shows points in the camera's frame, coloured by radial distance or by `values` (H, W)."""
     radial_m = depth_of(depth)
     points = points_m(radial_m, lens).reshape(-1, 3)
     plane = radial_m if values is None else _check.real_array(values, "values", "(H, W)")

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Uploads codes to waveform generators through PyVISA; see docs/instruments.md.
 
-On Debian: ``apt install python3-pyvisa python3-pyvisa-py``. Only upload() needs them.
+On Debian: ``apt install python3-pyvisa python3-pyvisa-py``. Required by upload() only.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from ._tofsmith import (
     generator_models,
 )
 
-_BLOCK_BYTES_PER_S = 100e3  # adds to the time limit of a large message or answer
-# A socket is read in short steps of few bytes: an instrument that sends byte after byte cannot
-# extend an answer far beyond its time limit.
+_BLOCK_BYTES_PER_S = 100e3  # added to the timeout of large messages or answers
+# Read sockets in short steps of few bytes, so that an instrument which sends single bytes cannot
+# exceed the timeout by much.
 _SOCKET_STEP_S, _SOCKET_BYTES = 0.01, 1024
 _MESSAGE_BYTES = 65536
 
 
 class ReadBackNumber(NamedTuple):
-    """A requested number and the one that the instrument reads back; channel 0: none."""
+    """A requested number and the number read back from the instrument; channel 0: none."""
 
     channel: int
     quantity: str
@@ -58,9 +58,9 @@ class UploadReport:
     treated_as : str
         Name of the GeneratorModel.
     verified : bool
-        All points and settings were read back and are as requested.
+        All points and settings were read back and agree with the request.
     message : str
-        One line, including what could not be read back.
+        One line, including settings that could not be read back.
     channels : list of UploadChannel
     numbers : list of ReadBackNumber
     steps : list of (what, sent, answer)
@@ -100,12 +100,12 @@ def upload_script(
     filter, tables
         As in upload().
     **options
-        As UploadOptions.
+        As in UploadOptions.
 
     Raises
     ------
     ValueError
-        Naming the points, rate, voltage or channel that does not fit the model.
+        Naming the points, rate, voltage or channel that the model does not support.
     """
     camera = camera_of(camera)
     handle = code_of(code, camera)._handle
@@ -127,9 +127,10 @@ def upload(
     progress: Progress = None,
     **options: Unpack[UploadOptions],
 ) -> UploadReport:
-    """Loads a code into a generator, sets it, reads points and settings back and compares them.
+    """Uploads a code to a generator, configures it, reads points and settings back and compares
+    them.
 
-    Outputs stay off unless `output_on=True`. After a failure they are switched off. Tested on
+    Outputs stay off unless `output_on=True`, and are switched off after a failure. Tested with
     simulated instruments only.
 
     Parameters
@@ -140,24 +141,24 @@ def upload(
         host, host:port or tcp://host:port (a socket; port 5025), vxi11://host, or a VISA resource
         name such as TCPIP::host::4000::SOCKET or USB0::0xF4EC::0x1102::SDG2X::INSTR.
     model : str, optional
-        Treats the instrument as this model. None: as its answer to ``*IDN?``.
+        Treats the instrument as this model. None: from its answer to ``*IDN?``.
     timeout_s : float
-        Longest wait for an answer [s]; blocks get another second for each 100 kB.
+        Timeout for an answer [s], plus one second per 100 kB of a block.
     progress : callable, optional
-        Called before every message; the upload stops if it returns False.
+        Called before every message; returning False stops the upload.
     filter : {"step", "normal", "off"}
-        Filter of the output of a Keysight.
+        Output filter of Keysight instruments.
     tables : dict, optional
         Options of export_waveforms(), such as {"samples": 500, "low_v": 0, "high_v": 2}.
     **options
-        As UploadOptions.
+        As in UploadOptions.
 
     Raises
     ------
     ValueError
-        For an option that breaks a rule, or a code that does not fit the model.
+        For an invalid option, or a code that the model does not support.
     OSError
-        Naming the instrument, the step, what was sent, what was received and what was expected.
+        Naming the instrument, the step, the message sent, and the answers received and expected.
     ImportError
         If PyVISA is not installed.
     """
@@ -187,12 +188,12 @@ def upload(
 
 
 def visa_resource_name(address: str) -> str:
-    """The VISA resource name of an address that upload() accepts.
+    """Returns the VISA resource name of an address that upload() accepts.
 
     Raises
     ------
     ValueError
-        For any other text.
+        For other texts.
     """
     if re.match(r"(TCPIP|USB|GPIB|ASRL|VXI|PXI)[\w/.-]*::\S", address, re.IGNORECASE | re.ASCII):
         return address
@@ -215,7 +216,7 @@ def _printable(data: bytes | str, most: int = 60) -> str:
 
 @functools.cache
 def _visa_library() -> tuple[Any, Any]:
-    """PyVISA and its resource manager."""
+    """Returns PyVISA and its resource manager."""
     try:
         import pyvisa
 
@@ -226,7 +227,7 @@ def _visa_library() -> tuple[Any, Any]:
 
 
 class _Session:
-    """Messages to an instrument and its answers. Every answer has a time and a size limit."""
+    """Messages to an instrument and its answers, which have a timeout and a size limit."""
 
     def __init__(self, resource_name: str, timeout_s: float) -> None:
         self.name, self.timeout_s = resource_name, timeout_s
@@ -239,14 +240,14 @@ class _Session:
             raise OSError(f"{resource_name}: cannot connect ({error}); check the address and that "
                           "the instrument is on") from None
         self._is_socket = resource_name.upper().endswith("::SOCKET")
-        if self._is_socket:  # reading returns the bytes that have arrived, even without line end
+        if self._is_socket:  # reads return the bytes that have arrived, even without line end
             attributes = self._visa.constants.ResourceAttribute
             self._resource.set_visa_attribute(attributes.suppress_end_enabled, False)
 
     def close(self) -> None:
         try:
             self._resource.close()
-        except Exception:  # the connection broke before
+        except Exception:  # the connection was already broken
             pass
 
     def fail(self, problem: str) -> NoReturn:
@@ -254,7 +255,7 @@ class _Session:
         raise OSError(f"{self.name}: {sent}{problem}")
 
     def send(self, message: bytes) -> None:
-        """Sends a message. Fails if an answer arrived that nothing asked for."""
+        """Sends a message. Fails if there was an unexpected answer before."""
         self.expect_silence()
         self.send_regardless(message)
 
@@ -268,7 +269,7 @@ class _Session:
             except Exception as error:
                 problems.append(error)
 
-        # pyvisa-py writes without a time limit: an instrument that accepts nothing would block it.
+        # pyvisa-py writes without timeout and would block if the instrument does not accept data.
         thread = threading.Thread(target=write, daemon=True)
         if not self._is_stuck:
             thread.start()
@@ -281,7 +282,7 @@ class _Session:
                       "is on")
 
     def expect_silence(self) -> None:
-        if self._is_socket:  # other interfaces deliver an answer only on request
+        if self._is_socket:  # other interfaces deliver answers only on request
             self._receive(_SOCKET_BYTES, 0.0)
         self._received = self._received.lstrip(b"\r\n")
         if self._received:
@@ -289,7 +290,7 @@ class _Session:
                       "another program using the instrument?")
 
     def identify(self) -> list[str]:
-        """Vendor, model, serial number and firmware."""
+        """Returns vendor, model, serial number and firmware."""
         self.send(b"*IDN?\n")
         answer = self.read_line()
         fields = [field.strip() for field in answer.removeprefix("*IDN ").split(",")]
@@ -304,18 +305,18 @@ class _Session:
         return line.rstrip(b"\r\n ").decode("latin-1")
 
     def read_block(self, max_bytes: int, more_s: float) -> bytes:
-        """The data of a definite-length block of IEEE 488.2."""
+        """Returns the data of a definite-length block of IEEE 488.2."""
         block = self._read(lambda data: _block_size(data, max_bytes), "a block of data", more_s)
         return block[2 + int(block[1:2]):]
 
     def read_wave_data(self, points_bytes: int, more_s: float) -> tuple[str, bytes]:
-        """Header and points of a Siglent's answer to WVDT?."""
+        """Returns header and points of a Siglent's answer to WVDT?."""
         answer = self._read(lambda data: _wave_size(data, points_bytes), "a waveform", more_s)
         return answer[:-points_bytes].decode("latin-1"), answer[-points_bytes:]
 
     def _read(self, size_of: Callable[[bytearray], Optional[int]], expected: str, more_s: float,
               line_end: Optional[str] = None) -> bytes:
-        """Receives an answer; size_of returns its size once the beginning of the answer shows it."""
+        """Receives an answer; size_of returns its size once the beginning is sufficient."""
         start, limit_s = time.monotonic(), self.timeout_s + more_s
         while True:
             self._received = self._received.lstrip(b"\r\n")
@@ -336,7 +337,7 @@ class _Session:
                           line_end)
 
     def _receive(self, most: int, limit_s: float, line_end: Optional[str] = None) -> None:
-        """Adds the bytes that arrive within the time, if any."""
+        """Appends bytes that arrive within the time, if any."""
         status = self._visa.constants.StatusCode
         if self._is_socket:
             most, limit_s = min(most, _SOCKET_BYTES), min(limit_s, _SOCKET_STEP_S)
@@ -347,7 +348,7 @@ class _Session:
             with self._resource.ignore_warning(status.success_max_count_read):
                 piece, _ = self._resource.visalib.read(self._resource.session, most)
             self._received += piece
-        except Exception as error:  # of PyVISA or, of a broken connection, of the socket
+        except Exception as error:  # from PyVISA or, for a broken connection, from the socket
             if getattr(error, "error_code", None) != status.error_timeout:
                 self.fail(f"the connection failed ({error}); check the address and that the "
                           "instrument is on")
@@ -384,7 +385,7 @@ def _wave_size(data: bytearray, points_bytes: int) -> Optional[int]:
 
 
 def _identified(identity: Sequence[str], session: _Session) -> str:
-    """The name of the supported model that an instrument is."""
+    """Returns the name of the supported model of an instrument."""
     vendor, name = identity[:2]
     try:
         model = _tofsmith.generator_model(name)
@@ -400,7 +401,7 @@ def _identified(identity: Sequence[str], session: _Session) -> str:
 def _send(
     session: _Session, script: UploadScript, progress: Progress
 ) -> tuple[list[tuple[str, str, str]], list[ReadBackNumber]]:
-    """Sends all messages. After a failure or an interrupt switches the outputs off."""
+    """Sends all messages. Switches the outputs off after a failure or an interrupt."""
     done: list[tuple[str, str, str]] = []
     numbers: list[ReadBackNumber] = []
     steps = script.steps
@@ -450,7 +451,7 @@ def _clear_errors(session: _Session, script: UploadScript) -> None:
 
 def _answer(session: _Session, script: UploadScript, step: UploadStep,
             numbers: list[ReadBackNumber]) -> str:
-    """Reads and checks the answer to a message; returns it as text."""
+    """Reads and checks the answer to a message and returns it as text."""
     line, data, difference = "", b"", ""
     if step.answer == "none":
         if script.model.has_error_queue:
@@ -488,7 +489,7 @@ def _fail(session: _Session, step: UploadStep, problem: str) -> NoReturn:
 
 
 def _difference(found: Sequence[Any], expected: Sequence[Any], unit: str) -> str:
-    """The first difference, or an empty text."""
+    """Returns the first difference, or an empty text."""
     if found == expected:
         return ""
     if len(found) != len(expected):
@@ -498,7 +499,7 @@ def _difference(found: Sequence[Any], expected: Sequence[Any], unit: str) -> str
 
 
 def _checked(line: str, check: AnswerCheck) -> tuple[Optional[float], str]:
-    """The number in an answer, if it is one, and what is wrong with it."""
+    """Returns the number in an answer, if any, and a description of an error."""
     answer = line.upper().replace('"', "")
     # "C1:BSWV WVTP,ARB,FRQ,1000HZ" contains keys and values; "C1:OUTP ON,LOAD,50" an extra word.
     words = [word.strip() for word in (answer.partition(" ")[2] or answer).split(",")]

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Figures for papers, one line each (matplotlib, imported when the first is drawn).
+"""Figures for papers with matplotlib, which is imported on first use.
 
 Every function draws on a new figure, or on `figure`, and returns it:
 
 >>> from tofsmith import plot
 >>> plot.waveforms("hamiltonian-k4", "paper-10f0").savefig("code.pdf")  # doctest: +SKIP
 
-Sizes suit one or two columns of a paper, fonts 8 pt, colours those of Okabe and Ito, which read
-with any colour vision; maps are viridis. (Some publishers want
-matplotlib.rcParams["pdf.fonttype"] = 42.)
+Sizes fit one or two columns of a paper, with fonts of 8 pt. Colours are those of Okabe and Ito,
+which are distinguishable with any colour vision; maps use viridis. Some publishers require
+matplotlib.rcParams["pdf.fonttype"] = 42.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ __all__ = [
 
 
 def __dir__() -> list[str]:
-    """What there is to draw, and nothing of how."""
+    """Lists public names only."""
     return list(__all__)
 
 
@@ -82,7 +82,7 @@ def __dir__() -> list[str]:
 def waveforms(
     code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
 ) -> Figure:
-    """Modulation, demodulation and correlation function of every measurement, a row each."""
+    """Shows modulation, demodulation and correlation function of every measurement, one per row."""
     fitted, camera = code_and_camera(code, camera)
     model = ForwardModel(fitted, camera)
     modulation, demodulation = fitted.modulation_waveforms(), fitted.demodulation_waveforms()
@@ -97,7 +97,7 @@ def waveforms(
         if chi is not None:
             axes[i, 2].plot(depth_m, chi[:, i], color=colours[2])
         axes[i, 0].set_ylabel(f"{i + 1}")
-    if chi is None:  # differences: fewer than there are taps
+    if chi is None:  # differences are fewer than the taps
         _curves_in_one(axes[:, 2], depth_m, model.correlation_table())
     for axis, title in zip(axes[0], ("modulation m", "demodulation d", r"correlation $\chi$")):
         axis.set_title(title)
@@ -107,15 +107,15 @@ def waveforms(
 
 
 def _steps(waveform: Waveform) -> tuple[FloatArray, FloatArray]:
-    """The values of a waveform and between which times [periods] each holds: of a binary one by its
-    switching times, not by means over cells."""
+    """Returns the values of a waveform and their limits in time [periods], for binary waveforms
+    from the switching times instead of cell averages."""
     if not waveform.is_binary:
         samples = waveform.samples
         if not len(samples):  # cosines
             samples = waveform.cell_averages(100 * len(waveform.coefficients))
         return samples, np.arange(len(samples) + 1) / len(samples)
     on = waveform.on_intervals
-    over = on[on[:, 1] > 1]  # the end of the period
+    over = on[on[:, 1] > 1]  # wraps around the end of the period
     wrapped = np.stack([np.zeros(len(over)), over[:, 1] - 1], 1)
     times = np.concatenate([wrapped, np.minimum(on, 1)]).ravel()
     values = np.zeros(len(times) + 1)
@@ -137,7 +137,7 @@ def _curves_in_one(column: Any, depth_m: Any, chi: Any) -> None:
 def correlation_functions(
     code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
 ) -> Figure:
-    """The K correlation functions over depth, behind the camera's impulse responses."""
+    """Shows the K correlation functions over depth, including the camera's impulse responses."""
     fitted, camera = code_and_camera(code, camera)
     chi = ForwardModel(fitted, camera).correlation_table()
     figure = new_figure(figure, column_in, 2.2)
@@ -161,7 +161,7 @@ def coding_curve(
     *,
     figure: Optional[Figure] = None,
 ) -> Figure:
-    """Coding curves in their three directions of largest extent, coloured by depth."""
+    """Shows coding curves in their three principal directions, coloured by depth."""
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
     camera = camera_of(camera)
@@ -196,8 +196,9 @@ def coding_curve(
 def depth_error_map(
     reports: Reports, *, kind: Optional[str] = None, figure: Optional[Figure] = None
 ) -> Figure:
-    """Mean depth error [mm] at every operating point and its standard error, a panel per code, one
-    colour scale. `kind`: linear or circular; None: as the first report's camera asks."""
+    """Shows the mean depth error [mm] and its standard error at every operating point, one panel
+    per code, with one colour scale. `kind`: linear or circular; None: that of the first report's
+    camera."""
     from matplotlib.colors import LogNorm
 
     listed = reports_of(reports)
@@ -245,9 +246,9 @@ def depth_error_curves(
     kind: Optional[str] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
-    """Mean depth error along signal or ambient light, with standard errors; the other light at the
-    level nearest `at` (the middle unless given). Dotted grey: the bound of any code. `kind`: linear
-    or circular; None: as the first report's camera asks."""
+    """Shows the mean depth error along signal or ambient light, with standard errors; the other
+    light is at the level nearest to `at` (default: the middle level). Dotted grey: the bound for
+    any code. `kind`: linear or circular; None: that of the first report's camera."""
     listed = reports_of(reports)
     kind = kind_of(listed, kind)
     longest = max(len("bound of any code"), *(len(report.code) for report in listed))
@@ -271,7 +272,7 @@ def depth_error_curves(
     axis.set(xlabel=f"{varied} (e/s), at {other} {ten_to(level)} e/s")
     log_ticks_in_plain_numbers(axis.yaxis)
     axis.grid(True, which="major", lw=0.3, color="0.85")
-    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=1.6)  # hides nothing
+    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=1.6)  # next to the axes
     return figure
 
 
@@ -284,9 +285,9 @@ def sweep_map(
     kind: str = "linear",
     figure: Optional[Figure] = None,
 ) -> Figure:
-    """Mean depth error [mm] over two columns of numbers of a sweep, such as "light.peak_factor" and
-    "signal_e_per_s": the geometric mean over all else that varies, a panel per code, one colour
-    scale. White: not finished."""
+    """Shows the mean depth error [mm] over two numeric columns of a sweep, such as
+    "light.peak_factor" and "signal_e_per_s": geometric means over the other columns, one panel per
+    code, with one colour scale. Unfinished cells are white."""
     from matplotlib.colors import LogNorm
 
     across, up, maps = sweep_maps(results, x, y, kind)
@@ -325,10 +326,10 @@ def depth_maps(
     label: Optional[str] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
-    """Depth maps side by side with one colour scale: one, or several of one shape by name. Pixels
-    without depth are grey. Differences of depths, some of which are negative, have a diverging scale
-    with zero in the middle. `range_m`: ends of the colour scale; None: all but 1 % of the depths.
-    `columns`: maps per row."""
+    """Shows one depth map, or several of equal shape by name, with one colour scale. Pixels without
+    depth are grey. Differences of depths (with negative values) have a diverging scale centred at
+    zero. `range_m`: limits of the colour scale; None: all but 1 % of the depths. `columns`: maps
+    per row."""
     named = named_depths(depths)
     shown = named if isinstance(depths, dict) else {"": named["depth"]}
     return draw_depth_maps(shown, figure, range_m, columns, label)
@@ -344,9 +345,9 @@ def point_cloud(
     max_points: int = 20000,
     figure: Optional[Figure] = None,
 ) -> Figure:
-    """Points in the camera's frame, coloured by radial distance or by `values` (H, W); of more
-    than `max_points`, every n-th is drawn. The half per cent farthest out on either side of each
-    axis is left out."""
+    """Shows points in the camera's frame, coloured by radial distance or by `values` (H, W). If
+    there are more than `max_points`, every n-th is drawn. The axes exclude the outermost 0.5 % of
+    the points on either side."""
     radial_m = depth_of(depth)
     shown = radial_m if values is None else _check.real_array(values, "values", "(H, W)")
     if shown.shape != radial_m.shape:

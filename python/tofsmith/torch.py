@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Gradients for learning: a camera's measurements, soft decoding and the Cramer-Rao bound as
-PyTorch functions over the adjoints of the library, on the CPU. Needs Debian's ``python3-torch``.
+"""PyTorch functions with gradients: measurements of a camera, soft decoding and the Cramer-Rao
+bound, using the adjoints of the library, on the CPU. Requires Debian's ``python3-torch``.
 
-Waveforms become a table, and all else follows from the table:
+Waveforms are converted to a table, from which all other functions compute:
 
 >>> from tofsmith import torch as tst                                   # doctest: +SKIP
 >>> table = tst.measurement_table(modulation, demodulation, camera)     # doctest: +SKIP
 >>> y = tst.capture(table, camera, depth_m, 1e5, 1e4, seed=1)           # doctest: +SKIP
 >>> depth = tst.soft_decode(y, table, camera, temperature_e2=2e3)       # doctest: +SKIP
 
-Waveforms are held over N cells a period; any real numbers have gradients, whether a camera can
-play them or not. Tensors are float64 or float32, all of one kind; leading dimensions of waveforms
-and tables are codes, those of light are broadcast to them. Same bits for any number of threads
-(``tofsmith.set_threads``). Gradients are of the first order.
+Waveforms are constant in N cells per period. They may have any real values, even if no camera can
+generate them. Tensors are float64 or float32, without mixing. Leading dimensions of waveforms and
+tables enumerate codes; leading dimensions of light are broadcast to them. Results are identical for
+any number of threads (``tofsmith.set_threads``). Only first-order gradients are supported.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ TensorLike = Union[Tensor, float]
 
 
 class MeasurementTable(NamedTuple):
-    """What a camera makes of a code at the N bins of depth."""
+    """Measurements of a code on a camera at the N depth bins."""
 
     correlation: Tensor
     """chi (.., N, K)."""
@@ -66,14 +66,15 @@ class MeasurementTable(NamedTuple):
 def measurement_table(
     modulation: Tensor, demodulation: Tensor, camera: CameraLike
 ) -> MeasurementTable:
-    """Correlation functions of waveforms, behind both arms, contrast and readout.
+    """Computes the correlation functions of waveforms, including both arms, contrast and readout.
 
     Parameters
     ----------
     modulation : Tensor
-        Emitted power over average power, (.., N, E).
+        Emitted power over average power, (..., N, E).
     demodulation : Tensor
-        Gain of every tap in every exposure, (.., N, E x taps), taps of an exposure side by side.
+        Gain of every tap in every exposure, (..., N, E x taps), with the taps of an exposure
+        adjacent.
     camera : Camera, or the name of a built-in camera or camera file
         Without rows, generators, playback, temperature and tap_mismatch.
 
@@ -103,20 +104,20 @@ def expected_electrons(
     table: MeasurementTable, camera: CameraLike, depth_m: TensorLike,
     signal_e_per_s: TensorLike, ambient_e_per_s: TensorLike,
 ) -> Tensor:
-    """Expected measurements [e], exactly those of `ForwardModel` at any real depth.
+    """Returns the expected measurements [e], equal to `ForwardModel` at any real depth.
 
     Parameters
     ----------
     table : MeasurementTable
     camera : Camera, or the name of a built-in camera or camera file
     depth_m, signal_e_per_s, ambient_e_per_s : Tensor or float
-        Broadcast to (.., P) with the leading dimensions of the table; a table of one code takes
-        pixels of any shape. Electrons per second were the sensor fully open.
+        Broadcast to (..., P) with the leading dimensions of the table; a table of one code accepts
+        pixels of any shape. Light in electrons per second at a gate that is always open.
 
     Returns
     -------
     Tensor
-        (.., P, K); gradients by the table, depth and light.
+        (..., P, K); gradients with respect to table, depth and light.
     """
     return _measured(table, camera, depth_m, signal_e_per_s, ambient_e_per_s, "mean")
 
@@ -125,7 +126,7 @@ def variance_e2(
     table: MeasurementTable, camera: CameraLike, depth_m: TensorLike,
     signal_e_per_s: TensorLike, ambient_e_per_s: TensorLike,
 ) -> Tensor:
-    """Variance of the measurements [e^2] before any clipping, as `expected_electrons`."""
+    """Returns the variance of the measurements [e^2] before clipping; see `expected_electrons`."""
     return _measured(table, camera, depth_m, signal_e_per_s, ambient_e_per_s, "variance")
 
 
@@ -133,22 +134,22 @@ def capture(
     table: MeasurementTable, camera: CameraLike, depth_m: TensorLike,
     signal_e_per_s: TensorLike, ambient_e_per_s: TensorLike, *, seed: int,
 ) -> Tensor:
-    """Noisy measurements [e]: y = mean + sqrt(variance) x with x standard normal, of which the
-    gradient knows that the noise depends on light and code too.
+    """Returns noisy measurements [e]: y = mean + sqrt(variance) x with x standard normal. The
+    gradient includes the dependence of the noise on light and code.
 
-    Of mean and variance as `tofsmith.capture` with poisson=False; no clipping, no quantization but
-    its variance. Arguments as of `expected_electrons`.
+    Mean and variance agree with `tofsmith.capture` with poisson=False, but without clipping;
+    quantization only adds its variance. Arguments are as in `expected_electrons`.
 
     Parameters
     ----------
     table, camera, depth_m, signal_e_per_s, ambient_e_per_s
     seed : int
-        From 0 to 2^63 - 1, of a `torch.Generator`: the same noise for the same shape.
+        From 0 to 2^63 - 1, for a `torch.Generator`: equal shapes get equal noise.
 
     Returns
     -------
     Tensor
-        (.., P, K)
+        (..., P, K)
     """
     noise = torch.Generator().manual_seed(_check.whole(seed, "seed", 0, 2**63 - 1))
     return _measured(table, camera, depth_m, signal_e_per_s, ambient_e_per_s, noise)
@@ -157,27 +158,27 @@ def capture(
 def soft_decode(
     electrons: Tensor, table: MeasurementTable, camera: CameraLike, temperature_e2: TensorLike
 ) -> Tensor:
-    """Expected depth [m] of the soft decoder that `optimize` learns with: zero-mean normalized
+    """Returns the expected depth [m] of the soft decoder of `optimize`: zero-mean normalized
     cross-correlation on chords between bins, each chosen with probability exp(S / temperature),
     S = 1/2 max(<y, p>, 0)^2 / |p|^2 at its best point p.
 
-    Where the camera's `operating.error` is "circular", the mean is taken about the best match on
-    the shorter way round.
+    If the camera's `operating.error` is "circular", the mean is that of wrapped differences from
+    the best match.
 
     Parameters
     ----------
     electrons : Tensor
-        (.., P, K) with the leading dimensions of the table, or of any shape (.., K) with one code.
+        (..., P, K) with the leading dimensions of the table, or any shape (..., K) for one code.
     table : MeasurementTable
-        Of float32 electrons, the decoder works in float32: twice as fast.
+        For float32 electrons, the decoder uses float32, which is twice as fast.
     camera : Camera, or the name of a built-in camera or camera file
     temperature_e2 : Tensor or float
-        > 0, broadcast to (.., P); the variance of the noise makes shares likelihoods.
+        > 0, broadcast to (..., P). With the noise variance, weights are likelihoods.
 
     Returns
     -------
     Tensor
-        (.., P); gradients by electrons, table and temperature.
+        (..., P); gradients with respect to electrons, table and temperature.
     """
     return _decoded(electrons, table, camera, temperature_e2, None)
 
@@ -186,22 +187,22 @@ def soft_depth_error_m(
     electrons: Tensor, depth_m: TensorLike, table: MeasurementTable, camera: CameraLike,
     temperature_e2: TensorLike,
 ) -> Tensor:
-    """Expected size of the depth error [m] of the soft decoder: the loss of `optimize`; linear or
-    circular, as the camera's `operating.error` says.
+    """Returns the expected absolute depth error [m] of the soft decoder, the loss of `optimize`:
+    linear or circular, from the camera's `operating.error`.
 
     Parameters
     ----------
     electrons : Tensor
-        As of `soft_decode`.
+        As in `soft_decode`.
     depth_m : Tensor or float
-        True depths, broadcast to (.., P); they have no gradient.
+        True depths, broadcast to (..., P), without gradient.
     table, camera, temperature_e2
-        As of `soft_decode`.
+        As in `soft_decode`.
 
     Returns
     -------
     Tensor
-        (.., P)
+        (..., P)
     """
     return _decoded(electrons, table, camera, temperature_e2, depth_m)
 
@@ -210,21 +211,21 @@ def cramer_rao_bound_m(
     table: MeasurementTable, camera: CameraLike, signal_e_per_s: TensorLike,
     ambient_e_per_s: TensorLike,
 ) -> Tensor:
-    """Smallest standard deviation of depth [m] at 4 N depths, signal and ambient light unknown:
-    `CramerRaoBound.sigma_m`.
+    """Returns the minimum standard deviation of depth [m] at 4 N depths, with unknown signal and
+    ambient light, as `CramerRaoBound.sigma_m`.
 
     Parameters
     ----------
     table : MeasurementTable
     camera : Camera, or the name of a built-in camera or camera file
     signal_e_per_s, ambient_e_per_s : Tensor or float
-        Numbers, or broadcast to (.., L) with the leading dimensions of the table.
+        Numbers, or broadcast to (..., L) with the leading dimensions of the table.
 
     Returns
     -------
     Tensor
-        (.., 4 N) of numbers, else (.., L, 4 N); gradients by the table and light, zero where
-        infinite.
+        (..., 4 N) for numbers, else (..., L, 4 N); gradients with respect to table and light, zero
+        where the result is infinite.
     """
     camera, tables, lead = _table(table, camera)
     lights = [_light(light, name, tables[0]) for light, name in (
@@ -251,7 +252,7 @@ def _steps_of(camera: Camera, correlation: Tensor) -> _tofsmith.CodeGradients:
 
 
 def _tensor(value: Any, name: str, axes: str) -> Tensor:
-    """A real tensor in the memory of the CPU, of numbers that are finite."""
+    """Checks a real tensor on the CPU with finite numbers."""
     if not isinstance(value, Tensor):
         raise TypeError(f"{name}: got {_check.shown(value)}; needs a torch.Tensor, {axes}")
     if value.device.type != "cpu" or value.layout != torch.strided:
@@ -261,7 +262,7 @@ def _tensor(value: Any, name: str, axes: str) -> Tensor:
         raise ValueError(f"{name}: got {value.dtype}; needs torch.float64 or torch.float32")
     if value.numel() == 0:
         raise ValueError(f"{name}: got shape {tuple(value.shape)}, which is empty; needs {axes}")
-    # One pass where all is well; a sum may be too large for its kind where no number is.
+    # Fast path: one pass if all numbers are finite; a sum may overflow even if they are.
     if not math.isfinite(value.detach().sum().item()):
         infinite = (~torch.isfinite(value.detach())).nonzero()
         if len(infinite):
@@ -285,7 +286,7 @@ def _waveforms(value: Any, name: str, axes: str) -> Tensor:
 def _table(
     table: MeasurementTable, camera: CameraLike
 ) -> tuple[Camera, list[Any], tuple[int, ...]]:
-    """Checked tensors of a table, and its leading dimensions."""
+    """Returns the checked tensors of a table, and its leading dimensions."""
     camera = camera_of(camera)
     if not isinstance(table, MeasurementTable):
         raise TypeError(f"table: got {_check.shown(table)}; needs what measurement_table() returns")
@@ -311,7 +312,7 @@ def _table(
 
 
 def _light(value: TensorLike, name: str, like: Tensor, least: Optional[float] = 0.0) -> Tensor:
-    """Light of pixels; a number becomes a tensor of the table's kind."""
+    """Checks the light of pixels; converts a number to a tensor of the table's dtype."""
     if not isinstance(value, Tensor):
         value = torch.tensor(_check.number(value, name), dtype=like.dtype)
     _same_dtype(_tensor(value, name, "(.., P)"), name, like, "table.correlation")
@@ -338,8 +339,8 @@ def _are_numbers(lights: list[Tensor]) -> bool:
 def _shape(
     tables: list[Any], lead: tuple[int, ...], lights: list[Tensor], names: tuple[str, ...],
 ) -> tuple[tuple[int, ...], list[Any]]:
-    """Shape (.., P) of pixels, and the tables as (B, N, K), (B, K): one code takes pixels of any
-    shape, several take theirs."""
+    """Returns the shape (..., P) of pixels, and the tables as (B, N, K), (B, K). A table of one
+    code accepts pixels of any shape, one of several codes only matching shapes."""
     shape = _broadcast(", ".join(names), lead + (1,), *(light.shape for light in lights))
     if lead and len(shape) != len(lead) + 1:
         raise ValueError(f"{', '.join(names)}: got {len(shape)} dimensions; needs "
@@ -350,7 +351,7 @@ def _shape(
 
 
 def _codes(value: Tensor, lead: tuple[int, ...], own: int) -> Tensor:
-    """(.., own axes) broadcast to (B, own axes)."""
+    """Broadcasts (..., own axes) to (B, own axes)."""
     own_shape = value.shape[value.dim() - own:]
     return value.expand(lead + own_shape).reshape((-1,) + own_shape)
 
