@@ -13,7 +13,7 @@
 
 namespace tofsmith {
 
-/// A camera with exclusive taps on a chip clock, judged at one operating point.
+/// Returns a camera with exclusive taps on a chip clock and one operating point.
 inline Camera chip_camera(int chips, int taps, const OperatingPoint& point) {
   Camera camera = built_in_camera("exclusive-3tap-9chip");
   camera.operating.signal_e_per_s = {point.signal_e_per_s};
@@ -23,15 +23,15 @@ inline Camera chip_camera(int chips, int taps, const OperatingPoint& point) {
   return camera;
 }
 
-/// Quality of a code on a camera at one operating point.
+/// Depth error of a code at one operating point.
 struct ComparedCode {
   std::string name;
   double rms_m = 0.0;       ///< root mean square over depth of CramerRaoBound::sigma_m
   Estimate circular_mde_m;  ///< Monte Carlo, maximum likelihood
 };
 
-/// Evaluates every code by maximum likelihood, on the camera with as many taps and samples as the
-/// code has, at the camera's only operating point.
+/// Evaluates each code with the maximum-likelihood decoder at the camera's only operating point.
+/// Taps and samples of the camera are set to the code's.
 inline std::vector<ComparedCode> compare_chip_codes(const std::vector<StandardCode>& codes,
                                                     const Camera& camera, EvaluateOptions options) {
   options.method = DecodeMethod::ml;

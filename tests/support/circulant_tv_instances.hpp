@@ -12,14 +12,14 @@
 
 namespace tofsmith::test {
 
-/// What a random sub-problem of code design looks like.
+/// Parameters of a random sub-problem of code design.
 struct InstanceKind {
   int samples = 240;
   double weight_per_sample = 2e-5;
   bool band_limited = false;  ///< the fixed waveform is smoothed twice by a Hann window
 };
 
-/// Smoothing by a Hann window of `width` samples, sum 1, centred on sample 0.
+/// Convolves with a centred Hann window of `width` samples and sum 1.
 inline Eigen::VectorXd smoothed(const Eigen::VectorXd& x, int width) {
   Eigen::VectorXd window = Eigen::VectorXd::Zero(x.size());
   for (int i = 0; i < width; ++i)
@@ -28,8 +28,7 @@ inline Eigen::VectorXd smoothed(const Eigen::VectorXd& x, int width) {
   return circular_convolution(x, window / window.sum());
 }
 
-/// A rectangular pulse against a square wave: the correlation function of Hamiltonian type that a
-/// design aims at.
+/// Correlation of a rectangular pulse with a square wave: a typical Hamiltonian target.
 inline Eigen::VectorXd trapezoid_target(int samples, double pulse_duty) {
   Eigen::VectorXd square(samples), pulse(samples);
   for (int n = 0; n < samples; ++n) {
@@ -39,9 +38,9 @@ inline Eigen::VectorXd trapezoid_target(int samples, double pulse_duty) {
   return circular_correlation(square, pulse) / samples;
 }
 
-/// A sub-problem as the alternating design meets them: a random binary waveform of 1 to 8 pulses
-/// against a trapezoid, noisy half of the time; a demodulation (upper bound 1, no budget) or a
-/// modulation (peak factor 2 .. 30, mean at most 1).
+/// Returns a random sub-problem of the alternating design: the fixed waveform is binary with 1 to 8
+/// pulses, the target a trapezoid, noisy in half of the cases. The unknown is a demodulation (at
+/// most 1, no budget) or a modulation (peak factor 2 to 30, mean at most 1).
 inline CirculantTvProblem random_circulant_tv(const InstanceKind& kind, RandomStream& random) {
   const int samples = kind.samples;
   const auto below = [&](int count) { return static_cast<int>(random.uniform() * count); };

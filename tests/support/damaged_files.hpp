@@ -24,7 +24,7 @@ inline FileBytes bytes_of(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The message of the IoError that `action` throws; a failure of the test if it throws none.
+/// Returns the message of the IoError that `action` throws; the test fails if it throws none.
 inline std::string io_error_of(const std::function<void()>& action) {
   try {
     action();
@@ -35,16 +35,16 @@ inline std::string io_error_of(const std::function<void()>& action) {
   return {};
 }
 
-/// Every proper beginning of a file is refused with an IoError.
+/// Expects an IoError for every proper prefix of the file.
 inline void expect_truncations_refused(const FileBytes& whole, const FileParser& parse) {
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    // A copy of exactly that length lets the address sanitizer see a read past the end.
+    // A copy of exactly this length lets the address sanitizer detect reads past the end.
     const FileBytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
     EXPECT_THROW(parse(part), IoError) << "cut after " << length << " bytes";
   }
 }
 
-/// A copy of a file with some bytes replaced, removed or inserted.
+/// Returns a copy of a file with some bytes replaced, removed or inserted.
 inline FileBytes damaged(FileBytes bytes, RandomStream& random) {
   const int wounds = 1 + static_cast<int>(random() % 6);
   for (int i = 0; i < wounds && !bytes.empty(); ++i) {
@@ -68,7 +68,7 @@ inline FileBytes damaged(FileBytes bytes, RandomStream& random) {
       case 4:
         bytes.erase(where);
         break;
-      default:  // four bytes in a row, as a length or a size would be
+      default:  // four consecutive bytes, like a length or a size
         std::fill(where, where + std::min<std::ptrdiff_t>(4, bytes.end() - where),
                   telling[random() % std::size(telling)]);
     }
@@ -76,8 +76,8 @@ inline FileBytes damaged(FileBytes bytes, RandomStream& random) {
   return bytes;
 }
 
-/// Each of `count` damaged copies is either read or refused with IoError or
-/// std::invalid_argument. Returns how many were refused, so that a test can see that some were.
+/// Expects that each of `count` damaged copies is read or rejected with IoError or
+/// std::invalid_argument. Returns the number of rejected copies.
 inline int expect_damage_read_or_refused(const FileBytes& whole, int count, std::uint64_t seed,
                                          const FileParser& parse) {
   int refused = 0;

@@ -13,7 +13,7 @@
 
 namespace tofsmith {
 
-/// A code on a camera, with the decoder that belongs to it.
+/// A code, a camera and the matching decoder.
 template <typename AnyDecoder, typename Options>
 struct DecoderSetup {
   Camera camera;
@@ -25,7 +25,7 @@ struct DecoderSetup {
         model(build_family(code, camera), camera),
         decoder(make_decoding_table(model, camera), options) {}
 
-  /// Expected raw electrons of one pixel, appended.
+  /// Appends the expected raw electrons of one pixel.
   void append_expected(std::vector<float>& raw, double signal, double depth_bin,
                        double ambient) const {
     const Return r{signal, depth_bin};
@@ -44,7 +44,7 @@ inline Camera camera_with(const std::string& name, int taps = 1,
   return camera;
 }
 
-/// Noisy raw numbers of a pixel (K), from the chords between rows of the decoder's table, appended.
+/// Appends noisy raw values of a pixel (K). Its mean is interpolated linearly between table rows.
 inline void append_noisy_pixel(const DecodingTable& table, double signal, double ambient,
                                double depth_bin, RandomStream& random, std::vector<float>& raw) {
   const auto& shot = table.shot();
@@ -63,7 +63,7 @@ inline void append_noisy_pixel(const DecodingTable& table, double signal, double
   }
 }
 
-/// Noisy raw numbers (pixels, K) at random depths.
+/// Returns noisy raw values (pixels, K) at random depths.
 inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
                                        int pixels, std::uint64_t seed) {
   std::vector<float> raw;
@@ -76,7 +76,8 @@ inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal
   return raw;
 }
 
-/// A frame, pixel by pixel. @param append  (row, column, random, values) adds the numbers of one
+/// Builds a frame pixel by pixel.
+/// @param append  called as (row, column, random, values); appends the raw values of one pixel
 template <typename AppendPixel>
 RawFrames frame_by_pixel(int measurements, int height, int width, std::uint64_t seed,
                          const AppendPixel& append) {
@@ -88,8 +89,8 @@ RawFrames frame_by_pixel(int measurements, int height, int width, std::uint64_t 
   return frame;
 }
 
-/// Noisy raw numbers from dim to bright, in ambient light a hundred times as strong as the signal
-/// and a thousand times weaker.
+/// Returns noisy raw values for dim to bright signals, in ambient light between a hundred times the
+/// signal and a thousandth of it.
 inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table, int each) {
   std::vector<float> raw;
   std::uint64_t seed = 1;
@@ -116,7 +117,7 @@ std::vector<double> depth_bins_of(const AnyDecoder& decoder, const std::vector<f
   return bins;
 }
 
-/// One row of pixels as a frame.
+/// Returns a frame of one row of pixels.
 inline RawFrames frame_of(const std::vector<float>& raw, int measurements) {
   RawFrames frames;
   frames.frames = frames.height = 1;

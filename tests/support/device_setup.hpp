@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// The device that tests use: the first one; none where there is none.
+/// Returns the first device, or nothing without one.
 inline std::optional<Device> device_of_tests() {
   try {
     const std::vector<Device> devices = Device::all();
@@ -22,7 +22,7 @@ inline std::optional<Device> device_of_tests() {
   return std::nullopt;
 }
 
-/// Of tests that need a device.
+/// Fixture of tests that need a device; skipped without one.
 class OnDevice : public testing::Test {
  protected:
   void SetUp() override {
@@ -34,7 +34,7 @@ class OnDevice : public testing::Test {
   std::optional<Device> device_ = device_of_tests();
 };
 
-/// @param largest  of the values of a plane what an error is compared with, at least
+/// @param largest  lower limit of the magnitude that the relative tolerance applies to
 inline void expect_near(const std::vector<float>& a, const std::vector<float>& b, double largest) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -44,8 +44,8 @@ inline void expect_near(const std::vector<float>& a, const std::vector<float>& b
   }
 }
 
-/// The same bins and statuses, and planes of floats as close as a device gives them.
-/// @param brightest_e_per_s  light that a measurement sees
+/// Expects equal bins and statuses, and float planes within the rounding error of the device.
+/// @param brightest_e_per_s  largest light level of a measurement
 inline void expect_alike(const DeviceInfo& info, bool uses_doubles, const Outputs& a,
                          const Outputs& b, double brightest_e_per_s) {
   if (info.divides_as_processor && info.has_doubles && uses_doubles) return expect_same(a, b);

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// The directions of any curve.
+/// Returns the directions of a closed curve.
 inline DirectionTable directions_of(const Curve& curve) {
   DecodingTable table;
   table.correlation = curve;
@@ -19,7 +19,7 @@ inline DirectionTable directions_of(const Curve& curve) {
   return DirectionTable(AmbientProjection(table));
 }
 
-/// The curve of a code of this many bins, without what ambient light explains.
+/// Returns the directions of a code's curve with `code_samples` bins, ambient light projected out.
 inline DirectionTable directions_of(const std::string& code, int code_samples, int samples) {
   Camera camera = camera_with("paper-10f0");
   camera.samples = code_samples;

@@ -15,8 +15,8 @@
 
 namespace tofsmith {
 
-/// Runs `body(target)` or `body()` once for every instruction set this machine offers and the
-/// library has kernels for.
+/// Runs `body(target)` or `body()` for every instruction set that both the machine and the library
+/// support.
 template <typename Body>
 void for_each_target(const Body& body) {
   const std::vector<std::string> with_kernels = dispatch_targets();

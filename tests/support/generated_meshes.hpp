@@ -15,7 +15,7 @@
 
 namespace tofsmith {
 
-/// A regular icosahedron on the unit sphere, normals outwards.
+/// Returns a regular icosahedron on the unit sphere, normals pointing outwards.
 inline TriangleMesh icosahedron() {
   const double g = 0.5 * (1 + std::sqrt(5.0));
   TriangleMesh mesh;
@@ -29,7 +29,7 @@ inline TriangleMesh icosahedron() {
   return mesh;
 }
 
-/// Every triangle cut in four, the new vertices on the unit sphere.
+/// Splits each triangle into four and projects new vertices onto the unit sphere.
 inline TriangleMesh subdivided(const TriangleMesh& coarse) {
   TriangleMesh fine;
   fine.vertices = coarse.vertices;
@@ -48,14 +48,14 @@ inline TriangleMesh subdivided(const TriangleMesh& coarse) {
   return fine;
 }
 
-/// The unit sphere in 20 x 4^times triangles.
+/// Returns the unit sphere as 20 * 4^times triangles.
 inline TriangleMesh tessellated_sphere(int times) {
   TriangleMesh mesh = icosahedron();
   for (int i = 0; i < times; ++i) mesh = subdivided(mesh);
   return mesh;
 }
 
-/// The axis-aligned cube of edge 1 about the origin, in 12 triangles.
+/// Returns the axis-aligned cube of edge length 1 centred on the origin (12 triangles).
 inline TriangleMesh unit_cube() {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -65,7 +65,7 @@ inline TriangleMesh unit_cube() {
   return mesh;
 }
 
-/// A ray from about the origin, anywhere; the same for the same item.
+/// Returns a random ray that starts near the origin; deterministic per item.
 inline Ray ray_about_origin(std::uint64_t item, double spread_m = 3.0) {
   RandomStream random(27, item);
   const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
@@ -73,7 +73,7 @@ inline Ray ray_about_origin(std::uint64_t item, double spread_m = 3.0) {
   return {spread_m * origin, direction.normalized()};
 }
 
-/// A mesh moved and turned.
+/// Places a mesh with a fixed rotation.
 inline Mesh placed_mesh(TriangleMesh triangles, const Eigen::Vector3d& place, double scale_m) {
   Mesh mesh;
   mesh.triangles = std::move(triangles);

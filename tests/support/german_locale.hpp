@@ -7,9 +7,8 @@
 
 namespace tofsmith {
 
-/// The process in a locale with a decimal comma, as a host program may set it by setlocale() and by
-/// std::locale::global(), until the end of the scope. CMake generates the locale, and CTest sets
-/// LOCPATH to where it is.
+/// Sets a locale with a decimal comma by setlocale() and std::locale::global(), as a host program
+/// might, until the end of the scope. CMake generates the locale; CTest sets LOCPATH to its folder.
 /// @throws std::runtime_error if it cannot be set
 class GermanLocale {
  public:

@@ -7,7 +7,7 @@
 
 namespace tofsmith {
 
-/// A code on a camera, with its decoder by maximum likelihood.
+/// A code, a camera and the maximum-likelihood decoder.
 using LikelihoodSetup = DecoderSetup<LikelihoodDecoder, DecodeOptions>;
 
 }  // namespace tofsmith

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Loaded before a program by LD_PRELOAD, sets a locale as a host program may: by setlocale() and by
-// std::locale::global(). TOFSMITH_TEST_LOCALE names the locale of any program,
-// TOFSMITH_TEST_LOCALE_OF_HOSTS that of tests and Python alone. Without the locale the program
-// ends.
+// A library for LD_PRELOAD that sets a locale by setlocale() and std::locale::global(), as a host
+// program might. TOFSMITH_TEST_LOCALE sets the locale of every program,
+// TOFSMITH_TEST_LOCALE_OF_HOSTS only of tests and Python. The program ends if the locale is
+// missing.
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>

@@ -24,7 +24,7 @@
 
 namespace tofsmith {
 
-/// The planes that every decoder fills, the bin first.
+/// The planes that every decoder fills, starting with the bin.
 inline const std::vector<DecodedPlane> decoder_planes = [] {
   std::vector<DecodedPlane> planes{DecodedPlane::bin};
   for (const PlaneDescription& described : plane_descriptions)
@@ -33,7 +33,7 @@ inline const std::vector<DecodedPlane> decoder_planes = [] {
   return planes;
 }();
 
-/// These planes of a row of pixels, at first with values that no decoder gives.
+/// The planes of `decoder_planes` for one row of pixels, initialized to values no decoder writes.
 struct Outputs : DepthImage {
   explicit Outputs(std::size_t pixels) : DepthImage(decoder_planes, 1, static_cast<int>(pixels)) {
     for_each_plane(
@@ -43,7 +43,7 @@ struct Outputs : DepthImage {
         *this);
   }
 
-  /// @param planes  bit p: whether plane p of decoder_planes is wanted
+  /// @param planes  bit p is set if plane p of decoder_planes is requested
   DecodedView view(unsigned planes = ~0u) {
     DecodedView wanted;
     for (std::size_t p = 0; p < decoder_planes.size(); ++p)
@@ -55,7 +55,7 @@ struct Outputs : DepthImage {
   }
 };
 
-/// Compares values bit by bit; NaN equals NaN.
+/// Compares values bitwise; NaN equals NaN.
 template <typename Value>
 testing::AssertionResult same(const std::vector<Value>& a, const std::vector<Value>& b) {
   if (a.size() != b.size()) return testing::AssertionFailure() << "sizes differ";
@@ -67,8 +67,8 @@ testing::AssertionResult same(const std::vector<Value>& a, const std::vector<Val
   return testing::AssertionSuccess();
 }
 
-/// The wanted planes are those of `all`, and the others are as they were.
-/// @param planes  as of Outputs::view()
+/// Expects that requested planes equal those of `all` and that the other planes are unchanged.
+/// @param planes  bit mask of Outputs::view()
 inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes) {
   const Outputs none(all.bin.size());
   for (std::size_t p = 0; p < decoder_planes.size(); ++p)
@@ -81,7 +81,7 @@ inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes
 }
 inline void expect_same(const Outputs& a, const Outputs& b) { expect_only(a, b, ~0u); }
 
-/// Pixels matched to bins, and their outputs, in plain double arithmetic.
+/// Reference implementation in double: matches pixels to bins and computes their outputs.
 class Matched {
  public:
   Matched(const DecodingTable& table, const std::vector<float>& raw,
@@ -108,7 +108,7 @@ class Matched {
     return *std::max_element(raw_.begin(), raw_.end()) / table_.exposure_s.minCoeff();
   }
 
-  /// The definition: the best bin, PixelModel and store_pixel.
+  /// Applies the definition: best bin, PixelModel and store_pixel.
   Outputs expected() const {
     Outputs result(pixels_);
     for (std::size_t i = 0; i < pixels_; ++i) {
@@ -118,7 +118,7 @@ class Matched {
       }
       const PixelDecoding decoding = decoding_of(i);
       store_pixel(table_, options_, &raw_[i * k_count()], decoding, i, result.view());
-      result.bin.pixels[i] = bin_[i];  // the best one, which may not be the nearest
+      result.bin.pixels[i] = bin_[i];  // the best bin may differ from the nearest one
     }
     return result;
   }
@@ -153,7 +153,7 @@ class Matched {
     for (int j = 0; j < u.size(); ++j) u[j] = directions_.direction(n, j);
     return u;
   }
-  /// The first of those that tie.
+  /// Returns the first bin with the highest score.
   std::int32_t best_bin(const Eigen::VectorXd& q) const {
     const auto has_contrast = [this](std::int32_t bin) {
       return !projection_.curve.row(bin).isZero(0.0);
@@ -179,7 +179,7 @@ class Matched {
   std::vector<std::int32_t> bin_;
 };
 
-/// Distance from the row of the definition, on the circle, in rows.
+/// Returns the circular distance in rows from the row of the reference.
 inline double off_rows(float depth_m, double depth_row, const DecodingTable& table) {
   return std::abs(circular_difference(depth_m / table.row_m(), depth_row, table.samples()));
 }
@@ -194,8 +194,9 @@ inline void expect_near(const std::vector<float>& values, const std::vector<floa
   }
 }
 
-/// Noise is that of the middle of a quarter of a chord, and differs much within it only where a
-/// bright pixel's shot noise vanishes. The slope of residuals at a bin is that of one side.
+/// Compares deviations or residuals. The kernel evaluates the noise once per quarter of a chord,
+/// which differs much within the quarter only for a bright pixel with vanishing shot noise. At a
+/// bin, the residual may use the slope of either side.
 inline void expect_similar(const std::vector<float>& deviations, const std::vector<float>& expected,
                            double others_share = 0.02) {
   expect_near(deviations, expected, 1.0, 0.0, "deviation or residual");
@@ -212,7 +213,7 @@ inline void expect_similar(const std::vector<float>& deviations, const std::vect
   EXPECT_LE(others, others_share * finite);
 }
 
-/// Compares all planes but bins, and confidence, which differs more in single precision.
+/// Compares all planes but bins and confidence; confidence differs more in single precision.
 inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   const DecodingTable& table = matched.table();
   const Outputs expected = matched.expected();
@@ -228,12 +229,12 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
     ASSERT_GE(outputs.depth_m.pixels[i], 0.0f);
     ASSERT_LT(outputs.depth_m.pixels[i], static_cast<float>(table.range_m));
   }
-  // Noise at the best bin moves the thresholds a little.
+  // The kernel evaluates the noise at the best bin, which shifts the status thresholds slightly.
   EXPECT_LE(other_status, 5 + static_cast<int>(matched.pixels()) / 500);
   const double brightest_e_per_s = matched.brightest_e_per_s();
   expect_near(outputs.signal_e_per_s.pixels, expected.signal_e_per_s.pixels, 2e-6,
               1e-6 * brightest_e_per_s, "signal");
-  // Where the best row is not the nearest, the kernel extrapolates the signal a little from it.
+  // If the best row is not the nearest one, the kernel extrapolates the signal slightly.
   expect_near(outputs.ambient_e_per_s.pixels, expected.ambient_e_per_s.pixels, 2e-6,
               4e-6 * brightest_e_per_s, "ambient");
   expect_similar(outputs.predicted_standard_deviation_m.pixels,

@@ -24,7 +24,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// The text without what stands between `begin` and `end`, both left out but for ends of lines.
+/// Removes all text between `begin` and `end`, including both, but keeps line ends.
 std::string without(std::string_view text, std::string_view begin, std::string_view end) {
   std::string result;
   while (true) {
@@ -37,7 +37,7 @@ std::string without(std::string_view text, std::string_view begin, std::string_v
   }
 }
 
-/// What is read, and how errors call it.
+/// Parser with the file name for error messages.
 class Reader {
  public:
   explicit Reader(std::string_view file) : file_(file) {}
@@ -56,7 +56,7 @@ class Reader {
     return value;
   }
 
-  /// What stands behind `key` up to `end`.
+  /// Returns the text between `key` and `end`.
   std::string_view between(std::string_view text, std::string_view key,
                            std::string_view end) const {
     const std::size_t at = text.find(key);
@@ -66,7 +66,7 @@ class Reader {
     return text.substr(begin, stop - begin);
   }
 
-  /// `parse(item)` for everything between commas or blanks.
+  /// Calls `parse(item)` for each item separated by commas or blanks.
   template <typename Parse>
   std::vector<std::uint64_t> words(std::string_view list, Parse&& parse) const {
     std::vector<std::uint64_t> result;
@@ -84,7 +84,7 @@ class Reader {
   std::string file_;
 };
 
-/// Text behind a semicolon is a comment; keywords end with one, the data with the last.
+/// Removes the text after the first semicolon of each line, which is a comment.
 std::string without_coe_comments(std::string_view text) {
   std::string result;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -123,7 +123,7 @@ int mif_radix(std::string_view word, const Reader& reader) {
   reader.fail(fmt::format("found the radix '{}'; expected BIN, HEX, OCT, UNS or DEC", word));
 }
 
-/// "address : word;", "[first..last] : word;", or several words from an address on.
+/// Parses "address : word;", "[first..last] : word;" and several words from one address.
 class MifContent {
  public:
   MifContent(const Reader& reader, std::size_t depth, int address_radix, int data_radix)

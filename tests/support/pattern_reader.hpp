@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// Syntax of the words of a memory.
+/// Syntax of a memory file.
 enum class PatternSyntax { coe, mif, mem, systemverilog, vhdl, c };
 
 /// Content of a memory file.
@@ -17,9 +17,9 @@ struct PatternWords {
   std::vector<std::uint64_t> words;
 };
 
-/// Reads the files of pattern_memory.hpp, and .coe, .mif and .mem files of other tools: any radix,
-/// ranges of addresses, comments.
-/// @param file  name for errors
+/// Reads the files written by pattern_memory.hpp, and .coe, .mif and .mem files of other tools (any
+/// radix, address ranges, comments).
+/// @param file  name for error messages
 /// @throws IoError "file: ..." for any other text
 PatternWords parse_pattern(std::string_view text, PatternSyntax syntax, std::string_view file);
 

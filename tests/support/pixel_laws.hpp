@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What holds for the pixels of every decoder.
+// Laws that hold for the pixels of every decoder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,14 +21,14 @@ namespace tofsmith {
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// Pixels as one row of an image.
+/// Decodes pixels as an image of one row.
 template <typename AnyDecoder>
 DepthImage decode_pixels(const AnyDecoder& decoder, const std::vector<float>& raw) {
   return decoder.decode(frame_of(raw, decoder.measurements()));
 }
 
-/// An eighth of the way, in ambient light of 1e3 e/s, seen without noise.
-/// @param signal_off, ambient_off  how far estimates may be off [e/s]
+/// Decodes a noise-free pixel at one eighth of the range in ambient light of 1e3 e/s.
+/// @param signal_off, ambient_off  tolerances of the estimates [e/s]
 template <typename Setup>
 void expect_strong_signal_is_ok(const Setup& setup, double signal, double signal_off,
                                 double ambient_off) {
@@ -42,8 +42,9 @@ void expect_strong_signal_is_ok(const Setup& setup, double signal, double signal
   EXPECT_GT(image.confidence(0, 0), 0.999);
 }
 
-/// Of so many noisy pixels some in the middle are made NaN or infinite, in one or all measurements.
-/// @param max_apart_bin  how far the positions of others are from their bins
+/// Sets some of `pixels` noisy pixels to NaN or infinity, in one or in all measurements; the other
+/// pixels must not change.
+/// @param max_apart_bin  largest distance of the other depths from their bins
 template <typename AnyDecoder>
 void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pixels,
                                                double max_apart_bin = 0.5) {
@@ -77,7 +78,7 @@ void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pi
   }
 }
 
-/// Numbers far beyond any sensor's.
+/// Expects correct depths for raw values far beyond any sensor.
 template <typename Setup>
 void expect_huge_numbers_are_decoded(const Setup& setup) {
   std::vector<float> raw;
@@ -86,7 +87,8 @@ void expect_huge_numbers_are_decoded(const Setup& setup) {
   EXPECT_NEAR(depth_bins_of(setup.decoder, raw)[0], 50.0, 1e-3);
 }
 
-/// On a curve that stays on one side, what points away from all of it fits only negative signal.
+/// On a curve within a half-space, a measurement of the opposite direction only fits a negative
+/// signal.
 template <typename AnyDecoder>
 void expect_negative_signal_is_no_return() {
   Eigen::MatrixXd correlation(20, 3);
@@ -96,10 +98,10 @@ void expect_negative_signal_is_no_return() {
   EXPECT_EQ(decode_pixels(decoder, {0.0f, 1e6f, 2e5f}).status(0, 0), PixelStatus::ok);
 }
 
-/// What estimates of pixels say, over noise of one depth.
+/// Statistics of the estimates of noisy pixels at one depth.
 struct PixelEstimates {
   RunningStatistics depth_m, signal, ambient, predicted_m;
-  /// Predicted over sampled deviation; of n trials it is good to 1 / sqrt(2 n).
+  /// Predicted over empirical deviation; with n trials its standard error is 1 / sqrt(2 n).
   double ratio() const { return predicted_m.mean() / std::sqrt(depth_m.variance()); }
 };
 
@@ -125,14 +127,14 @@ PixelEstimates estimates_at(const Setup& setup, double truth_bin, double signal,
   return result;
 }
 
-/// 20000 noisy pixels of five measurements at random depths: calls use(confidence, error_m) with
-/// the confidence of each that has a depth and how far that depth is off.
+/// Decodes 20,000 noisy pixels of five measurements at random depths, and calls use(confidence,
+/// error_m) for each pixel with a depth.
 template <typename Setup, typename Use>
 void for_each_confidence(const Setup& setup, double signal, double ambient, const Use& use) {
   constexpr int pixels = 20000;
   const DepthImage image = decode_pixels(
       setup.decoder, noisy_pixels(setup.decoder.table(), signal, ambient, pixels, 11));
-  RandomStream random(11, 0);  // tells again where the pixels are
+  RandomStream random(11, 0);  // repeats the depths drawn by noisy_pixels()
   for (int i = 0; i < pixels; ++i) {
     const double range_m = setup.camera.range_m(), truth_m = random.uniform() * range_m;
     for (int k = 0; k < 5; ++k) random.normal();
@@ -143,9 +145,9 @@ void for_each_confidence(const Setup& setup, double signal, double ambient, cons
   }
 }
 
-/// In each class of confidence, the mean confidence is the share of pixels whose depth is right to
-/// within the half width of the main lobe.
-/// @param signals  evenly spaced on a logarithmic scale, from hardly any light on
+/// Expects that in each class of confidence the mean confidence equals the fraction of depths
+/// within half the width of the main lobe.
+/// @param signals  logarithmically spaced, starting with almost no light
 template <typename Setup>
 void expect_right_as_often_as_said(const Setup& setup, const std::vector<double>& signals,
                                    double ambient, double tolerance) {

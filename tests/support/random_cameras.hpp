@@ -25,7 +25,7 @@ inline double log_between(RandomStream& random, double low, double high) {
 
 inline bool one_in(RandomStream& random, int n) { return random.uniform() * n < 1.0; }
 
-/// A random whole number in [low, high].
+/// Returns a random integer in [low, high].
 inline int whole_between(RandomStream& random, int low, int high) {
   return low + static_cast<int>(random.uniform() * (high - low + 1));
 }
@@ -171,8 +171,8 @@ inline void set_calibration(Camera& camera, RandomStream& random) {
 
 }  // namespace random_camera_parts
 
-/// A valid camera with random values of all keys that can matter to a design: work item `index` of
-/// `seed` alone determines it.
+/// Returns a valid camera with random values of all keys relevant to design; determined by `seed`
+/// and `index`.
 inline Camera random_camera(std::uint64_t seed, std::uint64_t index) {
   RandomStream random(seed, index);
   Camera camera;

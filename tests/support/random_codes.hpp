@@ -12,13 +12,13 @@
 
 namespace tofsmith {
 
-/// A code made at random.
+/// Size of a random code.
 struct RandomCode {
   int measurements, samples;
-  int rank;  ///< of its curve without ambient light, at most
+  int rank;  ///< upper limit of the rank of its curve without ambient light
 };
 
-/// A smooth closed curve, laid at random into the space of the measurements.
+/// Returns the table of a smooth closed curve, randomly oriented in measurement space.
 inline DecodingTable random_table(const RandomCode& code, RandomStream& random) {
   Eigen::MatrixXd curve(code.samples, code.rank), axes(code.rank, code.measurements);
   for (int j = 0; j < code.rank; ++j) {
@@ -46,8 +46,8 @@ inline DecodingTable random_table(const RandomCode& code, RandomStream& random) 
   return table;
 }
 
-/// Raw numbers (pixels, K): slanted planes, then random depths, then pixels on bins and half-way
-/// between two of them, every other one of these without noise.
+/// Returns raw values (pixels, K) of three equal parts: a slanted plane, random depths, and depths
+/// on and half-way between bins, half of the latter without noise.
 inline std::vector<float> random_pixels(const DecodingTable& table, int pixels,
                                         RandomStream& random) {
   const int samples = table.samples();
@@ -74,8 +74,8 @@ inline std::vector<float> random_pixels(const DecodingTable& table, int pixels,
   return raw;
 }
 
-// As many of each way of search: by angle, by cells of two ranks, by arcs; with whole vectors of
-// K = 3 and 4, with more, and with few bins and many.
+// Equally many codes for each search method (by angle, by cells of two ranks, by arcs), for full
+// rank with K = 3 and 4, for larger K, and for few and many bins.
 inline constexpr RandomCode random_codes[] = {
     {3, 8, 2},    {3, 1500, 2}, {4, 64, 3},  {4, 700, 3},  {5, 9, 4},   {5, 1000, 4}, {6, 300, 3},
     {7, 5000, 4}, {8, 400, 4},  {9, 120, 8}, {12, 900, 2}, {13, 50, 4}, {16, 2000, 6}};

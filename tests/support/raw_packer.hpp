@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-/// Writes a dump bit by bit, as docs/raw_formats.md says, with a map of every bit's place.
+/// Writes a raw file bit by bit according to docs/raw_formats.md, with a map of each bit's place.
 class RawPacker {
  public:
   explicit RawPacker(const RawFormat& format) : format_(format) {}
@@ -58,14 +58,14 @@ class RawPacker {
     const auto word = static_cast<std::uint64_t>(integer);
     const std::uint64_t all = (std::uint64_t{1} << format_.bits) - 1;
     if (!format_.is_signed) return word & all;
-    // Bits above the sign bit have no meaning: some are set.
+    // Bits above the sign bit are ignored by readers: set some of them.
     const std::uint64_t sign = std::uint64_t{1} << format_.sign_bit.value_or(format_.bits - 1),
                         unused = all & ~(2 * sign - 1) & 0xaaaaaaaa;
     if (format_.sign_encoding == SignEncoding::twos_complement)
       return (word & (2 * sign - 1)) | unused;
     return (integer < 0 ? sign | static_cast<std::uint64_t>(-integer) : word) | unused;
   }
-  /// IEEE half precision of a number that it holds exactly, zero or at least 2^-14.
+  /// Returns the IEEE half-precision bits of an exactly representable number: 0 or at least 2^-14.
   static std::uint64_t half_of(double number) {
     if (number == 0.0) return 0;
     const int exponent = std::ilogb(number);

@@ -15,8 +15,8 @@
 
 namespace tofsmith {
 
-/// The decoder's definition, read aloud: all bins of one pixel, in double, in the space of the
-/// measurements. Every faster way is held against it.
+/// Direct implementation of the decoder's definition: all bins of one pixel, in double, in
+/// measurement space. All faster implementations are compared with it.
 class ReferenceDecoder {
  public:
   explicit ReferenceDecoder(const DecodingTable& table) : table_(table) {
@@ -40,7 +40,7 @@ class ReferenceDecoder {
       if (length <= 1e-9 * length_.maxCoeff()) length = 0.0;
   }
 
-  /// P y' of a pixel's raw numbers.
+  /// P y' of a pixel's raw values.
   template <typename Number>
   Eigen::VectorXd difference(const Number* raw) const {
     Eigen::VectorXd y(table_.measurements());
@@ -56,7 +56,7 @@ class ReferenceDecoder {
                               : -std::numeric_limits<double>::infinity();
   }
 
-  /// The bin nearest to the best row.
+  /// Returns the bin nearest to the best row.
   template <typename Number>
   int bin(const Number* raw) const {
     return table_.nearest_bin(row(raw));
@@ -72,7 +72,8 @@ class ReferenceDecoder {
     return n;
   }
 
-  /// Score at any depth: by trigonometric interpolation of smooth tables, else on the chords.
+  /// Returns the score at any depth: by trigonometric interpolation of smooth tables, else on
+  /// chords.
   double score_at(const Eigen::VectorXd& difference, double depth_bin) const {
     if (spectrum_.size() > 0) {
       const Eigen::VectorXd smooth_point = on_smooth_curve(depth_bin);
@@ -84,7 +85,7 @@ class ReferenceDecoder {
     return difference.dot(point) / point.norm();
   }
 
-  /// The best score on the chords beside a bin, by golden section.
+  /// Returns the best score on the two chords at a bin, by golden-section search.
   double best_score_beside(const Eigen::VectorXd& difference, int bin) const {
     double best = score(difference, bin);
     const int left = (bin + table_.samples() - 1) % table_.samples();
@@ -118,7 +119,7 @@ class ReferenceDecoder {
   }
 
   DecodingTable table_;
-  Eigen::VectorXd ambient_;    // unit, or zero
+  Eigen::VectorXd ambient_;    // unit vector, or zero
   Eigen::MatrixXd curve_;      // P x (K, N)
   Eigen::MatrixXcd spectrum_;  // of a smooth table (N / 2 + 1, K); else empty
   Eigen::VectorXd length_;     // |P x| (N), 0 without contrast

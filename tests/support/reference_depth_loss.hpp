@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Points of the decoding curve as DecodingCurve defines them, (R, N).
+/// Returns the points (R, N) of the decoding curve as defined by DecodingCurve.
 inline Eigen::MatrixXd reference_points(const SampledCamera& camera,
                                         const MeasurementTable& table) {
   const Eigen::VectorXd relative = camera.exposure_s() / camera.exposure_s().mean();
@@ -23,7 +23,7 @@ inline Eigen::MatrixXd reference_points(const SampledCamera& camera,
   return projection * relative.asDiagonal() * table.correlation.transpose();
 }
 
-/// What trial t measures.
+/// Returns the electrons measured in trial t.
 inline Eigen::VectorXd reference_electrons(const SampledCamera& camera,
                                            const MeasurementTable& table,
                                            const OperatingPoint& point, const TrialBatch& batch,
@@ -52,9 +52,9 @@ inline Eigen::VectorXd reference_electrons(const SampledCamera& camera,
   return y;
 }
 
-/// The differentiable depth error written out in double, trial by trial and chord by chord, with no
-/// thought of speed: what DepthErrorLoss is compared with.
-/// @param decoded_bin  if given, where the hard decoder puts the last trial
+/// Differentiable depth error in double, trial by trial and chord by chord: the slow reference for
+/// DepthErrorLoss.
+/// @param decoded_bin  if not null, receives the depth of the last trial from the hard decoder
 inline double reference_soft_error(const SampledCamera& camera, const MeasurementTable& table,
                                    const OperatingPoint& point, const TrialBatch& batch,
                                    double sharpness, bool circular, double* decoded_bin = nullptr) {
@@ -101,7 +101,7 @@ inline double reference_soft_error(const SampledCamera& camera, const Measuremen
   return sum / static_cast<double>(batch.trials.size());
 }
 
-/// The same where trials are decoded as two returns, pair by pair of the grid.
+/// The same error when trials are decoded as two returns, over all pairs of the grid.
 inline double reference_two_return_error(const SampledCamera& camera, const MeasurementTable& table,
                                          const OperatingPoint& point, const TrialBatch& batch,
                                          double sharpness, double* decoded_bin = nullptr) {

@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// The likelihood of a pixel, read aloud: one depth at a time, with no memory of its neighbours.
+/// Direct implementation of a pixel's likelihood, evaluated independently at each depth.
 class ReferenceLikelihood {
  public:
   explicit ReferenceLikelihood(const DecodingTable& table)
@@ -39,8 +39,8 @@ class ReferenceLikelihood {
     return ((y - mean).array().square() / v + v.log()).sum();
   }
 
-  /// The least cost on a grid over depth. At every depth light is fitted by weighted least squares
-  /// again and again, and every step of it counts.
+  /// Returns the minimum cost over a grid of depths. At every depth, the light is fitted by
+  /// iteratively reweighted least squares; the minimum includes all iterations.
   double min_cost(const Eigen::VectorXd& y, int depths_per_bin) const {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < table_.samples() * depths_per_bin; ++i) {
@@ -73,7 +73,7 @@ class ReferenceLikelihood {
     const Eigen::VectorXd light = signal * at(shot_, depth_bin) + ambient * shot_ambient_gain_;
     return (light.cwiseProduct(table_.exposure_s) + floor_).cwiseMax(1e-4 * y.cwiseAbs().mean());
   }
-  /// Signal and ambient >= 0 of the least weighted squares.
+  /// Returns the weighted least-squares estimate of signal and ambient light, both >= 0.
   Eigen::Vector2d weighted_fit(const Eigen::VectorXd& y, double depth_bin,
                                const Eigen::VectorXd& v) const {
     const Eigen::VectorXd weight = v.cwiseSqrt().cwiseInverse();

@@ -15,8 +15,8 @@
 
 namespace tofsmith {
 
-/// ln of the integral from 0.1 to infinity of exp(c t - t^2 / 2) / t dt, by the trapezoidal rule
-/// over ln t, or for large c by its asymptotic series.
+/// Returns ln of the integral of exp(c t - t^2 / 2) / t dt from 0.1 to infinity, by the trapezoidal
+/// rule over ln t or, for large c, by its asymptotic series.
 inline double reference_log_density(double c) {
   if (c > 20.0)
     return 0.5 * c * c + std::log(std::sqrt(2 * std::numbers::pi) / c * (1.0 + 1.0 / (c * c)));
@@ -32,9 +32,10 @@ inline double reference_log_density(double c) {
   return largest + std::log(sum * step);
 }
 
-/// Posterior probability of the main lobe by its definition, in double precision, from points on
-/// the chords, `parts` per row; a smooth curve is first interpolated to twice as many rows.
-/// @param q            in the plane (rank)
+/// Returns the posterior probability of the main lobe according to its definition, in double,
+/// sampled at `parts` points per row on the chords; a smooth curve is first interpolated to twice
+/// the number of rows.
+/// @param q            measurement after projection (rank)
 /// @param variance_e2  (K)
 inline double reference_posterior(const AmbientProjection& projection, const MainLobe& lobe,
                                   const Eigen::VectorXd& q, const Eigen::VectorXd& variance_e2,

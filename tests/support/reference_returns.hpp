@@ -11,9 +11,9 @@
 
 namespace tofsmith {
 
-/// Weighted least squares of one or two returns of a pixel by plain search over all places of a
-/// fine grid, from the exact correlation functions, in double. chi^2 as SingleFits counts it: less
-/// what no returns at all could explain.
+/// Weighted least squares of one or two returns by exhaustive search over a fine grid, with exact
+/// correlation functions, in double. As in SingleFits, chi^2 excludes the part that no return can
+/// explain.
 class ReferenceReturns {
  public:
   ReferenceReturns(const ForwardModel& model, const PixelGroup& group) {
@@ -47,7 +47,7 @@ class ReferenceReturns {
     return target_.squaredNorm() - explained;
   }
 
-  /// @param shortest  delay in periods; and `longest`
+  /// @param shortest, longest  limits of the delay [periods]
   double best_pair_chi2(double shortest, double longest) const {
     const Eigen::VectorXd along = curve_ * target_;
     const Eigen::MatrixXd gram = curve_ * curve_.transpose();

@@ -17,7 +17,7 @@ namespace {
 
 int bits_of(WvdtPoints points) { return points == WvdtPoints::bits16_little_endian ? 16 : 14; }
 
-/// Lines of the header, in this order.
+/// Keys of the header lines, in this order.
 constexpr std::string_view header_keys[] = {"frequency", "amp", "offset", "phase"};
 constexpr int blank_lines = 7;
 
@@ -45,7 +45,7 @@ std::size_t row_count(LineCursor& lines) {
   return static_cast<std::size_t>(count);
 }
 
-/// Where "WAVEDATA," ends, at most some hundred bytes from the beginning.
+/// Returns the end of "WAVEDATA,", which must occur within the first few hundred bytes.
 std::size_t find_data(std::string_view text, std::string_view place) {
   constexpr std::string_view mark = "WAVEDATA,";
   constexpr std::size_t max_header_bytes = 1000;
@@ -57,7 +57,7 @@ std::size_t find_data(std::string_view text, std::string_view place) {
   return at + mark.size();
 }
 
-/// "C1:WVDT", then key and value in turn; a slot such as M50 stands alone.
+/// Header "C1:WVDT" followed by keys and values in turn; a slot such as M50 has no value.
 class WvdtHeader {
  public:
   WvdtHeader(std::string_view text, std::string_view place) : place_(place) {
@@ -79,7 +79,7 @@ class WvdtHeader {
   double number(std::string_view key) const {
     const auto text = value(key);
     if (!text) fail(fmt::format("found no {}", key));
-    std::string_view digits = *text;  // answers carry units: "2000HZ", "4V"
+    std::string_view digits = *text;  // answers contain units: "2000HZ", "4V"
     digits = digits.substr(0, digits.find_last_of("0123456789.") + 1);
     const auto number = finite_number_in(digits);
     if (!number) fail(fmt::format("{}: found '{}'; expected a number", key, *text));
@@ -92,7 +92,7 @@ class WvdtHeader {
     std::from_chars(prefix_.data() + c + 1, prefix_.data() + prefix_.size(), channel);
     return channel;
   }
-  /// "M50", if the first word is one.
+  /// Returns a leading slot such as "M50", or an empty string.
   std::string slot() const {
     return !words_.empty() && words_[0].starts_with('M') ? std::string(words_[0]) : std::string();
   }

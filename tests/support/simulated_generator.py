@@ -1,27 +1,30 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A waveform generator on the loopback that understands what an upload sends, from its manuals and
-not from the code under test, and that can fail once in every way listed in FAULTS."""
+"""A simulated waveform generator on the loopback interface.
+
+It implements the commands of an upload from the manuals, independently of the code under test. Each
+fault listed in FAULTS can be triggered once.
+"""
 
 import re
 import socket
 import threading
 
 FAULTS = (
-    "closes",            # the connection, instead of processing a message
-    "closes_midway",     # the connection, after half of some bytes
-    "closes_answering",  # the connection, in the middle of an answer
-    "hangs",             # processes nothing any more
-    "ignores",           # a message
-    "reports_error",     # and does not do what a message says
+    "closes",            # closes the connection instead of processing a message
+    "closes_midway",     # closes the connection in the middle of a message
+    "closes_answering",  # closes the connection in the middle of an answer
+    "hangs",             # stops processing
+    "ignores",           # ignores a message
+    "reports_error",     # and ignores the message
     "answers_garbage",
     "flips_answer_bit",
-    "flips_bit_sent",    # to the generator
-    "loses_byte_sent",   # to the generator
+    "flips_bit_sent",    # in a received message
+    "loses_byte_sent",   # in a received message
     "wrong_length",      # of a block in an answer
-    "corrupts_point",    # that it stores
-    "truncates_points",  # that it stores
-    "other_value",       # of a setting
+    "corrupts_point",    # of the stored points
+    "truncates_points",  # of the stored points
+    "other_value",       # stores another value of a setting
     "other_memory",      # stores points under another name
     "extra_line",
     "repeats_answer",
@@ -37,10 +40,10 @@ WORDS = {"keysight": ("FUNC:ARB", "FUNC:ARB:FILT", "FUNC", "VOLT:UNIT", ""),
 
 
 class SimulatedGenerator:
-    """Serves one connection at a time, as many instruments do. All text is Latin-1.
+    """Serves one connection at a time, like many instruments. All text is Latin-1.
 
-    settings holds "SOUR1:VOLT" or "C1:BSWV AMP"; memory holds points by name, Keysight's with the
-    channel ahead ("1M1_..."). Outputs are on at first, as the user before left them.
+    Keys of `settings` are such as "SOUR1:VOLT" or "C1:BSWV AMP". `memory` maps names to points, for
+    Keysight prefixed with the channel ("1M1_..."). Outputs are initially on.
     """
 
     def __init__(self, family, model, fault="", message=0, detail=0):
@@ -60,7 +63,7 @@ class SimulatedGenerator:
         return self
 
     def __exit__(self, *ignored):
-        """Ends after all that was sent before the connection was closed is processed."""
+        """Waits until all messages sent before the connection was closed are processed."""
         self._stops = True
         self._thread.join(20)
         self._server.close()
@@ -70,7 +73,7 @@ class SimulatedGenerator:
         return self.settings[key] == "ON"
 
     def played(self, channel):
-        """The points that a channel plays, as they were sent."""
+        """Returns the points of a channel's waveform, as received."""
         n = channel
         if self.family == "siglent":
             arb, name = self.settings[f"C{n}:BSWV WVTP"] == "ARB", self.settings[f"C{n}:ARWV NAME"]
@@ -139,7 +142,7 @@ class SimulatedGenerator:
         return True
 
     def take(self, text):
-        """Processes bytes of a connection; returns the answers."""
+        """Processes the bytes of a connection; returns the answers."""
         if self._hangs:
             return ""
         at = self.detail % len(text)
@@ -157,13 +160,13 @@ class SimulatedGenerator:
         return answers
 
     def _next(self):
-        """The next message, if all of it has arrived."""
+        """Returns the next message if it has arrived completely."""
         text = self._received
         wave = re.match(r"C\d:WVDT .{0,500}?WAVEDATA,", text, re.S)
         if self.family == "siglent" and re.match(r"C\d:WVDT ", text):
             if not wave:
                 return None
-            length = re.search(r"LENGTH,(\d+)", wave[0])  # without it: all that arrived at once
+            length = re.search(r"LENGTH,(\d+)", wave[0])  # if missing: everything received so far
             end = wave.end() + int(length[1]) if length else len(text)
             self._received = text[end:]
             return text[:end] if len(text) >= end else self._keep(text)
@@ -236,7 +239,7 @@ class SimulatedGenerator:
         return ""
 
     def _obey_setting(self, message):
-        """A setting or a question in standard SCPI."""
+        """Handles a setting or a query in standard SCPI."""
         found = re.fullmatch(r"((?:SOUR|OUTP)[12]):?([A-Z:]*)(\?| .*)", message, re.S)
         known = found and found[2] in NUMBERS[self.family] + WORDS[self.family]
         if not known:
@@ -259,7 +262,7 @@ class SimulatedGenerator:
         return f'"{value[1:]}"\n' if key.endswith("FUNC:ARB") else f"{value}\n"
 
     def _value(self, text):
-        """A number, or another one if that is the fault."""
+        """Returns the number in a text, or another number for the fault `other_value`."""
         if not self._strikes("other_value"):
             return text
         return str(_number(text) * (0.9, 1.02, 0.0, -1.0, 1000.0)[self.detail % 5] or 0.25)
@@ -314,7 +317,7 @@ class SimulatedGenerator:
         return ""
 
     def _obey_siglent(self, message):
-        """It has no error queue, and ignores what it does not understand."""
+        """Handles a Siglent message. There is no error queue; unknown messages are ignored."""
         if found := re.match(r"C[12]:WVDT WVNM,([^,]*),.*?WAVEDATA,", message, re.S):
             self._store(found[1], message[found.end():])
         elif found := re.fullmatch(r"WVDT\? USER,(.*)", message):
@@ -332,7 +335,7 @@ class SimulatedGenerator:
                 self.settings[f"{found[1]} {key}"] = self._value(value) if is_number else value
         elif found := re.fullmatch(r"C([12]):(OUTP|ARWV|SRATE|BSWV)\?", message):
             return self._siglent_state(found[1], found[2])
-        elif message == "MODE PHASELOCKED":  # the other spelling is not understood
+        elif message == "MODE PHASELOCKED":  # the other spelling is rejected
             self.phases_locked = True
         elif message == "MODE?":
             return "MODE PHASE-LOCKED\n" if self.phases_locked else "MODE INDEPENDENT\n"
@@ -342,7 +345,7 @@ class SimulatedGenerator:
         def get(key):
             return self.settings.get(f"C{n}:{command} {key}", "")
 
-        def printed(key):  # it prints six digits
+        def printed(key):  # numbers are printed with six digits
             return f"{self.number(f'C{n}:{command} {key}'):.6g}"
 
         if command == "OUTP":
@@ -358,7 +361,7 @@ class SimulatedGenerator:
 
 
 def _number(text):
-    """The number at the beginning of a text, or 0."""
+    """Returns the number at the beginning of a text, or 0."""
     found = re.match(r"[+-]?(\d+\.?\d*|\.\d+)(E[+-]?\d+)?", text, re.I)
     return float(found[0]) if found else 0.0
 
@@ -368,5 +371,5 @@ def _block(data):
 
 
 def _flipped(text, at, detail):
-    """The text with one changed bit."""
+    """Returns the text with one bit flipped."""
     return text[:at] + chr(ord(text[at]) ^ 1 << (detail >> 16) % 8) + text[at + 1:]

@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// An empty directory that goes with its test.
+/// An empty directory, deleted at the end of the scope.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -28,7 +28,7 @@ class TemporaryDirectory {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  /// How many files it holds, hidden ones included.
+  /// Returns the number of files, including hidden files.
   int files() const {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(path_))

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 using TiffBytes = std::vector<std::byte>;
 
-/// Packs bytes by LZW as the TIFF 6.0 specification defines it.
+/// Compresses bytes by LZW as defined in the TIFF 6.0 specification.
 inline TiffBytes pack_lzw(const TiffBytes& bytes) {
   TiffBytes packed;
   std::uint32_t held = 0;
@@ -57,11 +57,11 @@ inline TiffBytes pack_lzw(const TiffBytes& bytes) {
 /// A TIFF file of one page.
 struct TiffWriter {
   bool big_endian = false;
-  std::vector<std::pair<int, std::vector<std::uint32_t>>> tags;  ///< in the order of their numbers
+  std::vector<std::pair<int, std::vector<std::uint32_t>>> tags;  ///< in ascending order
   std::vector<TiffBytes> blocks;                                 ///< strips or tiles
   std::uint32_t next_page = 0;
 
-  /// @param offsets, counts  tags of the places and sizes of the blocks
+  /// @param offsets, counts  tags of the offsets and byte counts of the blocks
   TiffBytes file(int offsets = 273, int counts = 279) const {
     TiffBytes bytes;
     const auto put = [&](std::uint32_t number, int size) {

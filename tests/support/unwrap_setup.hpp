@@ -7,7 +7,7 @@
 
 namespace tofsmith {
 
-/// A code of sinusoids on a camera, with the decoder that unwraps it.
+/// A code of sinusoids, a camera and the unwrapping decoder.
 using UnwrapSetup = DecoderSetup<UnwrapDecoder, UnwrapOptions>;
 
 }  // namespace tofsmith

@@ -149,7 +149,7 @@ TektronixWfm parse_tektronix_wfm(std::span<const std::byte> bytes, std::string_v
     wfm.values.push_back(value);
     wfm.markers.push_back(std::to_integer<std::uint8_t>(block.data[at + 4]));
   }
-  if (cursor.at_end()) return wfm;  // an AWG plays it at the clock it has
+  if (cursor.at_end()) return wfm;  // optional: without a clock, an AWG keeps its own
   const std::size_t clock_at = cursor.position();
   const std::string_view clock = trimmed(cursor.take_until('\n', "the clock"));
   const auto rate = clock.starts_with("CLOCK") ? finite_number_in(clock.substr(5)) : std::nullopt;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Readers of exported waveforms: they prove that writers lose nothing.
+// Readers of exported waveforms, to verify the writers.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,14 +23,14 @@ struct EasyWaveTable {
   std::vector<double> volts;  ///< of every row, offset included
 };
 
-/// Reads all dialects, with LF too.
-/// @param file  name for errors
-/// @throws IoError "file:line: ..." for anything else
+/// Reads all dialects, also with LF line ends.
+/// @param file  name for error messages
+/// @throws IoError "file:line: ..." for any other text
 EasyWaveTable parse_easywave_csv(std::string_view text, std::string_view file);
 
-/// Reads a command, or a generator's answer to WVDT?, whose fields may come in any order and with
-/// blanks. The data may end with a line feed.
-/// @throws IoError "place: byte N: ..." for anything else
+/// Reads a command or a generator's answer to WVDT?. Fields may have any order and blanks; the data
+/// may end with a line feed.
+/// @throws IoError "place: byte N: ..." for any other content
 WvdtCommand parse_wvdt(std::span<const std::byte> bytes, WvdtPoints points, std::string_view place);
 
 /// Content of an .arb file.
@@ -42,15 +42,16 @@ struct KeysightArb {
   std::vector<std::int16_t> points;  ///< -32767 .. 32767
 };
 
-/// @param file  name for errors
+/// @param file  name for error messages
 /// @throws IoError "file:line: ..." for any other text
 KeysightArb parse_keysight_arb(std::string_view text, std::string_view file);
 
-/// @throws IoError if the bytes are no whole points or one is below -32767
+/// @throws IoError for an incomplete point or a point below -32767
 std::vector<std::int16_t> parse_keysight_dac_bytes(std::span<const std::byte> bytes,
                                                    std::string_view place);
 
-/// The points, 0 .. 16383. @throws IoError "file: byte N: ..." for anything else
+/// Returns the points, 0 to 16383.
+/// @throws IoError "file: byte N: ..." for any other content
 std::vector<std::int32_t> parse_tektronix_tfw(std::span<const std::byte> bytes,
                                               std::string_view file);
 
@@ -61,17 +62,17 @@ struct TektronixWfm {
   std::vector<std::uint8_t> markers;  ///< bit 0: marker 1, bit 1: marker 2
 };
 
-/// @throws IoError "file: byte N: ..." for anything else
+/// @throws IoError "file: byte N: ..." for any other content
 TektronixWfm parse_tektronix_wfm(std::span<const std::byte> bytes, std::string_view file);
 
 /// A block at the beginning of `bytes`.
 struct Ieee488Block {
   std::span<const std::byte> data;
-  std::size_t size = 0;  ///< of the whole block, with its header
+  std::size_t size = 0;  ///< size of the block including its header
 };
 
-/// @param place  name for errors, such as a file
-/// @throws IoError "place: byte N: ..." if there is no block, or fewer bytes than its length
+/// @param place  name for error messages, such as a file name
+/// @throws IoError "place: byte N: ..." if there is no block or it is shorter than its length field
 Ieee488Block parse_ieee488_block(std::span<const std::byte> bytes, std::string_view place);
 
 }  // namespace tofsmith
