@@ -18,15 +18,15 @@ DecodingTable table_of(const std::string& code, double peak_factor) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// The same table as another processor would round it.
+/// Returns the table with rounding errors of another processor.
 DecodingTable rounded_otherwise(DecodingTable table) {
   RandomStream random(1, 0, 0);
   for (double& value : table.correlation.reshaped()) value *= 1.0 + 4e-16 * random.normal();
   return table;
 }
 
-// The curves of these are equally long in two directions of their space.
-TEST(AmbientProjection, TiedDirectionsDoNotHangOnRounding) {
+// These curves are equally long in two directions of their space.
+TEST(AmbientProjection, BasisOfTiedDirectionsIsRobustToRounding) {
   for (const auto& [code, peak] : {std::pair{"sinusoid-k4", 15.0},
                                    {"square-k4", 15.0},
                                    {"hamiltonian-k4", 6.0},
@@ -40,7 +40,7 @@ TEST(AmbientProjection, TiedDirectionsDoNotHangOnRounding) {
   }
 }
 
-TEST(AmbientProjection, ItsBasisIsOrthonormalAndHoldsTheWholeCurve) {
+TEST(AmbientProjection, BasisIsOrthonormalAndSpansTheCurve) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"}) {
     SCOPED_TRACE(code);
     const AmbientProjection projection(table_of(code, 6.0));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Branch and bound over arcs against a plain search in double of all rows.
+// Branch and bound over arcs, compared with an exhaustive search in double.
 #include "decode/search/arc_search.hpp"
 
 #include <gtest/gtest.h>
@@ -16,15 +16,14 @@
 namespace tofsmith {
 namespace {
 
-// Debug builds, slowed further by sanitizers, look at a sample.
+// Debug builds and sanitizers test a sample only.
 #ifdef NDEBUG
 constexpr int vectors_per_level = 4096;
 #else
 constexpr int vectors_per_level = 128;
 #endif
 
-/// Vectors near the curve in units of its directions, as doubles and rounded to float with scales
-/// of all sizes.
+/// Noisy vectors near the curve, in double and as scaled floats.
 struct Vectors {
   int rank;
   std::vector<double> exact;  // (count, rank)
@@ -37,8 +36,8 @@ struct Vectors {
 };
 constexpr int tile_pixels = 64;
 
-/// @param deviation       noise of every component, beside directions of length 1
-/// @param relative_error  how far the float vectors are off, as a share of their length
+/// @param deviation       noise of each component, relative to unit directions
+/// @param relative_error  error of the float vectors, relative to their length
 Vectors noisy_vectors(const DirectionTable& directions, double deviation, int count,
                       std::uint64_t seed, double relative_error = 0.0) {
   RandomStream random(seed, 1);
@@ -81,7 +80,7 @@ std::vector<std::int32_t> search_all(const ArcSearch& search, const Vectors& vec
   return rows;
 }
 
-/// The definition: sums from the first component to the last, the lowest row that ties.
+/// Reference: dot products in double, lowest row of equal ones.
 std::int32_t lowest_best_row(const DirectionTable& directions, const double* q,
                              std::vector<double>& score) {
   const int samples = directions.samples();
@@ -100,13 +99,13 @@ std::int32_t lowest_best_row(const DirectionTable& directions, const double* q,
       score.begin());
 }
 
-/// Unit vectors, as choose() takes them.
+/// Returns the unit vector that choose() requires.
 std::vector<double> unit_of(const double* q, int rank) {
   const Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(q, rank).normalized();
   return {unit.begin(), unit.end()};
 }
 
-/// @return share of vectors whose row was proven, on the vector instructions that prove least
+/// Returns the smallest fraction of proven vectors over all instruction sets.
 double expect_agreement(const DirectionTable& directions, const ArcSearch& search,
                         const Vectors& vectors) {
   std::vector<std::int32_t> expected, chosen;
@@ -135,7 +134,7 @@ double expect_agreement(const DirectionTable& directions, const ArcSearch& searc
 
 constexpr double noise_levels[] = {0.0, 0.02, 0.15, 0.6, 100.0};
 
-/// @return share proven at the middle level
+/// Returns the fraction proven at the middle level.
 double expect_agreement_at_all_levels(const DirectionTable& directions, int count) {
   const ArcSearch search(directions);
   double share = 0.0;
@@ -158,7 +157,7 @@ struct CodeCase {
 
 class ArcSearchOfCode : public testing::TestWithParam<CodeCase> {};
 
-TEST_P(ArcSearchOfCode, AgreesAndProvesNearlyAll) {
+TEST_P(ArcSearchOfCode, AgreesWithExhaustiveSearchAndProvesAlmostAll) {
   const CodeCase& c = GetParam();
   const DirectionTable directions = directions_of(c.code, c.code_samples, c.samples);
   const double proven = expect_agreement_at_all_levels(directions, vectors_per_level);
@@ -174,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
                     CodeCase{"multifrequency-1x3-2x3-3x3-4x3", 240, 1000, 0.99},
                     CodeCase{"gray-k4", 240, 1000, 0.9}, CodeCase{"gray-k6", 256, 256, 0.9}));
 
-TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
+TEST(ArcSearch, ProvesNothingForUnknownVectors) {
   const DirectionTable directions = directions_of(random_smooth_curve(5, 500, 9));
   const ArcSearch search(directions);
   constexpr float infinity = std::numeric_limits<float>::infinity();

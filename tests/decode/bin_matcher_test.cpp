@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Bins that tie, against searches of all bins.
+// Tied bins, compared with an exhaustive search.
 #include "decode/search/bin_matcher.hpp"
 
 #include <gtest/gtest.h>
@@ -19,12 +19,12 @@
 namespace tofsmith {
 namespace {
 
-/// K = 13 measurements whose curve lies in `rank` dimensions of them, so that most of what noise
-/// adds to a pixel is no matter of its depth.
+/// K = 13 measurements whose curve spans `rank` dimensions, so that most of a pixel's noise does
+/// not affect its depth.
 struct CurveInFewDimensions {
   static constexpr int measurements = 13, samples = 300;
   explicit CurveInFewDimensions(int rank, RandomStream& random) {
-    // Columns that are orthonormal, and all but the first without ambient light.
+    // Orthonormal columns; all but the first are orthogonal to ambient light.
     Eigen::MatrixXd any(measurements, rank + 2);
     for (double& value : any.reshaped()) value = random.normal();
     any.col(0).setOnes();
@@ -45,8 +45,8 @@ struct CurveInFewDimensions {
     table.range_m = 1.0;
   }
 
-  /// A pixel between bins n and n + 1, with |P y'| = 100 `residual`, of which 100 tell its depth;
-  /// n + 1 leads by `lead` |P y'|.
+  /// Returns a pixel between bins n and n + 1 with |P y'| = 100 `residual`, of which 100 lies in
+  /// the plane of the curve; bin n + 1 leads by `lead` |P y'|.
   Eigen::VectorXd pixel(int n, double residual, double lead) const {
     const Eigen::RowVectorXd step = direction.row((n + 1) % samples) - direction.row(n);
     const Eigen::RowVectorXd middle = direction.row(n) + 0.5 * step;
@@ -62,7 +62,7 @@ struct CurveInFewDimensions {
   DecodingTable table;
 };
 
-TEST(BinMatcher, LetsTheLowestOfBinsWinThatTieByAllThatIsLeftOfAPixel) {
+TEST(BinMatcher, ResolvesTiesToTheLowestBin) {
   RandomStream random(11, 0);
   for (const int rank : {2, 3, 4, 6}) {
     const CurveInFewDimensions curve(rank, random);

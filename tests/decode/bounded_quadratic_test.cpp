@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// h = B^T B with a random B of `rows` rows: singular below three.
+/// Returns h = B^T B with a random B of `rows` rows; singular below three.
 Quadratic random_quadratic(RandomStream& random, int rows) {
   Quadratic q;
   for (int r = 0; r < rows; ++r) {
@@ -25,7 +25,7 @@ Quadratic random_quadratic(RandomStream& random, int rows) {
   return q;
 }
 
-TEST(BoundedQuadratic, LeastPointMeetsTheConditionsOfOptimality) {
+TEST(BoundedQuadratic, MinimumMeetsTheOptimalityConditions) {
   RandomStream random(1, 0);
   for (int trial = 0; trial < 3000; ++trial) {
     const int unknowns = 2 + trial % 2;
@@ -47,7 +47,7 @@ TEST(BoundedQuadratic, LeastPointMeetsTheConditionsOfOptimality) {
   }
 }
 
-TEST(BoundedQuadratic, WhatOthersLeaveIsTheInverseOfTheInverse) {
+TEST(BoundedQuadratic, SchurComplementIsTheInverseOfABlockOfTheInverse) {
   RandomStream random(2, 0);
   for (int trial = 0; trial < 300; ++trial) {
     const Quadratic q = random_quadratic(random, 5);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What a cell claims, against a search of all directions in double.
+// Candidates of each cell, compared with an exhaustive search in double.
 #include "decode/search/cell_table.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ constexpr int vectors = 20000;
 constexpr int vectors = 500;
 #endif
 
-/// A table with all that it is made of.
+/// A cell table with its inputs.
 struct Cells {
   explicit Cells(DirectionTable table)
       : directions(std::move(table)), distinct(directions), cells(distinct) {}
@@ -31,7 +31,7 @@ bool holds(const CellRecord& run, std::int32_t direction, std::int32_t count) {
   return (direction - run.first + count) % count <= run.length;
 }
 
-/// Unit vectors near the curve, and anywhere.
+/// Draws a unit vector near the curve or anywhere.
 Eigen::VectorXd draw(const DistinctDirections& distinct, RandomStream& random) {
   const double noise = random.uniform() < 0.3 ? 100.0 : 0.5 * random.uniform();
   const auto n = static_cast<Eigen::Index>(distinct.count() * random.uniform());
@@ -56,7 +56,7 @@ void expect_winners_in_their_cells(const Cells& all, std::uint64_t seed) {
   EXPECT_LT(lists, vectors / 2);
 }
 
-TEST(CellTable, HoldsEveryWinner) {
+TEST(CellTable, ContainsEveryWinner) {
   std::uint64_t seed = 1;
   for (const auto& [code, samples] : {std::pair{"hamiltonian-k4", 240},
                                       {"hamiltonian-k5", 240},
@@ -67,7 +67,7 @@ TEST(CellTable, HoldsEveryWinner) {
     expect_winners_in_their_cells(Cells(directions_of(code, 240, samples)), seed++);
 }
 
-TEST(CellTable, ServesRanksThreeAndFourOnly) {
+TEST(CellTable, SupportsRanksThreeAndFourOnly) {
   for (const auto& [code, serves] : {std::pair{"hamiltonian-k3", false},
                                      {"hamiltonian-k4", true},
                                      {"hamiltonian-k5", true},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Tables that turn far from one bin to the next, against all of their chords.
+// Tables with large angles between bins, compared with a search of all their chords.
 #include "decode/search/chord_matcher.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 namespace tofsmith {
 namespace {
 
-/// A curve of random harmonics, sampled so coarsely that it turns far between rows. A little of the
-/// highest frequency keeps it from being interpolated as a smooth one.
+/// Returns a curve of random harmonics with large angles between rows. A component at the highest
+/// frequency prevents interpolation as a smooth curve.
 DecodingTable coarse_table(int measurements, int samples, std::uint64_t seed) {
   const int harmonics = measurements;
   DecodingTable table = make_decoding_table(
@@ -42,10 +42,10 @@ DecodingTable coarse_table(int measurements, int samples, std::uint64_t seed) {
   return table;
 }
 
-/// Chords of 10 degrees are not cut: of two that come closer than half of that either may be taken.
+/// Chords up to 10 degrees are not subdivided; two depths closer than half of that may be confused.
 constexpr double closest_score = 1.0 - 4e-3;
 
-/// The best score on any chord that is no jump.
+/// Returns the best score on all chords that are not jumps.
 double best_score(const ReferenceDecoder& reference, const Eigen::VectorXd& difference,
                   const Eigen::VectorXd& turn_rad) {
   double best = 0.0;
@@ -93,7 +93,7 @@ TEST_P(CoarseTable, FindsEveryDepthBetweenItsBinsWithoutNoise) {
   }
 }
 
-TEST_P(CoarseTable, TakesTheBestOfAllChords) {
+TEST_P(CoarseTable, FindsTheBestOfAllChords) {
   const DecodingTable table = coarse_table(GetParam(), 60, 3);
   const Eigen::VectorXd turn_rad = turns_of(AmbientProjection(table).curve);
   const Decoder decoder(table);
@@ -119,7 +119,7 @@ TEST_P(CoarseTable, TakesTheBestOfAllChords) {
   EXPECT_LE(ties, pixels / 50);
 }
 
-TEST_P(CoarseTable, LeavesTheBestBinsAsTheyAre) {
+TEST_P(CoarseTable, DoesNotChangeTheBestBins) {
   const DecodingTable table = coarse_table(GetParam(), 60, 3);
   const Decoder decoder(table);
   const ReferenceDecoder reference(table);
@@ -139,7 +139,7 @@ TEST_P(CoarseTable, LeavesTheBestBinsAsTheyAre) {
 
 INSTANTIATE_TEST_SUITE_P(Measurements, CoarseTable, testing::Values(4, 5, 7));
 
-TEST(ChordMatcher, SearchesNoPiecesOfFineTablesOrJumps) {
+TEST(ChordMatcher, DoesNotSubdivideFineTablesOrJumps) {
   for (const char* code :
        {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "sinusoid-k4", "double-ramp-k3"}) {
     const DecodeSetup setup(code, camera_with("paper-10f0"));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Noise-free and noisy measurements of any real depth, against the continuous correlation.
+// Noise-free and noisy measurements at any real depth, compared with the continuous correlation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string name_of(const Frequencies& list) {
   return name;
 }
 
-/// A camera that subtracts two buckets, so that ambient light cancels.
+/// Returns a camera that subtracts two buckets, which cancels ambient light.
 Camera two_bucket_camera(double fundamental_frequency_hz, int samples) {
   Camera camera;
   camera.operating = paper_operating_range();
@@ -42,8 +42,8 @@ Camera two_bucket_camera(double fundamental_frequency_hz, int samples) {
   return camera;
 }
 
-/// Differences of two buckets for sinusoids, by their formula and not by the forward model.
-/// @param contrast  of each frequency
+/// Appends differences of two buckets for sinusoids, by formula and without the forward model.
+/// @param contrast  per frequency
 void append_sinusoids(const Frequencies& list, const std::vector<double>& contrast, double signal_e,
                       double periods, std::vector<float>& raw) {
   for (std::size_t f = 0; f < list.size(); ++f)
@@ -126,7 +126,7 @@ TEST(Decoder, DecodesNoiseFreePixelsOfRandomFrequenciesToTheirDepth) {
   }
 }
 
-TEST(Decoder, FindsDepthsWithoutNoiseWhateverTheContrastOfEachFrequency) {
+TEST(Decoder, FindsDepthsWithoutNoiseForAnyContrastPerFrequency) {
   const Frequencies list = {{2, 3}, {10, 3}, {15, 3}};
   const Decoder kinect = decoder_of(name_of(list), built_in_camera("kinect-v2"));
   EXPECT_LT(largest_error_m(kinect, list, {1.0, 1.0 / 1.3226, 1.0 / 1.6129}, 500, 3), 5e-5);
@@ -136,7 +136,7 @@ TEST(Decoder, FindsDepthsWithoutNoiseWhateverTheContrastOfEachFrequency) {
             5e-5);
 }
 
-TEST(LikelihoodDecoder, FindsDepthsWithoutNoiseWhateverTheContrastOfEachFrequency) {
+TEST(LikelihoodDecoder, FindsDepthsWithoutNoiseForAnyContrastPerFrequency) {
   const Frequencies list = {{2, 3}, {10, 3}, {15, 3}};
   const Camera camera = built_in_camera("kinect-v2");
   const LikelihoodDecoder decoder(
@@ -154,7 +154,7 @@ TEST(LikelihoodDecoder, FindsDepthsWithoutNoiseWhateverTheContrastOfEachFrequenc
   }
 }
 
-/// The score <P y, P x(z)> / |P x(z)| of the forward model's own functions, at any real depth.
+/// Score <P y, P x(z)> / |P x(z)| of the forward model at any real depth.
 class ContinuousScore {
  public:
   ContinuousScore(const ForwardModel& model, const DecodingTable& table)
@@ -166,7 +166,7 @@ class ContinuousScore {
     for (Eigen::Index k = 0; k < x.size(); ++k) along += raw[k] * x[k];
     return along / x.norm();
   }
-  /// The best depth: by brute force, then by golden sections around the best peaks.
+  /// Returns the best depth: a grid search, then golden-section search at its best peaks.
   double best_bin(const float* raw, int points) const {
     const double step = static_cast<double>(table_.bin_count()) / points;
     std::vector<double> score(static_cast<std::size_t>(points));

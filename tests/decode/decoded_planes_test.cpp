@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Every declared plane is passed on, filled by every method, and without a value where there is no
-// depth.
+// Every declared plane is forwarded, filled by every method, and empty at pixels without a depth.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -18,7 +17,7 @@ std::vector<DecodedPlane> all_planes() {
   return planes;
 }
 
-TEST(DecodedPlanes, ViewsHaveThePlanesOfTheirImageAndNoOthers) {
+TEST(DecodedPlanes, ViewsHaveExactlyThePlanesOfTheirImage) {
   for (const DecodedPlane plane : all_planes()) {
     SCOPED_TRACE(name_of(plane));
     DepthImage image({plane}, 2, 3);
@@ -36,7 +35,7 @@ TEST(DecodedPlanes, ViewsHaveThePlanesOfTheirImageAndNoOthers) {
   }
 }
 
-/// Fills planes with values that no decoder gives.
+/// Fills planes with values that no decoder writes.
 void spoil(DepthImage& image) {
   for_each_plane(
       []<typename Value>(Image<Value>& plane) {
@@ -45,7 +44,7 @@ void spoil(DepthImage& image) {
       image);
 }
 
-TEST(DecodedPlanes, AreFilledByTheMethodsThatTheTableNames) {
+TEST(DecodedPlanes, AreFilledByTheDeclaredMethods) {
   const DecodeSetup setup("multifrequency-1x3-4x3-7x3", camera_with("paper-10f0"));
   constexpr int pixels = 300;
   std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e5, 1e4, pixels, 3);
@@ -93,7 +92,7 @@ TEST(DecodedPlanes, DeadPixelsHaveNoValueInAnyPlane) {
       image);
 }
 
-TEST(DecodedPlanes, UsualOnesAreWrittenByDefault) {
+TEST(DecodedPlanes, DefaultPlanesAreWritten) {
   for (const bool multipath : {false, true})
     for (const PlaneDescription& described : plane_descriptions)
       EXPECT_EQ(

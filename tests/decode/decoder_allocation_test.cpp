@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Decoding inside Monte Carlo loops must not go to the heap. This file counts what does, for the
-// whole test program.
+// Decoding in Monte Carlo loops must not allocate on the heap. This file counts all allocations of
+// the test program.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -28,7 +28,7 @@ void* counted(std::size_t size) {
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
-// Without these, what the sanitizer's own nothrow form hands out would be freed below.
+// Without this overload, memory from the sanitizer's nothrow new would be freed by free() below.
 void* operator new(std::size_t size, const std::nothrow_t& tag) noexcept {
   return counted(size, tag);
 }
@@ -91,15 +91,15 @@ TEST(LikelihoodDecoder, AllocatesNothingPerPixel) {
       setup.decoder.decode_bins(raw.data(), pixels, bins.data());
     });
   };
-  EXPECT_EQ(of_batch(1), 2);         // work space, once a call ..
-  EXPECT_EQ(of_batch(4000), 1 + 8);  // .. or 512 pixels
+  EXPECT_EQ(of_batch(1), 2);         // work space: once per call ...
+  EXPECT_EQ(of_batch(4000), 1 + 8);  // ... or per 512 pixels
   const auto of_frame = [&](int pixels) {
     const RawFrames frame = frame_of({raw.begin(), raw.begin() + 5 * pixels}, 5);
     return allocations_of([&] { setup.decoder.decode(frame); });
   };
-  const ThreadLimit limit(1);  // threads have work space of their own
+  const ThreadLimit limit(1);  // every thread has its own work space
   of_frame(64);
-  // Work space and raw numbers of every block of 1024 pixels, of which there are 3 more.
+  // Work space and raw values for each block of 1024 pixels; the larger frame has 3 more blocks.
   EXPECT_LE(of_frame(4000), of_frame(400) + 2 + 2 * 3);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// All planes of the decoder against their definition in double.
+// All planes of the decoder, compared with their definition in double.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,8 +19,8 @@ struct Case {
   bool has_equal_exposures = true;
 };
 
-/// The vector of a pixel in single precision and the noise at a bin instead of between bins change
-/// confidence a little.
+/// Confidence differs slightly because the kernel works in single precision and evaluates the noise
+/// at a bin instead of between bins.
 void expect_close_confidence(const std::vector<float>& confidence,
                              const std::vector<float>& expected) {
   double sum = 0.0;
@@ -64,7 +64,7 @@ TEST_P(PlanesOfCode, AgreeWithTheirDefinition) {
   expect_definition_of(setup.decoder, pixels_at_all_light_levels(setup.decoder.table(), 700));
 }
 
-TEST(Decoder, WrapsDepthsAtTheEndOfTheRange) {
+TEST(Decoder, WrapsDepthAtTheEndOfTheRange) {
   const DecodeSetup setup("sinusoid-k4", camera_with("paper-10f0"));
   const int bins = setup.decoder.table().bin_count();
   std::vector<float> raw;
@@ -74,8 +74,8 @@ TEST(Decoder, WrapsDepthsAtTheEndOfTheRange) {
   expect_definition_of(setup.decoder, raw);
 }
 
-TEST(Decoder, NeedsNoContrastEverywhere) {
-  // Bins 3 and 4 see all measurements alike.
+TEST(Decoder, AllowsDepthsWithoutContrast) {
+  // All measurements are equal at bins 3 and 4.
   Eigen::MatrixXd correlation(12, 3);
   for (int n = 0; n < 12; ++n) correlation.row(n) << n % 5, n, 12 - n;
   correlation.row(3).setConstant(5.0);

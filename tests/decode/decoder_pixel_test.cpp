@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What a decoder says of a pixel besides its depth.
+// Planes of a pixel other than its depth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,12 +21,12 @@ TEST(Decoder, StrongSignalIsOk) {
                              10.0);
 }
 
-TEST(Decoder, NotANumberIsInvalidAndDisturbsNoNeighbour) {
+TEST(Decoder, NaNIsInvalidAndDoesNotAffectNeighbours) {
   expect_not_a_number_disturbs_no_neighbour(
       DecodeSetup("hamiltonian-k4", camera_with("paper-10f0")).decoder, 300, 1.0);
 }
 
-TEST(Decoder, HugeNumbersAreDecodedNotOverflown) {
+TEST(Decoder, HugeValuesDoNotOverflow) {
   expect_huge_numbers_are_decoded(DecodeSetup("hamiltonian-k3", camera_with("paper-30x")));
 }
 
@@ -75,7 +75,7 @@ TEST(Decoder, FaintSignalIsLowSignal) {
   EXPECT_NEAR(image.depth_m(0, 0), setup.camera.range_m() / 8, 1e-2);
 }
 
-/// Electrons half way between the two depths, at least 3 m apart, whose directions are closest.
+/// Returns electrons half-way between the closest directions of depths at least 3 m apart.
 std::vector<float> between_two_depths(const DecodingTable& table) {
   Eigen::MatrixXd units = table.correlation.colwise() - table.correlation.rowwise().mean();
   units.rowwise().normalize();
@@ -105,7 +105,7 @@ TEST(Decoder, APixelBetweenTwoDepthsIsAmbiguous) {
   EXPECT_EQ(decode_pixels(trusting_setup.decoder, raw).status(0, 0), PixelStatus::ok);
 }
 
-TEST(Decoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
+TEST(Decoder, ConfidenceIsTheFractionOfCorrectDepths) {
   for (const char* code : {"hamiltonian-k5", "pulsed-multifrequency-k5"})
     expect_right_as_often_as_said(DecodeSetup(code, camera_with("paper-10f0")),
                                   {1.25e2, 2.5e2, 5e2, 1e3, 2e3, 4e3, 8e3}, 1e4, 0.06);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Bins of random codes against the definition; and that they depend on nothing but their pixel.
+// Bins of random codes, compared with the definition; independence of pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ TEST(DecoderOfRandomCodes, FindsTheBinsOfTheDefinition) {
   }
 }
 
-/// Raw numbers are electrons, of equal light and noise.
+/// Returns a table whose raw values are electrons, with equal exposures and noise.
 DecodingTable measured_table_of(Eigen::MatrixXd correlation) {
   DecodingTable table;
   const auto every = [&](double value) {
@@ -52,7 +52,7 @@ DecodingTable measured_table_of(Eigen::MatrixXd correlation) {
   return table;
 }
 
-/// Of numbers that every processor computes alike: triangle waves, and raw numbers that are whole.
+/// Triangle waves and integer raw values, which every processor computes identically.
 struct WholeNumbers {
   WholeNumbers(int measurements, int samples, int pixels, RandomStream& random) {
     table.correlation.resize(samples, measurements);
@@ -91,11 +91,11 @@ TEST(DecoderOfRandomCodes, FindsTheSameBinsOnEveryProcessor) {
       for (const std::int32_t n : bin)
         hash = (hash ^ static_cast<std::uint32_t>(n)) * 1099511628211u;
     }
-  // As an x86 processor with AVX-512 found them.
+  // Result of an x86 processor with AVX-512.
   EXPECT_EQ(hash, 11286135160687803514u);
 }
 
-/// A code of few directions, each of many bins: small whole numbers often tie between two.
+/// Returns a code of few directions, each with many bins; small integers often tie two of them.
 DecodingTable table_of_steps(RandomStream& random) {
   constexpr int samples = 3000, steps = 35, measurements = 4;
   Eigen::MatrixXd levels(steps, measurements);
@@ -105,7 +105,7 @@ DecodingTable table_of_steps(RandomStream& random) {
   return measured_table_of(correlation);
 }
 
-TEST(DecoderOfRandomCodes, LeavesTiesToTheLowestBinInBrightAmbientLightToo) {
+TEST(DecoderOfRandomCodes, ResolvesTiesToTheLowestBinInBrightAmbientLight) {
   RandomStream random(37, 0);
   for (int code = 0; code < 20; ++code) {
     const Decoder decoder(table_of_steps(random));
@@ -123,7 +123,7 @@ TEST(DecoderOfRandomCodes, LeavesTiesToTheLowestBinInBrightAmbientLightToo) {
   }
 }
 
-TEST(DecoderOfRandomCodes, FindsTheBinOfAPixelWhateverStandsBesideIt) {
+TEST(DecoderOfRandomCodes, FindsTheSameBinWhateverTheNeighbours) {
   RandomStream random(29, 0);
   for (const RandomCode& code : random_codes) {
     if (code.samples > 1000) continue;

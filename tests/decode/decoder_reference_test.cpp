@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The fast decoder against the plain reference, pixel by pixel.
+// The fast decoder, compared with the reference pixel by pixel.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-/// @param every  only so many pixels are held against the golden section, which is slow
+/// @param every  stride of the pixels compared by golden-section search, which is slow
 void expect_agreement(const Decoder& decoder, const std::vector<float>& raw, std::size_t every) {
   const ReferenceDecoder reference(decoder.table());
   const auto k_count = static_cast<std::size_t>(decoder.measurements());
@@ -28,14 +28,14 @@ void expect_agreement(const Decoder& decoder, const std::vector<float>& raw, std
     const Eigen::VectorXd difference = reference.difference(&raw[i * k_count]);
     const DecodingTable& table = decoder.table();
     const double row = positions[i] * table.samples() / table.bin_count();
-    // The quadratic of a smooth table is off its maximum by 1e-3 rows at most.
+    // The quadratic interpolation of a smooth table misses the maximum by at most 1e-3 rows.
     ASSERT_NEAR(reference.score_at(difference, row),
                 reference.best_score_beside(difference, reference.row(&raw[i * k_count])),
                 1e-8 * difference.norm());
   }
 }
 
-// Debug builds, slowed further by sanitizers, look at a sample.
+// Debug builds and sanitizers test a sample only.
 #ifdef NDEBUG
 constexpr int pixels_per_level = 40000;
 #else
@@ -57,7 +57,7 @@ TEST_P(DecoderOfCode, AgreesWithTheReferenceOnEveryPixel) {
   Camera camera = camera_with(c.camera, c.taps, c.readout);
   camera.samples = c.samples;
   const DecodeSetup setup(c.code, camera);
-  // The reference looks at all bins.
+  // The reference evaluates all bins.
   const int each = c.samples < 300 ? pixels_per_level : 1 + pixels_per_level * 60 / c.samples;
   std::vector<float> raw = pixels_at_all_light_levels(setup.decoder.table(), each);
   const std::vector<float> sunlit = noisy_pixels(setup.decoder.table(), 1e6, 1e8, each, 6);
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"hamiltonian-k4", "paper-10f0", 10020}, Case{"hamiltonian-k5", "paper-10f0", 10020},
         Case{"gray-k4", "paper-30x", 10016}, Case{"hamiltonian-k8", "paper-30x", 10080}));
 
-TEST(Decoder, SaysTheSameOnEveryInstructionSet) {
+TEST(Decoder, IsIdenticalOnEveryInstructionSet) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0", 2));
   const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 2e3, 1e4, 3000, 9), 10);
   const DepthImage expected = setup.decoder.decode(frame);
@@ -117,7 +117,7 @@ TEST(Decoder, AgreesWithTheReferenceOnHugeNumbers) {
 }
 
 TEST(Decoder, AgreesWithTheReferenceOnTies) {
-  // Small whole numbers tie often, and exactly.
+  // Small integers often tie exactly.
   const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
   std::vector<float> raw;
   for (int a = -6; a <= 6; ++a)

@@ -39,7 +39,7 @@ std::string name_of_case(const Case& c) {
          (c.readout == Readout::difference ? " difference" : "");
 }
 
-/// Depths at which the code has clear contrast, and that no other depth equals in direction.
+/// Returns where the code has clear contrast and a direction that no other depth shares.
 std::vector<bool> is_distinguishable(const DecodingTable& table) {
   const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
   Eigen::MatrixXd x = table.correlation * table.exposure_s.asDiagonal();
@@ -53,7 +53,7 @@ std::vector<bool> is_distinguishable(const DecodingTable& table) {
   return unique;
 }
 
-/// Largest error [bin] over many depths that no noise touches.
+/// Returns the largest error [bin] over many depths without noise.
 double largest_error_bin(const DecodeSetup& setup) {
   const std::vector<bool> unique = is_distinguishable(setup.decoder.table());
   const int samples = setup.decoder.samples();
@@ -76,11 +76,11 @@ double largest_error_bin(const DecodeSetup& setup) {
 
 TEST(Decoder, RecoversEveryDepthWithoutNoise) {
   for (const Case& c : cases) {
-    // Without band limit the codes are chords between bins, and found exactly.
+    // Without a band limit the curves are polygons through the bins, and depths are exact.
     EXPECT_LT(largest_error_bin(DecodeSetup(c.code, camera_with("paper-30x", c.taps, c.readout))),
               1e-3)
         << name_of_case(c);
-    // Smoothed one-tap Gray codes pass through words without contrast and back along the same ray.
+    // Smoothed one-tap Gray codes pass through a word without contrast and return on the same ray.
     if (c.taps == 1 && std::string_view(c.code) == "gray-k4") continue;
     for (const char* camera : {"paper-10f0", "paper-5f0"})
       EXPECT_LT(largest_error_bin(DecodeSetup(c.code, camera_with(camera, c.taps, c.readout))),
@@ -90,7 +90,7 @@ TEST(Decoder, RecoversEveryDepthWithoutNoise) {
 }
 
 TEST(Decoder, RecoversEveryDepthOnTheRiseOfARamp) {
-  // Ramps have unequal duties. Where they fall back, near the ends, depths repeat.
+  // Ramps have unequal duties. Depths are ambiguous near the ends, where the ramps fall.
   for (const char* code : {"single-ramp-k3", "double-ramp-k3"}) {
     const DecodeSetup setup(code, camera_with("paper-30x"));
     for (double z = 10.0; z < 225.0; z += 0.25) {
@@ -108,7 +108,7 @@ TEST(Decoder, RecoversEveryDepthWithUnequalExposuresAndDarkCurrent) {
   EXPECT_LT(largest_error_bin(DecodeSetup("hamiltonian-k3", camera)), 1e-3);
 }
 
-/// Whole electrons, so that sums and multiples of them are exact in single precision.
+/// Returns whole electrons, whose sums and multiples are exact in single precision.
 std::vector<float> whole_noisy_pixels(const DecodingTable& table, int pixels) {
   std::vector<float> raw = noisy_pixels(table, 1e4, 1e4, pixels, 7);
   for (float& value : raw) value = std::round(value);
@@ -154,7 +154,7 @@ TEST(Decoder, ScalingTheLightLeavesDepthUnchanged) {
     std::vector<float> scaled = raw;
     for (float& value : scaled) value *= factor;
     const auto a = depth_bins_of(setup.decoder, raw), b = depth_bins_of(setup.decoder, scaled);
-    // Factors that are no whole numbers round.
+    // Non-integer factors cause rounding.
     for (std::size_t i = 0; i < a.size(); ++i)
       EXPECT_NEAR(circular_difference(a[i], b[i], 240), 0.0, factor == 3.0f ? 1e-6 : 0.05);
   }
@@ -206,7 +206,7 @@ TEST(Decoder, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(one.status.pixels, many.status.pixels);
 }
 
-TEST(Decoder, FramesAreDecodedOneByOne) {
+TEST(Decoder, DecodesEachFrameIndependently) {
   const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
   RawFrames frames = frame_of({}, 3);
   frames.frames = 2;
@@ -220,7 +220,7 @@ TEST(Decoder, FramesAreDecodedOneByOne) {
   EXPECT_THROW(setup.decoder.decode(frames, 0), std::invalid_argument);
 }
 
-TEST(Decoder, StopsWhenAsked) {
+TEST(Decoder, StopsOnRequest) {
   const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
   const RawFrames frame = frame_of(std::vector<float>(300, 1.0f), 3);
   EXPECT_THROW(setup.decoder.decode(frame, 0, [](double, std::string_view) { return false; }),
@@ -240,7 +240,7 @@ TEST(DecodeOptions, NamesTheFieldTheValueAndTheRule) {
   EXPECT_THROW(options.validate(), std::invalid_argument);
 }
 
-TEST(Decoder, RecoversDepthsFromTwoMeasurementsWhereAmbientLightCancels) {
+TEST(Decoder, RecoversDepthFromTwoMeasurementsIfAmbientLightCancels) {
   constexpr int samples = 120, pixels = 2 * pixels_per_tile + 7;
   Eigen::MatrixXd circle(samples, 2);
   for (int n = 0; n < samples; ++n) {

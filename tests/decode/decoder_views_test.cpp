@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames of any number type and layout, as they stand in memory.
+// Frames of any number type and memory layout.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace tofsmith {
 namespace {
 
-/// Where number k of the pixel at (row, column) stands, in elements from the first.
+/// Strides of rows, columns and measurements, in elements.
 struct Layout {
   const char* name;
   std::ptrdiff_t row, column, measurement;
@@ -36,11 +36,11 @@ std::vector<Layout> layouts(std::ptrdiff_t k_count) {
           {"mirrored planes", width, -1, height * width}};
 }
 
-/// A frame in memory of its own.
+/// A frame with its own memory.
 template <typename Number>
 class Frame {
  public:
-  /// @param numbers  (pixels, K), all of them exact as Number
+  /// @param numbers  (pixels, K), exactly representable as Number
   template <typename Source>
   Frame(const std::vector<Source>& numbers, const Layout& layout) {
     const auto k_count = static_cast<std::ptrdiff_t>(numbers.size() / frame_pixels);
@@ -77,7 +77,7 @@ Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 12
   return outputs;
 }
 
-/// Dim pixels in whole numbers that fit a byte.
+/// Returns dim pixels of integers that fit into a byte.
 std::vector<float> bytes_of_pixels(const DecodingTable& table) {
   std::vector<float> raw = noisy_pixels(table, 600.0, 300.0, static_cast<int>(frame_pixels), 12);
   for (float& value : raw) value = std::clamp(std::round(value), 0.0f, 255.0f);
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"hamiltonian-k4", "paper-10f0"}, Case{"hamiltonian-k5", "paper-30x"},
                     Case{"hamiltonian-k5", "paper-10f0", 2}, Case{"hamiltonian-k6", "paper-30x"}));
 
-TEST(Decoder, WritesOnlyTheWantedPlanesAndEachAlike) {
+TEST(Decoder, WritesOnlyRequestedPlanes) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k6"}) {
     const DecodeSetup setup(code, camera_with("paper-10f0"));
     const Frame<float> frame(bytes_of_pixels(setup.decoder.table()),
@@ -149,7 +149,7 @@ void expect_bins_of_the_reference(const Decoder& decoder, double signal, double 
   std::vector<double> raw;
   for (const float value :
        noisy_pixels(decoder.table(), signal, ambient, static_cast<int>(frame_pixels), 2)) {
-    // Doubles use all their digits, what is not float is whole.
+    // Doubles use all their digits; integer types get integers.
     const double number = value + (std::is_same_v<Number, double> ? 1e-3 * random.uniform() : 0.0);
     raw.push_back(std::is_integral_v<Number>
                       ? std::clamp(std::round(number), 0.0,
@@ -169,7 +169,7 @@ void expect_bins_of_the_reference(const Decoder& decoder, double signal, double 
   }
 }
 
-TEST(Decoder, BinsOfEveryTypeAreThoseOfTheReference) {
+TEST(Decoder, FindsTheReferenceBinsInEveryType) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k3", "hamiltonian-k5", "hamiltonian-k6"}) {
     SCOPED_TRACE(code);
     const DecodeSetup setup(code, camera_with("paper-30x"));
@@ -180,8 +180,8 @@ TEST(Decoder, BinsOfEveryTypeAreThoseOfTheReference) {
   }
 }
 
-TEST(Decoder, BinsOfDoublesUseDigitsThatFloatsLack) {
-  // The signal is less than the last digit of a float.
+TEST(Decoder, UsesAllDigitsOfDoubles) {
+  // The signal is smaller than the last digit of a float.
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   std::vector<double> raw;
@@ -240,7 +240,7 @@ void expect_invalid(const Decoder& decoder, const std::vector<float>& raw, Numbe
         outputs);
 }
 
-TEST(Decoder, NumbersThatAreNoneAreInvalidInBothFloatingTypes) {
+TEST(Decoder, NonFiniteValuesAreInvalidInBothFloatingTypes) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k6"}) {
     const DecodeSetup setup(code, camera_with("paper-10f0"));
     const std::vector<float> raw = bytes_of_pixels(setup.decoder.table());

@@ -20,7 +20,7 @@ DecodingTable good_table() {
   return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
 }
 
-/// What validate() says of a table after `change`.
+/// Returns the message of validate() for a table after `change`.
 template <typename Change>
 std::string complaint(const Change& change) {
   DecodingTable table = good_table();
@@ -33,7 +33,7 @@ std::string complaint(const Change& change) {
   return "accepted";
 }
 
-TEST(DecodingTable, NamesWhatIsWrong) {
+TEST(DecodingTable, RejectsInvalidTablesByName) {
   const double nan = std::nan("");
   EXPECT_EQ(complaint([](DecodingTable&) {}), "accepted");
   EXPECT_EQ(complaint([&](DecodingTable& t) { t.correlation(7, 2) = nan; }),
@@ -54,7 +54,7 @@ TEST(DecodingTable, NamesWhatIsWrong) {
             "gain_e_per_raw = -2; must not be negative");
 }
 
-TEST(DecodingTable, NeedsDepthToShowInTwoDimensions) {
+TEST(DecodingTable, RequiresACurveOfTwoDimensions) {
   const Eigen::VectorXd wave = Eigen::VectorXd::LinSpaced(60, 0.0, 1.0);
   Eigen::MatrixXd two(60, 2), line(60, 3);
   two << wave, wave.reverse();
@@ -68,7 +68,7 @@ TEST(DecodingTable, NeedsDepthToShowInTwoDimensions) {
   EXPECT_THROW(make_decoding_table(Eigen::MatrixXd(), 10.0).validate(), std::invalid_argument);
 }
 
-TEST(WhyNotDecodable, SaysWhatTheChecksThrow) {
+TEST(WhyNotDecodable, ReturnsTheMessagesOfTheChecks) {
   const auto flatten = [](DecodingTable& table) { table.correlation.setConstant(0.25); };
   DecodingTable flat = good_table();
   flatten(flat);
@@ -76,7 +76,7 @@ TEST(WhyNotDecodable, SaysWhatTheChecksThrow) {
   EXPECT_EQ(why_not_decodable(flat), complaint(flatten));
   EXPECT_EQ(TwoReturnDecoder::why_not_decodable(flat), complaint(flatten));
 
-  // Four means tell depth, and too little of a second return.
+  // Four phase steps determine depth but not a second return.
   const std::optional<std::string> why_one = TwoReturnDecoder::why_not_decodable(good_table());
   ASSERT_TRUE(why_one.has_value());
   try {
@@ -87,7 +87,7 @@ TEST(WhyNotDecodable, SaysWhatTheChecksThrow) {
   }
 }
 
-TEST(DecodingTable, TwoDifferencesAreEnoughWhereAmbientLightCancels) {
+TEST(DecodingTable, AcceptsTwoDifferencesIfAmbientLightCancels) {
   Eigen::MatrixXd circle(60, 2);
   for (int n = 0; n < 60; ++n) circle.row(n) << std::cos(M_PI * n / 30), std::sin(M_PI * n / 30);
   DecodingTable table = make_decoding_table(circle, 10.0);
@@ -109,7 +109,7 @@ TEST(DecodingTable, FollowsTheForwardModel) {
   EXPECT_LT((variance - model.variance_e2({&r, 1}, 3e3)).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(DecodingTable, KnowsWhereRawNumbersEnd) {
+TEST(DecodingTable, ContainsTheLimitsOfRawValues) {
   Camera camera = camera_with("paper-10f0");
   const auto level = [&] {
     return make_decoding_table(ForwardModel(build_family("hamiltonian-k3", camera), camera), camera)
@@ -127,7 +127,7 @@ TEST(DecodingTable, KnowsWhereRawNumbersEnd) {
 }
 
 TEST(AmbiguousDepths, AreReportedInBinsAndMetres) {
-  // Two periods in the range: every depth of the second half equals one of the first.
+  // Two periods in the range: each depth of the second half equals a depth of the first.
   Eigen::MatrixXd twice(40, 3);
   for (int n = 0; n < 40; ++n)
     for (int k = 0; k < 3; ++k) twice(n, k) = 0.5 + 0.5 * std::cos(M_PI * (n / 10.0 - 2 * k / 3.0));
@@ -153,8 +153,8 @@ TEST(AmbiguousDepths, AreNoneInGoodCodes) {
         << code;
 }
 
-TEST(AmbiguousDepths, LeaveOutDepthsWithoutContrast) {
-  // Gray words of all zeros and all ones look like ambient light, not like each other.
+TEST(AmbiguousDepths, ExcludeDepthsWithoutContrast) {
+  // Gray words of all zeros and all ones resemble ambient light, not each other.
   const Camera camera = camera_with("paper-30x");
   const DecodingTable table =
       make_decoding_table(ForwardModel(build_family("gray-k4", camera), camera), camera);

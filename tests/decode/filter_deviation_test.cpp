@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The deviation predicted after a filter beside the spread of repeated captures.
+// Predicted deviation after filtering, compared with the spread of repeated captures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ int from_border(int row, int column) {
 bool is_inner(int row, int column) { return from_border(row, column) >= 13; }
 bool is_at_border(int row, int column) { return from_border(row, column) < 3; }
 
-/// Depths and predicted deviations of all captures, in bins.
+/// Depths and predicted deviations of all captures [bins].
 struct Repeats {
   std::vector<std::vector<double>> depth, deviation;
 
@@ -57,7 +57,7 @@ struct Repeats {
     }
   }
 
-  /// Spread of the captures over the deviation predicted, over a part of the pixels.
+  /// Returns spread over predicted deviation for a part of the pixels.
   double ratio(const Part& part) const {
     double squares = 0.0, count = 0.0;
     for (int y = 0; y < height; ++y)
@@ -79,8 +79,8 @@ class FilterDeviation : public testing::TestWithParam<FilterStrength> {
   DecodeSetup setup{"hamiltonian-k5", camera_with("paper-10f0")};
 };
 
-// Few windows are independent: of so many captures the spread is known to about 3 %.
-TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnAFlatPlane) {
+// Few windows are independent: the standard error of the spread is about 3 %.
+TEST_P(FilterDeviation, EqualsTheSpreadOfRepeatedCapturesOnAFlatPlane) {
   for (const double signal : {3e3, 3e4}) {
     const Repeats repeats(setup, GetParam(), [&](int, int) { return Seen{61.3, signal}; });
     EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.06) << signal;
@@ -88,14 +88,14 @@ TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnAFlatPlane) {
   }
 }
 
-TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnASlantedPlane) {
+TEST_P(FilterDeviation, EqualsTheSpreadOfRepeatedCapturesOnASlantedPlane) {
   const Repeats repeats(setup, GetParam(), [](int row, int column) {
     return Seen{60.0 + 0.1 * column + 0.04 * row, 1.5e4};
   });
   EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.1);
 }
 
-TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOfAnyAlbedo) {
+TEST_P(FilterDeviation, EqualsTheSpreadOfRepeatedCapturesForAnyAlbedo) {
   const Repeats repeats(setup, GetParam(), [](int row, int column) {
     const bool is_dark = (row / 3 * 7 + column / 3 * 5) % 4 == 0;
     return Seen{61.3, is_dark ? 8e3 : 4e4};
@@ -103,7 +103,7 @@ TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOfAnyAlbedo) {
   EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.07);
 }
 
-TEST_P(FilterDeviation, IsAtMostAThirdTooSmallBesideAnEdge) {
+TEST_P(FilterDeviation, IsAtMostAThirdTooSmallNearAnEdge) {
   const Repeats repeats(setup, GetParam(), [](int, int column) {
     return Seen{column < 48 ? 60.0 : 75.0, 2e4};
   });

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What a filter keeps of sums over near neighbours where it adds far ones.
+// Blending of a filter's sums over near neighbours with its sums over far neighbours.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// Planes of near and far sums with a margin all round, rank 3 of 4 coordinates.
+/// Planes of near and far sums with a margin, rank 3 of 4 coordinates.
 struct Sums {
   static constexpr int height = 15, width = 43, planes = 4, rank = 3, samples = 16;
   static constexpr double brightness = 4.0;
@@ -49,7 +49,7 @@ struct Sums {
         near_variance()[at] = static_cast<float>(1.0 + random.uniform());
         far_variance()[at] = static_cast<float>(0.1 + 1.2 * random.uniform());
         depth()[at] = static_cast<float>(0.999 * samples * random.uniform());
-        // Little beside the noise, as much on a line alone, and much.
+        // Differences well below the noise, equal to it on one line, and well above it.
         const double bins = x < 12 ? 0.01 : x < 32 ? (x == y + 15 ? 0.09 : 0.01) : 0.2;
         for (int k = 0; k < planes; ++k) {
           far(k)[at] = static_cast<float>(brightness * 40.0 * on(at, k));
@@ -88,7 +88,7 @@ struct Sums {
     for (int y = 0; y < height; ++y) keep_near(sums, grid, y);
   }
 
-  /// Of the two depths, in deviations of the near one.
+  /// Returns the difference of the two depths in deviations of the near one.
   double difference(std::ptrdiff_t at) {
     double far2 = 0.0, dot = 0.0, moved = 0.0, move2 = 0.0;
     for (int k = 0; k < rank; ++k)
@@ -113,7 +113,7 @@ struct Sums {
     return excess / (excess + 0.2);
   }
 
-  /// Where they all differ alike, around or along a line.
+  /// Returns the kept share of near sums if all pixels around or along a line differ alike.
   double kept_alike(int y, int x) {
     double all = 0.0, usable_around = 0.0;
     for (int dy = -6; dy <= 6; dy += 2)
@@ -139,7 +139,7 @@ struct Sums {
   }
 };
 
-TEST(FilterSums, NearSumsAreKeptAsTheReferenceSays) {
+TEST(FilterSums, KeepsNearSumsLikeTheReference) {
   for_each_target([] {
     Sums before, after;
     after.keep();
@@ -165,7 +165,7 @@ TEST(FilterSums, NearSumsAreKeptAsTheReferenceSays) {
   });
 }
 
-/// Mean error [bins] of balls of 13 pixels' radius, 6 bins deep, with each of some filters.
+/// Returns the mean error [bins] on balls of 13 pixels radius and 6 bins depth for each filter.
 std::vector<double> errors_on_balls(double signal, const std::vector<FilterOptions>& filters) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
@@ -197,20 +197,20 @@ std::vector<double> errors_on_balls(double signal, const std::vector<FilterOptio
   return errors;
 }
 
-TEST(FilterSums, SilhouettesErrAtMostATwentiethMoreThanWithNearSumsInBrightLight) {
+TEST(FilterSums, ErrorOnSilhouettesIsAtMostFivePercentAboveNearSumsInBrightLight) {
   FilterOptions near;
   near.windows = 1;
   const auto errors = errors_on_balls(3e5, {{}, near});
   EXPECT_LE(errors[0], 1.05 * errors[1]) << errors[0] << ' ' << errors[1];
 }
 
-// Light that comes from one side alone, where the slope is not known, moves depth; and far
-// neighbours of a slanted plane bias the slopes of what is beside them.
-TEST(FilterSums, InBrightLightSlantedPlanesHaveNoBiasFarFromEdges) {
+// Averaging over one side only, where the slope is unknown, biases depth; far neighbours on a
+// slanted plane bias the slopes of adjacent pixels.
+TEST(FilterSums, SlantedPlanesAreUnbiasedFarFromEdgesInBrightLight) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   constexpr int captures = 12, height = 72, width = 72;
-  // As a plane is seen: its inverse depth is linear, and its light falls off with distance.
+  // Perspective view of a plane: inverse depth is linear, and light falls with distance.
   const auto depth = [](int y, int x) { return 60.0 / (1.0 - 0.004 * x - 0.0015 * y); };
   const Filter filter(table);
   std::vector<double> sum(height * width), squares(height * width);
@@ -243,7 +243,7 @@ TEST(FilterSums, InBrightLightSlantedPlanesHaveNoBiasFarFromEdges) {
   EXPECT_LT(bias2, 0.2 * 0.2 * variance) << std::sqrt(std::max(0.0, bias2 / variance));
 }
 
-TEST(FilterSums, BallsErrAtMostATenthMoreThanWithTheLightFilter) {
+TEST(FilterSums, ErrorOnBallsIsAtMostTenPercentAboveTheLightFilter) {
   const auto light = FilterOptions::of(FilterStrength::light);
   for (const double signal : {3e4, 1e5}) {
     const auto errors = errors_on_balls(signal, {{}, light});

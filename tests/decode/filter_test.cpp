@@ -19,7 +19,7 @@
 namespace tofsmith {
 namespace {
 
-/// What a pixel of a made scene sees.
+/// Depth and signal seen by a pixel of a synthetic scene.
 struct Seen {
   double depth_bin = 0.0;
   double signal_e_per_s = 0.0;
@@ -48,7 +48,7 @@ double bin_error(const DecodingTable& table, float depth_m, double depth_bin) {
 
 FilterOptions options_of(FilterStrength strength) { return FilterOptions::of(strength); }
 
-/// The first window of 5 x 5, pair by pair in double.
+/// Reference of the first window of 5 x 5, pair by pair in double.
 std::vector<double> reference_window(const DecodingTable& table, const RawFrames& raw,
                                      double max_difference_sigma) {
   const AmbientProjection projection(table);
@@ -83,7 +83,7 @@ std::vector<double> reference_window(const DecodingTable& table, const RawFrames
       for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx) {
           if ((dy == 0 && dx == 0) || !inside(row + dy, column + dx)) continue;
-          // The pair does not judge itself by what can be noise.
+          // The pair's own difference is clipped at the noise limit.
           const double noise_limit = chi2_limit(rank - 1, 3.0);
           double mean = -std::min(lambda(row, column, dy, dx), noise_limit) / 24;
           for (int py = -2; py <= 2; ++py)
@@ -99,7 +99,7 @@ std::vector<double> reference_window(const DecodingTable& table, const RawFrames
   return means;
 }
 
-TEST(Filter, FirstWindowIsTheReference) {
+TEST(Filter, FirstWindowEqualsTheReference) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const RawFrames raw = frame_seen(table, 21, 37, [&](int row, int column) {
@@ -130,14 +130,14 @@ TEST(Filter, SumsAreUnbiasedForAnyAlbedo) {
       sum += error, squares += error * error;
     }
     const double count = 96.0 * 96.0;
-    // As many independent means as windows fit beside one another, at least.
+    // Lower limit of the number of independent means: the number of disjoint windows.
     const double windows = strength == FilterStrength::light ? count / 25 : count / 625;
     EXPECT_LT(std::abs(sum / count), 4 * std::sqrt(squares / count / windows)) << name_of(strength);
     EXPECT_LT(std::sqrt(squares / count), 0.1) << name_of(strength);
   }
 }
 
-TEST(Filter, FindsTheSameWhicheverWayAFrameIsTurned) {
+TEST(Filter, IsInvariantToFlipsAndRotations) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const RawFrames raw = frame_seen(table, 40, 52, [&](int row, int column) {
@@ -157,7 +157,7 @@ TEST(Filter, FindsTheSameWhicheverWayAFrameIsTurned) {
         << i;
 }
 
-TEST(Filter, ConstantPlaneConvergesWithTheMeasurementsAdded) {
+TEST(Filter, ErrorOnAConstantPlaneFallsWithTheNumberOfAveragedPixels) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const RawFrames raw = frame_seen(table, 128, 128, [&](int, int) { return Seen{120.4, 3e4}; });
@@ -177,12 +177,12 @@ TEST(Filter, ConstantPlaneConvergesWithTheMeasurementsAdded) {
   EXPECT_NEAR(deviation(decoded(setup.decoder, light)), alone / std::sqrt(added),
               0.15 * alone / std::sqrt(added));
   const FilteredFrame normal = Filter(table).apply(raw);
-  EXPECT_GT(normal.averaged()(64, 64), 330.0f);  // 625 but for the noise of slopes
-  // Few windows are independent in so small a picture.
+  EXPECT_GT(normal.averaged()(64, 64), 330.0f);  // 625 without the noise of slopes
+  // Few windows are independent in such a small image.
   EXPECT_LT(deviation(decoded(setup.decoder, normal)), 1.6 * alone / 25);
 }
 
-TEST(Filter, PlanesThatSlantKeepTheirDepth) {
+TEST(Filter, SlantedPlanesKeepTheirDepth) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const auto depth = [](int row, int column) { return 60.0 + 0.31 * column + 0.12 * row; };
@@ -198,7 +198,7 @@ TEST(Filter, PlanesThatSlantKeepTheirDepth) {
       if (x < 4) at_left += error / (96 * 4);
     }
   EXPECT_NEAR(all, 0.0, 0.005);
-  EXPECT_NEAR(at_left, 0.0, 0.1);  // where all neighbours are farther
+  EXPECT_NEAR(at_left, 0.0, 0.1);  // all neighbours are farther
 }
 
 TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
@@ -220,7 +220,7 @@ TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
       const double error = bin_error(table, image.depth_m(y, x), depth(x));
       on_wrong_side += std::abs(error) > step / 2;
     }
-  EXPECT_LE(on_wrong_side, 64);  // a pixel a row, half of it on either side
+  EXPECT_LE(on_wrong_side, 64);  // one pixel per row, half of it on either side
 }
 
 TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
@@ -241,12 +241,12 @@ TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
         by_chance += is_dark(x) && alone.status(y, x) == PixelStatus::ok;
       }
     EXPECT_EQ(lit, 64 * 40) << name_of(strength);
-    // Noise that was added up looks like signal a little more often than that of single pixels.
+    // Averaged noise passes the signal test slightly more often than that of single pixels.
     EXPECT_LE(found, by_chance + 3 * 64 + 64 * 56 / 20) << name_of(strength);
   }
 }
 
-TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
+TEST(Filter, IgnoresAndKeepsInvalidAndSaturatedPixels) {
   Camera camera = camera_with("paper-10f0");
   camera.sensor.full_well_e = 1e4;
   const DecodeSetup setup("hamiltonian-k4", camera);
@@ -278,7 +278,7 @@ TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
   }
 }
 
-TEST(Filter, PixelsLeftOutStayAsTheyAreAndNothingComesFromThem) {
+TEST(Filter, IgnoresAndKeepsExcludedPixels) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   RawFrames raw = frame_seen(table, 48, 48, [](int, int) { return Seen{55.0, 5e4}; });
@@ -307,7 +307,7 @@ TEST(Filter, PixelsLeftOutStayAsTheyAreAndNothingComesFromThem) {
                std::invalid_argument);
 }
 
-TEST(Filter, CountsMeansAsWhatTheyAreTheMeanOf) {
+TEST(Filter, WeighsMeansByTheNumberOfFramesAveraged) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     Camera camera = camera_with("paper-10f0");
     camera.sensor.readout = readout;
@@ -340,7 +340,7 @@ TEST(Filter, CountsMeansAsWhatTheyAreTheMeanOf) {
   }
 }
 
-TEST(Filter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
+TEST(Filter, IsBitIdenticalForAnyNumberOfThreadsAndLayout) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const RawFrames raw = frame_seen(table, 150, 70, [](int row, int column) {
@@ -364,7 +364,7 @@ TEST(Filter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
   EXPECT_EQ(filtered.values().values, values);
 }
 
-TEST(Filter, ReusesAFrameForAnyFrame) {
+TEST(Filter, ReusesTheMemoryOfAFrame) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const Filter filter(table);
@@ -381,7 +381,7 @@ TEST(Filter, ReusesAFrameForAnyFrame) {
   }
 }
 
-TEST(Filter, TakesAnyCodeAndCamera) {
+TEST(Filter, SupportsAnyCodeAndCamera) {
   struct Case {
     const char* code;
     Camera camera;
@@ -415,7 +415,7 @@ TEST(Filter, TakesAnyCodeAndCamera) {
   }
 }
 
-TEST(Filter, TakesAtMostSixFramesOfMemory) {
+TEST(Filter, NeedsMemoryOfAtMostSixFrames) {
   constexpr int height = 480, width = 640, measurements = 4;
   const double frame_bytes = sizeof(float) * double{measurements} * height * width;
   const auto bytes =
@@ -423,7 +423,7 @@ TEST(Filter, TakesAtMostSixFramesOfMemory) {
   EXPECT_LE(static_cast<double>(bytes), 6 * frame_bytes);
 }
 
-TEST(Filter, RefusesWhatCannotBe) {
+TEST(Filter, RejectsInvalidInputs) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   EXPECT_THROW(Filter(table, {.windows = 0}), InvalidArgument);
@@ -441,7 +441,7 @@ TEST(Filter, RefusesWhatCannotBe) {
     EXPECT_EQ(parse_filter_strength(name_of(strength)), strength);
 }
 
-TEST(Filter, LeavesFramesWithoutAnyUsablePixel) {
+TEST(Filter, KeepsFramesWithoutUsablePixels) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   RawFrames raw{.frames = 1, .height = 9, .width = 5, .measurements = 4, .values = {}};
   raw.values.assign(180, std::numeric_limits<float>::infinity());

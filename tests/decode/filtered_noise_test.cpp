@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Confidence and residual of frames whose noise is not the same in all directions (NoiseRatios).
+// Confidence and residual of frames with anisotropic noise (NoiseRatios).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr int side = 48;
 
 class FilteredNoise : public testing::TestWithParam<std::tuple<FilterStrength, const char*>> {
  protected:
-  /// Planes of the filtered capture of a slanted plane.
+  /// Returns the planes of a filtered capture of a slanted plane.
   DepthImage decode_plane(double signal, double first_bin, unsigned seed) const {
     const DecodingTable& table = setup.decoder.table();
     const RawFrames raw =
@@ -41,7 +41,7 @@ class FilteredNoise : public testing::TestWithParam<std::tuple<FilterStrength, c
   Filter filter{setup.decoder.table(), FilterOptions::of(std::get<0>(GetParam()))};
 };
 
-TEST_P(FilteredNoise, LeavesAResidualOfAtMostAboutOne) {
+TEST_P(FilteredNoise, HasAResidualOfAtMostAboutOne) {
   for (const double signal : {3e3, 1e4, 1e5}) {
     RunningStatistics residual, inconsistent;
     for (unsigned seed = 1; seed <= 16; ++seed) {
@@ -56,7 +56,7 @@ TEST_P(FilteredNoise, LeavesAResidualOfAtMostAboutOne) {
   }
 }
 
-TEST_P(FilteredNoise, MakesPixelsAsConfidentAsTheyAreRight) {
+TEST_P(FilteredNoise, ConfidenceIsTheFractionOfCorrectDepths) {
   const DecodingTable& table = setup.decoder.table();
   RunningStatistics claimed, right;
   RandomStream random(3, 0);

@@ -32,7 +32,7 @@ Camera camera_of(const Case& c) {
 
 class LikelihoodOf : public testing::TestWithParam<Case> {};
 
-TEST_P(LikelihoodOf, IsNeverLessThanTheBestOfADenseGrid) {
+TEST_P(LikelihoodOf, IsAtLeastThatOfADenseGrid) {
   const LikelihoodSetup setup(GetParam().code, camera_of(GetParam()));
   const DecodingTable& table = setup.decoder.table();
   const ReferenceLikelihood reference(table);
@@ -88,7 +88,7 @@ TEST(LikelihoodDecoder, RecoversDepthSignalAndAmbientWithoutNoise) {
     for (int i = 0; i < 240; ++i) {
       const double at = image.depth_m(0, i) / setup.camera.bin_m();
       EXPECT_LT(std::abs(circular_difference(at, 0.25 * i, 60.0)), 2e-3) << c.code;
-      // Chords between the rows of a sinusoid are shorter than the arc.
+      // The chords between the rows of a sinusoid are shorter than the arc.
       const double tolerance = std::string_view(c.code) == "multifrequency-k5" ? 3000.0 : 300.0;
       EXPECT_NEAR(image.signal_e_per_s(0, i), 1e6, tolerance) << c.code;
       if (c.readout == Readout::difference)
@@ -99,14 +99,14 @@ TEST(LikelihoodDecoder, RecoversDepthSignalAndAmbientWithoutNoise) {
   }
 }
 
-TEST(LikelihoodDecoder, TheLowerOfTwoEqualDepthsWins) {
-  // Twice the same period in one range.
+TEST(LikelihoodDecoder, TheSmallerOfTwoEqualDepthsWins) {
+  // Two equal periods within the range.
   const LikelihoodSetup setup("multifrequency-2x4", camera_with("paper-30x"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 400, 3);
   for (const double at : depth_bins_of(setup.decoder, raw)) EXPECT_LT(at, 120.0);
 }
 
-TEST(LikelihoodDecoder, PositionsBinsAndFramesAgreeHoweverPixelsAreGrouped) {
+TEST(LikelihoodDecoder, PositionsBinsAndFramesAgreeForAnyGroupingOfPixels) {
   const LikelihoodSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, 500, 5);
   const std::vector<double> together = depth_bins_of(setup.decoder, raw);
@@ -122,7 +122,7 @@ TEST(LikelihoodDecoder, PositionsBinsAndFramesAgreeHoweverPixelsAreGrouped) {
   }
 }
 
-TEST(LikelihoodDecoder, RefusesWhatDoesNotFitAndStopsWhenAsked) {
+TEST(LikelihoodDecoder, RejectsUnsuitableTablesAndStopsOnRequest) {
   const LikelihoodSetup setup("hamiltonian-k3", camera_with("paper-30x"));
   EXPECT_THROW(setup.decoder.decode(frame_of(std::vector<float>(8, 1.0f), 4)),
                std::invalid_argument);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What the decoder by maximum likelihood says of a pixel besides its depth.
+// Planes of a pixel other than its depth, from the maximum-likelihood decoder.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,12 +16,12 @@ TEST(LikelihoodDecoder, StrongSignalIsOk) {
                              100.0, 100.0);
 }
 
-TEST(LikelihoodDecoder, NotANumberIsInvalidAndDisturbsNoNeighbour) {
+TEST(LikelihoodDecoder, NaNIsInvalidAndDoesNotAffectNeighbours) {
   expect_not_a_number_disturbs_no_neighbour(
       LikelihoodSetup("hamiltonian-k4", camera_with("paper-10f0")).decoder, 20);
 }
 
-TEST(LikelihoodDecoder, BadPixelsHaveTheStatusOfZncc) {
+TEST(LikelihoodDecoder, BadPixelsHaveTheSameStatusAsWithZncc) {
   Camera camera = camera_with("paper-10f0");
   camera.sensor.full_well_e = 5000.0;
   const LikelihoodSetup setup("hamiltonian-k4", camera);
@@ -44,7 +44,7 @@ TEST(LikelihoodDecoder, NegativeSignalIsNoReturn) {
   expect_negative_signal_is_no_return<LikelihoodDecoder>();
 }
 
-TEST(LikelihoodDecoder, HugeNumbersAreDecodedNotOverflown) {
+TEST(LikelihoodDecoder, HugeValuesDoNotOverflow) {
   expect_huge_numbers_are_decoded(LikelihoodSetup("hamiltonian-k3", camera_with("paper-30x")));
 }
 
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
                         "hamiltonian-k5", 1, Readout::separate, {0.01, 0.02, 0.05, 0.08, 0.14}},
                     NoiseCase{"hamiltonian-k4", 2}));
 
-TEST(LikelihoodDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
+TEST(LikelihoodDecoder, ConfidenceIsTheFractionOfCorrectDepths) {
   const LikelihoodSetup setup("hamiltonian-k5", camera_with("paper-30x"));
   expect_right_as_often_as_said(setup, {1.25e2, 2.5e2, 5e2, 1e3, 2e3, 4e3, 8e3}, 3e3, 0.06);
 }

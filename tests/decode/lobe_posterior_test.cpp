@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Confidence as a posterior probability: against its definition by brute force, and against how
-// often depths are in the right lobe.
+// Confidence as a posterior probability, compared with its definition by brute force and with the
+// fraction of depths in the correct lobe.
 #include "decode/output/lobe_posterior.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ DecodingTable table_of(const std::string& code, const Camera& camera) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Standard deviation of the signal of a typical bin in this ambient light.
+/// Returns the standard deviation of the signal of a typical bin in this ambient light.
 double signal_deviation(const DecodingTable& table, double ambient) {
   const AmbientProjection projection(table);
   const ExpectedNoise noise(table);
@@ -45,7 +45,7 @@ double signal_deviation(const DecodingTable& table, double ambient) {
   return std::sqrt(variance) / projection.curve.rowwise().norm().mean();
 }
 
-/// Largest difference from brute force over pixels of these signals, in standard deviations.
+/// Returns the largest difference from brute force over pixels of these signals (in deviations).
 double largest_difference(const DecodingTable& table, const std::vector<double>& signals,
                           int pixels, int parts) {
   const AmbientProjection projection(table);
@@ -91,8 +91,8 @@ TEST(LobePosterior, IsTheIntegralOverTheCurveAndAllSignals) {
   EXPECT_LT(largest_difference(two, {0.0, 1.0, 2.0, 4.0, 8.0}, 6, 1), 0.02);
 }
 
-TEST(LobePosterior, CountsAllOfARunOfBinsWithOneDirection) {
-  // Correlation functions that rise from 0 have rows that differ in signal alone.
+TEST(LobePosterior, CountsAllBinsOfARunOfOneDirection) {
+  // Correlation functions that rise from 0 have rows that differ in signal only.
   const DecodingTable table = table_of("gray-k4", camera_with("paper-30x"));
   // In the brightest light the lobe ends at bins, not half a bin further: 0.5 of 15 bins.
   EXPECT_LT(largest_difference(table, {20.0, 50.0, 300.0}, 12, 20), 0.05);
@@ -105,7 +105,7 @@ TEST(LobePosterior, IsTheSameIntegralWithUnequalExposures) {
   EXPECT_LT(largest_difference(table, {1.0, 3.0, 6.0}, 8, 1), 0.02);
 }
 
-/// The table with more rows if it is smooth, for pixels on the curve and not on chords.
+/// Returns a smooth table with more rows, for pixels on the curve and not on chords.
 DecodingTable finely_sampled(DecodingTable table) {
   constexpr int finer = 8;
   if (!depth_polynomials(AmbientProjection(table).curve)) return table;
@@ -115,8 +115,8 @@ DecodingTable finely_sampled(DecodingTable table) {
   return table;
 }
 
-/// Two nearly equal halves of a curve: twins half a range apart that differ by `share` of the
-/// signal, over this many bins.
+/// Returns a curve of two nearly equal halves: depths half a range apart differ by `share` of the
+/// signal, over a stretch of bins.
 DecodingTable twins(int samples, double share) {
   Eigen::MatrixXd correlation(samples, 4);
   for (int n = 0; n < samples; ++n) {
@@ -134,7 +134,7 @@ DecodingTable twins(int samples, double share) {
 }
 
 TEST(LobePosterior, FindsTwinsBetweenRowsInBrightLight) {
-  // The main peak is narrower than a row: rows alone do not show which twin is higher.
+  // The main peak is narrower than a row, so that rows alone do not show which twin is higher.
   const DecodingTable table = twins(160, 0.003);
   EXPECT_LT(largest_difference(table, {60.0, 150.0, 330.0}, 6, 50), 0.02);
 }
@@ -160,8 +160,8 @@ TEST(LobePosterior, DecodersReportTwinsAsAmbiguous) {
   }
 }
 
-/// How often pixels with log-uniform signals, from a tenth of their deviation to `brightest`
-/// deviations, are in the main lobe, by confidence.
+/// Fraction of pixels in the main lobe by class of confidence, for log-uniform signals from 0.1 to
+/// `brightest` deviations.
 struct Reliability {
   static constexpr std::array<double, 8> edges = {0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.995, 2.0};
   std::array<RunningStatistics, edges.size()> claimed, right;
@@ -214,7 +214,7 @@ void expect_reliable(const DecodingTable& table, DecodeMethod method, int pixels
   }
 }
 
-TEST(Confidence, IsTheShareOfPixelsInTheRightLobe) {
+TEST(Confidence, IsTheFractionOfPixelsInTheCorrectLobe) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5",
                            "multifrequency-k5", "square-k4"})
     expect_reliable(table_of(code, camera_with("paper-10f0")), DecodeMethod::zncc, 20000, code);
@@ -222,7 +222,7 @@ TEST(Confidence, IsTheShareOfPixelsInTheRightLobe) {
                   20000, "two buckets");
 }
 
-TEST(Confidence, CountsCloseLobesOfHighHarmonicsApart) {
+TEST(Confidence, SeparatesCloseLobesOfHighHarmonics) {
   Camera camera = camera_with("paper-10f0", 2);
   camera.light.impulse_response = camera.sensor.impulse_response = {};
   camera.sensor.drain = false;
@@ -232,7 +232,7 @@ TEST(Confidence, CountsCloseLobesOfHighHarmonicsApart) {
     expect_reliable(table_of(code, camera), DecodeMethod::zncc, 6000, code);
 }
 
-TEST(Confidence, IsTheShareOfPixelsInTheRightLobeForOtherMethods) {
+TEST(Confidence, IsTheFractionOfPixelsInTheCorrectLobeForOtherMethods) {
   for (const char* code : {"hamiltonian-k4", "multifrequency-k5"})
     expect_reliable(table_of(code, camera_with("paper-10f0")), DecodeMethod::ml, 3000, code);
   const Camera kinect = built_in_camera("kinect-v2");

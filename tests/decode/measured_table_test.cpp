@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What a delay sweep with this code would find, tap by tap.
+/// Returns the result of a delay sweep with this code, tap by tap.
 MeasuredTable sweep_of(const ForwardModel& model, const Camera& camera) {
   MeasuredTable measured;
   measured.correlation = model.tap_correlation_table(model.samples());
@@ -33,7 +33,7 @@ DepthImage decoded(const DecodingTable& table, const RawFrames& raw, FilteredFra
   return image;
 }
 
-TEST(MeasuredTable, ASweepOfACodeDecodesAsTheCodeDoes) {
+TEST(MeasuredTable, ASweepOfACodeDecodesLikeTheCode) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     Camera camera = camera_with("paper-10f0", 2, readout);
     camera.sensor.dark_current_e_per_s = 300.0;
@@ -63,7 +63,7 @@ TEST(MeasuredTable, ASweepOfACodeDecodesAsTheCodeDoes) {
   }
 }
 
-TEST(MeasuredTable, ASweepOfAMixerDecodesAsItsCodeDoes) {
+TEST(MeasuredTable, ASweepOfAMixerDecodesLikeItsCode) {
   Camera camera = camera_with("paper-10f0");
   camera.sensor.demodulation = Demodulation::weight;
   camera.sensor.dark_current_e_per_s = 300.0;
@@ -85,16 +85,16 @@ TEST(MeasuredTable, ASweepOfAMixerDecodesAsItsCodeDoes) {
   EXPECT_EQ(table.gain_e_per_raw, code.gain_e_per_raw);
   EXPECT_EQ(table.black_level, code.black_level);
   EXPECT_LT((table.dark_electrons - code.dark_electrons).norm(), 1e-9);
-  // One read-out and its dark electrons, where a difference of buckets has two.
+  // A mixer has one readout and dark current per number, a difference of buckets has two.
   EXPECT_TRUE(table.constant_variance_e2.isApprox(code.constant_variance_e2, 1e-12));
   EXPECT_TRUE(table.shot_dark_electrons.isApprox(code.shot_dark_electrons, 1e-9));
-  // The light behind a column of both signs is its largest at least.
+  // The shot noise of a signed column is at least that of its absolute value.
   EXPECT_TRUE((table.shot_correlation.array() >= measured.correlation.array().abs() - 1e-12).all());
   const std::vector<float> raw = noisy_pixels(code, 3e4, 0.0, 2000, 8);
   EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
 }
 
-// Separate taps show all light, which makes their noise, whatever constant a table leaves out.
+// With separate taps the total light, and thus the noise, does not depend on the omitted constant.
 TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
   const Camera camera = camera_with("paper-10f0");
   const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
@@ -124,7 +124,7 @@ TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
   }
 }
 
-TEST(MeasuredTable, WhatTheFileSaysGoesBeforeTheCamera) {
+TEST(MeasuredTable, ValuesInTheFileOverrideTheCamera) {
   const Camera camera = camera_with("paper-10f0");
   MeasuredTable measured =
       sweep_of(ForwardModel(build_family("hamiltonian-k3", camera), camera), camera);
@@ -139,7 +139,7 @@ TEST(MeasuredTable, WhatTheFileSaysGoesBeforeTheCamera) {
   EXPECT_EQ(table.gain_e_per_raw, measured.gain_e_per_raw);
 }
 
-TEST(MeasuredTable, AmbientLightCancelsInDifferencesAndWhereToldSo) {
+TEST(MeasuredTable, AmbientLightCancelsInDifferencesAndOnRequest) {
   Camera camera = camera_with("paper-10f0", 2, Readout::difference);
   MeasuredTable pairs{Eigen::MatrixXd::Random(40, 6), 2, {}, {}, {}, {}};
   EXPECT_EQ(make_decoding_table(pairs, camera).ambient_gain, Eigen::VectorXd::Zero(3));
@@ -153,7 +153,7 @@ TEST(MeasuredTable, AmbientLightCancelsInDifferencesAndWhereToldSo) {
             (std::vector<std::int32_t>{15, 30}));
 }
 
-TEST(MeasuredTable, DriftIsInMetresWhateverTheRangeOfTheTable) {
+TEST(MeasuredTable, DriftIsInMetresForAnyRangeOfTheTable) {
   Camera camera = camera_with("paper-10f0");
   MeasuredTable measured =
       sweep_of(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
@@ -163,7 +163,7 @@ TEST(MeasuredTable, DriftIsInMetresWhateverTheRangeOfTheTable) {
     measured.range_m = range_m;
     const DecodingTable cold = make_decoding_table(measured, camera);
     EXPECT_EQ(cold.range_m, range_m);
-    // By three bins in ten degrees.
+    // Three bins in ten degrees.
     Camera warm = camera;
     warm.temperature->offset_m_per_c = 0.3 * range_m / samples;
     warm.temperature->now_c = 30.0;
@@ -175,7 +175,7 @@ TEST(MeasuredTable, DriftIsInMetresWhateverTheRangeOfTheTable) {
   }
 }
 
-TEST(MeasuredTable, LightBehindColumnsBelowZeroIsTheirLargestWhereAmbientLightAddsNothing) {
+TEST(MeasuredTable, SignedColumnsWithoutAmbientGainAreRaisedByTheirMinimum) {
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Constant(10, 3, 0.25);
   correlation(4, 1) = -2.0;
   correlation(5, 2) = 0.5;
@@ -183,7 +183,7 @@ TEST(MeasuredTable, LightBehindColumnsBelowZeroIsTheirLargestWhereAmbientLightAd
   const DecodingTable raised = make_decoding_table(measured, camera_with("paper-10f0"));
   EXPECT_EQ(raised.shot(), (correlation.array() + 2.0).matrix());
 
-  // The second column is out of reach.
+  // Ambient light cannot raise the second column.
   measured.ambient_gain = Eigen::Vector3d(0.0, 0.0, 1.0);
   measured.correlation(0, 2) = -0.5;
   const DecodingTable partly = make_decoding_table(measured, camera_with("paper-10f0"));
@@ -214,7 +214,7 @@ std::string refusal(const std::function<void(MeasuredTable&, Camera&)>& change) 
   return "accepted";
 }
 
-TEST(MeasuredTable, NamesWhatIsWrong) {
+TEST(MeasuredTable, RejectsInvalidInputsByName) {
   EXPECT_EQ(refusal([](MeasuredTable&, Camera&) {}), "accepted");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 1; }),
             "taps of the measured table = 1; must be 2 where the camera reads differences");
@@ -249,7 +249,7 @@ TEST(MeasuredTable, NamesWhatIsWrong) {
               HasSubstr("rank"));
 }
 
-TEST(MeasuredAmbient, IsOneOfThreeWords) {
+TEST(MeasuredAmbient, HasThreeValidNames) {
   for (const auto ambient : {MeasuredAmbient::equal, MeasuredAmbient::mean, MeasuredAmbient::none})
     EXPECT_EQ(parse_measured_ambient(name_of(ambient)), ambient);
   EXPECT_THROW(parse_measured_ambient("some"), std::invalid_argument);

@@ -33,7 +33,7 @@ DecodingTable exposed_table() {
   return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
 }
 
-/// A row of pixels at one depth of light that grows from pixel to pixel, in one exposure.
+/// Returns a row of pixels at one depth with increasing light, in one exposure.
 RawFrames exposed(double exposure, double least_e, double most_e, int width, std::uint64_t seed) {
   const DecodingTable table = exposed_table();
   RandomStream random(seed, static_cast<std::uint64_t>(exposure), 0);
@@ -69,8 +69,8 @@ MergedExposures merged(const std::vector<RawFrames>& frames) {
   return result;
 }
 
-TEST(MergeExposures, VarianceOfTheNumbersIsWhatAveragedSays) {
-  // Light at which 3, 2 and 1 exposures are not saturated.
+TEST(MergeExposures, VarianceIsConsistentWithAveraged) {
+  // Light levels at which 3, 2 and 1 exposures are not saturated.
   for (const double light_e : {3e2, 3e3, 1.2e4}) {
     SCOPED_TRACE(light_e);
     constexpr int width = 4000;
@@ -83,7 +83,7 @@ TEST(MergeExposures, VarianceOfTheNumbersIsWhatAveragedSays) {
         const double e =
             5.0 *
             (static_cast<double>(found.values.values[static_cast<std::size_t>(4 * x + k)]) - 50.0);
-        // The noise that a decoder expects.
+        // Noise assumed by a decoder.
         expected += (mean_e + 1600.0 + 25.0 / 12.0) /
                     static_cast<double>(found.averaged.pixels[std::size_t(x)]);
         square += std::pow(e - mean_e, 2);
@@ -92,7 +92,7 @@ TEST(MergeExposures, VarianceOfTheNumbersIsWhatAveragedSays) {
   }
 }
 
-TEST(MergeExposures, DepthIsBetterThanThatOfAnyExposureAlone) {
+TEST(MergeExposures, DepthIsBetterThanInAnySingleExposure) {
   constexpr int width = 3000;
   const std::vector<RawFrames> frames = bracket(2e2, 1.2e4, width);
   const Decoder decoder(exposed_table());
@@ -102,7 +102,7 @@ TEST(MergeExposures, DepthIsBetterThanThatOfAnyExposureAlone) {
     decoder.decode(raw, {.depth_m = depth_m.pixels.data()});
     double square = 0.0;
     for (const float depth : depth_m.pixels) {
-      // Saturated pixels have none, which is as wrong as can be.
+      // Saturated pixels have no depth; count that as the largest error.
       const double error_m = std::isfinite(depth) ? static_cast<double>(depth) - truth_m : truth_m;
       square += error_m * error_m / width;
     }
@@ -113,21 +113,21 @@ TEST(MergeExposures, DepthIsBetterThanThatOfAnyExposureAlone) {
   for (const RawFrames& raw : frames) EXPECT_LT(together_m, 0.7 * rms_m(view_of_frame(raw)));
 }
 
-TEST(MergeExposures, OneThatIsLeftIsAsItWas) {
+TEST(MergeExposures, ASingleUsableExposureIsUnchanged) {
   std::vector<RawFrames> frames = bracket(1.1e4, 1.2e4, 5);
-  const MergedExposures found = merged(frames);  // the longer ones are saturated
+  const MergedExposures found = merged(frames);  // the longer exposures are saturated
   for (std::size_t i = 0; i < found.values.values.size(); ++i)
     EXPECT_NEAR(found.values.values[i], frames[0].values[i], 1e-3);
   for (const float n : found.averaged.pixels) EXPECT_FLOAT_EQ(n, 1.0F);
 }
 
-TEST(MergeExposures, PixelsThatAreSaturatedOrInvalidInAllStaySo) {
+TEST(MergeExposures, PixelsSaturatedOrInvalidInAllExposuresStaySo) {
   std::vector<RawFrames> frames = bracket(1e3, 1.1e3, 4);
   for (RawFrames& raw : frames) {
     raw.values[0] = 4095.0F;                                  // pixel 0 is clipped in all
     raw.values[5] = std::numeric_limits<float>::quiet_NaN();  // pixel 1 is invalid in all
   }
-  frames[1].values[9] = std::numeric_limits<float>::infinity();  // pixel 2 in one
+  frames[1].values[9] = std::numeric_limits<float>::infinity();  // pixel 2 in one exposure
   const MergedExposures found = merged(frames);
   EXPECT_EQ(found.values.values[0], 4095.0F);
   EXPECT_TRUE(std::isnan(found.values.values[4]));
@@ -135,7 +135,7 @@ TEST(MergeExposures, PixelsThatAreSaturatedOrInvalidInAllStaySo) {
   EXPECT_LT(found.averaged.pixels[2], found.averaged.pixels[3]);
 }
 
-TEST(MergeExposures, RefusesExposuresThatAreNone) {
+TEST(MergeExposures, RejectsInvalidExposures) {
   const std::vector<RawFrames> frames = bracket(1e3, 1.1e3, 4);
   const auto refuses = [&](const std::vector<double>& given, const char* why) {
     EXPECT_THAT([&] { check_exposures(given, "hdr"); },

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int height = 40, width = 60, edge = 30;
 
-/// Two surfaces that a pixel sees, and how much of the first.
+/// Two surfaces seen by a pixel, with the share of the first.
 struct Seen {
   double depth_bin = 0.0, signal_e_per_s = 1e5;
   double second_bin = 0.0, second_e_per_s = 0.0;
@@ -39,7 +39,7 @@ RawFrames frame_seen(const DecodingTable& table, const SceneOfPixels& scene) {
       });
 }
 
-/// Near on the left, far on the right, and both in one column between them.
+/// Near surface on the left, far on the right, and one mixed column between them.
 Seen edge_between(int column) {
   if (column == edge) return {70.0, 0.6e5, 120.0, 0.4e5};
   return {column < edge ? 70.0 : 120.0};
@@ -61,13 +61,13 @@ DecodeSetup setup_of(const std::string& code = "hamiltonian-k5") {
   return DecodeSetup(code, camera_with("paper-10f0"));
 }
 
-TEST(MixedPixels, WordsAreReadBack) {
+TEST(MixedPixels, NamesAreReadBack) {
   for (const MixedPixels mixed : all_mixed_pixels)
     EXPECT_EQ(parse_mixed_pixels(name_of(mixed)), mixed);
   EXPECT_THROW(parse_mixed_pixels("near"), std::invalid_argument);
 }
 
-TEST(MixedPixels, SumsOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
+TEST(MixedPixels, MixturesOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
   const DecodeSetup setup = setup_of();
   const RawFrames raw =
       frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
@@ -99,7 +99,7 @@ TEST(MixedPixels, TheMiddleOfARibbonFivePixelsWideIsFound) {
   EXPECT_GE(found, height * 8 / 10);
 }
 
-TEST(MixedPixels, ALittleLightOfAnotherSurfaceIsFoundThoughTheDepthIsThatOfOne) {
+TEST(MixedPixels, ASmallShareOfAnotherSurfaceIsFound) {
   const DecodeSetup setup = setup_of();
   const DepthImage image =
       marked(setup, frame_seen(setup.decoder.table(), [](int, int x) {
@@ -128,12 +128,12 @@ TEST(MixedPixels, SnappedDepthIsThatOfAPixelNearby) {
         if ((dy != 0 || dx != 0) && y + dy >= 0 && y + dy < height)
           is_neighbours |= image.depth_m(y, edge) == before.depth_m(y + dy, edge + dx);
     EXPECT_TRUE(is_neighbours) << y;
-    // The near surface gives more light.
+    // The near surface is brighter.
     EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
   }
 }
 
-TEST(MixedPixels, DroppedPixelsHoldNoNumbers) {
+TEST(MixedPixels, DroppedPixelsHaveNoValues) {
   const DecodeSetup setup = setup_of();
   const RawFrames raw =
       frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
@@ -147,7 +147,7 @@ TEST(MixedPixels, DroppedPixelsHoldNoNumbers) {
   }
 }
 
-TEST(MixedPixels, SurfacesWithoutAnEdgeLoseNothing) {
+TEST(MixedPixels, SurfacesWithoutAnEdgeAreUnchanged) {
   const DecodeSetup setup = setup_of();
   const SceneOfPixels flat = [](int, int) { return Seen{90.0}; };
   const SceneOfPixels slanted = [](int y, int x) { return Seen{60.0 + 0.6 * x + 0.3 * y}; };
@@ -158,7 +158,7 @@ TEST(MixedPixels, SurfacesWithoutAnEdgeLoseNothing) {
     EXPECT_EQ(share_marked(marked(setup, frame_seen(setup.decoder.table(), scene))), 0.0);
 }
 
-TEST(MixedPixels, NoiseAtASharpEdgeMarksFew) {
+TEST(MixedPixels, NoiseAtASharpEdgeMarksFewPixels) {
   const DecodeSetup setup = setup_of();
   const RawFrames raw = frame_seen(setup.decoder.table(), [](int, int x) {
     return Seen{x < edge ? 70.0 : 120.0, 3e4};
@@ -175,7 +175,7 @@ TEST(MixedPixels, ObjectsOnePixelWideAreKept) {
 
 TEST(MixedPixels, EdgesOfASteepFloorAreFound) {
   const DecodeSetup setup = setup_of();
-  // 1.6 bins a row are 12 cm a pixel: far beyond noise.
+  // 1.6 bins per row are 12 cm per pixel, far above the noise.
   const auto seen = [](int row, int column) {
     Seen pixel = edge_between(column);
     pixel.depth_bin += 1.6 * row;
@@ -192,12 +192,12 @@ TEST(MixedPixels, EdgesOfASteepFloorAreFound) {
   EXPECT_LE(elsewhere, height * width / 100);
 }
 
-/// A frame in which a filter made single returns from between both surfaces of the mixed pixels.
+/// A frame whose mixed pixels a filter has turned into single returns between both surfaces.
 RawFrames filtered_frame(const DecodingTable& table) {
   return frame_seen(table, [](int, int x) { return x == edge ? Seen{95.0} : edge_between(x); });
 }
 
-TEST(MixedPixels, OwnNumbersTellWhatAFilterHid) {
+TEST(MixedPixels, UnfilteredValuesRevealMixedPixelsHiddenByAFilter) {
   const DecodeSetup setup = setup_of();
   const RawFrames own =
       frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
@@ -215,7 +215,7 @@ TEST(MixedPixels, OwnNumbersTellWhatAFilterHid) {
   EXPECT_GE(marked_at_the_edge({.measured = &measured}), height - 2);
 }
 
-TEST(MixedPixels, ThoseFoundBeforeStayAndAreOfNoSurface) {
+TEST(MixedPixels, PreviouslyFoundPixelsStayMarkedAndBelongToNoSurface) {
   const DecodeSetup setup = setup_of();
   const RawFrames own =
       frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
@@ -248,14 +248,14 @@ TEST(MixedPixels, ThoseFoundBeforeStayAndAreOfNoSurface) {
       testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("unfiltered.mixed")));
 }
 
-TEST(MixedPixels, ThreeMeasurementsTellNothingAndMarkNothing) {
+TEST(MixedPixels, ThreeMeasurementsMarkNothing) {
   const DecodeSetup setup = setup_of("hamiltonian-k3");
   const RawFrames raw =
       frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
   EXPECT_EQ(share_marked(marked(setup, raw)), 0.0);
 }
 
-TEST(MixedPixels, SinglePixelsAndFramesWithoutNumbersStay) {
+TEST(MixedPixels, SinglePixelsAndEmptyFramesAreUnchanged) {
   const DecodeSetup setup = setup_of();
   RawFrames raw = frame_seen(setup.decoder.table(), [](int, int) { return Seen{90.0}; });
   RawFrames one = raw;
@@ -267,7 +267,7 @@ TEST(MixedPixels, SinglePixelsAndFramesWithoutNumbersStay) {
     EXPECT_EQ(status, PixelStatus::invalid);
 }
 
-TEST(MixedPixels, NeedPlanesAndShapesThatFit) {
+TEST(MixedPixels, RequireMatchingPlanesAndShapes) {
   const DecodeSetup setup = setup_of();
   const RawFrames raw = frame_seen(setup.decoder.table(), [](int, int) { return Seen{90.0}; });
   DepthImage image = setup.decoder.decode(raw);

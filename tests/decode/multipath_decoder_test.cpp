@@ -22,13 +22,13 @@ using testing::ThrowsMessage;
 
 constexpr double ambient_e_per_s = 1e4;
 
-/// Two-bucket Hamiltonian with five exposures.
+/// Two-bucket Hamiltonian code with five exposures.
 struct TwoBucket {
   Camera camera = camera_with("paper-10f0", 2);
   ForwardModel model{build_family("hamiltonian-k5", camera), camera};
   DecodingTable table = make_decoding_table(model, camera);
 
-  /// Pixels spread over the range; `noise` standard deviations times normal numbers.
+  /// Returns pixels spread over the range, with normal noise of `noise` standard deviations.
   RawFrames pixels(int count, double signal, double ratio, double delay_m, double noise,
                    std::vector<double>& true_m) const {
     RawFrames raw;
@@ -69,7 +69,7 @@ TEST(TwoReturnDecoder, RecoversBothReturnsWithoutNoise) {
   std::vector<double> true_m;
   const DepthImage image = decoder.decode(setup.pixels(64, 1e6, 0.3, 1.0, 0.0, true_m));
   EXPECT_EQ(share(image, ReturnStatus::two), 1.0);
-  // A search from coarse places may end in another valley of chi^2 now and then.
+  // A search from coarse places occasionally ends in another local minimum of chi^2.
   int found = 0;
   for (std::size_t i = 0; i < true_m.size(); ++i)
     found += std::abs(circular_difference(image.depth_m.pixels[i], true_m[i],
@@ -80,7 +80,7 @@ TEST(TwoReturnDecoder, RecoversBothReturnsWithoutNoise) {
   EXPECT_GE(found, 61);
 }
 
-TEST(TwoReturnDecoder, LowersErrorFourfoldAndDeviationsHold) {
+TEST(TwoReturnDecoder, ReducesTheErrorFourfoldWithCorrectDeviations) {
   const TwoBucket setup;
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(400, 1e5, 0.3, 1.0, 1.0, true_m);
@@ -95,7 +95,7 @@ TEST(TwoReturnDecoder, LowersErrorFourfoldAndDeviationsHold) {
   EXPECT_GT(within, 0.94 * 400);
 }
 
-TEST(TwoReturnDecoder, LeavesSingleReturnsAlone) {
+TEST(TwoReturnDecoder, DoesNotChangeSingleReturns) {
   const TwoBucket setup;
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(2000, 1e4, 0.0, 0.0, 1.0, true_m);
@@ -131,7 +131,7 @@ TEST(TwoReturnDecoder, FitsAsWellAsAnExhaustiveReference) {
     PairFits fits;
     fit_pair(curve, delays, group, fits);
     const ReferenceReturns reference(setup.model, group);
-    // Within what curves between bins, drawn from the table, may be off.
+    // Tolerance: interpolation error of the table between bins.
     as_good += fits.chi2[0] <
                reference.best_pair_chi2(delays.shortest / points, delays.longest / points) + 1.0;
     EXPECT_NEAR(fits.single_chi2[0], reference.best_single_chi2(),
@@ -140,7 +140,7 @@ TEST(TwoReturnDecoder, FitsAsWellAsAnExhaustiveReference) {
   EXPECT_GE(as_good, 23);
 }
 
-TEST(TwoReturnDecoder, GivesTheSameBitsForAnyNumberOfThreadsAndNeighbours) {
+TEST(TwoReturnDecoder, IsBitIdenticalForAnyNumberOfThreadsAndNeighbours) {
   const TwoBucket setup;
   const TwoReturnDecoder decoder(setup.table);
   std::vector<double> true_m;
@@ -157,7 +157,7 @@ TEST(TwoReturnDecoder, GivesTheSameBitsForAnyNumberOfThreadsAndNeighbours) {
   EXPECT_EQ(many.returns.pixels, few.returns.pixels);
 }
 
-TEST(TwoReturnDecoder, DecodesAlikeOnEveryInstructionSet) {
+TEST(TwoReturnDecoder, IsIdenticalOnEveryInstructionSet) {
   const TwoBucket setup;
   const TwoReturnDecoder decoder(setup.table);
   std::vector<double> true_m;
@@ -166,7 +166,7 @@ TEST(TwoReturnDecoder, DecodesAlikeOnEveryInstructionSet) {
       [&] { EXPECT_LT(setup.mean_error_m(decoder.decode(raw).depth_m, true_m), 0.01); });
 }
 
-TEST(TwoReturnDecoder, MarksWhatHasNoDepth) {
+TEST(TwoReturnDecoder, MarksPixelsWithoutDepth) {
   const TwoBucket setup;
   std::vector<double> true_m;
   RawFrames raw = setup.pixels(2, 1e5, 0.3, 1.0, 0.0, true_m);
@@ -177,7 +177,7 @@ TEST(TwoReturnDecoder, MarksWhatHasNoDepth) {
   EXPECT_EQ(image.returns.pixels[1], ReturnStatus::two);
 }
 
-TEST(TwoReturnDecoder, LeansOnItsPriorInDimLight) {
+TEST(TwoReturnDecoder, FollowsItsPriorInDimLight) {
   const TwoBucket setup;
   std::vector<double> true_m;
   const RawFrames raw = setup.pixels(150, 1e4, 0.3, 0.5, 1.0, true_m);
@@ -188,7 +188,7 @@ TEST(TwoReturnDecoder, LeansOnItsPriorInDimLight) {
             setup.mean_error_m(likely.depth_m, true_m));
 }
 
-TEST(TwoReturnDecoder, RefusesCodesThatCannotTellReturns) {
+TEST(TwoReturnDecoder, RejectsCodesThatCannotSeparateReturns) {
   const auto refused = [](const char* code, int taps, const char* why) {
     const Camera camera = camera_with("paper-10f0", taps);
     const DecodingTable table =
@@ -203,7 +203,7 @@ TEST(TwoReturnDecoder, RefusesCodesThatCannotTellReturns) {
   refused("multifrequency-k5", 1, "two frequencies only");
 }
 
-TEST(TwoReturnDecoder, DoesNotRecommendTheCodeThatTheBandwidthSpoils) {
+TEST(TwoReturnDecoder, DoesNotRecommendACodeBeyondTheBandwidth) {
   Camera camera = camera_with("paper-10f0", 2);
   camera.light.impulse_response.f_max_hz = camera.sensor.impulse_response.f_max_hz = 2.5e7;
   const DecodingTable table =
@@ -215,7 +215,7 @@ TEST(TwoReturnDecoder, DoesNotRecommendTheCodeThatTheBandwidthSpoils) {
                                        testing::Not(HasSubstr("hamiltonian-k5"))));
 }
 
-TEST(TwoReturnDecoder, RefusesOptionsThatMakeNoSense) {
+TEST(TwoReturnDecoder, RejectsInvalidOptions) {
   const TwoBucket setup;
   const auto refused = [&](const MultipathOptions& options, const char* field) {
     EXPECT_THAT([&] { TwoReturnDecoder(setup.table, options); },
@@ -228,7 +228,7 @@ TEST(TwoReturnDecoder, RefusesOptionsThatMakeNoSense) {
   refused({.prior = ReturnPrior{.max_ratio = 2.0}}, "max_ratio = 2");
 }
 
-TEST(TailDecoder, LowersTheErrorOfATailFivefold) {
+TEST(TailDecoder, ReducesTheErrorOfATailFivefold) {
   const TwoBucket setup;
   std::vector<double> true_m;
   RawFrames raw;

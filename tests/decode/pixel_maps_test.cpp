@@ -21,7 +21,7 @@ Image<float> row_of(const std::vector<float>& values) {
   return image;
 }
 
-/// Decoded pixels of these depths.
+/// Returns decoded pixels of these depths.
 DepthImage decoded(const std::vector<float>& depth_m) {
   DepthImage image(1, static_cast<int>(depth_m.size()));
   image.depth_m.pixels = depth_m;
@@ -39,7 +39,7 @@ void apply_all(const PixelMaps& maps, DepthImage& image) {
   apply(maps, range_m, DecodedView::of(image), 0, image.status.size());
 }
 
-TEST(PixelMaps, OffsetsAreTakenOffAndWrap) {
+TEST(PixelMaps, OffsetsAreSubtractedAndWrap) {
   DepthImage image = decoded({1.0f, 1.0f, 9.5f, 0.25f, 3.0f, nan});
   apply_all({row_of({0.25f, 1.5f, -1.0f, 0.25f, 23.0f, 1.0f}), {}}, image);
   const std::vector<float> expected = {0.75f, 9.5f, 0.5f, 0.0f, 0.0f};
@@ -50,7 +50,7 @@ TEST(PixelMaps, OffsetsAreTakenOffAndWrap) {
   EXPECT_EQ(image.status.pixels[0], PixelStatus::low_signal);
 }
 
-TEST(PixelMaps, DepthsStayInTheRangeWhateverTheOffset) {
+TEST(PixelMaps, DepthsStayInTheRangeForAnyOffset) {
   RandomStream random(1, 0);
   for (int i = 0; i < 20000; ++i) {
     const float depth = i % 3 == 0 ? 0.0f : static_cast<float>(range_m * random.uniform());
@@ -62,7 +62,7 @@ TEST(PixelMaps, DepthsStayInTheRangeWhateverTheOffset) {
   }
 }
 
-TEST(PixelMaps, GainsDivideLightAndNothingElse) {
+TEST(PixelMaps, GainsDivideLightOnly) {
   DepthImage image = decoded({1.0f, 2.0f});
   apply_all({{}, row_of({0.5f, 2.0f})}, image);
   EXPECT_EQ(image.signal_e_per_s.pixels, (std::vector<float>{2000.0f, 500.0f}));
@@ -72,7 +72,7 @@ TEST(PixelMaps, GainsDivideLightAndNothingElse) {
   EXPECT_EQ(image.predicted_standard_deviation_m.pixels, (std::vector<float>{0.01f, 0.01f}));
 }
 
-TEST(PixelMaps, NotANumberMarksADeadPixel) {
+TEST(PixelMaps, NaNMarksADeadPixel) {
   for (const bool in_gain : {false, true}) {
     DepthImage image = decoded({1.0f, 2.0f});
     std::vector<std::int32_t> bins = {10, 20};
@@ -91,7 +91,7 @@ TEST(PixelMaps, NotANumberMarksADeadPixel) {
   }
 }
 
-TEST(PixelMaps, PixelsMayComeInPartsAndPlanesMayBeMissing) {
+TEST(PixelMaps, AcceptPartsOfAnImageAndMissingPlanes) {
   const PixelMaps maps{row_of({1.0f, 2.0f, nan, 4.0f}), row_of({1.0f, 2.0f, 4.0f, 8.0f})};
   DepthImage whole = decoded({5.0f, 5.0f, 5.0f, 5.0f}), parts = whole;
   apply_all(maps, whole);
@@ -103,12 +103,12 @@ TEST(PixelMaps, PixelsMayComeInPartsAndPlanesMayBeMissing) {
   EXPECT_EQ(parts.signal_e_per_s.pixels[3], whole.signal_e_per_s.pixels[3]);
   EXPECT_EQ(parts.status.pixels, whole.status.pixels);
   EXPECT_EQ(parts.depth_m.pixels[3], 5.0f);
-  apply(maps, range_m, {}, 0, 4);  // nothing is wanted
+  apply(maps, range_m, {}, 0, 4);  // no plane is requested
   EXPECT_THROW(apply(maps, range_m, view, 2, 3), std::invalid_argument);
   EXPECT_THROW(apply(maps, 0.0, view, 0, 4), std::invalid_argument);
 }
 
-TEST(PixelMaps, FixedPatternPhaseIsUndone) {
+TEST(PixelMaps, FixedPatternPhaseIsCorrected) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-30x"));
   const double bin_m = setup.camera.bin_m();
   std::vector<float> raw, offset_m, gain;
@@ -136,7 +136,7 @@ std::string complaint(const PixelMaps& maps, int height, int width) {
   return "accepted";
 }
 
-TEST(PixelMaps, NamesWhatIsWrong) {
+TEST(PixelMaps, RejectsInvalidMapsByName) {
   EXPECT_EQ(complaint({}, 3, 4), "accepted");
   EXPECT_EQ(complaint({Image<float>(4, 3), {}}, 3, 4),
             "delay_offset_m = 4 x 3; must have the size of the frames, 3 x 4");

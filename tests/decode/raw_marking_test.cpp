@@ -41,7 +41,7 @@ DecodingTable table_of(const Camera& camera, const char* code) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Numbers of a pixel without noise in the scale of the table.
+/// Returns noise-free values of a pixel in the scale of the table.
 std::vector<float> pixel_of(const DecodingTable& table, int bin, double largest_dn) {
   std::vector<float> raw;
   const double scale = largest_dn / table.correlation.cwiseAbs().maxCoeff();
@@ -69,7 +69,7 @@ std::vector<PixelStatus> statuses_of(const DepthDecoder& decoder, const std::vec
   return statuses_of(decoder, row_of(raw, measurements));
 }
 
-/// Every method with a code that it decodes.
+/// Returns every method with a code that it decodes.
 std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& camera) {
   std::vector<std::unique_ptr<const DepthDecoder>> decoders;
   for (const DecodeMethod method : all_decode_methods)
@@ -79,7 +79,7 @@ std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& came
   return decoders;
 }
 
-/// One pixel without clipped numbers, and one for each measurement and number that replaces it.
+/// Returns one unclipped pixel, and one pixel for each replaced measurement and replacing number.
 std::vector<float> with_each(const DecodingTable& table, const std::vector<float>& numbers) {
   const std::vector<float> pixel = pixel_of(table, 31, 400.0);
   std::vector<float> raw = pixel;
@@ -92,7 +92,7 @@ std::vector<float> with_each(const DecodingTable& table, const std::vector<float
   return raw;
 }
 
-/// The first pixel is decoded, and the status of all others is `status`.
+/// Expects that the first pixel is decoded and that all others have `status`.
 void expect_only_first_is_measured(const DepthDecoder& decoder, const std::vector<float>& numbers,
                                    PixelStatus status) {
   const DecodingTable& table = decoder.table();
@@ -103,7 +103,7 @@ void expect_only_first_is_measured(const DepthDecoder& decoder, const std::vecto
   EXPECT_THAT(found, Each(status));
 }
 
-TEST(RawMarking, DifferencesAtTheRailsOfTheConverterAreSaturated) {
+TEST(RawMarking, DifferencesAtTheLimitsOfTheConverterAreSaturated) {
   for (const int bits : {10, 12, 16})
     for (const auto& decoder : all_decoders(converted(difference_camera(), bits))) {
       const auto half = static_cast<float>(1 << (bits - 1));
@@ -113,7 +113,7 @@ TEST(RawMarking, DifferencesAtTheRailsOfTheConverterAreSaturated) {
     }
 }
 
-TEST(RawMarking, NumbersOfMixersAtTheRailsAreSaturated) {
+TEST(RawMarking, ValuesOfMixersAtTheLimitsAreSaturated) {
   for (const auto& decoder : all_decoders(converted(mixer_camera(), 11)))
     expect_only_first_is_measured(*decoder, {1023.0f, -1024.0f, 1500.0f, -1500.0f},
                                   PixelStatus::saturated);
@@ -133,7 +133,7 @@ TEST(RawMarking, ADifferenceOfTheWholeFullWellIsSaturated) {
 }
 
 TEST(RawMarking, UnsignedDifferencesDecodeAsSignedOnes) {
-  // Around the black level, where the number without light cancels in no code with three words.
+  // Around the black level, whose deviation does not cancel in any three-measurement code.
   const Camera camera = converted(difference_camera(), 12, 1900.0);
   const DecodingTable table = table_of(camera, "hamiltonian-k5");
   const Decoder decoder(table);
@@ -155,7 +155,7 @@ TEST(RawMarking, UnsignedDifferencesDecodeAsSignedOnes) {
   }
 }
 
-TEST(RawMarking, MarkersHaveTheirMeaningInEveryDecoder) {
+TEST(RawMarking, MarkersAreAppliedInEveryDecoder) {
   for (Camera camera : {camera_with("paper-10f0", 2), difference_camera(), mixer_camera()}) {
     camera.raw = {.saturated = {32767.0, -32768.0}, .invalid = {-7777.0, 0.5}};
     for (const auto& decoder : all_decoders(camera)) {
@@ -171,7 +171,7 @@ TEST(RawMarking, MarkersHaveTheirMeaningInEveryDecoder) {
   }
 }
 
-TEST(RawMarking, AMarkerComesBeforeTheConvertersRail) {
+TEST(RawMarking, MarkersTakePrecedenceOverTheLimitsOfTheConverter) {
   Camera camera = converted(camera_with("paper-10f0", 2), 12);
   camera.raw.invalid = {4095.0};
   for (const auto& decoder : all_decoders(camera)) {
@@ -180,7 +180,7 @@ TEST(RawMarking, AMarkerComesBeforeTheConvertersRail) {
   }
 }
 
-/// A frame of a plane, 12 x 12, with one pixel in the middle whose first number is `number`.
+/// Returns a frame of a plane, 12 x 12, with one pixel in the middle whose first value is `number`.
 RawFrames frame_with(const DecodingTable& table, float number) {
   RandomStream random(5, 0);
   RawFrames raw{
@@ -191,7 +191,7 @@ RawFrames frame_with(const DecodingTable& table, float number) {
   return raw;
 }
 
-/// The numbers of all pixels but that in the middle.
+/// Returns the values of all pixels except the middle one.
 std::vector<float> around_the_middle(const RawView& raw) {
   std::vector<float> values(static_cast<std::size_t>(raw.pixels() * raw.measurements));
   copy_pixels(raw, 0, raw.pixels(), values.data());
@@ -200,7 +200,7 @@ std::vector<float> around_the_middle(const RawView& raw) {
   return values;
 }
 
-TEST(RawMarking, NoFilterAddsSaturatedNumbersToOthers) {
+TEST(RawMarking, FiltersDoNotSpreadSaturatedValues) {
   Camera camera = converted(difference_camera(), 10);
   camera.raw = {.saturated = {77.5}, .invalid = {78.5}};
   const DecodingTable table = table_of(camera, "hamiltonian-k4");
@@ -224,7 +224,7 @@ TEST(RawMarking, NoFilterAddsSaturatedNumbersToOthers) {
   }
 }
 
-TEST(RawMarking, ExposuresThatAreSaturatedAtTheLowerRailAreLeftOut) {
+TEST(RawMarking, ExposuresSaturatedAtTheLowerLimitAreExcluded) {
   const DecodingTable table = table_of(converted(mixer_camera(), 12), "hamiltonian-k4");
   const RawFrames clean = frame_with(table, 100.0f), clipped = frame_with(table, -2048.0f);
   const std::array exposures = {1.0, 2.0};
@@ -239,8 +239,8 @@ TEST(RawMarking, ExposuresThatAreSaturatedAtTheLowerRailAreLeftOut) {
   EXPECT_EQ(merged.values.values[middle], -2048.0f);
 }
 
-TEST(RawMarking, FilteredNumbersAreNotMarkedAgain) {
-  // 0 marks pixels of the sensor; a difference of the filter that happens to be 0 is a measurement.
+TEST(RawMarking, FilteredValuesAreNotMarkedAgain) {
+  // 0 marks sensor pixels, but a filtered difference of 0 is a valid measurement.
   Camera camera = difference_camera();
   camera.raw.invalid = {0.0};
   const DecodingTable table = table_of(camera, "hamiltonian-k4");
@@ -254,7 +254,7 @@ TEST(RawMarking, FilteredNumbersAreNotMarkedAgain) {
   EXPECT_NE(status, PixelStatus::invalid);
 }
 
-TEST(RawMarking, DifferencesOfTapsAreMarkedByTheTaps) {
+TEST(RawMarking, DifferencesAreMarkedIfTheirTapsAre) {
   Camera camera = converted(difference_camera(), 12, 64.0);
   camera.raw.invalid = {0.0};
   const RawMarking marking = table_of(camera, "hamiltonian-k4").marking;

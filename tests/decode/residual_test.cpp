@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Measurements that no depth explains.
+// Measurements that are inconsistent with any depth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,13 +20,13 @@ DecodingTable table_of(const std::string& code, const Camera& camera) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Chords of this table are indistinguishable from the true correlation functions.
+/// Returns a table fine enough that its chords equal the true correlation functions.
 DecodingTable fine_table_of(const std::string& code, Camera camera) {
   camera.samples *= 16;
   return table_of(code, camera);
 }
 
-/// Decodes pixels as one row, with their residuals.
+/// Decodes pixels as one row, with residuals.
 DepthImage decode_row(DecodeMethod method, const DecodingTable& table,
                       const std::vector<float>& raw, const DecodeOptions& options = {},
                       const float* averaged = nullptr) {
@@ -50,7 +50,7 @@ double mean_residual(const DepthImage& image) {
   return sum / static_cast<double>(image.residual.size());
 }
 
-/// Pixels of which the measurements from `first` on see another depth.
+/// Returns pixels whose measurements from `first` on see another depth.
 std::vector<float> displaced_pixels(const DecodingTable& table, double signal, double near_bin,
                                     double far_bin, int first, int pixels) {
   std::vector<float> raw, other;
@@ -86,14 +86,14 @@ class ResidualOfCode : public testing::TestWithParam<ResidualCase> {
     const ResidualCase& c = GetParam();
     return fine_table_of(c.code, camera_with(c.camera, c.taps, c.readout));
   }
-  /// Differences hide ambient light; decoders assume that of the camera.
+  /// Ambient light cancels in differences; decoders assume the camera's level.
   double ambient_e_per_s() const {
     if (GetParam().readout == Readout::separate) return 1e3;
     return built_in_camera(GetParam().camera).operating.middle().ambient_e_per_s;
   }
 };
 
-TEST_P(ResidualOfCode, MarksConsistentPixelsAtTheStatedRate) {
+TEST_P(ResidualOfCode, MarksConsistentPixelsAtTheConfiguredRate) {
   const DecodingTable table = this->table(), actual = fine_table();
   const int pixels = GetParam().method == DecodeMethod::ml ? 4000 : 20000;
   const double rate = 0.02;
@@ -108,7 +108,7 @@ TEST_P(ResidualOfCode, MarksConsistentPixelsAtTheStatedRate) {
   }
 }
 
-TEST_P(ResidualOfCode, FindsMeasurementsOfTwoDepths) {
+TEST_P(ResidualOfCode, DetectsMeasurementsOfTwoDepths) {
   const DecodingTable table = this->table(), actual = fine_table();
   const double samples = actual.samples();
   const DepthImage image = decode_row(
@@ -117,7 +117,7 @@ TEST_P(ResidualOfCode, FindsMeasurementsOfTwoDepths) {
   EXPECT_GE(share_of(image, PixelStatus::inconsistent), 0.99);
 }
 
-TEST_P(ResidualOfCode, IsThatOfTheMeanOfMeasurements) {
+TEST_P(ResidualOfCode, AccountsForAveragedMeasurements) {
   const DecodingTable table = this->table();
   constexpr int pixels = 1000, averaged = 64;
   const std::vector<float> raw = noisy_pixels(fine_table(), 1e5, 1e3, pixels, 2);
@@ -152,7 +152,7 @@ TEST(Residual, IsMissingWithoutDegreesOfFreedom) {
   }
 }
 
-TEST(Residual, ChecksNothingAtRateZero) {
+TEST(Residual, MarksNothingAtRateZero) {
   const DecodingTable table = table_of("sinusoid-k8", camera_with("paper-10f0"));
   std::vector<float> raw = noisy_pixels(table, 1e6, 1e3, 200, 3);
   for (std::size_t i = 0; i < raw.size(); i += 8) raw[i] += 2000.0f;
@@ -164,7 +164,7 @@ TEST(Residual, ChecksNothingAtRateZero) {
   }
 }
 
-TEST(Residual, ToleratesTheStatedModelError) {
+TEST(Residual, ToleratesTheConfiguredModelError) {
   // Every measurement is off by 2 % of its variation over depth.
   const DecodingTable table = table_of("sinusoid-k8", camera_with("paper-10f0"));
   DecodingTable actual = fine_table_of("sinusoid-k8", camera_with("paper-10f0"));
@@ -181,7 +181,7 @@ TEST(Residual, ToleratesTheStatedModelError) {
   }
 }
 
-TEST(Residual, TwoReturnsExplainWhatOneDoesNot) {
+TEST(Residual, IsSmallIfTwoReturnsExplainThePixel) {
   const DecodingTable table = table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));
   const DecodingTable actual =
       fine_table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));

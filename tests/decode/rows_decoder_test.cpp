@@ -17,7 +17,7 @@ namespace {
 
 constexpr int samples = 60;
 
-/// Rows of a code, and noisy pixels of them: counts of every time bin, weighed.
+/// Rows of a code, and noisy pixels: weighted counts of all time bins.
 struct RowsSetup {
   explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3)
       : camera(rows_camera(samples, signal_e, ambient_e)),
@@ -28,7 +28,7 @@ struct RowsSetup {
     for (int z = 0; z < samples; ++z) light.col(z) = bins_e(model, z, 1.0, 0.0);
   }
 
-  /// Expected light of every time bin, on the chords between depths.
+  /// Returns the expected light in every time bin, interpolated between depths.
   Eigen::VectorXd bins(double depth_bin, double signal, double ambient) const {
     const int from = static_cast<int>(depth_bin), to = (from + 1) % samples;
     const double t = depth_bin - from;
@@ -49,13 +49,13 @@ struct RowsSetup {
   ForwardModel model;
   DecodingTable table;
   Eigen::MatrixXd weights;  // C (N, K)
-  Eigen::MatrixXd light;    // of bin n from depth z, (N, N)
+  Eigen::MatrixXd light;    // light in bin n from depth z, (N, N)
 };
 
 constexpr const char* names[] = {"fourier-k6", "hamiltonian-k4", "histogram-k5"};
 
-/// Correlations with every depth in the words of the definition: centred by ambient light, and in
-/// coordinates in which the mean covariance at the nominal light is white.
+/// Reference correlation: ambient light is projected out, in coordinates in which the mean
+/// covariance at the nominal light is white.
 class CorrelationByDefinition {
  public:
   explicit CorrelationByDefinition(const RowsSetup& setup) {
@@ -76,7 +76,7 @@ class CorrelationByDefinition {
   int best(const Eigen::VectorXd& y) const {
     int best = 0;
     for (int z = 1; z < samples; ++z)
-      // Of bins that tie up to rounding, the first.
+      // Among bins equal up to rounding, use the first.
       if (references_[static_cast<std::size_t>(z)].dot(y) >
           references_[static_cast<std::size_t>(best)].dot(y) + 1e-9 * y.norm())
         best = z;
@@ -125,7 +125,7 @@ double cost_by_definition(const RowsSetup& setup, const Eigen::VectorXd& y, doub
   return residual.dot(covariance.inverse() * residual) + std::log(covariance.determinant());
 }
 
-TEST(RowsDecoder, NothingIsMoreLikelyThanWhatMlFinds) {
+TEST(RowsDecoder, NoDepthIsMoreLikelyThanThatOfMaximumLikelihood) {
   for (const char* name : {"fourier-k6", "hamiltonian-k4"}) {
     const RowsSetup setup(name, 500, 300);
     const LikelihoodDecoder decoder(setup.table);
@@ -139,7 +139,7 @@ TEST(RowsDecoder, NothingIsMoreLikelyThanWhatMlFinds) {
                                    .width = 1,
                                    .measurements = int(raw.size()),
                                    .values = std::vector<float>(raw.begin(), raw.end())});
-      // Neither code sees ambient light; the nominal one is taken.
+      // Neither code sees ambient light; the nominal level is assumed.
       ASSERT_TRUE(std::isnan(image.ambient_e_per_s(0, 0)));
       const double own = cost_by_definition(setup, y, image.depth_m(0, 0) / setup.table.bin_m(),
                                             image.signal_e_per_s(0, 0), 300);
@@ -151,7 +151,7 @@ TEST(RowsDecoder, NothingIsMoreLikelyThanWhatMlFinds) {
   }
 }
 
-/// Predicted over actual deviation of many pixels of one depth.
+/// Returns predicted over empirical deviation for many pixels at one depth.
 template <typename AnyDecoder>
 double deviation_ratio(const RowsSetup& setup, const AnyDecoder& decoder) {
   const OperatingPoint light = setup.camera.operating.middle();
@@ -172,18 +172,18 @@ double deviation_ratio(const RowsSetup& setup, const AnyDecoder& decoder) {
   return std::sqrt(predicted / square);
 }
 
-TEST(RowsDecoder, PredictedDeviationsAreThoseOfTheNoise) {
-  // Of 400 pixels a deviation is known to 4 %.
+TEST(RowsDecoder, PredictedDeviationsMatchTheNoise) {
+  // The standard error of a deviation from 400 pixels is 4 %.
   const RowsSetup signal("fourier-k6", 5e3, 1e3), ambient("fourier-k6", 2e4, 2e5);
   EXPECT_NEAR(deviation_ratio(signal, LikelihoodDecoder(signal.table)), 1.0, 0.15);
   EXPECT_NEAR(deviation_ratio(ambient, LikelihoodDecoder(ambient.table)), 1.0, 0.15);
   EXPECT_NEAR(deviation_ratio(ambient, Decoder(ambient.table)), 1.0, 0.15);
-  // Where the signal makes the noise, its covariance differs from depth to depth: zncc, which
-  // neglects that, predicts too much.
+  // With signal-dominated noise the covariance varies with depth. zncc neglects this and
+  // overestimates the deviation.
   EXPECT_NEAR(deviation_ratio(signal, Decoder(signal.table)), 1.25, 0.25);
 }
 
-TEST(RowsDecoder, OtherMethodsSayThatTheyTakeNoRows) {
+TEST(RowsDecoder, OtherMethodsRejectRows) {
   const RowsSetup setup("fourier-k6");
   for (const DecodeMethod method :
        {DecodeMethod::unwrap, DecodeMethod::two_return, DecodeMethod::tail})

@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// A share of `total`, falling with the square of the distance.
+/// Returns a kernel of sum `total` that falls with the square of the distance.
 Image<float> glare(double total, int reach = 20) {
   Image<float> kernel(2 * reach + 1, 2 * reach + 1);
   double sum = 0.0;
@@ -37,7 +37,7 @@ DecodingTable table() {
   return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
 }
 
-/// A bright object at one depth beside a dark one at another, without noise.
+/// Returns a bright object next to a dark one at another depth, without noise.
 RawFrames scene(const DecodingTable& table) {
   RawFrames raw{.frames = 1, .height = 24, .width = 32, .measurements = 4, .values = {}};
   for (int v = 0; v < raw.height; ++v)
@@ -66,7 +66,7 @@ RawView view_of_frame(const RawFrames& raw) {
   return RawView::interleaved(raw.values.data(), raw.height, raw.width, raw.measurements);
 }
 
-TEST(StrayLight, WhatIsScatteredIsGatheredAgain) {
+TEST(StrayLight, GatheringInvertsScattering) {
   for (const double total : {0.01, 0.1, 0.45}) {
     StrayLight stray_light(glare(total));
     EXPECT_NEAR(stray_light.share(), total, 1e-6);
@@ -79,7 +79,7 @@ TEST(StrayLight, WhatIsScatteredIsGatheredAgain) {
   }
 }
 
-TEST(StrayLight, LightIsKeptFarFromTheEdges) {
+TEST(StrayLight, LightIsConservedFarFromTheEdges) {
   StrayLight stray_light(glare(0.2, 5));
   Image<float> light(21, 21);
   light(10, 10) = 100.0F;
@@ -90,7 +90,7 @@ TEST(StrayLight, LightIsKeptFarFromTheEdges) {
   EXPECT_NEAR(seen(10, 10), 80.0, 1e-3);
 }
 
-TEST(StrayLight, DarkObjectsBesideBrightOnesKeepTheirDepth) {
+TEST(StrayLight, DarkObjectsNextToBrightOnesKeepTheirDepth) {
   const DecodingTable of = table();
   const Decoder decoder(of);
   StrayLight stray_light(glare(0.05));
@@ -110,13 +110,13 @@ TEST(StrayLight, DarkObjectsBesideBrightOnesKeepTheirDepth) {
   EXPECT_LT(worst_m(clean), 2e-3);
 }
 
-TEST(StrayLight, PixelsThatAreSaturatedOrInvalidStayAsTheyAre) {
+TEST(StrayLight, SaturatedAndInvalidPixelsAreUnchanged) {
   const DecodingTable of = table();
   StrayLight stray_light(glare(0.05));
   RawFrames seen = scattered(scene(of), stray_light);
   seen.values[0] = 65535.0F;
   seen.values[5] = std::numeric_limits<float>::quiet_NaN();
-  seen.values[8] = 65534.0F;  // just below, and brighter without what others got of it
+  seen.values[8] = 65534.0F;  // just below saturation; gathering makes it brighter
   RawFrames clean;
   stray_light.remove(view_of_frame(seen), of, clean);
   EXPECT_EQ(clean.values[0], 65535.0F);
@@ -126,7 +126,7 @@ TEST(StrayLight, PixelsThatAreSaturatedOrInvalidStayAsTheyAre) {
     EXPECT_TRUE(std::isfinite(clean.values[i]));
 }
 
-TEST(StrayLight, RefusesKernelsThatAreNone) {
+TEST(StrayLight, RejectsInvalidKernels) {
   const auto refuses = [](Image<float> kernel, const char* why) {
     EXPECT_THAT([&] { StrayLight stray_light(kernel); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr(why)));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The bound on rounding that comes with every projected pixel, against double arithmetic.
+// Rounding error bound of every projected pixel, compared with double arithmetic.
 #include "decode/search/tile_projection.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace tofsmith {
 namespace {
 
-/// Unequal duties, exposures, gains and black levels.
+/// Returns a table of random duties, exposures, gains and black levels.
 DecodingTable random_table(int measurements, bool is_equal, RandomStream& random) {
   DecodingTable table;
   table.correlation = Eigen::MatrixXd(60, measurements);
@@ -34,7 +34,7 @@ DecodingTable random_table(int measurements, bool is_equal, RandomStream& random
   return table;
 }
 
-/// Raw numbers with ambient light of up to 1e5 times their residual.
+/// Raw values with ambient light of up to 1e5 times the residual.
 template <typename Number>
 std::vector<Number> random_raw(const DecodingTable& table, int pixels, RandomStream& random) {
   std::vector<Number> raw;
@@ -80,7 +80,7 @@ void expect_bounds(const DecodingTable& table, RandomStream& random) {
   });
 }
 
-TEST(TileProjection, BoundsItsRounding) {
+TEST(TileProjection, BoundsTheRoundingError) {
   RandomStream random(1, 0);
   for (const int measurements : {3, 4, 5, 6, 8, 11})
     for (const bool is_equal : {true, false}) {
@@ -90,11 +90,11 @@ TEST(TileProjection, BoundsItsRounding) {
     }
 }
 
-TEST(TileProjection, LosesLittleToEqualAmbientLight) {
+TEST(TileProjection, IsAccurateUnderEqualAmbientLight) {
   RandomStream random(2, 0);
   const DecodingTable table = random_table(4, true, random);
   const TileProjection projection(table, AmbientProjection(table), 1.0);
-  // A signal of 100 under ambient light of 1e6: single precision alone would leave .1 of it.
+  // A signal of 100 under ambient light of 1e6 would lose 0.1 in plain single precision.
   const std::vector<float> raw = {1e6f + 100, 1e6f, 1e6f, 1e6f};
   const auto tile = std::make_unique<PixelTile>();
   projection.project(RawView::interleaved(raw.data(), 1, 1, 4), 0, 1, false, *tile);

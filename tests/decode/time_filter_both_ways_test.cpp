@@ -35,7 +35,7 @@ Out out_of(const RawView& raw) {
   return out;
 }
 
-/// All frames that come out of a recording.
+/// Returns all output frames of a recording.
 std::vector<Out> filtered(TimeFilter& filter, const std::vector<RawFrames>& frames) {
   std::vector<Out> out;
   for (const RawFrames& raw : frames)
@@ -64,7 +64,8 @@ RawFrames frame_of(const DecodingTable& table, std::uint64_t seed,
 
 double slanted(int row, int column) { return 60.0 + 0.3 * row + 0.1 * column; }
 
-/// A block of 12 columns in front of a slanted plane, which moves `columns` a frame.
+/// Returns frames of a block, 12 columns wide, that moves `columns` per frame before a slanted
+/// plane.
 std::vector<RawFrames> moving(const DecodingTable& table, int frames, int columns) {
   std::vector<RawFrames> recording;
   for (int frame = 0; frame < frames; ++frame)
@@ -83,7 +84,7 @@ double mean_of(const std::vector<float>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-TEST(TimeFilterBothWays, StaticPixelsAreMeansOfAllFramesWithTheirNoise) {
+TEST(TimeFilterBothWays, StaticPixelsAreMeansOfAllFramesWithMatchingNoise) {
   const DecodingTable table = hamiltonian();
   constexpr int frames = 9;
   const auto recording = moving(table, frames, 0);
@@ -98,12 +99,12 @@ TEST(TimeFilterBothWays, StaticPixelsAreMeansOfAllFramesWithTheirNoise) {
     for (std::size_t i = 0; i < mean.size(); ++i)
       if (frame.averaged[i / 4] > 8.999F) {
         EXPECT_NEAR(static_cast<double>(frame.values[i]), mean[i],
-                    0.02 * std::sqrt(mean[i] + 400));  // of the noise of a frame
+                    0.02 * std::sqrt(mean[i] + 400));  // relative to the noise of one frame
       }
   }
 }
 
-TEST(TimeFilterBothWays, ARecordingPlayedBackwardsComesOutBackwards) {
+TEST(TimeFilterBothWays, AReversedRecordingGivesReversedOutput) {
   const DecodingTable table = hamiltonian();
   for (const bool before_filter : {false, true}) {
     auto recording = moving(table, 6, 3);
@@ -116,7 +117,7 @@ TEST(TimeFilterBothWays, ARecordingPlayedBackwardsComesOutBackwards) {
   }
 }
 
-TEST(TimeFilterBothWays, AFrameKnowsNothingBeyondItsLookAhead) {
+TEST(TimeFilterBothWays, AFrameDoesNotDependOnFramesBeyondItsLookAhead) {
   const DecodingTable table = hamiltonian();
   auto recording = moving(table, 7, 3);
   const auto all = filtered(table, {.look_ahead = 2}, recording);
@@ -128,7 +129,7 @@ TEST(TimeFilterBothWays, AFrameKnowsNothingBeyondItsLookAhead) {
   for (std::size_t i = 3; i < 5; ++i) EXPECT_FALSE(all[i] == shorter[i]) << i;
 }
 
-TEST(TimeFilterBothWays, FramesComeOutLookAheadLater) {
+TEST(TimeFilterBothWays, OutputIsDelayedByTheLookAhead) {
   const DecodingTable table = hamiltonian();
   TimeFilter filter(table, {.look_ahead = 3});
   const auto recording = moving(table, 5, 0);
@@ -136,21 +137,21 @@ TEST(TimeFilterBothWays, FramesComeOutLookAheadLater) {
     EXPECT_EQ(filter.add(view_of_frame(recording[i], 0)).has_value(), i >= 3) << i;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(filter.add_end().has_value());
   EXPECT_FALSE(filter.add_end().has_value());
-  // After the end the next frame is the first again.
+  // After finish(), the next frame starts a new recording.
   RawView smaller = view_of_frame(recording[0], 0);
   smaller.height = 5;
   EXPECT_FALSE(filter.add(smaller).has_value());
   EXPECT_EQ(filter.add_end()->height, 5);
 }
 
-TEST(TimeFilterBothWays, LookingFartherThanTheRecordingIsLookingAtAllOfIt) {
+TEST(TimeFilterBothWays, LookAheadBeyondTheEndEqualsTheWholeRecording) {
   const DecodingTable table = hamiltonian();
   const auto recording = moving(table, 4, 3);
   EXPECT_TRUE(filtered(table, {.look_ahead = 3}, recording) ==
               filtered(table, {.look_ahead = 1000}, recording));
 }
 
-TEST(TimeFilterBothWays, OneFrameComesOutAsItCame) {
+TEST(TimeFilterBothWays, ASingleFrameIsUnchanged) {
   const DecodingTable table = hamiltonian();
   const auto out = filtered(table, {.look_ahead = 4}, moving(table, 1, 0));
   ASSERT_EQ(out.size(), 1U);
@@ -158,9 +159,9 @@ TEST(TimeFilterBothWays, OneFrameComesOutAsItCame) {
   EXPECT_THAT(out[0].averaged, Each(1.0F));
 }
 
-TEST(TimeFilterBothWays, WhatMovesTakesNothingOfWhatWasOrWillBeThere) {
+TEST(TimeFilterBothWays, MovingObjectsAreNotAveragedWithOtherSurfaces) {
   const DecodingTable table = hamiltonian();
-  // 12 columns a frame: the block covers none of its own columns again.
+  // With 12 columns per frame, the block never overlaps its previous position.
   const auto recording = moving(table, 3, 12);
   const auto out = filtered(table, {.look_ahead = 2}, recording);
   const auto at = [](int row, int column) {
@@ -173,14 +174,14 @@ TEST(TimeFilterBothWays, WhatMovesTakesNothingOfWhatWasOrWillBeThere) {
         EXPECT_EQ(out[1].values[4 * at(row, column) + k],
                   recording[1].values[4 * at(row, column) + k]);
     }
-  // What it uncovers is seen before or after.
+  // Uncovered pixels are averaged with frames before or after.
   double uncovered = 0.0;
   for (int row = 2; row < 18; ++row)
     for (int column = 6; column < 14; ++column) uncovered += out[1].averaged[at(row, column)];
   EXPECT_GT(uncovered / (16 * 8), 1.9);
 }
 
-TEST(TimeFilterBothWays, IslandsOfNaNStayAndTakeNothing) {
+TEST(TimeFilterBothWays, InvalidRegionsStayAndAreIgnored) {
   const DecodingTable table = hamiltonian();
   auto recording = moving(table, 5, 0);
   for (std::size_t frame = 0; frame < 5; ++frame)
@@ -199,12 +200,12 @@ TEST(TimeFilterBothWays, IslandsOfNaNStayAndTakeNothing) {
         EXPECT_EQ(out[frame].averaged[i], 1.0F);
       }
     }
-  // Frames around an island add up on either side of it.
+  // Frames around an invalid region are averaged on both sides of it.
   EXPECT_FLOAT_EQ(out[0].averaged[25 * width + 28], 2.0F);
   EXPECT_FLOAT_EQ(out[4].averaged[25 * width + 28], 2.0F);
 }
 
-TEST(TimeFilterBothWays, MeansOfSeveralFramesCountAsSuch) {
+TEST(TimeFilterBothWays, WeighsMeansByTheNumberOfFramesAveraged) {
   const DecodingTable table = hamiltonian();
   const RawFrames raw = moving(table, 1, 0)[0];
   TimeFilter filter(table, {.look_ahead = 2});
@@ -222,7 +223,7 @@ TEST(TimeFilterBothWays, MeansOfSeveralFramesCountAsSuch) {
   for (const Out& frame : out) EXPECT_THAT(frame.averaged, Each(FloatEq(10.0F)));
 }
 
-TEST(TimeFilterBothWays, HasTheSameBitsOnAnyNumberOfThreads) {
+TEST(TimeFilterBothWays, IsBitIdenticalForAnyNumberOfThreads) {
   const DecodingTable table = hamiltonian();
   const auto recording = moving(table, 4, 2);
   const auto run = [&](int threads) {
@@ -234,7 +235,7 @@ TEST(TimeFilterBothWays, HasTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_TRUE(one == run(4));
 }
 
-TEST(TimeFilterBothWays, RefusesFramesOfAnotherSizeWhileSomeWait) {
+TEST(TimeFilterBothWays, RejectsFramesOfAnotherSizeWhileFramesArePending) {
   const DecodingTable table = hamiltonian();
   TimeFilter filter(table, {.look_ahead = 2});
   const RawFrames raw = moving(table, 1, 0)[0];

@@ -55,7 +55,7 @@ DecodingTable table_of(const std::string& code = "hamiltonian-k4",
   return DecodeSetup(code, camera).decoder.table();
 }
 
-/// Adds `count` frames of a static scene; the result of the last.
+/// Adds `count` frames of a static scene; returns the last result.
 RawView add_static(TimeFilter& filter, int count, double signal, double ambient,
                    std::uint64_t seed) {
   RawView last;
@@ -67,7 +67,7 @@ RawView add_static(TimeFilter& filter, int count, double signal, double ambient,
   return last;
 }
 
-TEST(TimeFilter, GivesTheFirstFrameAsItCame) {
+TEST(TimeFilter, ReturnsTheFirstFrameUnchanged) {
   TimeFilter filter(table_of());
   const RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, 1);
   const RawView first = *filter.add(view_of_frame(raw, 0));
@@ -78,7 +78,7 @@ TEST(TimeFilter, GivesTheFirstFrameAsItCame) {
   EXPECT_EQ(values_of(*filter.add(view_of_frame(raw, 0))), raw.values);
 }
 
-TEST(TimeFilter, OneFrameAtMostChangesNothing) {
+TEST(TimeFilter, AtMostOneFrameChangesNothing) {
   TimeFilter filter(table_of(), {.max_frames = 1});
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, seed);
@@ -92,7 +92,7 @@ struct Light {
   double signal, ambient;
 };
 
-/// What comes of a static scene is its truth, with the variance that `averaged` says.
+/// Expects that a static scene has no bias and the variance implied by `averaged`.
 void expect_static_scene_is_unbiased(const DecodingTable& table, const Light& light, int frames,
                                      double min_share) {
   constexpr int captures = 24;
@@ -140,7 +140,7 @@ void expect_static_scene_is_unbiased(const DecodingTable& table, const Light& li
   EXPECT_GT(n / captures, min_share * frames);
 }
 
-TEST(TimeFilter, StaticScenesAddUpWithoutBias) {
+TEST(TimeFilter, StaticScenesAreAveragedWithoutBias) {
   const DecodingTable table = table_of();
   for (const Light light : {Light{1e3, 1e4}, Light{1e5, 1e4}, Light{1e7, 1e3}})
     for (const int frames : {2, 16}) {
@@ -149,7 +149,7 @@ TEST(TimeFilter, StaticScenesAddUpWithoutBias) {
     }
 }
 
-TEST(TimeFilter, StaticScenesAddUpForAnyReadout) {
+TEST(TimeFilter, StaticScenesAreAveragedForAnyReadout) {
   for (const auto& [code, camera] :
        {std::pair{"square-k4", camera_with("paper-10f0", 2)},
         std::pair{"square-k4", camera_with("paper-10f0", 2, Readout::difference)},
@@ -159,15 +159,15 @@ TEST(TimeFilter, StaticScenesAddUpForAnyReadout) {
   }
 }
 
-TEST(TimeFilter, ForgetsWhatIsOlder) {
+TEST(TimeFilter, OlderFramesLoseWeight) {
   TimeFilter filter(table_of(), {.max_frames = 4});
   const RawView last = add_static(filter, 30, 1e5, 1e4, 1);
-  // The newest frame weighs 1/4: squares of weights sum to (1/16) / (1 - 9/16) = 1/7.
+  // The newest frame has weight 1/4: the squared weights sum to (1/16) / (1 - 9/16) = 1/7.
   for (const float n : averaged_of(last)) EXPECT_LE(n, 7.001F);
   EXPECT_GT(mean_of(averaged_of(last)), 6.8);
 }
 
-TEST(TimeFilter, PixelsThatMovedHoldNothingOfBefore) {
+TEST(TimeFilter, PixelsThatMovedKeepNoPreviousFrames) {
   TimeFilter filter(table_of());
   add_static(filter, 20, 1e5, 1e4, 1);
   const auto moved = [](int row, int column) {
@@ -190,7 +190,7 @@ TEST(TimeFilter, PixelsThatMovedHoldNothingOfBefore) {
   EXPECT_GT(mean_of(stayed), 20.0);
 }
 
-TEST(TimeFilter, APixelThatChangesAloneStartsAnew) {
+TEST(TimeFilter, ASinglePixelThatChangesRestarts) {
   TimeFilter filter(table_of());
   add_static(filter, 20, 1e5, 1e4, 1);
   RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, 99);
@@ -201,7 +201,7 @@ TEST(TimeFilter, APixelThatChangesAloneStartsAnew) {
   EXPECT_EQ(values_of(view)[4 * pixel + 1], raw.values[4 * pixel + 1]);
 }
 
-TEST(TimeFilter, SmallChangesThatNeighboursShareAreFound) {
+TEST(TimeFilter, SmallChangesSharedByNeighboursAreDetected) {
   const DecodingTable table = table_of();
   TimeFilter filter(table);
   add_static(filter, 30, 1e5, 1e4, 1);
@@ -212,8 +212,8 @@ TEST(TimeFilter, SmallChangesThatNeighboursShareAreFound) {
   EXPECT_LT(mean_of(averaged_of(*filter.add(view_of_frame(after, 0)))), 2.0);
 }
 
-TEST(TimeFilter, BeforeAFilterSmallerChangesAreFound) {
-  // A fifth of a standard deviation of each number, shared by all pixels; and none.
+TEST(TimeFilter, BeforeAFilterSmallerChangesAreDetected) {
+  // All pixels change by a fifth of the standard deviation of each value, or not.
   for (const bool changes : {true, false}) {
     TimeFilter alone(table_of()), before(table_of(), {.before_filter = true});
     RawFrames raw = frame_of(alone.table(), slanted, 1e5, 1e4, 99);
@@ -232,7 +232,7 @@ TEST(TimeFilter, BeforeAFilterSmallerChangesAreFound) {
   }
 }
 
-TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanThoseBesideThem) {
+TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanTheirNeighbours) {
   TimeFilter alone(table_of()), before(table_of(), {.before_filter = true});
   add_static(alone, 20, 1e5, 1e4, 1);
   add_static(before, 20, 1e5, 1e4, 1);
@@ -240,7 +240,7 @@ TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanThoseBesideThem) {
     return slanted(row, column) + (row < 9 && column < 12 ? 40.0 : 0.0);
   };
   RawFrames raw = frame_of(alone.table(), moved, 1e5, 1e4, 99);
-  // What is no measurement says nothing about those beside it.
+  // An invalid pixel does not limit its neighbours.
   const std::size_t invalid = 25 * width + 30;
   raw.values[4 * invalid] = nan;
   const RawView far_apart = *alone.add(view_of_frame(raw, 0)),
@@ -257,7 +257,7 @@ TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanThoseBesideThem) {
   EXPECT_EQ(beside.averaged[invalid], 1.0F);
 }
 
-TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
+TEST(TimeFilter, PixelsWithoutMeasurementAreUnchangedAndRestart) {
   Camera camera = camera_with("paper-10f0");
   DecodingTable table = table_of("hamiltonian-k4", camera);
   table.saturation_level = 1e6F;
@@ -278,7 +278,7 @@ TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
       }
     }
     EXPECT_TRUE(std::isnan(values[4 * invalid + 2]));
-    // Neighbours are tested by what is left of their patches.
+    // Neighbours are tested with the valid part of their patches.
     EXPECT_GT(view.averaged[invalid + 1], 3.0F);
   }
   const RawFrames next = frame_of(table, slanted, 1e5, 1e4, 100);
@@ -290,8 +290,8 @@ TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
   EXPECT_GT(filter.add(view_of_frame(later, 0))->averaged[invalid], 1.5F);
 }
 
-TEST(TimeFilter, MeansOfSeveralFramesCountAsSuch) {
-  // Equal frames: nothing is ever seen to change.
+TEST(TimeFilter, WeighsMeansByTheNumberOfFramesAveraged) {
+  // All frames are equal, so that no change is detected.
   TimeFilter filter(table_of());
   const RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, 1);
   const std::vector<float> three(height * width, 3.0F), two(height * width, 2.0F);
@@ -302,7 +302,7 @@ TEST(TimeFilter, MeansOfSeveralFramesCountAsSuch) {
   EXPECT_EQ(averaged_of(*filter.add(view)), std::vector<float>(height * width, 5.0F));
 }
 
-TEST(TimeFilter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
+TEST(TimeFilter, IsBitIdenticalForAnyNumberOfThreadsAndLayout) {
   const DecodingTable table = table_of();
   std::vector<RawFrames> frames;
   for (std::uint64_t seed = 1; seed < 5; ++seed)
@@ -334,7 +334,7 @@ TEST(TimeFilter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
   EXPECT_EQ(one, run(4, true));
 }
 
-TEST(TimeFilter, FramesOfOnePixelAddUp) {
+TEST(TimeFilter, FramesOfOnePixelAreAveraged) {
   TimeFilter filter(table_of());
   RandomStream random(1, 0);
   RawView last;
@@ -347,7 +347,7 @@ TEST(TimeFilter, FramesOfOnePixelAddUp) {
   EXPECT_GT(last.averaged[0], 4.0F);
 }
 
-TEST(TimeFilter, RefusesFramesOfAnotherSizeAndOptionsThatCannotBe) {
+TEST(TimeFilter, RejectsFramesOfAnotherSizeAndInvalidOptions) {
   const DecodingTable table = table_of();
   TimeFilter filter(table);
   const RawFrames raw = frame_of(table, slanted, 1e5, 1e4, 1);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int height = 37, width = 45, pixels = height * width;
 
-/// Frames of a slanted plane before which a block moves.
+/// Returns frames of a block moving in front of a slanted plane.
 std::vector<RawFrames> recording_of(const DecodingTable& table, int frames) {
   std::vector<RawFrames> recording;
   for (int frame = 0; frame < frames; ++frame)
@@ -34,7 +34,7 @@ std::vector<RawFrames> recording_of(const DecodingTable& table, int frames) {
   return recording;
 }
 
-/// Of single measurements that are all light, read one by one.
+/// Reference filter for single, valid measurements.
 class PlainTimeFilter {
  public:
   PlainTimeFilter(const DecodingTable& table, const TimeFilterOptions& options)
@@ -96,7 +96,7 @@ class PlainTimeFilter {
     for (int y = row - patch_reach; y <= row + patch_reach; ++y)
       for (int x = column - patch_reach; x <= column + patch_reach; ++x) {
         if (y < 0 || x < 0 || y >= height || x >= width) {
-          patch += k_count_;  // agrees and does not count
+          patch += k_count_;  // neighbours outside the frame count as equal
           continue;
         }
         ++count;
@@ -130,7 +130,7 @@ DecodingTable table_of(const std::string& code) {
   return DecodeSetup(code, camera_with("paper-10f0")).decoder.table();
 }
 
-TEST(TimeKernel, GivesWhatThePlainDefinitionGives) {
+TEST(TimeKernel, EqualsTheReference) {
   for (const char* code : {"hamiltonian-k4", "sinusoid-k3", "hamiltonian-k5"}) {
     SCOPED_TRACE(code);
     const DecodingTable table = table_of(code);
@@ -152,12 +152,12 @@ TEST(TimeKernel, GivesWhatThePlainDefinitionGives) {
         partly += plain.averaged[i] > 1.0 && plain.averaged[i] < 1.9;
       }
     }
-    EXPECT_GT(anew - pixels, 50);  // all of the first frame
+    EXPECT_GT(anew - pixels, 50);  // pixels that restart, except in the first frame
     EXPECT_GT(partly, 0);
   }
 }
 
-TEST(TimeKernel, HasTheSameBitsOnEveryInstructionSet) {
+TEST(TimeKernel, IsBitIdenticalOnEveryInstructionSet) {
   for (const char* code : {"hamiltonian-k4", "square-k4"}) {
     const Camera camera = camera_with("paper-10f0", 2, Readout::difference);
     const DecodingTable table = std::string(code) == "square-k4"

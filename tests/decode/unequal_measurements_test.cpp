@@ -17,8 +17,8 @@ double between(RandomStream& random, double low, double high) {
   return low + (high - low) * random.uniform();
 }
 
-/// A smooth random code without repeated directions: every measurement has a duty, exposure, gain,
-/// offset and dark current of its own.
+/// Returns a smooth random code without repeated directions. Duty, exposure, gain, offset and dark
+/// current differ between measurements.
 DecodingTable random_table(RandomStream& random, int measurements) {
   const int samples = 24 + static_cast<int>(random() % 60);
   Eigen::MatrixXd correlation(samples, measurements);
@@ -45,7 +45,7 @@ DecodingTable random_table(RandomStream& random, int measurements) {
   return table;
 }
 
-/// Raw numbers of a depth without noise, appended.
+/// Appends the noise-free raw values of a depth.
 void append_raw(std::vector<float>& raw, const DecodingTable& table, double signal, double ambient,
                 double depth_bin) {
   const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
@@ -59,7 +59,7 @@ void append_raw(std::vector<float>& raw, const DecodingTable& table, double sign
   }
 }
 
-TEST(UnequalMeasurements, DepthSignalAndAmbientComeBackWithoutNoise) {
+TEST(UnequalMeasurements, DepthSignalAndAmbientAreRecoveredWithoutNoise) {
   constexpr double signal = 1e6, ambient = 3e4;
   for (std::uint64_t seed = 0; seed < repetitions(60u); ++seed) {
     RandomStream random(seed, 1);
@@ -84,7 +84,7 @@ TEST(UnequalMeasurements, DepthSignalAndAmbientComeBackWithoutNoise) {
   }
 }
 
-TEST(UnequalMeasurements, NoisyPixelsDecodeAsTheReferenceSays) {
+TEST(UnequalMeasurements, NoisyPixelsDecodeLikeTheReference) {
   for (std::uint64_t seed = 0; seed < repetitions(40u); ++seed) {
     RandomStream random(seed, 2);
     const Decoder decoder(random_table(random, 3 + static_cast<int>(seed % 4)));
@@ -97,9 +97,9 @@ TEST(UnequalMeasurements, NoisyPixelsDecodeAsTheReferenceSays) {
   }
 }
 
-TEST(UnequalMeasurements, GainAndOffsetAreUndoneBeforeAnythingElse) {
-  // Powers of two and whole numbers, so that correcting the frame beforehand is exact: bins are the
-  // same, and outputs but for their rounding.
+TEST(UnequalMeasurements, GainAndOffsetAreCorrectedFirst) {
+  // Powers of two and integers make a correction of the frame beforehand exact, so that bins are
+  // equal and other planes equal up to rounding.
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& electrons = setup.decoder.table();
   DecodingTable counts = electrons;
@@ -127,8 +127,8 @@ TEST(UnequalMeasurements, GainAndOffsetAreUndoneBeforeAnythingElse) {
   }
 }
 
-TEST(UnequalMeasurements, TheWrongAmbientDirectionWouldShow) {
-  // What the projection is for: with the mean taken off instead, ambient light moves depths.
+TEST(UnequalMeasurements, AWrongAmbientDirectionCausesErrors) {
+  // If the mean is projected out instead, ambient light changes depths.
   RandomStream random(5, 3);
   const DecodingTable table = random_table(random, 4);
   DecodingTable equal = table;
@@ -147,7 +147,7 @@ TEST(UnequalMeasurements, TheWrongAmbientDirectionWouldShow) {
   EXPECT_GT(largest, 1.0);
 }
 
-/// Exclusive taps of random widths under a pulse that covers more than any of them.
+/// Returns exclusive taps of random widths and a pulse wider than any of them.
 CodeSet random_code_of_taps(RandomStream& random, int taps, int exposures) {
   std::vector<Waveform> light, gates;
   for (int e = 0; e < exposures; ++e) {

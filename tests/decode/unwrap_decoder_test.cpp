@@ -23,7 +23,7 @@ constexpr const char* codes[] = {"sinusoid-k3",
                                  "multifrequency-2x4-5x2",
                                  "multifrequency-1x3-5x3-12x3"};
 
-/// Largest error [bin] of random depths that no noise touches.
+/// Returns the largest error [bin] over random depths without noise.
 double largest_error_bin(const ForwardModel& model, const UnwrapDecoder& decoder) {
   RandomStream random(5, 0);
   std::vector<double> truth;
@@ -51,7 +51,7 @@ TEST(UnwrapDecoder, RecoversEveryDepthWithoutNoise) {
                                  camera_with("paper-10f0"), camera_with("paper-5f0")}) {
       const ForwardModel model(build_family(code, camera), camera);
       const DecodingTable table = make_decoding_table(model, camera);
-      // Next to nothing of 7 f0 passes at 5 f0: what does is noise of single precision.
+      // The band limit of 5 f0 almost removes 7 f0; the rest is rounding error of single precision.
       const double most = camera.name == "paper-5f0" ? 0.2 : 2e-3;
       for (const UnwrapWeights weights : {UnwrapWeights::variance, UnwrapWeights::frequency})
         EXPECT_LT(largest_error_bin(model, UnwrapDecoder(table, {.weights = weights})), most)
@@ -66,7 +66,7 @@ TEST(UnwrapDecoder, RecoversEveryDepthFromDifferencesOfBuckets) {
         largest_error_bin(UnwrapSetup(code, camera_with("paper-10f0", 2, Readout::difference))),
         2e-3)
         << code;
-  // Where ambient light cancels, two steps tell everything.
+  // If ambient light cancels, two phase steps suffice.
   EXPECT_LT(largest_error_bin(UnwrapSetup("multifrequency-1x2-7x2",
                                           camera_with("paper-30x", 2, Readout::difference))),
             2e-3);
@@ -76,10 +76,10 @@ TEST(UnwrapDecoder, RecoversEveryDepthOfAnyCamera) {
   Camera camera = camera_with("paper-10f0");
   camera.exposure_s.each_s = {0.02, 0.05, 0.1, 0.03, 0.13};
   camera.sensor.dark_current_e_per_s = 3e3;
-  // A low-pass turns the phase of every frequency by another amount.
+  // A low-pass shifts the phase of every frequency differently.
   camera.light.impulse_response = {.kind = ImpulseResponse::Kind::lowpass, .cutoff_hz = 40e6};
   EXPECT_LT(largest_error_bin(UnwrapSetup("multifrequency-k5", camera)), 2e-3);
-  camera.light.peak_factor = 1.3;  // modulates by 30 %
+  camera.light.peak_factor = 1.3;  // modulation depth 30 %
   EXPECT_LT(largest_error_bin(UnwrapSetup("multifrequency-k5", camera)), 5e-3);
   camera.sensor.taps = 2;
   camera.sensor.modulation_contrast = 0.7;
@@ -93,8 +93,8 @@ TEST(UnwrapDecoder, FindsTheFrequenciesInTheCodeItself) {
   EXPECT_EQ(three.decoder.frequencies(), (std::vector<int>{1, 5, 12}));
 }
 
-TEST(UnwrapDecoder, WeighsByTheVarianceThatTheCameraLeaves) {
-  // With as many steps and no band limit noise is alike, and f^2 is left.
+TEST(UnwrapDecoder, WeighsFrequenciesByTheirVariance) {
+  // With equal steps and no band limit, the noise is equal and weights are proportional to f^2.
   const UnwrapSetup even("multifrequency-1x4-7x4", camera_with("paper-30x"));
   EXPECT_NEAR(even.decoder.weights()[1] / even.decoder.weights()[0], 49.0, 0.1);
   const Camera camera = camera_with("paper-10f0");
@@ -107,7 +107,7 @@ TEST(UnwrapDecoder, WeighsByTheVarianceThatTheCameraLeaves) {
   EXPECT_NEAR(classical.decoder.weights()[1] / classical.decoder.weights()[0], 49.0, 1e-9);
 }
 
-TEST(UnwrapDecoder, ASingleFrequencyIsWhatZnccSays) {
+TEST(UnwrapDecoder, ASingleFrequencyDecodesLikeZncc) {
   for (const char* code : {"sinusoid-k3", "sinusoid-k4", "sinusoid-k7"})
     for (const int taps : {1, 2}) {
       const UnwrapSetup unwrap(code, camera_with("paper-10f0", taps));
@@ -119,8 +119,8 @@ TEST(UnwrapDecoder, ASingleFrequencyIsWhatZnccSays) {
     }
 }
 
-/// Weighted distance of a depth [periods] from the nearest candidates of 3 steps at f0 and a
-/// quadrature pair at 7 f0, from the textbook's formulas.
+/// Reference: weighted distance of a depth [periods] from the nearest candidates of 3 steps at f0
+/// and a quadrature pair at 7 f0, from textbook formulas.
 struct PlainDistance {
   double phase1, phase7, weight1, weight7;
 
@@ -140,7 +140,7 @@ struct PlainDistance {
   }
 };
 
-TEST(UnwrapDecoder, AgreesWithAPlainSearchOfTheWeightedDistance) {
+TEST(UnwrapDecoder, AgreesWithAnExhaustiveSearchOfTheWeightedDistance) {
   for (const UnwrapWeights weights : {UnwrapWeights::variance, UnwrapWeights::frequency}) {
     const UnwrapSetup setup("multifrequency-k5", camera_with("paper-30x"), {.weights = weights});
     for (const double signal : {5e2, 3e3, 3e4}) {
@@ -214,7 +214,7 @@ std::string refusal_of(const std::string& code, const Camera& camera) {
   }
 }
 
-TEST(UnwrapDecoder, RefusesWhatIsNoSinusoidAndSaysHowFarOff) {
+TEST(UnwrapDecoder, RejectsNonSinusoidalCodesWithTheirDeviation) {
   const Camera camera = camera_with("paper-30x");
   const std::string square = refusal_of("square-k4", camera);
   EXPECT_NE(square.find("correlation of measurement 0 = 1.45 % of its energy outside harmonic 1"),
@@ -222,12 +222,12 @@ TEST(UnwrapDecoder, RefusesWhatIsNoSinusoidAndSaysHowFarOff) {
       << square;
   for (const char* code : {"hamiltonian-k4", "pulsed-multifrequency-k5", "gray-k4"})
     EXPECT_NE(refusal_of(code, camera).find("sinusoids only"), std::string::npos) << code;
-  // Nearly a sinusoid is one on request.
+  // Nearly sinusoidal codes are accepted on request.
   EXPECT_LT(largest_error_bin(UnwrapSetup("square-k4", camera, {.largest_other_energy = 0.02})),
             3.0);
 }
 
-TEST(UnwrapDecoder, RefusesFrequenciesThatLeaveDepthOpen) {
+TEST(UnwrapDecoder, RejectsAmbiguousFrequencies) {
   const Camera camera = camera_with("paper-30x");
   EXPECT_EQ(
       refusal_of("multifrequency-2x3-6x3", camera),

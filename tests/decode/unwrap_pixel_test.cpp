@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What the unwrapping decoder says of a pixel besides its depth.
+// Planes of a pixel other than its depth, from the unwrapping decoder.
 #include <gtest/gtest.h>
 
 #include "pixel_laws.hpp"
@@ -15,12 +15,12 @@ TEST(UnwrapDecoder, StrongSignalIsOk) {
                              1e3);
 }
 
-TEST(UnwrapDecoder, NotANumberIsInvalidAndDisturbsNoNeighbour) {
+TEST(UnwrapDecoder, NaNIsInvalidAndDoesNotAffectNeighbours) {
   expect_not_a_number_disturbs_no_neighbour(
       UnwrapSetup("multifrequency-k5", camera_with("paper-10f0")).decoder, 20);
 }
 
-TEST(UnwrapDecoder, StatusFollowsTheSameRulesAsZncc) {
+TEST(UnwrapDecoder, StatusFollowsTheSameRulesAsWithZncc) {
   Camera camera = camera_with("paper-10f0");
   camera.sensor.full_well_e = 5000.0;
   const UnwrapSetup setup("multifrequency-k5", camera);
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Codes, UnwrapEstimatesOf,
                                          NoiseCase{"multifrequency-1x3-5x3", "paper-10f0", 2,
                                                    Readout::difference, UnwrapWeights::variance}));
 
-TEST(UnwrapDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
+TEST(UnwrapDecoder, ConfidenceIsTheFractionOfCorrectDepths) {
   const UnwrapSetup setup("multifrequency-k5", camera_with("paper-30x"));
   expect_right_as_often_as_said(setup, {3e2, 6e2, 1.25e3, 2.5e3, 5e3, 1e4, 2e4}, 3e4, 0.08);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What deviation, confidence and status mean where there is next to no light.
+// Deviation, confidence and status in almost no light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ DepthImage captured(const DecodeSetup& setup, double signal) {
                      }));
 }
 
-/// Of the closed curve of directions [rad].
+/// Returns the length of the closed curve of directions [rad].
 double length_of_directions(const DecodingTable& table) {
   Eigen::MatrixXd curve = AmbientProjection(table).curve;
   curve.rowwise().normalize();
@@ -37,7 +37,7 @@ double length_of_directions(const DecodingTable& table) {
   return length;
 }
 
-/// Signal [e/s] of so many of its own standard deviations.
+/// Returns the signal [e/s] that equals `deviations` of its own standard deviations.
 double signal_of(const DecodingTable& table, double deviations) {
   const AmbientProjection projection(table);
   const PixelModel model(table, projection);
@@ -55,9 +55,9 @@ double signal_of(const DecodingTable& table, double deviations) {
   return signal;
 }
 
-// Signal is that of the best of all depths: the largest of a random field along the curve of
-// directions, whose tail is that of its length (Rice).
-TEST(WeakLight, WithoutLightSignalStandsOutAsOftenAsTheLengthOfTheCurveSays) {
+// The estimated signal is the maximum of a random field along the curve of directions. Its tail
+// probability is proportional to the length of the curve (Rice).
+TEST(WeakLight, FalseDetectionRateFollowsTheLengthOfTheCurve) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"}) {
     DecodeOptions options;
     options.min_confidence = 0.0;
@@ -72,7 +72,7 @@ TEST(WeakLight, WithoutLightSignalStandsOutAsOftenAsTheLengthOfTheCurveSays) {
   }
 }
 
-TEST(WeakLight, WithoutLightNoDepthIsTrusted) {
+TEST(WeakLight, NoDepthIsTrustedWithoutLight) {
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"}) {
     const DecodeSetup setup(code, camera_with("paper-10f0"));
     const DepthImage image = captured(setup, 0.0);
@@ -91,9 +91,9 @@ TEST(WeakLight, WithoutLightNoDepthIsTrusted) {
   }
 }
 
-TEST(WeakLight, FromFiveDeviationsOfSignalOnDeviationIsTheSpreadOfDepth) {
+TEST(WeakLight, DeviationIsTheSpreadOfDepthFromFiveSignalDeviationsOn) {
   DecodeOptions options;
-  options.min_confidence = 0.0;  // noise may move a depth out of the main lobe
+  options.min_confidence = 0.0;  // otherwise noise may move a depth out of the main lobe
   for (const char* code : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"}) {
     const DecodeSetup setup(code, camera_with("paper-10f0"), options);
     const DecodingTable& table = setup.decoder.table();
