@@ -82,7 +82,7 @@ TEST(Atlas, RefusesAnotherVersionAndDamage) {
   expect_refused(one_code + one_code.substr(one_code.find("code")), "a.txt:", "a second time");
 }
 
-TEST(Atlas, EveryCodeOfItPlaysOnItsOwnCamera) {
+TEST(Atlas, EveryCodeFitsItsOwnCamera) {
   ASSERT_FALSE(code_atlas().empty());
   for (const AtlasEntry& entry : code_atlas()) {
     const Camera camera = entry.of.camera();
@@ -94,7 +94,7 @@ TEST(Atlas, EveryCodeOfItPlaysOnItsOwnCamera) {
   EXPECT_EQ(find_atlas_entry("atlas"), nullptr);
 }
 
-TEST(Atlas, StatesTheErrorsThatItsCodesHave) {
+TEST(Atlas, StatedErrorsMatchMonteCarlo) {
   const std::vector<AtlasEntry>& atlas = code_atlas();
   constexpr std::size_t judged = 12;
   for (std::size_t i = 0; i < judged; ++i) {
@@ -104,7 +104,8 @@ TEST(Atlas, StatesTheErrorsThatItsCodesHave) {
     for (const auto& [stated, found] :
          {std::pair{entry.linear_m, report.linear.geometric_mean_m},
           std::pair{entry.circular_m, report.circular.geometric_mean_m}})
-      // Chosen as the best of several, and of rounded switching times: up to 1 % beside the noise.
+      // Codes were selected as the best of several and have rounded switching times: allow 1 % in
+      // addition to the noise.
       EXPECT_NEAR(
           found.value, stated.value,
           4.0 * std::hypot(found.standard_error, stated.standard_error) + 0.01 * stated.value)
@@ -112,7 +113,7 @@ TEST(Atlas, StatesTheErrorsThatItsCodesHave) {
   }
 }
 
-TEST(Atlas, BandwidthIsThatOfHannResponsesOrOfTheShortestPulse) {
+TEST(Atlas, BandwidthFollowsFromHannResponsesOrTheShortestPulse) {
   Camera camera = built_in_camera("paper-10f0");
   EXPECT_NEAR(effective_bandwidth_f0(camera), 10.0, 0.01);
   camera.sensor.shortest_pulse_s = 0.1444 / camera.fundamental_frequency_hz;
@@ -120,7 +121,7 @@ TEST(Atlas, BandwidthIsThatOfHannResponsesOrOfTheShortestPulse) {
   EXPECT_TRUE(std::isinf(effective_bandwidth_f0(built_in_camera("paper-30x"))));
 }
 
-TEST(Atlas, FittingToAPeakKeepsThePlacesOfPulsesAndTheMeanOfLight) {
+TEST(Atlas, FittingToAPeakKeepsPulsePositionsAndMeanLight) {
   const AtlasEntry entry = parse_atlas(one_code)[0];
   for (const double peak : {2.0, 3.0, 8.0}) {
     const CodeSet fitted = fitted_to_peak(entry.code, 4.0, peak);
@@ -136,7 +137,7 @@ TEST(Atlas, FittingToAPeakKeepsThePlacesOfPulsesAndTheMeanOfLight) {
   expect_same_code(fitted_to_peak(entry.code, 4.0, 4.0), entry.code);
 }
 
-TEST(Atlas, LendsTheNearestCodesThatACameraCanPlay) {
+TEST(Atlas, ReturnsTheNearestCodesThatSuitACamera) {
   std::string text = one_code.substr(0, one_code.find("code"));
   const std::string code = one_code.substr(one_code.find("code"));
   for (const char* band : {"3", "5", "10", "20"}) {
@@ -160,13 +161,13 @@ TEST(Atlas, LendsTheNearestCodesThatACameraCanPlay) {
   EXPECT_EQ(names({}, 2).size(), 4u);
   EXPECT_TRUE(names({4}, 2).empty());
   EXPECT_TRUE(names({}, 0).empty());
-  camera.light.peak_factor = 3;  // the codes as they are need 4
+  camera.light.peak_factor = 3;  // the original codes need a peak factor of 4
   EXPECT_THAT(names({}, 1), testing::ElementsAre("atlas-t1-k3-p4-b10-linear:3"));
   camera.sensor.taps = 2;
   EXPECT_TRUE(names({}, 4).empty());
 }
 
-/// Cameras between and beyond those of the atlas.
+/// Returns cameras between and beyond those of the atlas.
 std::vector<Camera> other_cameras() {
   std::vector<Camera> cameras;
   for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
@@ -199,7 +200,7 @@ TEST(Atlas, ADesignIsNeverWorseThanTheNearestCodes) {
   }
 }
 
-TEST(Atlas, WithoutEffortNothingIsSearched) {
+TEST(Atlas, SearchesNothingWithoutEffort) {
   const Camera camera = other_cameras().front();
   DesignOptions options;
   options.trials = 2000;
@@ -220,7 +221,7 @@ TEST(Atlas, WithoutEffortNothingIsSearched) {
   EXPECT_THROW(with_effort(options, 0.0), std::invalid_argument);
 }
 
-TEST(Atlas, ADesignStartsFromItWithTheSameBitsForAnyNumberOfThreads) {
+TEST(Atlas, DesignsThatStartFromItAreBitIdenticalForAnyNumberOfThreads) {
   const Camera camera = other_cameras().front();
   DesignOptions options;
   options.method = DesignMethod::optimize;
@@ -241,7 +242,7 @@ TEST(Atlas, ADesignStartsFromItWithTheSameBitsForAnyNumberOfThreads) {
   expect_same_code(results[0].winner().code, results[1].winner().code);
 }
 
-TEST(Atlas, ALawIsWhatItsEntriesFollow) {
+TEST(Atlas, FitRecoversTheLawOfItsEntries) {
   std::vector<AtlasEntry> entries;
   for (const double band : {3.0, 5.0, 10.0, 20.0})
     for (const double peak : {2.0, 8.0}) {
@@ -264,7 +265,7 @@ TEST(Atlas, ALawIsWhatItsEntriesFollow) {
   EXPECT_FALSE(fit_atlas_law({entries[0]}));
 }
 
-TEST(Atlas, OfExposuresTheBestStays) {
+TEST(Atlas, BestByExposuresKeepsTheLowestError) {
   AtlasEntry three = parse_atlas(one_code)[0], four = three;
   four.of.exposures = 4;
   four.linear_m.value = 0.1;
@@ -284,14 +285,15 @@ TEST(Atlas, CodesOfEveryCameraCanBeFittedToEveryPeak) {
     }
 }
 
-/// The paper's power-limited camera, on few samples and at few light levels.
+/// Returns the paper's power-limited camera with few samples and light levels.
 Camera power_limited() {
   Camera camera = small_camera("paper-30x");
   camera.light.peak_factor = 5.0;
   return camera;
 }
 
-/// Two taps whose difference is read, and gates of any duty: ambient light cancels in few codes.
+/// Returns a camera with gates of any duty that reads the difference of two taps: ambient light
+/// cancels in few codes.
 Camera analog_difference() {
   Camera camera = small_camera("paper-10f0");
   const double f0_hz = camera.fundamental_frequency_hz;
@@ -306,7 +308,7 @@ Camera analog_difference() {
   return camera;
 }
 
-TEST(Design, GivesACodeWhereCodesOfTheAtlasCannotBeUsed) {
+TEST(Design, ReturnsACodeIfNoAtlasCodeIsUsable) {
   DesignOptions options = with_effort({}, 0.0);
   options.trials = 1000;
   options.baselines = {"sinusoid-k4", "hamiltonian-k4"};
@@ -316,7 +318,7 @@ TEST(Design, GivesACodeWhereCodesOfTheAtlasCannotBeUsed) {
   }
 }
 
-TEST(Design, WithConstantLightIsRefusedForThatReason) {
+TEST(Design, RejectsConstantLightWithThatReason) {
   Camera camera = small_camera("paper-10f0");
   camera.light.peak_factor = 1.0;
   EXPECT_THAT([&] { design(camera, with_effort({}, 0.0)); },
@@ -324,7 +326,7 @@ TEST(Design, WithConstantLightIsRefusedForThatReason) {
                   "light.peak_factor = 1; allows only constant light, which measures no depth"));
 }
 
-TEST(Atlas, ReadsTheSameInEveryLocale) {
+TEST(Atlas, IsReadIdenticallyInEveryLocale) {
   const GermanLocale locale;
   EXPECT_EQ(parse_atlas(one_code)[0].code.name(), "atlas-t1-k3-p4-b10-linear");
   EXPECT_EQ(parse_atlas(one_code)[0].circular_m.standard_error, 0.0005);

@@ -22,7 +22,7 @@ double misfit(const CirculantTvProblem& problem, const Eigen::VectorXd& x) {
   return (circular_convolution(problem.kernel, x) - problem.target).norm();
 }
 
-TEST(BoundedLeastSquares, IsFeasibleAndStillUnderProjectedGradientSteps) {
+TEST(BoundedLeastSquares, IsFeasibleAndAFixedPointOfProjectedGradientSteps) {
   constexpr int samples = 60;
   const CirculantTvProblem problem{.kernel = random_vector(samples, 0) / samples,
                                    .target = 2.0 * random_vector(samples, 1),
@@ -38,9 +38,9 @@ TEST(BoundedLeastSquares, IsFeasibleAndStillUnderProjectedGradientSteps) {
   EXPECT_LT((step - x).cwiseAbs().maxCoeff(), 1e-4);
 }
 
-TEST(BoundedLeastSquares, ReachesATargetWithinReachAndKeepsWhatItDoesNotDetermine) {
+TEST(BoundedLeastSquares, ReachesAttainableTargetsAndKeepsUndeterminedParts) {
   constexpr int samples = 40;
-  // Adjacent means: the alternating signal is lost, so x keeps that of its start.
+  // The mean of adjacent samples removes the alternating signal, so x keeps that of its start.
   Eigen::VectorXd kernel = Eigen::VectorXd::Zero(samples);
   kernel[0] = kernel[1] = 0.5;
   const Eigen::VectorXd smooth = Eigen::VectorXd::Constant(samples, 0.5);

@@ -33,7 +33,7 @@ TEST(BoxBudgetProjection, IsFeasibleAndIdempotent) {
   }
 }
 
-// The projection is the point from which no feasible point lies at an acute angle to the way out.
+// The variational inequality of the projection: <y - p, x - p> <= 0 for all feasible x.
 TEST(BoxBudgetProjection, SatisfiesTheVariationalInequality) {
   for (int item = 0; item < 100; ++item) {
     RandomStream random(2, item);
@@ -49,13 +49,13 @@ TEST(BoxBudgetProjection, SatisfiesTheVariationalInequality) {
   }
 }
 
-TEST(BoxBudgetProjection, ChargesNothingForABudgetWithRoom) {
+TEST(BoxBudgetProjection, ABudgetThatIsNotExceededHasNoPrice) {
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(5, -1, 3);
   EXPECT_EQ(project_on_box_and_budget(x, 2.0, 100.0), 0.0);
   EXPECT_EQ(x, (Eigen::VectorXd(5) << 0, 0, 1, 2, 2).finished());
 }
 
-TEST(BoxBudgetProjection, ABudgetOfZeroLeavesNothing) {
+TEST(BoxBudgetProjection, ABudgetOfZeroGivesZero) {
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(5, -1, 3);
   project_on_box_and_budget(x, 2.0, 0.0);
   EXPECT_LT(x.sum(), 1e-12);

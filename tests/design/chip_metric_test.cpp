@@ -24,7 +24,7 @@ const OperatingPoint high{1.7e7, 0.0}, low_ambient{1.7e7, 8e7}, low_signal{1.1e6
 
 Camera nine_chips() { return built_in_camera("exclusive-3tap-9chip"); }
 
-/// The camera with the clock and the taps of a code, and samples that hold whole chips.
+/// Returns the camera with the clock and taps of a code, and whole chips of samples.
 Camera camera_for(const ChipCode& code, Camera camera) {
   camera.sensor.taps = code.taps;
   camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * code.chips);
@@ -61,8 +61,8 @@ ChipCode random_code(int chips, int taps, int exposures, std::uint64_t seed) {
   return code;
 }
 
-/// Whitened distance between two depths, light levels of the second free, by brute force: the
-/// definition, on the forward model's own numbers.
+/// Reference: whitened distance between two depths, minimized over the light of the second, from
+/// the forward model.
 double distance(const ChipCode& code, const Camera& camera, const OperatingPoint& point, double z,
                 double alternative) {
   const ForwardModel model(to_code_set(code, camera, "code"), camera);
@@ -84,14 +84,14 @@ double distance(const ChipCode& code, const Camera& camera, const OperatingPoint
   return (truth - signal * other).norm();
 }
 
-TEST(ChipMetric, HasTheFiguresOfTheThreePhaseSquare) {
+TEST(ChipMetric, HasTheKnownErrorsOfTheThreePhaseSquare) {
   EXPECT_NEAR(chip_metric_rms_m(three_phase(), nine_chips(), high), 7.874e-3, 5e-7);
   EXPECT_NEAR(chip_metric_rms_m(three_phase(), nine_chips(), low_signal), 39.00e-3, 5e-6);
   const ChipCode wider = code_of({{"111100000", "111000000", "000111000", "000000111"}});
   EXPECT_NEAR(chip_metric_rms_m(wider, nine_chips(), low_ambient), 32.83e-3, 5e-6);
 }
 
-TEST(ChipMetric, IsTheCramerRaoBoundOfTheCode) {
+TEST(ChipMetric, EqualsTheCramerRaoBoundOfTheCode) {
   for (const double peak_factor : {1.0, 2.5}) {
     Camera camera = nine_chips();
     camera.samples = 360;
@@ -109,13 +109,13 @@ TEST(ChipMetric, IsTheCramerRaoBoundOfTheCode) {
   }
 }
 
-TEST(ChipMetric, IsInfiniteWhereDepthCannotBeToldFromLight) {
+TEST(ChipMetric, IsInfiniteIfDepthAndLightAreInseparable) {
   const ChipCode same_taps = code_of({{"1100", "1000", "0010"}, {"1100", "1000", "0010"}});
   Camera camera = camera_for(same_taps, nine_chips());
   EXPECT_EQ(chip_metric_rms_m(same_taps, camera, high), std::numeric_limits<double>::infinity());
 }
 
-TEST(ChipMetric, DoesNotDependOnDelaysMirrorImagesOrOrder) {
+TEST(ChipMetric, IsInvariantToDelaysReflectionsAndOrder) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ChipCode code = random_code(9, 3, 2, seed);
     const double rms_m = chip_metric_rms_m(code, nine_chips(), low_ambient);
@@ -132,9 +132,9 @@ TEST(ChipMetric, DoesNotDependOnDelaysMirrorImagesOrOrder) {
   }
 }
 
-TEST(ChipAmbiguity, IsWhatTurningAndWindingSayForThreeTaps) {
-  // Of one exposure with three taps the direction moves in a plane: no two depths share one exactly
-  // if it keeps turning the same way and goes around once.
+TEST(ChipAmbiguity, FollowsFromTurningAndWindingNumberForThreeTaps) {
+  // With one exposure of three taps, directions lie in a plane: they are unique if they always turn
+  // the same way and wind around once.
   int unambiguous = 0;
   const auto agrees = [&](const ChipCode& code) {
     double turned = 0.0;
@@ -172,7 +172,7 @@ TEST(ChipAmbiguity, IsWhatTurningAndWindingSayForThreeTaps) {
 }
 
 TEST(ChipAmbiguity, FindsCrossingsBetweenWholeChips) {
-  // Whole chips all measure differently here, but two stretches between them cross.
+  // Here all whole chips differ, but two stretches between them intersect.
   int crossings = 0;
   for (std::uint64_t seed = 1; seed <= 400 && crossings < 3; ++seed) {
     const ChipCode code = random_code(9, 4, 1, seed);
@@ -189,7 +189,7 @@ TEST(ChipAmbiguity, FindsCrossingsBetweenWholeChips) {
   EXPECT_GT(crossings, 0);
 }
 
-TEST(ChipMargin, IsTheLeastDistanceOverBothDepths) {
+TEST(ChipMargin, IsTheSmallestDistanceOverPairsOfDepths) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const ChipCode code = seed == 1 ? three_phase() : random_code(6, 3, 2, seed);
     const Camera camera = camera_for(code, nine_chips());
@@ -206,15 +206,16 @@ TEST(ChipMargin, IsTheLeastDistanceOverBothDepths) {
                                              double(j) / per_chip));
       }
     EXPECT_LE(margin, sampled * (1 + 1e-9)) << code.text();
-    // Samples are dense enough to come near it, but where depths cross.
+    // The samples are dense enough to come near the minimum, except at intersections.
     if (!is_ambiguous(code)) {
       EXPECT_GE(margin, 0.6 * sampled) << code.text();
     }
   }
 }
 
-TEST(ChipMargin, IsProvenWhereFourSamplesPerChipAreTooFew) {
-  // Sampled at four depths per chip this code keeps 8 sigma; there are depths at which it does not.
+TEST(ChipMargin, IsExactWhereFourSamplesPerChipAreTooFew) {
+  // Sampled at four depths per chip, the margin of this code appears to be 8 sigma; the true
+  // minimum is smaller.
   const ChipCode code = code_of({{"110101010", "101010000", "000101010", "010000101"},
                                  {"100100100", "100100100", "010010010", "001001001"}});
   const double margin = ambiguity_margin_sigma(code, nine_chips(), low_signal);
@@ -222,7 +223,7 @@ TEST(ChipMargin, IsProvenWhereFourSamplesPerChipAreTooFew) {
   EXPECT_GT(margin, 7.8);
 }
 
-TEST(ChipCode, RefusesWhatItCannotBe) {
+TEST(ChipCode, RejectsInvalidCodesAndCameras) {
   EXPECT_THAT(
       [] {
         code_of({{"1100", "1000", "1000", "0010"}}).validate();
@@ -240,7 +241,7 @@ TEST(ChipCode, RefusesWhatItCannotBe) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("modulation_contrast")));
 }
 
-TEST(ChipCode, IsItselfAsWaveforms) {
+TEST(ChipCode, KeepsItsCorrelationsAsWaveforms) {
   const ChipCode code = random_code(9, 3, 2, 7);
   const CodeSet set = to_code_set(code, nine_chips(), "code");
   EXPECT_NO_THROW(require_fits(set, nine_chips()));

@@ -28,7 +28,8 @@ using ::testing::ThrowsMessage;
 
 const OperatingPoint high{1.7e7, 0.0}, low_ambient{1.7e7, 8e7}, low_signal{1.1e6, 0.0};
 
-/// Calls `look` for every way to give chips to taps or to none, no tap always shut.
+/// Calls `look` for each assignment of chips to taps or to none in which every tap is open at
+/// times.
 void for_every_assignment(int chips, int taps, bool equal_duty,
                           const std::function<void(const std::vector<ChipWord>&)>& look) {
   std::vector<int> owner(static_cast<std::size_t>(chips), 0);
@@ -51,7 +52,7 @@ void for_every_assignment(int chips, int taps, bool equal_duty,
   }
 }
 
-/// The least metric of all safe codes of one exposure, without symmetry, bounds or order.
+/// Returns the minimum metric of all safe one-exposure codes, without symmetry, bounds or ordering.
 double raw_optimum_m(const Camera& camera, const ChipSearchOptions& options, double* codes) {
   const int chips = chips_of(camera), taps = camera.sensor.taps;
   const OperatingPoint point = camera.operating.points().front();
@@ -71,7 +72,7 @@ double raw_optimum_m(const Camera& camera, const ChipSearchOptions& options, dou
   return best;
 }
 
-TEST(TapAssignments, ListsOneOfEveryKind) {
+TEST(TapAssignments, ListsOneRepresentativeOfEveryClass) {
   for (const bool equal_duty : {true, false})
     for (const bool drain : {true, false})
       for (const int taps : {2, 3}) {
@@ -108,7 +109,7 @@ TEST(TapAssignments, ListsOneOfEveryKind) {
       }
 }
 
-TEST(Search, FindsTheOptimumOfARawEnumeration) {
+TEST(Search, FindsTheOptimumOfAnExhaustiveEnumeration) {
   struct Case {
     int chips, taps;
     bool equal_duty;
@@ -134,7 +135,7 @@ TEST(Search, FindsTheOptimumOfARawEnumeration) {
   }
 }
 
-TEST(Search, FindsTheOptimumOfARawEnumerationOfPairs) {
+TEST(Search, FindsTheOptimumOfAnExhaustiveEnumerationOfPairs) {
   const Camera camera = chip_camera(4, 2, low_ambient);
   ChipSearchOptions options;
   options.exposures = 2;
@@ -161,7 +162,7 @@ TEST(Search, FindsTheOptimumOfARawEnumerationOfPairs) {
   EXPECT_NEAR(result.finalists.front().rms_m, best, 1e-9 * best);
 }
 
-TEST(Search, ProvesTheFiguresOfNineChips) {
+TEST(Search, ProvesTheResultsForNineChips) {
   struct Case {
     OperatingPoint point;
     double rms_m;
@@ -176,7 +177,7 @@ TEST(Search, ProvesTheFiguresOfNineChips) {
     ASSERT_FALSE(result.finalists.empty());
     EXPECT_NEAR(result.finalists.front().rms_m, c.rms_m, 5e-6);
     EXPECT_GE(result.finalists.front().margin_sigma, 8.0);
-    // The ordinary three-phase square.
+    // The standard three-phase square wave.
     EXPECT_EQ(
         symmetry_key(result.finalists.front().code),
         symmetry_key({9,
@@ -195,7 +196,7 @@ TEST(Search, CountsEveryCodeOnce) {
   }
 }
 
-TEST(Search, IsTheSameForAnyThreadsAndInstructions) {
+TEST(Search, IsIdenticalForAnyThreadsAndInstructionSet) {
   const auto search = [](int taps, int exposures, double max_exhaustive) {
     ChipSearchOptions options;
     options.exposures = exposures;
@@ -227,7 +228,7 @@ TEST(Search, IsTheSameForAnyThreadsAndInstructions) {
   }
 }
 
-TEST(Search, TakesTheGeometricMeanOverAllPoints) {
+TEST(Search, MinimizesTheGeometricMeanOverAllPoints) {
   Camera camera = chip_camera(8, 4, high);
   camera.operating.signal_e_per_s = {1.1e6, 1.7e7};
   camera.operating.ambient_e_per_s = {0.0, 8e7};
@@ -238,12 +239,13 @@ TEST(Search, TakesTheGeometricMeanOverAllPoints) {
   for (const OperatingPoint& point : camera.operating.points())
     log_sum += std::log(chip_metric_rms_m(best.code, camera, point));
   EXPECT_NEAR(best.rms_m, std::exp(log_sum / 4), 1e-9 * best.rms_m);
-  // At the darkest point no code keeps 8 sigma; what the standard code keeps is asked instead.
+  // At the darkest point no code reaches 8 sigma; the margin of the standard code is required
+  // instead.
   EXPECT_LT(result.log.margin_sigma[1], 8.0);
   EXPECT_EQ(result.log.margin_sigma[2], 8.0);
 }
 
-TEST(Search, AnnealsBeyondWhatCanBeProvenAndIsNoWorseThanItsSeeds) {
+TEST(Search, AnnealingIsNoWorseThanItsSeeds) {
   const Camera camera = chip_camera(12, 3, low_ambient);
   ChipSearchOptions options;
   options.exposures = 2;
@@ -268,13 +270,13 @@ TEST(Search, ComparesStandardCodes) {
   EvaluateOptions options;
   options.trials = 400;
   const auto table = compare_chip_codes(codes, camera, options);
-  EXPECT_NEAR(table[1].rms_m, 7.874e-3, 2e-6);  // the three-phase square
-  // Exclusive taps at their own pace beat overlapping ones in turn, a coprime pair beats both.
+  EXPECT_NEAR(table[1].rms_m, 7.874e-3, 2e-6);  // the three-phase square wave
+  // Exclusive taps beat overlapping taps in turn; a pair of coprime periods beats both.
   EXPECT_GT(table[0].circular_mde_m.value, 2.0 * table[1].circular_mde_m.value);
   EXPECT_GT(table[1].circular_mde_m.value, 2.5 * table[3].circular_mde_m.value);
 }
 
-TEST(Search, FinalistsAreInTheOrderOfTheMetric) {
+TEST(Search, FinalistsAreSortedByTheMetric) {
   ChipSearchOptions options;
   options.finalists = 3;
   const ChipSearchResult result = search_chip_codes(chip_camera(9, 3, high), options);
@@ -283,20 +285,20 @@ TEST(Search, FinalistsAreInTheOrderOfTheMetric) {
     EXPECT_LE(result.finalists[i - 1].rms_m, result.finalists[i].rms_m);
 }
 
-TEST(Search, SaysBeforehandWhatItCannotSearch) {
+TEST(Search, ReportsUnsupportedCamerasBeforehand) {
   EXPECT_FALSE(why_not_searchable(chip_camera(9, 3, high), 1));
   const auto reason = why_not_searchable(built_in_camera("paper-30x"), 3);
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->field, "sensor.shortest_pulse_s");
 }
 
-TEST(Search, StopsWhenAsked) {
+TEST(Search, StopsOnRequest) {
   EXPECT_THROW(search_chip_codes(chip_camera(9, 3, high), {},
                                  [](double fraction, std::string_view) { return fraction < 0.2; }),
                Interrupted);
 }
 
-TEST(Search, RefusesWhatItCannotSearch) {
+TEST(Search, RejectsUnsupportedCamerasAndOptions) {
   EXPECT_THAT([] { search_chip_codes(built_in_camera("paper-30x")); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("must be in [3, 16]")));
   EXPECT_THAT([] { search_chip_codes(built_in_camera("paper-30x"), {.exposures = 3}); },

@@ -10,7 +10,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(CirculantTvAdmm, AgreesWithTheActiveSet) {
+TEST(CirculantTvAdmm, AgreesWithTheActiveSetSolver) {
   for (int item = 0; item < 40; ++item) {
     RandomStream random(3, item);
     const int samples = 24 + 4 * (item % 10);
@@ -32,7 +32,7 @@ TEST(CirculantTvAdmm, AWarmStartFromTheSolutionKeepsIt) {
   EXPECT_NEAR(split.objective, active.objective, 1e-9 * active.objective);
 }
 
-TEST(CirculantTvAdmm, SaysThatItRanOutOfSteps) {
+TEST(CirculantTvAdmm, ReportsThatItRanOutOfSteps) {
   RandomStream random(5, 0);
   const CirculantTvProblem problem = test::random_circulant_tv({48, 2e-5, true}, random);
   CirculantTvAdmmOptions options;

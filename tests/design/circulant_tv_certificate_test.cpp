@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-// With A the identity the solution is known in closed form.
+// With A = I the solution is known in closed form.
 CirculantTvProblem denoising_problem(double upper_bound, std::optional<double> budget) {
   CirculantTvProblem problem;
   RandomStream random(1, 0);
@@ -48,14 +48,14 @@ TEST(CirculantTvCertificate, AcceptsTheKnownSolution) {
   }
 }
 
-TEST(CirculantTvCertificate, AcceptsAConstantThatTheWeightFlattens) {
+TEST(CirculantTvCertificate, AcceptsAConstantIfTheWeightIsLarge) {
   CirculantTvProblem problem = denoising_problem(100, {});
   problem.total_variation_weight = 100;
   const double mean = problem.target.mean();
   EXPECT_LT(certificate(problem, Eigen::VectorXd::Constant(60, mean)).worst(), 1e-12);
   EXPECT_NEAR(certificate(problem, Eigen::VectorXd::Constant(60, mean + 0.1)).violation,
               60 * 0.1 / 100, 1e-9);
-  // At a bound, only the way back into the box counts.
+  // At a bound, only moves back into the box count.
   problem.upper_bound = 0.5 * mean;
   EXPECT_LT(certificate(problem, Eigen::VectorXd::Constant(60, 0.5 * mean)).worst(), 1e-12);
   problem.target = -problem.target;
@@ -63,7 +63,7 @@ TEST(CirculantTvCertificate, AcceptsAConstantThatTheWeightFlattens) {
   EXPECT_GT(certificate(problem, Eigen::VectorXd::Constant(60, 0.5 * mean)).violation, 0.1);
 }
 
-TEST(CirculantTvCertificate, RefusesWhatIsNotOptimal) {
+TEST(CirculantTvCertificate, RejectsSuboptimalPoints) {
   const CirculantTvProblem problem = denoising_problem(1.5, 20.0);
   const Eigen::VectorXd x = denoised(problem);
   for (int n = 0; n < 60; ++n)
@@ -75,14 +75,14 @@ TEST(CirculantTvCertificate, RefusesWhatIsNotOptimal) {
   EXPECT_GT(certificate(problem, 0.99 * x).violation, 1e-3);
 }
 
-TEST(CirculantTvCertificate, NamesInfeasibility) {
+TEST(CirculantTvCertificate, ReportsInfeasibility) {
   const CirculantTvProblem problem = denoising_problem(1.5, 20.0);
   EXPECT_NEAR(certificate(problem, Eigen::VectorXd::Constant(60, 1.0)).infeasibility, 2.0, 1e-12);
   EXPECT_NEAR(certificate(problem, Eigen::VectorXd::Constant(60, -0.15)).infeasibility, 0.1, 1e-12);
 }
 
-// No move of a piece or an interval may pay more than the certificate says.
-TEST(CirculantTvCertificate, BoundsWhatAnyIntervalMoveGains) {
+// Moving a piece or an interval may not gain more than the certificate states.
+TEST(CirculantTvCertificate, BoundsTheGainOfAnyIntervalMove) {
   for (int item = 0; item < 40; ++item) {
     RandomStream random(2, item);
     const CirculantTvProblem problem = test::random_circulant_tv({40, 2e-5, item % 2 == 1}, random);
@@ -102,7 +102,7 @@ TEST(CirculantTvCertificate, BoundsWhatAnyIntervalMoveGains) {
           best_gain = std::max(best_gain, problem.objective(x) - problem.objective(moved));
         }
     const double gain = best_gain / (height * problem.total_variation_weight);
-    // An interval may cross several pieces, each of which may be violated.
+    // An interval may span several pieces, each with its own violation.
     EXPECT_LE(gain, violation * 40 + 1e-3);
     EXPECT_GT(violation, 0.1);
   }

@@ -36,7 +36,7 @@ void expect_solved(const CirculantTvProblem& problem, const CirculantTvResult& r
   EXPECT_NEAR(result.objective, problem.objective(result.x), 1e-11 * (1 + result.objective));
 }
 
-// Unoptimized builds, sanitized ones above all, take a sample of the instances.
+// Unoptimized and sanitized builds test a sample of the instances.
 #ifdef NDEBUG
 constexpr int instances_per_length = 63;
 #else
@@ -61,8 +61,8 @@ TEST_P(CirculantTvInstances, AreSolvedAndCertifiedWithoutFallback) {
   }
 }
 
-// 252 instances each, 1260 in all. At the last weight a gradient summed twice in double precision
-// would have lost the digits that the certificate asks for.
+// 252 instances each, 1260 in total. At the smallest weight, the certificate needs more digits than
+// a gradient with plain double-precision sums provides.
 INSTANTIATE_TEST_SUITE_P(WeightPerSample, CirculantTvInstances,
                          testing::Values(2e-5, 2e-6, 2e-7, 2e-8, 2e-9));
 
@@ -112,7 +112,7 @@ TEST(CirculantTv, ReachesTheSameObjectiveFromAnyStart) {
     RandomStream random(8, item);
     Eigen::VectorXd noise(240), pulse = Eigen::VectorXd::Zero(240);
     for (double& value : noise) value = 3 * random.normal();
-    // All samples at a bound and the budget spent: a vertex with no free piece.
+    // All samples at a bound and the budget exhausted: a vertex without a free piece.
     pulse.head(static_cast<int>(240 / problem.upper_bound)).setConstant(problem.upper_bound);
     const Eigen::VectorXd full = Eigen::VectorXd::Constant(240, problem.upper_bound);
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(240);
@@ -124,7 +124,7 @@ TEST(CirculantTv, ReachesTheSameObjectiveFromAnyStart) {
   }
 }
 
-TEST(CirculantTv, ASolverForgetsTheProblemBefore) {
+TEST(CirculantTv, ASolverKeepsNoStateBetweenProblems) {
   CirculantTvSolver used(240);
   for (int item = 0; item < 10; ++item) {
     const CirculantTvProblem problem = instance(item);
@@ -143,12 +143,12 @@ TEST(CirculantTv, SolvesDegenerateProblems) {
   problem.kernel.setZero();
   expect_solved(problem, solve_circulant_tv(problem));
 
-  // A kernel without a mean leaves the level of x to the bounds.
+  // A kernel of zero mean leaves the level of x undetermined except by the bounds.
   problem = instance(2);
   problem.kernel.array() -= problem.kernel.mean();
   expect_solved(problem, solve_circulant_tv(problem));
 
-  // A weight that leaves no jump.
+  // A weight that removes all jumps.
   problem = instance(4);
   problem.total_variation_weight = 1e6;
   const CirculantTvResult flat = solve_circulant_tv(problem);
@@ -156,7 +156,7 @@ TEST(CirculantTv, SolvesDegenerateProblems) {
   EXPECT_EQ(flat.pieces, 1);
 }
 
-// A pulse at full peak that spends the budget exactly: no piece of it is strictly inside the box.
+// A pulse at full peak that exhausts the budget exactly: none of its pieces is strictly inside.
 TEST(CirculantTv, FindsTheIdealPulseOfThreeCodes) {
   constexpr int samples = 240;
   CirculantTvProblem problem;
@@ -168,7 +168,7 @@ TEST(CirculantTv, FindsTheIdealPulseOfThreeCodes) {
   problem.total_variation_weight = 1e-8;
   const CirculantTvResult result = solve_circulant_tv(problem);
   expect_solved(problem, result);
-  // The weight rounds the pulse off, by its own small size.
+  // The weight rounds the pulse slightly.
   EXPECT_EQ((result.x.array() > 6 - 1e-5).count(), samples / 6);
   EXPECT_EQ((result.x.array() < 1e-5).count(), samples - samples / 6);
 }
@@ -190,7 +190,7 @@ TEST(CirculantTv, SolvesTheShortestSignals) {
     }
 }
 
-TEST(CirculantTv, FallsBackAndSaysSo) {
+TEST(CirculantTv, ReportsTheUseOfTheFallback) {
   const CirculantTvProblem problem = instance(1);
   CirculantTvOptions options;
   options.max_iterations = 1;
@@ -207,7 +207,7 @@ TEST(CirculantTv, AResultStartsAsFailure) {
   EXPECT_THAT(CirculantTvResult{}.brief(), testing::StartsWith("not_run"));
 }
 
-// Solving `problem` must fail, with a message that names all of `words`.
+// Expects that solving `problem` fails with a message that contains all `words`.
 void expect_refused(const CirculantTvProblem& problem, const std::vector<std::string>& words,
                     const CirculantTvOptions& options = {}) {
   try {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Steps of CodeGradients have the values of the library, and adjoints that match differences.
+// Values of CodeGradients, compared with the library, and their adjoints with finite differences.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace tofsmith {
 namespace {
 
 constexpr int samples = 24, exposures = 3, pixels = 70;
-constexpr int odd = 25;  // 100 depths fill no vectors of 8
+constexpr int odd = 25;  // 100 depths, not a multiple of the vector length 8
 
 Camera camera_of(const char* name, Readout readout) {
   Camera camera = built_in_camera(name);
@@ -33,7 +33,7 @@ std::vector<Camera> cameras() {
           camera_of("paper-30x", Readout::separate)};
 }
 
-/// Smooth waveforms, shaken.
+/// Smooth waveforms with random perturbations.
 struct Setting {
   explicit Setting(const Camera& its) : camera(its), steps(camera, samples, exposures) {
     RandomStream random(5, 1);
@@ -62,8 +62,8 @@ struct Setting {
   std::vector<double> depth_bin, signal, ambient, weight;
 };
 
-/// Slope of `value` of tables along a direction, beside what the gradient says. Functions that are
-/// linear take large steps.
+/// Compares the slope of `value` along a random direction with the gradient. Functions linear in
+/// the table allow large steps.
 template <typename Value>
 void expect_gradient(const MeasurementTable& table, const MeasurementTable& gradient,
                      const Value& value, double step = 3e-7) {
@@ -88,7 +88,7 @@ void expect_gradient(const MeasurementTable& table, const MeasurementTable& grad
   }
 }
 
-TEST(CodeGradients, ValuesAreThoseOfTheLibrary) {
+TEST(CodeGradients, ValuesMatchTheLibrary) {
   for_each_target([] {
     for (const Camera& camera : cameras()) {
       const Setting setting(camera);
@@ -118,7 +118,7 @@ TEST(CodeGradients, ValuesAreThoseOfTheLibrary) {
   });
 }
 
-TEST(CodeGradients, AdjointsMatchDifferences) {
+TEST(CodeGradients, AdjointsMatchFiniteDifferences) {
   for (const Camera& camera : cameras()) {
     const Setting setting(camera);
     const CodeGradients& steps = setting.steps;
@@ -167,7 +167,7 @@ TEST(CodeGradients, AdjointsMatchDifferences) {
   }
 }
 
-TEST(CodeGradients, DepthsThatFillNoVectorAreBoundedAlike) {
+TEST(CodeGradients, DepthsThatDoNotFillAVectorAreHandled) {
   for_each_target([] {
     Camera camera = built_in_camera("paper-10f0");
     camera.samples = odd;
@@ -202,7 +202,7 @@ TEST(CodeGradients, DepthsThatFillNoVectorAreBoundedAlike) {
   });
 }
 
-TEST(CodeGradients, RefusesWhatHasNoGradient) {
+TEST(CodeGradients, RejectsCamerasWithoutGradient) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.tap_mismatch = 0.1;
   camera.sensor.taps = 2;

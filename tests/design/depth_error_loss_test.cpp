@@ -10,7 +10,7 @@
 namespace tofsmith {
 namespace {
 
-/// A camera, a smooth code with unequal duties on a small grid, and trials.
+/// A camera, a smooth code of unequal duties on a small grid, and trials.
 struct Setting {
   explicit Setting(int taps = 1, Readout readout = Readout::separate, double contrast = 1.0)
       : camera(built_in_camera("paper-10f0")) {
@@ -46,7 +46,7 @@ TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = fals
                      later ? &second : nullptr, depths);
 }
 
-/// The batch with trial t and no other.
+/// Returns the batch with trial t only.
 TrialBatch only(TrialBatch batch, std::size_t t) {
   const double* normals = batch.normals_of(t);
   batch.normals = std::vector<double>(normals, normals + batch.measurements);
@@ -60,7 +60,7 @@ const std::vector<Setting>& settings() {
   return all;
 }
 
-TEST(DepthErrorLoss, IsThatOfThePlainReferenceOnEveryTarget) {
+TEST(DepthErrorLoss, EqualsTheReferenceOnEveryTarget) {
   for_each_target([] {
     for (const Setting& setting : settings())
       for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
@@ -79,7 +79,7 @@ TEST(DepthErrorLoss, IsThatOfThePlainReferenceOnEveryTarget) {
   });
 }
 
-TEST(DepthErrorLoss, DecodesToTheBestPointBesideTheBestBin) {
+TEST(DepthErrorLoss, DecodesToTheBestPointNextToTheBestBin) {
   for (const Setting& setting : settings()) {
     const SampledCamera camera = setting.sampled();
     const MeasurementTable table = camera.measure(setting.code).table;
@@ -96,8 +96,8 @@ TEST(DepthErrorLoss, DecodesToTheBestPointBesideTheBestBin) {
   }
 }
 
-/// Compares the gradient with central differences of the error along random directions: of light
-/// alone, of gates alone, of both.
+/// Compares the gradient with central differences along random directions of light, of gates, and
+/// of both.
 template <typename ErrorOf>
 void expect_slopes(const Setting& setting, const SampledCode& gradient, ErrorOf&& error_of) {
   RandomStream random(11, 5);
@@ -122,7 +122,7 @@ void expect_slopes(const Setting& setting, const SampledCode& gradient, ErrorOf&
   }
 }
 
-TEST(DepthErrorLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
+TEST(DepthErrorLoss, GradientWithRespectToWaveformsMatchesFiniteDifferences) {
   for (const Setting& setting : settings())
     for (const auto& [circular, depths] : {std::pair(false, DepthPrior()),
                                            {true, DepthPrior()},
@@ -155,7 +155,7 @@ TEST(DepthErrorLoss, WeightsAndPointsAdd) {
             1e-4 * once.gradient().correlation.norm());
 }
 
-/// Trials of two returns that are decoded as such.
+/// Returns trials of two returns that are decoded as two returns.
 TrialBatch two_return_trials(const Setting& setting, int count, TwoReturnGrid grid) {
   RandomStream random(7, 3);
   const MultipathTrials later{{{0.2, 0.9}, {1.0, 4.0}}, setting.camera.range_m(), grid};
@@ -165,7 +165,7 @@ TrialBatch two_return_trials(const Setting& setting, int count, TwoReturnGrid gr
 /// Grids as fine as the curve, and coarser.
 constexpr TwoReturnGrid grids[] = {{24, {2, 9}}, {12, {1, 11}}};
 
-TEST(TwoReturnLoss, IsThatOfThePlainReferenceOnEveryTarget) {
+TEST(TwoReturnLoss, EqualsTheReferenceOnEveryTarget) {
   for_each_target([] {
     for (const Setting& setting : settings())
       for (const TwoReturnGrid& grid : grids) {
@@ -183,7 +183,7 @@ TEST(TwoReturnLoss, IsThatOfThePlainReferenceOnEveryTarget) {
   });
 }
 
-TEST(TwoReturnLoss, DecodesToTheFirstOfTheBestPair) {
+TEST(TwoReturnLoss, DecodesToTheFirstReturnOfTheBestPair) {
   const Setting setting(2);
   const SampledCamera camera = setting.sampled();
   const MeasurementTable table = camera.measure(setting.code).table;
@@ -201,7 +201,7 @@ TEST(TwoReturnLoss, DecodesToTheFirstOfTheBestPair) {
   }
 }
 
-TEST(TwoReturnLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
+TEST(TwoReturnLoss, GradientWithRespectToWaveformsMatchesFiniteDifferences) {
   for (const Setting& setting : settings())
     for (const TwoReturnGrid& grid : grids) {
       const SampledCamera camera = setting.sampled();
@@ -218,7 +218,7 @@ TEST(TwoReturnLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
     }
 }
 
-TEST(DrawTrials, TakesDepthsAsOftenAsTheyOccur) {
+TEST(DrawTrials, DrawsDepthsWithTheirWeights) {
   for (const bool ends_matter : {false, true}) {
     RandomStream random(7, 3);
     const TrialBatch batch = draw_trials(40000, 3, {}, ends_matter, random, nullptr, nullptr,
@@ -230,7 +230,7 @@ TEST(DrawTrials, TakesDepthsAsOftenAsTheyOccur) {
   }
 }
 
-TEST(DrawTrials, EvenWeightsOfDepthsAreTheSameBitsAsNone) {
+TEST(DrawTrials, EqualWeightsOfDepthsGiveTheSameBitsAsNoWeights) {
   for (const bool ends_matter : {false, true}) {
     RandomStream random(7, 3), again(7, 3);
     const TrialBatch none = draw_trials(100, 3, {}, ends_matter, random);

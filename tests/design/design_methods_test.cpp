@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
-/// Options that optimize for a fraction of a second.
+/// Returns options of an optimization that takes a fraction of a second.
 DesignOptions quick(DesignMethod method, std::vector<int> exposures) {
   DesignOptions options = small_options(std::move(exposures));
   options.method = method;
@@ -29,7 +29,7 @@ DesignOptions quick(DesignMethod method, std::vector<int> exposures) {
   return options;
 }
 
-/// Three exclusive taps on a clock of six chips per period, in good light.
+/// Returns a camera of three exclusive taps with six chips per period, in bright light.
 Camera clocked() {
   Camera camera = built_in_camera("exclusive-3tap-9chip");
   camera.sensor.shortest_pulse_s = 15e-9;
@@ -39,7 +39,7 @@ Camera clocked() {
   return camera;
 }
 
-TEST(DesignMethods, BestLetsEveryMethodCompeteAndPicksTheLeastError) {
+TEST(DesignMethods, BestTriesEveryMethodAndPicksTheLowestError) {
   const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
   const DesignResult result = design(camera, quick(DesignMethod::best, {3, 4}));
   for (const char* name : {"square-k4", "hamiltonian-k3-naive", "hamiltonian-k3-factorized",
@@ -74,7 +74,7 @@ TEST(DesignMethods, SearchesOnTheChipClockWithProof) {
   EXPECT_THAT(result.left_out, Contains(HasSubstr("coprime-three-phase: has pulses or gaps")));
 }
 
-TEST(DesignMethods, WhatDoesNotServeIsRefusedIfAskedForAndNotedIfNot) {
+TEST(DesignMethods, UnsuitableMethodsAreRejectedIfRequestedAndNotedOtherwise) {
   Camera camera = small_camera("paper-30x");  // no band limit, no shortest pulse
   try {
     design(camera, quick(DesignMethod::optimize, {3}));
@@ -88,7 +88,7 @@ TEST(DesignMethods, WhatDoesNotServeIsRefusedIfAskedForAndNotedIfNot) {
   EXPECT_THROW(design(camera, quick(DesignMethod::search, {1})), std::invalid_argument);
 }
 
-TEST(DesignMethods, ReasonsThatManyShareAreToldOnce) {
+TEST(DesignMethods, SharedReasonsAreReportedOnce) {
   DesignOptions options = quick(DesignMethod::search, {1});
   options.baselines = {"sinusoid-k3", "square-k4"};
   const DesignResult result = design(clocked(), options);
@@ -109,14 +109,14 @@ TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
   }
 }
 
-TEST(DesignMethods, TheWinnerIsJudgedOnPerturbedCameras) {
+TEST(DesignMethods, TheWinnerIsEvaluatedOnPerturbedCameras) {
   const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
   const DesignResult result = design(camera, small_options());
   for (const Candidate& c : result.candidates)
     EXPECT_EQ(c.robustness.has_value(), &c == &result.winner()) << c.code.name();
 }
 
-TEST(DesignMethods, TellWhyTheWinnerWonInThreeSentences) {
+TEST(DesignMethods, ExplainTheWinnerInThreeSentences) {
   const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
   const DesignResult result = design(camera, small_options());
   ASSERT_EQ(result.explanation.size(), 3u);
@@ -125,7 +125,7 @@ TEST(DesignMethods, TellWhyTheWinnerWonInThreeSentences) {
   EXPECT_THAT(result.explanation[2], HasSubstr("Cramer-Rao"));
 }
 
-TEST(SuggestedExposures, AreFewerWithMoreTapsAndMoreWithAWiderBand) {
+TEST(SuggestedExposures, DecreaseWithTapsAndIncreaseWithBandwidth) {
   Camera camera = built_in_camera("paper-10f0");
   const auto most = [&] { return suggested_exposures(camera, DesignMethod::optimize).back(); };
   const int narrow = most();
@@ -139,7 +139,7 @@ TEST(SuggestedExposures, AreFewerWithMoreTapsAndMoreWithAWiderBand) {
   EXPECT_EQ(suggested_exposures(camera, DesignMethod::best), std::vector<int>{3});
 }
 
-TEST(GainOver, IsTheRatioOfChosenErrorsWithItsUncertainty) {
+TEST(GainOver, IsTheRatioOfChosenErrorsWithItsStandardError) {
   const DesignResult result = design(small_camera("paper-5f0"), small_options());
   EXPECT_EQ(gain_over(result, result.winner(), DepthErrorKind::linear).value, 1.0);
   for (const Candidate& c : result.candidates) {

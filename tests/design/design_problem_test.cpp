@@ -7,7 +7,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(DesignProblem, CellsAreNoShorterThanTheShortestPulse) {
+TEST(DesignProblem, CellsAreAtLeastAsLongAsTheShortestPulse) {
   Camera camera = built_in_camera("paper-30x");
   const auto space_for = [&](double periods, double peak_factor) {
     camera.sensor.shortest_pulse_s = periods / camera.fundamental_frequency_hz;
@@ -28,7 +28,7 @@ TEST(DesignProblem, CellsAreNoShorterThanTheShortestPulse) {
   EXPECT_NE(why_not_optimizable(camera, 4), std::nullopt);
 }
 
-TEST(DesignProblem, LearnsFromThePointsOfTheRangeOrFromLevelsWithinIt) {
+TEST(DesignProblem, UsesThePointsOfTheRangeOrLevelsWithinIt) {
   Camera camera = built_in_camera("paper-10f0");
   EXPECT_EQ(training_points(camera), camera.operating.points());
   camera.operating.signal_e_per_s.clear();
@@ -47,7 +47,7 @@ TEST(DesignProblem, LearnsFromThePointsOfTheRangeOrFromLevelsWithinIt) {
   }
 }
 
-TEST(DesignProblem, RefusesVariantsOfOtherTaps) {
+TEST(DesignProblem, RejectsVariantsWithOtherTaps) {
   std::vector<Camera> variants(2, built_in_camera("paper-10f0"));
   variants[1].sensor.taps = 2;
   EXPECT_THROW(make_design_problem(variants, 4, 120), std::invalid_argument);

@@ -35,7 +35,7 @@ Camera weak() {
   return camera;
 }
 
-/// The winner has the least chosen error of all candidates, and the naive code is one of them.
+/// Expects that the winner has the lowest error and that the naive code is a candidate.
 void expect_best_wins(const Camera& camera, const DesignResult& result, const std::string& naive) {
   ASSERT_NE(result.find(naive), nullptr) << naive;
   const DepthErrorKind kind = camera.operating.error;
@@ -69,7 +69,7 @@ TEST(Design, WinnerIsNeverWorseThanTheNaiveCodeOrAnyBaseline) {
   }
 }
 
-TEST(Design, ATargetThatCannotTellDepthIsLeftOutWithItsReason) {
+TEST(Design, ATargetWithoutDepthInformationIsExcludedWithAReason) {
   const Camera camera = small_camera("paper-10f0");
   DesignOptions options = small_options();
   const Eigen::MatrixXd constant = Eigen::MatrixXd::Constant(camera.samples, 3, 0.5);
@@ -82,7 +82,7 @@ TEST(Design, ATargetThatCannotTellDepthIsLeftOutWithItsReason) {
   EXPECT_NE(result.left_out[0].find("rank"), std::string::npos) << result.left_out[0];
 }
 
-TEST(Design, ErrorIsWhatEvaluateSaysOfTheCodeWithTheSameSeed) {
+TEST(Design, ErrorEqualsThatOfEvaluateWithTheSameSeed) {
   const Camera camera = small_camera("paper-5f0");
   const DesignOptions options = small_options();
   const Candidate winner = design(camera, options).winner();
@@ -92,7 +92,7 @@ TEST(Design, ErrorIsWhatEvaluateSaysOfTheCodeWithTheSameSeed) {
   EXPECT_EQ(again.seed, winner.error.seed);
 }
 
-TEST(Design, AimsAtAUsersTarget) {
+TEST(Design, ApproximatesAUserTarget) {
   const Camera camera = small_camera("paper-5f0");
   DesignOptions options = small_options();
   options.target = targets_of(build_family("square-k3", camera));
@@ -121,7 +121,7 @@ TEST(Design, BinaryArmsGetBinaryWaveformsOfASmoothTarget) {
   }
 }
 
-TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
+TEST(Design, ReusesTheStoreAndSavesNewDesigns) {
   const Camera camera = small_camera("paper-5f0");
   std::vector<Candidate> saved;
   DesignStore store{.load = [](const std::string&) { return std::vector<Candidate>(); },
@@ -148,7 +148,7 @@ TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
   expect_same_code(kept->code, first.find("hamiltonian-k3-factorized")->code);
 }
 
-TEST(Design, LeavesOutFamiliesTheCameraCannotPlayAndSaysWhy) {
+TEST(Design, ExcludesFamiliesThatDoNotSuitTheCameraWithAReason) {
   Camera camera = small_camera("paper-5f0");
   camera.exposure_s.each_s = {0.1, 0.1, 0.1};
   DesignOptions options = small_options();
@@ -161,7 +161,7 @@ TEST(Design, LeavesOutFamiliesTheCameraCannotPlayAndSaysWhy) {
   EXPECT_THAT(result.left_out[1], HasSubstr("not a built-in family"));
 }
 
-TEST(Design, StopsWhenAskedAtAnyTime) {
+TEST(Design, StopsOnRequestAtAnyTime) {
   int calls = 0;
   const auto stop_at = [&](int last) {
     calls = 0;
@@ -189,7 +189,7 @@ std::string refusal(const Camera& camera, const DesignOptions& options) {
   return "accepted";
 }
 
-TEST(Design, EffortScalesSearchesAndLeavesTheRest) {
+TEST(Design, EffortScalesSearchesOnly) {
   const DesignOptions full, quick = with_effort(full, 0.05), longer = with_effort(full, 3);
   EXPECT_EQ(quick.optimize.starts, 2);
   EXPECT_EQ(quick.optimize.hops, 2);
@@ -206,7 +206,7 @@ TEST(Design, EffortScalesSearchesAndLeavesTheRest) {
     EXPECT_THROW(with_effort(full, effort), std::invalid_argument) << effort;
 }
 
-TEST(Design, RefusesWhatCannotBeDesignedBeforeAnyWork) {
+TEST(Design, RejectsInvalidRequestsBeforeAnyWork) {
   const auto with = [](auto&& change) {
     DesignOptions options = small_options();
     change(options);

@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What is said of a code whose Cramer-Rao bound is so many times its error.
+/// Returns the explanation for a code whose Cramer-Rao bound is `bound_over_error` times its error.
 std::string limit_of(double bound_over_error) {
   const Camera camera = small_camera("paper-10f0");
   DesignResult result = judge(
@@ -23,7 +23,7 @@ std::string limit_of(double bound_over_error) {
   return explain(camera, result)[2];
 }
 
-TEST(Explanation, NeverSaysThatAnErrorIsAFractionOfItsBound) {
+TEST(Explanation, NeverReportsAnErrorBelowItsBoundAsARatio) {
   EXPECT_THAT(limit_of(0.8), HasSubstr("1.25 times its Cramer-Rao bound"));
   EXPECT_THAT(limit_of(100), HasSubstr("correlation functions are nearly flat at some depth"));
   EXPECT_THAT(limit_of(100), Not(HasSubstr("times its Cramer-Rao bound")));

@@ -41,7 +41,7 @@ FactorizeOptions random_starts_only(std::uint64_t seed) {
   return options;
 }
 
-TEST(Factorize, RandomStartsFindThePerfectPairWheneverThePeakAllowsIt) {
+TEST(Factorize, RandomStartsFindTheExactPairIfThePeakAllowsIt) {
   for (const double peak : {6.0, 15.0, 30.0}) {
     const Factorization f = factorize(hamiltonian_targets(3).measurements[0],
                                       camera_with_peak(peak), random_starts_only(3));
@@ -53,7 +53,7 @@ TEST(Factorize, RandomStartsFindThePerfectPairWheneverThePeakAllowsIt) {
   }
 }
 
-TEST(Factorize, AtTwiceTheAveragePowerSquareMeetsSquare) {
+TEST(Factorize, AtTwiceTheAveragePowerBothWaveformsAreSquare) {
   const Factorization f = factorize(hamiltonian_targets(3).measurements[1], camera_with_peak(2.0),
                                     random_starts_only(1));
   EXPECT_NEAR(f.best().pair.modulation.duty(), 0.5, 2e-3);
@@ -67,12 +67,12 @@ struct Case {
   int measurement;
   double peak_factor;
   double f_max_over_f0;
-  double residual_rms;  // an independent prototype's, rounded
+  double residual_rms;  // residual of an independent prototype, rounded
 };
 
 class FactorizeResidual : public testing::TestWithParam<Case> {};
 
-TEST_P(FactorizeResidual, IsAsSmallAsAnIndependentPrototypes) {
+TEST_P(FactorizeResidual, IsAsSmallAsThatOfAnIndependentPrototype) {
   const Case& c = GetParam();
   const TargetSet targets = hamiltonian_targets(c.order);
   const Factorization f = factorize(targets.measurements[static_cast<std::size_t>(c.measurement)],
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Published, FactorizeResidual,
                                          Case{5, 3, 15, 0, .0654}, Case{3, 0, 15, 10, .016},
                                          Case{4, 0, 15, 5, .121}, Case{5, 4, 15, 10, .319}));
 
-TEST(Factorize, EveryCandidateCanBePlayed) {
+TEST(Factorize, EveryCandidateSuitsTheCamera) {
   const Camera camera = camera_with_peak(4.0, 10.0);
   const Factorization f = factorize(hamiltonian_targets(4).measurements[2], camera);
   for (const PairCandidate& c : f.candidates) {
@@ -115,7 +115,7 @@ TEST(Factorize, AnalogArmsFitAtLeastAsWellAsBinaryOnes) {
   EXPECT_LT(factorize(target, analog, options).best().residual_rms, binary * 1.01);
 }
 
-TEST(Factorize, KeepsTheShortestPulse) {
+TEST(Factorize, RespectsTheShortestPulse) {
   Camera camera = camera_with_peak(15.0, 20.0);
   const CorrelationTarget target = hamiltonian_targets(5).measurements[2];
   camera.sensor.shortest_pulse_s = 0.06 / camera.fundamental_frequency_hz;
@@ -137,13 +137,13 @@ TEST(Factorize, UnreachableTargetsEndAsAResult) {
   EXPECT_THAT(f.message, testing::HasSubstr("leaves [0, 1]"));
 }
 
-TEST(Factorize, StopsWhenAsked) {
+TEST(Factorize, StopsOnRequest) {
   EXPECT_THROW(factorize(hamiltonian_targets(3).measurements[0], camera_with_peak(5.0), {},
                          [](double, std::string_view) { return false; }),
                Interrupted);
 }
 
-TEST(Factorize, RefusesTargetsAndOptionsThatMakeNoSense) {
+TEST(Factorize, RejectsInvalidTargetsAndOptions) {
   const CorrelationTarget target = hamiltonian_targets(3).measurements[0];
   FactorizeOptions options;
   options.max_iterations = 0;
@@ -197,7 +197,7 @@ TEST(RunLengths, DerivativesMatchFiniteDifferences) {
   }
 }
 
-TEST(RunLengths, AnyParametersGiveAPlayableWaveform) {
+TEST(RunLengths, AnyParametersGiveAValidWaveform) {
   const RunLengths runs(Waveform::binary({{0.1, 0.25}, {0.5, 0.7}, {0.9, 1.02}}, 2.0), 0.2);
   for (std::uint64_t i = 0; i < 200; ++i) {
     RandomStream random(4, i);
@@ -211,7 +211,7 @@ TEST(RunLengths, AnyParametersGiveAPlayableWaveform) {
   }
 }
 
-TEST(EdgeRefinement, FindsSwitchingTimesThatNoGridHolds) {
+TEST(EdgeRefinement, FindsSwitchingTimesBetweenGridPoints) {
   const Camera camera = camera_with_peak(30.0, 10.0);
   const double width = 0.0731;
   const WaveformPair truth{rectangular_pulse(width, 0.2), Waveform::binary({{0.317, 0.817}})};
@@ -227,7 +227,7 @@ TEST(EdgeRefinement, FindsSwitchingTimesThatNoGridHolds) {
   EXPECT_LT(model.residual_rms(*refined), 1e-3);
 }
 
-TEST(EdgeRefinement, LeavesConstantsAlone) {
+TEST(EdgeRefinement, DoesNotChangeConstants) {
   const Camera camera = camera_with_peak(5.0);
   const PairModel model(hamiltonian_targets(3).measurements[0], camera);
   EXPECT_FALSE(refine_edges(model, {Waveform::constant(1.0), square_wave(1, 0)}).has_value());
@@ -249,7 +249,7 @@ TEST(TargetSet, UserTablesAreResampledAndChecked) {
                std::invalid_argument);
 }
 
-TEST(SettleOnPoints, GeneratorsPlayItAsItIsAndItIsNoWorseThanRounding) {
+TEST(SettleOnPoints, GeneratorsReproduceItExactlyAndItBeatsRounding) {
   const Camera camera = built_in_camera("prototype");
   const double f0_hz = camera.fundamental_frequency_hz;
   for (const CorrelationTarget& target :
@@ -269,13 +269,13 @@ TEST(SettleOnPoints, GeneratorsPlayItAsItIsAndItIsNoWorseThanRounding) {
   }
 }
 
-TEST(SettleOnPoints, LeavesAlonePairsOfNoGenerator) {
+TEST(SettleOnPoints, ReturnsNothingWithoutGenerators) {
   const Camera camera = camera_with_peak(8);
   const PairModel model(hamiltonian_targets(4).measurements[1], camera);
   EXPECT_FALSE(settle_on_points(model, naive_start(model).front().pair));
 }
 
-TEST(Alternate, ProjectsToTheCandidateOfTheSameStart) {
+TEST(Alternate, MatchesTheCandidateOfTheSameStart) {
   const CorrelationTarget target = hamiltonian_targets(4).measurements[2];
   FactorizeOptions options = random_starts_only(7);
   options.random_starts = 1;

@@ -36,7 +36,7 @@ std::vector<Candidate> families(const Camera& camera) {
           candidate_of("square-k4", camera)};
 }
 
-/// Apart from the error that the judge wrote down in the code.
+/// Compares all but the error that judge() stores in the code.
 void expect_same_waveforms(const CodeSet& judged, CodeSet code) {
   code.provenance.depth_error_m = judged.provenance.depth_error_m;
   expect_same_code(judged, code);
@@ -55,7 +55,7 @@ TEST(Judge, TheWinnerIsNeverWorseThanAnyCandidateGiven) {
   }
 }
 
-TEST(Judge, RanksWhatDesignRanks) {
+TEST(Judge, RanksLikeDesign) {
   const Camera camera = small_camera("paper-5f0");
   const DesignOptions options = small_options();
   DesignStore store;
@@ -76,7 +76,7 @@ TEST(Judge, RanksWhatDesignRanks) {
             from_design.error.linear.geometric_mean_m.value);
 }
 
-TEST(Judge, CountsOutliersBeyondTheThresholdOfTheOptions) {
+TEST(Judge, CountsOutliersBeyondTheConfiguredThreshold) {
   const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
   DesignOptions options = small_options();
   const DesignResult usual = judge(camera, families(camera), options);
@@ -92,7 +92,7 @@ TEST(Judge, CountsOutliersBeyondTheThresholdOfTheOptions) {
   }
 }
 
-TEST(Judge, KeepsTheBestOfThoseThatShareAName) {
+TEST(Judge, KeepsTheBestOfCandidatesWithEqualNames) {
   const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
   std::vector<Candidate> attempts = {candidate_of("sinusoid-k4", camera, "mine"),
                                      candidate_of("square-k4", camera),
@@ -109,7 +109,7 @@ TEST(Judge, KeepsTheBestOfThoseThatShareAName) {
   }
 }
 
-TEST(Judge, LeavesOutWhatTellsNoDepth) {
+TEST(Judge, ExcludesCodesWithoutDepthInformation) {
   const Camera camera = small_camera("paper-10f0");
   std::vector<Candidate> candidates = families(camera);
   const std::vector<Waveform> flat(3, Waveform::constant(1.0));
@@ -123,7 +123,7 @@ TEST(Judge, LeavesOutWhatTellsNoDepth) {
   EXPECT_THROW(judge(camera, {candidates.back()}, small_options()), std::invalid_argument);
 }
 
-TEST(Judge, CountsAllMovesOfTheOrigin) {
+TEST(Judge, CountsAllShiftsOfTheOrigin) {
   const Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const DesignResult once = judge(camera, {{.code = code, .method = "family"}}, small_options());
@@ -131,7 +131,7 @@ TEST(Judge, CountsAllMovesOfTheOrigin) {
   expect_same_waveforms(twice.winner().code, code.rotated(twice.winner().rotation_bin));
 }
 
-TEST(BestOfRotations, IsTheFirstOfTheLeastAndIdempotent) {
+TEST(BestOfRotations, IsTheFirstOfTheSmallestAndIdempotent) {
   EXPECT_EQ(best_of_rotations({3.0, 1.0, 2.0, 1.0}), 1);
   for (std::uint64_t trial = 0; trial < 20; ++trial) {
     RandomStream random(5, trial);
@@ -146,7 +146,7 @@ TEST(BestOfRotations, IsTheFirstOfTheLeastAndIdempotent) {
   }
 }
 
-TEST(WhyNoDepth, IsAskedOfAllThatKeepsACodeFromMeasuring) {
+TEST(WhyNoDepth, CoversAllReasonsForNotMeasuringDepth) {
   const Camera camera = small_camera("paper-10f0");
   EXPECT_FALSE(why_no_depth(build_family("hamiltonian-k4", camera), camera));
   Camera dim = camera;
@@ -154,7 +154,7 @@ TEST(WhyNoDepth, IsAskedOfAllThatKeepsACodeFromMeasuring) {
   EXPECT_THAT(*why_no_depth(build_family("hamiltonian-k4", camera), dim), HasSubstr("peak"));
 }
 
-TEST(SuggestedBaselines, SuitTheMethod) {
+TEST(SuggestedBaselines, MatchTheMethod) {
   const Camera camera = small_camera("paper-10f0");
   DesignOptions options;
   EXPECT_EQ(suggested_baselines(camera, options).size(), 8u);
@@ -168,7 +168,7 @@ TEST(SuggestedBaselines, SuitTheMethod) {
   EXPECT_TRUE(suggested_baselines(camera, options).empty());
 }
 
-TEST(OtherFamilies, AreAllBuiltInCodesThatFitTheCameraAndFewEnoughToTry) {
+TEST(OtherFamilies, AreAllSuitableBuiltInCodesIfFewEnough) {
   const Camera camera = built_in_camera("paper-10f0");
   std::vector<std::string> names = other_families(camera, {});
   const std::vector<std::string> shown = suggested_baselines(camera, {});
@@ -186,7 +186,7 @@ TEST(OtherFamilies, AreAllBuiltInCodesThatFitTheCameraAndFewEnoughToTry) {
   EXPECT_LT(other_families(wide, {}).size(), 400u);
 }
 
-TEST(ContendingFamilies, HoldTheBestOfAllByManyTrials) {
+TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
   for (const auto& [taps, kind] :
        {std::pair(1, DepthErrorKind::linear), std::pair(2, DepthErrorKind::circular)}) {
     Camera camera = small_camera("paper-10f0", kind);
@@ -209,7 +209,7 @@ TEST(ContendingFamilies, HoldTheBestOfAllByManyTrials) {
   }
 }
 
-TEST(ContendingFamilies, AreToldWhyTheyCannotCompete) {
+TEST(ContendingFamilies, ReportWhyOthersCannotCompete) {
   Camera camera = small_camera("paper-10f0");
   camera.sensor.taps = 2;
   camera.sensor.shortest_pulse_s = 0.2 / camera.fundamental_frequency_hz;
@@ -223,7 +223,7 @@ TEST(ContendingFamilies, AreToldWhyTheyCannotCompete) {
   ASSERT_EQ(contenders.codes.size(), 1u) << told;
 }
 
-TEST(Design, LetsEveryBuiltInCodeCompeteAndSaysWhichWereNotJudged) {
+TEST(Design, TriesEveryBuiltInCodeAndReportsThoseNotJudged) {
   Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
   camera.sensor.taps = 2;
   DesignOptions options = small_options();
@@ -244,7 +244,7 @@ TEST(Design, LetsEveryBuiltInCodeCompeteAndSaysWhichWereNotJudged) {
             std::string::npos);
 }
 
-TEST(DesignSeed, ReachesFactorization) {
+TEST(DesignSeed, IsPassedToFactorization) {
   const Camera camera = small_camera("paper-5f0");
   DesignOptions options = small_options();
   options.factorize.structured_starts = false;

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// One light level on a small grid: an optimization takes milliseconds.
+/// Returns a camera with one light level and a small grid: an optimization takes milliseconds.
 Camera small_camera(DepthErrorKind error = DepthErrorKind::circular) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 6.0;
@@ -42,7 +42,7 @@ OptimizeOptions small_options() {
   return options;
 }
 
-/// Shortest time between two switches [periods], round the period.
+/// Returns the shortest time between two switches in the cyclic period [periods].
 double shortest_run(const Waveform& waveform) {
   const std::vector<OnInterval>& on = waveform.on_intervals();
   double shortest = 1.0;
@@ -53,7 +53,7 @@ double shortest_run(const Waveform& waveform) {
   return shortest;
 }
 
-/// What judge() keeps of the candidates beside the codes given.
+/// Returns the candidates that judge() keeps, without the given codes.
 DesignResult judged(const Camera& camera, std::vector<Candidate> candidates,
                     const std::vector<CodeSet>& given = {}) {
   for (const CodeSet& code : given) candidates.push_back({.code = code, .method = "family"});
@@ -63,7 +63,7 @@ DesignResult judged(const Camera& camera, std::vector<Candidate> candidates,
   return judge(camera, std::move(candidates), options);
 }
 
-TEST(Optimize, ADesignForAWorkingDistanceErrsLessThereThanOneForAllDepths) {
+TEST(Optimize, AWorkingDistanceReducesTheErrorThere) {
   for (const DepthErrorKind kind : {DepthErrorKind::circular, DepthErrorKind::linear}) {
     const Camera anywhere = small_camera(kind);
     Camera near = anywhere;
@@ -80,7 +80,7 @@ TEST(Optimize, ADesignForAWorkingDistanceErrsLessThereThanOneForAllDepths) {
   }
 }
 
-TEST(Optimize, MakesCandidatesAndJudgesNone) {
+TEST(Optimize, ReturnsUnjudgedCandidates) {
   const Camera camera = small_camera();
   const std::vector<CodeSet> also = {build_family("hamiltonian-k4", camera)};
   const std::vector<Candidate> candidates = optimize(camera, 4, small_options(), also);
@@ -110,7 +110,7 @@ TEST(Optimize, BeatsTheHamiltonianCodeThatItStartsFrom) {
             0.97 * result.find("hamiltonian-k4")->error.circular.geometric_mean_m.value);
 }
 
-TEST(Optimize, CountsMultipathWhereTheCameraHasIt) {
+TEST(Optimize, AccountsForTheMultipathOfTheCamera) {
   Camera camera = small_camera();
   camera.sensor.taps = 2;
   camera.operating.signal_e_per_s = {1e5};
@@ -122,13 +122,13 @@ TEST(Optimize, CountsMultipathWhereTheCameraHasIt) {
   const Candidate& found = *result.find("optimized-k5");
   ASSERT_TRUE(given.multipath && given.multipath->two_return);
   ASSERT_TRUE(found.multipath && found.multipath->two_return);
-  // Less error by what was minimized, and two returns can still be separated.
+  // The ranking error is smaller, and two returns can still be separated.
   EXPECT_LT(ranking_error_m(found, camera, {}), ranking_error_m(given, camera, {}));
   EXPECT_LT(found.multipath->two_return->circular_m.value,
             1.4 * given.multipath->two_return->circular_m.value);
 }
 
-TEST(Optimize, KeepsEveryPulseAndGapAsLongAsAsked) {
+TEST(Optimize, KeepsEveryPulseAndGapAtTheRequiredLength) {
   for (const bool band_limited : {false, true}) {
     Camera camera = small_camera();
     if (!band_limited) camera.light.impulse_response = camera.sensor.impulse_response = {};
@@ -146,7 +146,7 @@ TEST(Optimize, KeepsEveryPulseAndGapAsLongAsAsked) {
   }
 }
 
-TEST(Optimize, AsksForAShortestPulseWhereNothingElseLimitsThem) {
+TEST(Optimize, RequiresAShortestPulseWithoutAnotherLimit) {
   Camera camera = small_camera();
   camera.light.impulse_response = camera.sensor.impulse_response = {};
   try {
@@ -160,7 +160,7 @@ TEST(Optimize, AsksForAShortestPulseWhereNothingElseLimitsThem) {
   EXPECT_NO_THROW(optimize(camera, 4, small_options()));
 }
 
-TEST(Optimize, RefusesWhatCannotBeMeasured) {
+TEST(Optimize, RejectsUnsupportedCameras) {
   Camera camera = small_camera();
   EXPECT_THROW(optimize(camera, 2, small_options()), std::invalid_argument);
   EXPECT_THROW(optimize(camera, 9, small_options()), std::invalid_argument);
@@ -182,7 +182,7 @@ TEST(Optimize, TwoBucketsShareAllCharge) {
     EXPECT_LT((gain.col(2 * e) + gain.col(2 * e + 1)).array().abs().maxCoeff() - 1.0, 1e-9);
 }
 
-TEST(Optimize, ExclusiveTapsUseADrainOnlyWhereThereIsOne) {
+TEST(Optimize, ExclusiveTapsUseTheDrainOnlyIfThereIsOne) {
   Camera camera = small_camera();
   camera.sensor.taps = 3;
   camera.sensor.modulation_contrast = 0.9;
@@ -205,7 +205,7 @@ TEST(Optimize, DifferencesOfBucketsCancelAmbientLight) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(code.demodulation(i).mean(), 0.5, 1e-9);
 }
 
-TEST(Optimize, ArmsThatNeedNotSwitchPlayAnyValue) {
+TEST(Optimize, NonBinaryArmsUseAnyValue) {
   Camera camera = small_camera();
   camera.light.binary = false;
   const CodeSet code = optimize(camera, 3, small_options()).back().code;
@@ -215,7 +215,7 @@ TEST(Optimize, ArmsThatNeedNotSwitchPlayAnyValue) {
   EXPECT_LE(code.modulation(0).mean(), 1.0 + 1e-9);
 }
 
-TEST(Optimize, MindsTheWorstVariant) {
+TEST(Optimize, MinimizesTheErrorOfTheWorstVariant) {
   std::vector<Camera> variants(2, small_camera());
   variants[1].light.impulse_response.f_max_hz *= 0.5;
   const auto worst_m = [&](const std::vector<Candidate>& found) {
@@ -229,7 +229,7 @@ TEST(Optimize, MindsTheWorstVariant) {
             worst_m(optimize(variants.front(), 3, small_options())));
 }
 
-TEST(Optimize, HistoryNeverRisesAndEndsEarlyWithoutGain) {
+TEST(Optimize, HistoryNeverRisesAndStopsEarlyWithoutGain) {
   OptimizeOptions options = small_options();
   options.hops = 40;
   options.steps_per_hop = 1;
@@ -242,7 +242,7 @@ TEST(Optimize, HistoryNeverRisesAndEndsEarlyWithoutGain) {
   EXPECT_THAT(found.message, HasSubstr("hops ended early"));
 }
 
-TEST(Optimize, StopsWhenAsked) {
+TEST(Optimize, StopsOnRequest) {
   int calls = 0;
   EXPECT_THROW(optimize(small_camera(), 3, small_options(), {},
                         [&](double fraction, std::string_view) {

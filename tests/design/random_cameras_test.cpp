@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A design for any camera gives a code, or a refusal that names the camera's own reason.
+// Design for any camera returns a code or a message with the limiting setting.
 //
 //   TOFSMITH_ALL_RANDOM_CAMERAS=1 test_design --gtest_filter='RandomCameras.*'
 //
-// tries 1000 cameras without effort, some of them against all standard codes, and 50 at the default
-// effort. Otherwise a fixed share of them is tried, with little effort.
+// tests 1000 cameras without search, some of them against all standard codes, and 50 with the
+// default effort. Otherwise a fixed subset is tested with little effort.
 #include "random_cameras.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr std::uint64_t seed = 1;
 
 bool all_are_tried() { return std::getenv("TOFSMITH_ALL_RANDOM_CAMERAS") != nullptr; }
 
-/// Settings that alone can keep every code from measuring depth.
+/// Returns whether a setting can by itself make depth measurement impossible.
 bool names_a_physical_reason(const std::string& field) {
   for (const char* known : {"light.peak_factor", "number of exposure_s", "number of playback.order",
                             "sensor.taps", "codes that measure depth"})
@@ -38,7 +38,7 @@ void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
   ASSERT_NO_THROW(camera.validate());
   DesignOptions options = with_effort({}, effort);
   options.trials = 1000;
-  // Looking for contenders among all standard codes takes seconds.
+  // Searching all standard codes for contenders takes seconds.
   if (index % 16 != 0 || !all_are_tried())
     options.baselines = {"sinusoid-k3", "square-k4", "hamiltonian-k4"};
   try {
@@ -52,13 +52,13 @@ void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
   }
 }
 
-TEST(RandomCameras, GetACodeOrAReasonWithoutEffort) {
+TEST(RandomCameras, GiveACodeOrAReasonWithoutEffort) {
   const std::uint64_t cameras = all_are_tried() ? 1000 : repetitions(25u);
   const std::uint64_t step = all_are_tried() ? 1 : 40;
   for (std::uint64_t i = 0; i < cameras; ++i) expect_a_code_or_a_reason(step * i, 0.0);
 }
 
-TEST(RandomCameras, GetACodeOrAReasonFromEveryMethod) {
+TEST(RandomCameras, GiveACodeOrAReasonForEveryMethod) {
   const std::uint64_t cameras = all_are_tried() ? 50 : repetitions(3u);
   const std::uint64_t first = 1000, step = all_are_tried() ? 1 : 12;
   const double effort = all_are_tried() ? 1.0 : 0.01;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What it takes of a camera to reach an error.
+// Camera settings required for a given depth error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// One light level, few harmonics, three exposures: designs in a moment.
+/// Returns a camera with one light level and few harmonics, for designs in a moment.
 Camera small_camera() {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 48;
@@ -32,10 +32,10 @@ double error_of(const CodeSet& code, const Camera& camera, const RequirementOpti
   return geometric_mean_error_m(evaluate(code, camera, judging), DepthErrorKind::circular);
 }
 
-TEST(Requirements, WhatIsFoundSufficesAndLessDoesNot) {
+TEST(Requirements, TheResultSufficesAndLessDoesNot) {
   const Camera camera = small_camera();
   RequirementOptions options = quick(0.0);
-  for (const double error_m : {0.01, 0.1}) {  // more than it has, and less
+  for (const double error_m : {0.01, 0.1}) {  // above and below its present error
     options.error_m = error_m;
     options.vary_bandwidth = options.vary_exposure = error_m == 0.01;
     const Requirements found = find_requirements(camera, options);
@@ -57,7 +57,7 @@ TEST(Requirements, WhatIsFoundSufficesAndLessDoesNot) {
   }
 }
 
-TEST(Requirements, PowerIsExposureWhereOnlyTheSignalHasNoise) {
+TEST(Requirements, PowerEqualsExposureIfOnlyTheSignalHasNoise) {
   Camera camera = small_camera();
   camera.sensor.read_noise_e = 0.0;
   camera.operating.ambient_e_per_s = {0.0};
@@ -67,7 +67,7 @@ TEST(Requirements, PowerIsExposureWhereOnlyTheSignalHasNoise) {
   EXPECT_NEAR(*found.varied[0].factor / *found.varied[1].factor, 1.0, 0.02);
 }
 
-TEST(Requirements, SaysWhatCannotBeHadTheSameWayForTheSameSeed) {
+TEST(Requirements, UnreachableErrorsAreReportedReproducibly) {
   RequirementOptions options = quick(1e-4);
   options.max_factor = 1.5;
   options.vary_bandwidth = options.vary_exposure = false;
@@ -79,7 +79,7 @@ TEST(Requirements, SaysWhatCannotBeHadTheSameWayForTheSameSeed) {
   EXPECT_EQ(found.varied[0].error_m, find_requirements(small_camera(), options).varied[0].error_m);
 }
 
-TEST(Requirements, TheMapFallsWithBandwidthAndPower) {
+TEST(Requirements, TheMapDecreasesWithBandwidthAndPower) {
   RequirementOptions options = quick(0.02);
   options.max_factor = 4.0;
   options.vary_exposure = false;
@@ -95,7 +95,7 @@ TEST(Requirements, TheMapFallsWithBandwidthAndPower) {
   EXPECT_LT(error_m(error_m.rows() - 1, error_m.cols() - 1), 0.5 * error_m(0, 0));
 }
 
-TEST(ScaledCamera, HasMoreOfOneQuantity) {
+TEST(ScaledCamera, IncreasesOneQuantity) {
   const Camera camera = built_in_camera("paper-10f0");
   const Camera wider = with_scaled(camera, CameraQuantity::bandwidth, 2.0);
   EXPECT_NEAR(std::abs(wider.transfer(8)[8] - camera.transfer(4)[4]), 0.0, 1e-12);
@@ -105,7 +105,7 @@ TEST(ScaledCamera, HasMoreOfOneQuantity) {
             0.5 * camera.exposure_s.of(0, 3));
 }
 
-TEST(Requirements, RefusesNonsense) {
+TEST(Requirements, RejectsInvalidRequests) {
   const Camera camera = small_camera();
   EXPECT_THROW(find_requirements(camera, quick(0.0)), InvalidArgument);
   EXPECT_THROW(with_scaled(camera, CameraQuantity::power, -1.0), InvalidArgument);

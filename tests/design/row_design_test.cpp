@@ -14,7 +14,7 @@
 namespace tofsmith {
 namespace {
 
-/// Judged by circular errors, with so short light.
+/// Returns a camera for circular errors with short light pulses.
 Camera camera_of(int samples, double signal_e, double ambient_e, double cutoff_hz) {
   Camera camera = rows_camera(samples, signal_e, ambient_e);
   camera.light.peak_factor = 12;
@@ -34,7 +34,7 @@ DesignOptions quick(int rows) {
   return options;
 }
 
-TEST(RowDesign, BeatsEveryFamilyOfItsRows) {
+TEST(RowDesign, BeatsEveryFamilyWithEqualRows) {
   const DesignResult result = design(small_camera(), quick(6));
   ASSERT_TRUE(result.find("fourier-k6"));
   ASSERT_TRUE(result.find("histogram-k6"));
@@ -48,7 +48,7 @@ TEST(RowDesign, BeatsEveryFamilyOfItsRows) {
   }
 }
 
-TEST(RowDesign, LightKeepsToItsPeakAndMean) {
+TEST(RowDesign, LightRespectsItsPeakAndMean) {
   const Camera camera = small_camera();
   for (const Candidate& candidate : row_candidates(camera, 8, quick(8), {})) {
     EXPECT_LE(candidate.code.peak(), 12 * (1 + 1e-9));
@@ -58,10 +58,10 @@ TEST(RowDesign, LightKeepsToItsPeakAndMean) {
   }
 }
 
-/// 240 bins, of which the response passes the 20th harmonic by half.
+/// 240 bins; the impulse response attenuates the 20th harmonic to one half.
 Camera camera_of_many_lobes() { return camera_of(240, 1000, 1000, 100e6); }
 
-TEST(RowDesign, HoldsOutInATenthOfTheLight) {
+TEST(RowDesign, IsRobustToATenthOfTheLight) {
   const Camera camera = camera_of_many_lobes(), dim = in_share_of_light(camera, 0.1);
   EXPECT_EQ(dim.operating.signal_e_per_s[0], 100);
   EXPECT_EQ(dim.operating.ambient_e_per_s[0], 100);
@@ -71,12 +71,13 @@ TEST(RowDesign, HoldsOutInATenthOfTheLight) {
   const auto error_m = [&](const CodeSet& its, const Camera& on) {
     return evaluate(its, on, judging).circular.geometric_mean_m.value;
   };
-  // Chosen for the light asked for alone, rows erred by 7.8 mm there and 373 in a tenth of it.
+  // If optimized for the nominal light only, rows had an error of 7.8 mm there and of 373 mm at a
+  // tenth.
   EXPECT_LT(error_m(code, camera), 1.04 * 7.8e-3);
   EXPECT_LT(error_m(code, dim), error_m(build_family("fourier-k8", camera), dim));
 }
 
-TEST(RowDesign, SaysWhereAStandardCodeHoldsOutLonger) {
+TEST(RowDesign, ReportsAStandardCodeThatIsBetterInDimLight) {
   const Camera camera = camera_of_many_lobes();
   DesignResult result;
   for (const char* name : {"fourier-k8", "histogram-k8"})
@@ -90,7 +91,7 @@ TEST(RowDesign, SaysWhereAStandardCodeHoldsOutLonger) {
   EXPECT_THAT(*note, testing::HasSubstr("fourier-k8"));
   EXPECT_THAT(*note, testing::HasSubstr("operating.signal_e_per_s = [100, 1000] and "
                                         "operating.ambient_e_per_s = [100, 1000]"));
-  // Asked for with the baselines left out, nothing is compared.
+  // Without baselines, nothing is compared.
   result.candidates.erase(result.candidates.begin());
   result.best = 0;
   EXPECT_FALSE(dim_light_note(camera, result, options));
@@ -105,7 +106,7 @@ TEST(RowDesign, MoreRowsAreNoWorse) {
             result.find("tones-k4")->error.circular.geometric_mean_m.value);
 }
 
-TEST(RowDesign, TheSameSeedFindsTheSameRows) {
+TEST(RowDesign, IsReproducibleForTheSameSeed) {
   const Camera camera = small_camera();
   const auto first = row_candidates(camera, 5, quick(5), {});
   const auto again = row_candidates(camera, 5, quick(5), {});
@@ -113,7 +114,7 @@ TEST(RowDesign, TheSameSeedFindsTheSameRows) {
   expect_same_code(first.front().code, again.front().code);
 }
 
-TEST(RowDesign, SaysWhatCannotBeDesigned) {
+TEST(RowDesign, ReportsUnsupportedRequests) {
   Camera camera = small_camera();
   EXPECT_THROW(design(camera, quick(2)), InvalidArgument);
   EXPECT_THROW(design(camera, quick(17)), InvalidArgument);
@@ -122,10 +123,10 @@ TEST(RowDesign, SaysWhatCannotBeDesigned) {
   camera = small_camera();
   camera.samples = 12;
   EXPECT_EQ(why_no_row_design(camera, 8)->field, "samples");
-  // Of exposures there are 8 at most.
+  // At most 8 exposures are supported.
   DesignOptions many = quick(9);
   EXPECT_THROW(design(built_in_camera("paper-10f0"), many), InvalidArgument);
-  // Methods of waveforms of taps say that rows are not theirs.
+  // Methods for tap waveforms reject rows.
   DesignOptions options = quick(4);
   options.method = DesignMethod::factorize;
   EXPECT_THROW(design(small_camera(), options), InvalidArgument);

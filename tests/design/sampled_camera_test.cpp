@@ -43,7 +43,7 @@ Camera uneven(Camera camera) {
   return camera;
 }
 
-TEST(SampledCamera, MeasuresWhatTheForwardModelDoes) {
+TEST(SampledCamera, AgreesWithTheForwardModel) {
   for (const Camera& camera :
        {camera_with(1, Readout::separate, 1.0), camera_with(2, Readout::difference, 0.7),
         camera_with(3, Readout::separate, 0.6, "paper-30x"),
@@ -65,11 +65,11 @@ TEST(SampledCamera, MeasuresWhatTheForwardModelDoes) {
   }
 }
 
-TEST(SampledCamera, ReckonsWithAmbientLightThatUnevenBucketsLeak) {
+TEST(SampledCamera, AccountsForAmbientLightLeakedByUnevenBuckets) {
   Camera camera = camera_with(2, Readout::difference, 1.0);
   EXPECT_FALSE(SampledCamera(camera, 40, 3).ambient_unknown());
   EXPECT_TRUE(SampledCamera(uneven(camera), 40, 3).ambient_unknown());
-  // As a decoder does: not where it is nothing beside the noise.
+  // As in a decoder, leakage well below the noise is ignored.
   camera.sensor.tap_mismatch = 1e-5;
   EXPECT_FALSE(SampledCamera(camera, 40, 3).ambient_unknown());
   for (const double mismatch : {1e-5, 0.08}) {
@@ -79,7 +79,7 @@ TEST(SampledCamera, ReckonsWithAmbientLightThatUnevenBucketsLeak) {
   }
 }
 
-/// A mixer's weights, as two buckets.
+/// Returns random weights of a mixer as two buckets.
 SampledCode random_weights(int samples, int exposures) {
   SampledCode code = random_code(samples, exposures, 2);
   for (int e = 0; e < exposures; ++e)
@@ -96,7 +96,7 @@ Camera analog_mixer() {
   return camera;
 }
 
-TEST(SampledCamera, MeasuresWhatAMixerDoes) {
+TEST(SampledCamera, AgreesWithTheForwardModelForAMixer) {
   const Camera camera = analog_mixer();
   const SampledCode code = random_weights(40, 3);
   const ForwardModel model(code_set(code, 2).signed_of_buckets(), camera);
@@ -112,7 +112,7 @@ TEST(SampledCamera, MeasuresWhatAMixerDoes) {
   EXPECT_LT((variance - model.variance_e2({&light, 1}, 2e4)).cwiseAbs().maxCoeff(), 0.02);
 }
 
-TEST(SampledCamera, PullsBackThroughTheSquaresOfWeights) {
+TEST(SampledCamera, GradientIncludesTheSquaresOfWeights) {
   const SampledCamera sampled(analog_mixer(), 40, 3);
   SampledCode code = random_weights(40, 3), direction = code;
   MeasurementTable weights = sampled.measure(code).table;
@@ -137,7 +137,7 @@ TEST(SampledCamera, PullsBackThroughTheSquaresOfWeights) {
               (value(step) - value(-step)) / (2 * step), 1e-6);
 }
 
-TEST(SampledCamera, PullBackIsTheDerivativeAlongEveryDirection) {
+TEST(SampledCamera, GradientIsTheDerivativeAlongEveryDirection) {
   const Camera camera = camera_with(2, Readout::difference, 0.7);
   const SampledCamera sampled(camera, 40, 3);
   SampledCode code = random_code(40, 3, 2), direction = code;

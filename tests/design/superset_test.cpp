@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A design that may choose from more, or search longer, never loses by it.
+// A larger search space or a longer search never yields a worse code.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// One light level on a small grid: an optimization takes a second or so.
+/// Returns a camera with one light level and a small grid: an optimization takes about a second.
 Camera small_camera(DepthErrorKind error, int taps) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 6.0;
@@ -25,7 +25,7 @@ Camera small_camera(DepthErrorKind error, int taps) {
   return camera;
 }
 
-/// Descents of a few steps; as many of them as usual.
+/// Descents of few steps, in the usual number.
 DesignOptions short_descents() {
   DesignOptions options;
   options.method = DesignMethod::optimize;
@@ -45,7 +45,7 @@ double error_m(const Camera& camera, const DesignOptions& options) {
   return geometric_mean_error_m(design(camera, options).winner().error, camera.operating.error);
 }
 
-TEST(Superset, ArmsThatMayPlayAnythingLoseNothingToThoseThatSwitch) {
+TEST(Superset, ArbitraryWaveformsAreNoWorseThanBinaryOnes) {
   DesignOptions options = short_descents();
   options.optimize.starts = 4;
   options.optimize.hops = 5;
@@ -61,7 +61,7 @@ TEST(Superset, ArmsThatMayPlayAnythingLoseNothingToThoseThatSwitch) {
     }
 }
 
-TEST(Superset, MoreEffortNeverFindsLess) {
+TEST(Superset, MoreEffortIsNeverWorse) {
   for (const int taps : {1, 2}) {
     const Camera camera = small_camera(DepthErrorKind::circular, taps);
     const double usual_m = error_m(camera, short_descents());
@@ -71,7 +71,7 @@ TEST(Superset, MoreEffortNeverFindsLess) {
   }
 }
 
-TEST(Superset, TwiceTheEffortHoldsTheCodesOfTheUsualOne) {
+TEST(Superset, TwiceTheEffortIncludesTheCodesOfTheDefault) {
   const Camera camera = small_camera(DepthErrorKind::circular, 1);
   const auto codes = [&](double effort) {
     return optimize(camera, 4, with_effort(short_descents(), effort).optimize);
@@ -86,7 +86,7 @@ TEST(Superset, TwiceTheEffortHoldsTheCodesOfTheUsualOne) {
     }
 }
 
-TEST(MixerDesign, IsThatOfTwoBucketsReadAsTheirDifference) {
+TEST(MixerDesign, EqualsThatOfTwoBucketsReadAsADifference) {
   Camera camera = small_camera(DepthErrorKind::circular, 1);
   camera.sensor.demodulation = Demodulation::weight;
   DesignOptions options = short_descents();
@@ -119,7 +119,7 @@ TEST(MixerDesign, IsThatOfTwoBucketsReadAsTheirDifference) {
   EXPECT_TRUE(factorized.find("hamiltonian-k4-factorized")->code.is_signed());
 }
 
-TEST(MixerDesign, RefusesWhatItCannot) {
+TEST(MixerDesign, RejectsUnsupportedRequests) {
   Camera camera = small_camera(DepthErrorKind::circular, 1);
   camera.sensor.demodulation = Demodulation::weight;
   camera.light.impulse_response = camera.sensor.impulse_response = {};

@@ -50,7 +50,7 @@ TEST(SwitchedCode, ReadsRunsFromCellsRoundThePeriod) {
   EXPECT_EQ(SwitchedLabels::from_cells({3, 3}).waveform(3, 1.0), Waveform::constant(1.0));
 }
 
-TEST(SwitchedCode, SamplesAreThoseOfTheCodeSet) {
+TEST(SwitchedCode, SamplesEqualThoseOfTheCodeSet) {
   for (const int taps : {1, 2, 3}) {
     const DesignProblem problem = problem_with(taps);
     const CodeJudge judge(problem, 100, 1, 1);
@@ -63,7 +63,7 @@ TEST(SwitchedCode, SamplesAreThoseOfTheCodeSet) {
   }
 }
 
-TEST(Binarization, LeavesASwitchedCodeAsItIs) {
+TEST(Binarization, DoesNotChangeASwitchedCode) {
   const DesignProblem problem = problem_with(3);
   const CodeJudge judge(problem, 100, 1, 1);
   const SampledCode code =
@@ -72,12 +72,12 @@ TEST(Binarization, LeavesASwitchedCodeAsItIs) {
   EXPECT_EQ((again.demodulation - code.demodulation).cwiseAbs().maxCoeff(), 0.0);
 }
 
-TEST(EdgePolish, GradientByTheEdgesMatchesFiniteDifferences) {
+TEST(EdgePolish, GradientWithRespectToEdgesMatchesFiniteDifferences) {
   for (const int taps : {1, 2, 4}) {
     const DesignProblem problem = problem_with(taps);
     const CodeJudge judge(problem, 100, 1, 1);
     SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
-    for (auto* arm : {&code.light, &code.gates})  // off the borders of cells
+    for (auto* arm : {&code.light, &code.gates})  // away from cell borders
       for (SwitchedLabels& labels : *arm)
         for (double& time : labels.at) time += 0.4 / problem.space.samples();
     SampledCode weights = sampled_on(problem.space, code);
@@ -106,7 +106,7 @@ TEST(EdgePolish, GradientByTheEdgesMatchesFiniteDifferences) {
   }
 }
 
-TEST(EdgePolish, KeepsRunsPeakAndOrderOfEdges) {
+TEST(EdgePolish, KeepsRunLengthsPeakAndOrderOfEdges) {
   const double shortest = 1.0 / 21.0;
   const DesignProblem problem = problem_with(1, shortest);
   EXPECT_EQ(problem.space.cells, 20);

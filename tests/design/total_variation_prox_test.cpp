@@ -26,7 +26,7 @@ Eigen::VectorXd prox(const Eigen::VectorXd& y, double weight, Ends ends) {
   return x;
 }
 
-// Projected gradient on the dual, min 1/2 |y - D^T u|^2 with |u| <= weight: slow and plain.
+// Reference: projected gradient on the dual, min 1/2 |y - D^T u|^2 subject to |u| <= weight.
 Eigen::VectorXd prox_by_dual(const Eigen::VectorXd& y, double weight, Ends ends) {
   const Eigen::Index size = y.size();
   const Eigen::Index jumps = ends == Ends::ring ? size : size - 1;
@@ -75,7 +75,7 @@ TEST_P(TotalVariationProxEnds, IsNonexpansive) {
   }
 }
 
-TEST_P(TotalVariationProxEnds, MovesWithAConstant) {
+TEST_P(TotalVariationProxEnds, IsEquivariantToConstants) {
   RandomStream random(3, 0);
   const Eigen::VectorXd y = random_signal(80, random);
   const Eigen::VectorXd moved = prox((y.array() + 3.25).matrix(), 0.7, GetParam());
@@ -98,7 +98,7 @@ TEST_P(TotalVariationProxEnds, AWeightOfZeroChangesNothingAndALargeOneLeavesTheM
 INSTANTIATE_TEST_SUITE_P(OpenAndRing, TotalVariationProxEnds,
                          testing::Values(Ends::open, Ends::ring));
 
-TEST(TotalVariationProx, TheRingHasNoBeginning) {
+TEST(TotalVariationProx, IsEquivariantToRotationsOfARing) {
   RandomStream random(6, 0);
   const Eigen::VectorXd y = random_signal(97, random);
   const Eigen::VectorXd x = prox(y, 0.8, Ends::ring);

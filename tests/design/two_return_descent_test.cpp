@@ -27,7 +27,7 @@ DesignProblem problem_of(const Camera& camera, int exposures, double two_return_
   return make_design_problem(std::span(&camera, 1), exposures, 48, two_return_weight);
 }
 
-/// Mean error of the direct depth [bin], decoded as the first of two returns.
+/// Returns the mean error of the direct depth [bin], decoded as the first of two returns.
 double two_return_error_bin(const DesignProblem& problem, const WaveformParameters& parameters) {
   const SampledCamera& camera = problem.variants.front().camera;
   const SampledCode code = render(problem.space, parameters, {6.0, 8.0});
@@ -39,8 +39,8 @@ double two_return_error_bin(const DesignProblem& problem, const WaveformParamete
   return loss.soft_error(point, batch, 3.0 / loss.mean_variance_e2(point));
 }
 
-TEST(TwoReturnDescent, PullsPairsApartThatLookAlike) {
-  // Two frequencies: pairs of returns look like others.
+TEST(TwoReturnDescent, SeparatesAmbiguousPairs) {
+  // With two frequencies, different pairs of returns can give equal measurements.
   const Camera camera = camera_with(2);
   const DesignProblem blind = problem_of(camera, 5, 1e-9), seeing = problem_of(camera, 5, 1.0);
   const CodeSet code = make_family("pulsed-multifrequency-k5", {.samples = 240, .peak_factor = 6.0})
@@ -56,7 +56,7 @@ TEST(TwoReturnDescent, PullsPairsApartThatLookAlike) {
   EXPECT_LT(of_seeing, 0.8 * of_blind);
 }
 
-TEST(TwoReturnProblem, HasLevelsOfTwoReturnsWhereMeansMaySuffice) {
+TEST(TwoReturnProblem, UsesTwoReturnsIfThereAreEnoughMeasurements) {
   const auto has_them = [](const Camera& camera, int exposures) {
     const DesignProblem problem = problem_of(camera, exposures, 0.1);
     const CameraVariant& variant = problem.variants.front();
@@ -73,7 +73,7 @@ TEST(TwoReturnProblem, HasLevelsOfTwoReturnsWhereMeansMaySuffice) {
   EXPECT_FALSE(problem_of(camera_with(2), 5, 0.0).multipath_as_two);
 }
 
-TEST(TwoReturnProblem, LooksForReturnsOnAGridThatIsNotTooFine) {
+TEST(TwoReturnProblem, UsesALimitedGridOfReturns) {
   Camera camera = camera_with(2);
   camera.samples = 960;
   for (const int samples : {48, 120, 480, 960}) {

@@ -26,7 +26,7 @@ WaveformParameters random_parameters(const WaveformSpace& space, std::uint64_t s
   return p;
 }
 
-TEST(WaveformParameters, EveryChoiceOfThemIsPlayable) {
+TEST(WaveformParameters, EveryValueGivesAValidCode) {
   for (const WaveformSpace& space : spaces())
     for (const double steepness : {0.1, 1.0, 8.0, 200.0}) {
       const SampledCode code = render(space, random_parameters(space, 1), {steepness, steepness});
@@ -80,7 +80,7 @@ TEST(WaveformParameters, GradientMatchesFiniteDifferences) {
   }
 }
 
-TEST(WaveformParameters, ComeBackToTheSwitchingCodeTheyWereReadFrom) {
+TEST(WaveformParameters, ReproduceASwitchingCode) {
   for (WaveformSpace space : spaces()) {
     space.cells = 60;
     space.peak_factor = 5.0;
