@@ -24,7 +24,7 @@ std::string refusal(const std::filesystem::path& path) {
   return io_error_of([&] { read_albedo(path); });
 }
 
-TEST(AlbedoFile, PngValuesAreMadeLinearUnlessToldOtherwise) {
+TEST(AlbedoFile, PngValuesAreLinearizedByDefault) {
   const TemporaryDirectory directory;
   for (const int bits : {8, 16}) {
     const std::uint16_t half = bits == 8 ? 128 : 32896;  // 128 x 257
@@ -58,7 +58,7 @@ TEST(AlbedoFile, ColoursBecomeLuminanceInEveryFormat) {
   }
 }
 
-TEST(AlbedoFile, LinearisesBeforeMixingColoursAndLeavesAlphaOut) {
+TEST(AlbedoFile, LinearizesBeforeConvertingColourAndIgnoresAlpha) {
   const TemporaryDirectory directory;
   write_png(directory / "a.png", PngImage{1, 1, 4, 8, {255, 128, 0, 7}}, overwrite);
   EXPECT_NEAR(read_albedo(directory / "a.png")(0, 0),
@@ -67,7 +67,7 @@ TEST(AlbedoFile, LinearisesBeforeMixingColoursAndLeavesAlphaOut) {
   EXPECT_NEAR(read_albedo(directory / "a.png")(0, 0), 1.0, 1e-6);
 }
 
-TEST(AlbedoFile, GreyValuesAreTakenAsTheyAre) {
+TEST(AlbedoFile, GreyValuesAreUnchanged) {
   const TemporaryDirectory directory;
   const std::vector<double> grey = {0.25, 0.75};
   write_npy(directory / "a.npy", NpyArray::of<double>({2, 1}, grey), overwrite);
@@ -80,7 +80,7 @@ TEST(AlbedoFile, GreyValuesAreTakenAsTheyAre) {
     EXPECT_EQ(read_albedo(directory / name).pixels, plane.pixels) << name;
 }
 
-TEST(AlbedoFile, RefusesWhatIsNoPicture) {
+TEST(AlbedoFile, RejectsInvalidImages) {
   const TemporaryDirectory directory;
   EXPECT_THAT(refusal(directory / "a.jpg"), HasSubstr("expected one of .png, .npy, .exr, .pfm"));
   EXPECT_THAT(refusal(directory / "a.png"), HasSubstr("no such file"));
@@ -94,7 +94,7 @@ TEST(AlbedoFile, RefusesWhatIsNoPicture) {
   EXPECT_THAT(refusal(directory / "a.exr"), HasSubstr("found the channels G, R"));
 }
 
-TEST(AlbedoOfPicture, IsScaledDownAsAWholeIfBrighterThanOne) {
+TEST(AlbedoOfPicture, IsScaledDownIfBrighterThanOne) {
   Image<float> picture(1, 2, 2.0f);
   picture(0, 1) = 4.0f;
   EXPECT_EQ(albedo_of_picture(picture, "a.npy").pixels, (std::vector<float>{0.5f, 1.0f}));
@@ -103,7 +103,7 @@ TEST(AlbedoOfPicture, IsScaledDownAsAWholeIfBrighterThanOne) {
   EXPECT_EQ(albedo_of_picture(picture, "a.npy").pixels, picture.pixels);
 }
 
-TEST(AlbedoOfPicture, MayBeUnknownWhereNothingReturns) {
+TEST(AlbedoOfPicture, MayBeUnknownWithoutReturn) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Image<float> picture(1, 2, 0.5f), depth_m(1, 2, 1.0f);
   picture(0, 1) = nan;

@@ -26,7 +26,7 @@ using testing::HasSubstr;
 constexpr auto refuse = OutputPolicy::refuse_existing;
 constexpr auto overwrite = OutputPolicy::overwrite;
 
-TEST(AtomicFile, WritesWhatItIsGiven) {
+TEST(AtomicFile, WritesTheGivenBytes) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", std::string_view("first"), refuse);
   EXPECT_EQ(read_text_file(directory / "a.txt"), "first");
@@ -35,7 +35,7 @@ TEST(AtomicFile, WritesWhatItIsGiven) {
   EXPECT_EQ(directory.files(), 1);
 }
 
-TEST(AtomicFile, ReplacesBytesWrittenEarlierAndGoesOnAtTheEnd) {
+TEST(AtomicFile, ReplacesEarlierBytesAndContinuesAtTheEnd) {
   const TemporaryDirectory directory;
   AtomicFile file(directory / "a.txt", refuse);
   file.write("____, world");
@@ -45,7 +45,7 @@ TEST(AtomicFile, ReplacesBytesWrittenEarlierAndGoesOnAtTheEnd) {
   EXPECT_EQ(read_text_file(directory / "a.txt"), "Mars, world!");
 }
 
-TEST(AtomicFile, WritesOverTheEndAndGoesOnBehindIt) {
+TEST(AtomicFile, OverwritesPastTheEndAndContinuesThere) {
   const TemporaryDirectory directory;
   AtomicFile file(directory / "a.txt", refuse);
   file.write("Hello, w");
@@ -77,7 +77,7 @@ TEST(AtomicFile, RefusesAFileThatAppearsWhileItIsWritten) {
   EXPECT_EQ(directory.files(), 1);
 }
 
-TEST(AtomicFile, GoesOnOverItsOwnBytesButNotOverOthers) {
+TEST(AtomicFile, AcceptsIdenticalContentButRejectsOther) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.txt";
   write_file_atomically(path, std::string_view("same"), refuse);
@@ -90,7 +90,7 @@ TEST(AtomicFile, GoesOnOverItsOwnBytesButNotOverOthers) {
   EXPECT_EQ(directory.files(), 1);
 }
 
-TEST(AtomicFile, TheFirstOfTheOutputsMeanThatARunWasStopped) {
+TEST(AtomicFile, LeadingOutputsMeanThatARunWasStopped) {
   const TemporaryDirectory directory;
   const std::vector<std::filesystem::path> outputs{directory / "a.txt", directory / "b.txt"};
   EXPECT_EQ(policy_to_go_on(outputs, refuse), refuse);
@@ -103,7 +103,7 @@ TEST(AtomicFile, TheFirstOfTheOutputsMeanThatARunWasStopped) {
   EXPECT_EQ(policy_to_go_on(outputs, refuse), refuse);
 }
 
-TEST(AtomicFile, AnExceptionHalfwayLeavesTheOldFileAndNothingElse) {
+TEST(AtomicFile, AnExceptionKeepsTheOldFileOnly) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);
   try {
@@ -116,7 +116,7 @@ TEST(AtomicFile, AnExceptionHalfwayLeavesTheOldFileAndNothingElse) {
   EXPECT_EQ(directory.files(), 1);
 }
 
-TEST(AtomicFile, AFullDiskLeavesTheOldFileAndNothingElse) {
+TEST(AtomicFile, AFullDiskKeepsTheOldFileOnly) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);
   rlimit before{};
@@ -145,10 +145,10 @@ TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(status.st_mode & 07777, 0640u);
 }
 
-TEST(AtomicFile, WhatAKilledProcessLeftGoesWithTheNextFile) {
+TEST(AtomicFile, LeftoversOfAKilledProcessAreRemovedWithTheNextFile) {
   const TemporaryDirectory directory;
   const pid_t child = fork();
-  if (child == 0) {  // killed half way
+  if (child == 0) {  // killed half-way
     AtomicFile file(directory / "a.txt", refuse);
     file.write("half");
     kill(getpid(), SIGKILL);
@@ -159,11 +159,11 @@ TEST(AtomicFile, WhatAKilledProcessLeftGoesWithTheNextFile) {
   std::ofstream(directory / ".tofsmith-of-another-machine-1-0.txt") << "not ours";
   EXPECT_EQ(directory.files(), 2);
   AtomicFile running(directory / "b.txt", refuse);
-  EXPECT_EQ(directory.files(), 2);  // ours, and the other machine's
+  EXPECT_EQ(directory.files(), 2);  // ours, and that of another machine
   EXPECT_TRUE(std::filesystem::exists(directory / ".tofsmith-of-another-machine-1-0.txt"));
 }
 
-/// The hidden file of a process that has ended, renamed as `changed` makes its name.
+/// Creates the temporary file of a killed process and renames it by `changed`.
 template <typename Change>
 std::filesystem::path leftover(const TemporaryDirectory& directory, const Change& change) {
   int ends[2];
@@ -187,9 +187,9 @@ std::filesystem::path leftover(const TemporaryDirectory& directory, const Change
   return changed;
 }
 
-TEST(AtomicFile, WhatMayBelongToALiveProcessOfAnotherContainerStays) {
+TEST(AtomicFile, FilesOfAnotherContainerAreKept) {
   const TemporaryDirectory directory;
-  // The same process number, in another namespace of numbers on a machine of the same name.
+  // The same process number in another PID namespace, on a machine with the same name.
   const std::filesystem::path other = leftover(directory, [](std::string name) {
     char& digit = name[std::string(".tofsmith-").size()];
     digit = digit == '0' ? '1' : '0';
@@ -199,7 +199,7 @@ TEST(AtomicFile, WhatMayBelongToALiveProcessOfAnotherContainerStays) {
   EXPECT_TRUE(std::filesystem::exists(other));
 }
 
-TEST(AtomicFile, WhatAnEarlierProcessOfTheSameNumberLeftGoes) {
+TEST(AtomicFile, LeftoversOfAnEarlierProcessWithTheSameNumberAreRemoved) {
   const TemporaryDirectory directory;
   const std::filesystem::path earlier = leftover(directory, [](const std::string& name) {
     const std::size_t number = name.find('-', std::string(".tofsmith-").size()) + 1;
@@ -209,8 +209,8 @@ TEST(AtomicFile, WhatAnEarlierProcessOfTheSameNumberLeftGoes) {
   EXPECT_FALSE(std::filesystem::exists(earlier));
 }
 
-/// Runs `body` as process `number` of a new namespace of process numbers that has its own /proc.
-/// False: this system does not allow that.
+/// Runs `body` as process `number` in a new PID namespace with its own /proc. Returns false if the
+/// system does not allow this.
 template <typename Body>
 bool run_in_other_namespace(pid_t number, const Body& body) {
   const pid_t outer = fork();
@@ -240,11 +240,11 @@ bool run_in_other_namespace(pid_t number, const Body& body) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-TEST(AtomicFile, ProcessesOfTwoNamespacesOnOneVolumeLeaveTheirFilesToEachOther) {
+TEST(AtomicFile, ProcessesOfTwoNamespacesKeepEachOthersFiles) {
   const TemporaryDirectory directory;
-  pid_t unused = 2;  // here, so that it looks dead
+  pid_t unused = 2;  // a process number that does not exist here
   while (kill(unused, 0) == 0 || errno != ESRCH) ++unused;
-  // Its file stays: from here nobody can know whether a process of another namespace has ended.
+  // Its file must stay, because this process cannot determine whether it is still in use.
   const bool allowed = run_in_other_namespace(unused, [&] {
     const AtomicFile writing(directory / "a.txt", refuse);
     kill(getpid(), SIGKILL);
@@ -255,7 +255,7 @@ TEST(AtomicFile, ProcessesOfTwoNamespacesOnOneVolumeLeaveTheirFilesToEachOther) 
   EXPECT_EQ(directory.files(), 2);
 }
 
-TEST(AtomicFile, TemporaryPathMayBeReplacedByALibrary) {
+TEST(AtomicFile, ALibraryMayReplaceTheTemporaryFile) {
   const TemporaryDirectory directory;
   AtomicFile file(directory / "a.exr", refuse);
   EXPECT_EQ(file.temporary_path().extension(), ".exr");
@@ -266,7 +266,7 @@ TEST(AtomicFile, TemporaryPathMayBeReplacedByALibrary) {
   EXPECT_EQ(read_text_file(directory / "a.exr"), "by path");
 }
 
-TEST(AtomicFile, NamesWhatIsWrongWithTheTarget) {
+TEST(AtomicFile, ReportsProblemsWithTheTarget) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "file") << "x";
   const auto message = [](const std::filesystem::path& path) {
@@ -283,7 +283,7 @@ TEST(AtomicFile, NamesWhatIsWrongWithTheTarget) {
   EXPECT_EQ(directory.files(), 1);
 }
 
-TEST(ReadFile, ReturnsTheContentOfFilesWithAndWithoutAnnouncedSize) {
+TEST(ReadFile, ReturnsTheContentOfFilesWithAndWithoutReportedSize) {
   const TemporaryDirectory directory;
   const std::string long_text(100000, 'a');
   std::ofstream(directory / "a") << long_text;
@@ -294,7 +294,7 @@ TEST(ReadFile, ReturnsTheContentOfFilesWithAndWithoutAnnouncedSize) {
   EXPECT_THAT(read_text_file("/proc/self/status"), HasSubstr("Pid:"));
 }
 
-TEST(ReadFile, SaysWhatIsWrong) {
+TEST(ReadFile, ReportsProblems) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a") << "12345";
   EXPECT_THAT(io_error_of([&] { read_text_file(directory / "none"); }), HasSubstr("no such file"));

@@ -31,7 +31,7 @@ TEST(BuiltInCameras, AreValidUnderTheirNames) {
   }
 }
 
-TEST(BuiltInCameras, PlayTheFamilyThatTheyName) {
+TEST(BuiltInCameras, FitTheFamilyThatTheyName) {
   for (const BuiltInCamera& listed : list_built_in_cameras()) {
     const Camera camera = built_in_camera(listed.name);
     if (listed.code.empty()) {
@@ -44,13 +44,13 @@ TEST(BuiltInCameras, PlayTheFamilyThatTheyName) {
   }
 }
 
-TEST(BuiltInCameras, ReadBackFromTheirTomlAsTheSame) {
+TEST(BuiltInCameras, AreReadBackFromTheirToml) {
   for (const std::string& name : built_in_camera_names())
     EXPECT_EQ(parse_camera_toml(built_in_camera_toml(name), "mine.toml"), built_in_camera(name))
         << name;
 }
 
-TEST(BuiltInCameras, SayOfEveryValueWhereItIsFrom) {
+TEST(BuiltInCameras, GiveTheSourceOfEveryValue) {
   for (const BuiltInCamera& listed : list_built_in_cameras()) {
     std::istringstream lines(built_in_camera_toml(listed.name));
     for (std::string line; std::getline(lines, line);) {
@@ -60,7 +60,7 @@ TEST(BuiltInCameras, SayOfEveryValueWhereItIsFrom) {
   }
 }
 
-TEST(BuiltInCameras, HaveSourcesOfKeysOnly) {
+TEST(BuiltInCameras, HaveSourcesOfExistingKeysOnly) {
   const std::vector<std::string> keys = camera_keys();
   for (const BuiltInCamera& listed : list_built_in_cameras())
     for (const NumberSource& known : listed.sources)
@@ -69,15 +69,15 @@ TEST(BuiltInCameras, HaveSourcesOfKeysOnly) {
           << listed.name << " " << known.key;
 }
 
-TEST(BuiltInCameras, TakeTheSourceOfTheTableForItsKeys) {
+TEST(BuiltInCameras, SourcesOfTablesApplyToTheirKeys) {
   const BuiltInCamera listed{"x", "", "", {{"sensor", "a"}, {"sensor.taps", "b"}}};
   EXPECT_EQ(listed.source_of("sensor.taps"), "b");
   EXPECT_EQ(listed.source_of("sensor.drain"), "a");
   EXPECT_EQ(listed.source_of("sensors"), "assumed");
 }
 
-/// Four images of 11 bits with a sign, rows from below, so that third - first and fourth - second
-/// are sine and cosine of a phase that grows with the row.
+/// Writes four images of 11 signed bits, bottom row first. Third - first and fourth - second are
+/// the sine and cosine of a phase that increases with the row.
 void write_arducam_dump(const std::filesystem::path& path, int width, int height) {
   std::ofstream file(path, std::ios::binary);
   for (int image = 0; image < 4; ++image)
@@ -91,7 +91,7 @@ void write_arducam_dump(const std::filesystem::path& path, int width, int height
     }
 }
 
-TEST(BuiltInCameras, HaveRawFramesOfWhichTheirDriversDepthComes) {
+TEST(BuiltInCameras, RawFramesGiveTheDepthOfTheDriver) {
   const TemporaryDirectory directory;
   const Camera camera = built_in_camera("arducam-tof");
   const RawFormat format = parse_raw_format(built_in_raw_format_toml("arducam-tof"));
@@ -113,7 +113,7 @@ TEST(BuiltInCameras, HaveNoInventedRawFrames) {
     EXPECT_THROW(built_in_raw_format_toml(name), std::invalid_argument) << name;
 }
 
-TEST(BuiltInCameras, TakeTheGreatestCommonDivisorForTheFundamental) {
+TEST(BuiltInCameras, TheFundamentalIsTheGreatestCommonDivisor) {
   EXPECT_NEAR(built_in_camera("kinect-v2").range_m(), speed_of_light_m_per_s / 16e6, 1e-9);
 }
 

@@ -15,7 +15,7 @@ std::string refusal(const std::string& line) {
   return io_error_of([&] { parse_camera_toml(with_line(line), "c.toml"); });
 }
 
-TEST(CameraToml, AGeneratorThatIsNamedHasThePrototypesLimits) {
+TEST(CameraToml, AnEmptyGeneratorHasTheLimitsOfThePrototype) {
   const Camera camera = parse_camera_toml(with_line("light.generator = {}"), "c.toml");
   ASSERT_TRUE(camera.light.generator.has_value());
   EXPECT_EQ(camera.light.generator->sample_rate_hz, 500e6);
@@ -23,7 +23,7 @@ TEST(CameraToml, AGeneratorThatIsNamedHasThePrototypesLimits) {
   EXPECT_FALSE(camera.sensor.generator.has_value());
 }
 
-TEST(CameraToml, RefusesGeneratorsThatCannotPlay) {
+TEST(CameraToml, RejectsInvalidGenerators) {
   EXPECT_EQ(refusal("light.generator = { sample_rate_hz = 39e6 }"),
             "c.toml:2:38: light.generator.sample_rate_hz = 3.9e+07; must give 2 .. 1048576 points "
             "per period at fundamental_frequency_hz = 20000000");

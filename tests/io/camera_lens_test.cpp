@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view shortest = "fundamental_frequency_hz = 20e6\n";
 
-TEST(CameraLens, ALensMayBlurWithoutAPinholeAndTheOtherWayRound) {
+TEST(CameraLens, BlurAndPinholeAreIndependent) {
   const std::string head(shortest);
   const Camera blurs = parse_camera_toml(
       head + "[lens]\nblur = \"gaussian\"\nblur_sigma_px = 0.5\npixel_samples = 3\n");
@@ -26,7 +26,7 @@ TEST(CameraLens, ALensMayBlurWithoutAPinholeAndTheOtherWayRound) {
   EXPECT_FALSE(sharp.blur.has_value());
 }
 
-TEST(CameraLens, DistortionIsWrittenAsItIsRead) {
+TEST(CameraLens, DistortionIsReadBack) {
   std::string text(shortest);
   text +=
       "[lens]\nfx_px = 60\nfy_px = 60\ncx_px = 39.5\ncy_px = 29.5\ndistortion_model = "
@@ -38,7 +38,7 @@ TEST(CameraLens, DistortionIsWrittenAsItIsRead) {
   EXPECT_EQ(parse_camera_toml(camera_to_toml(camera), camera.name), camera);
 }
 
-TEST(CameraLens, AFileOfRaysStandsForThePinhole) {
+TEST(CameraLens, AFileOfRaysReplacesThePinhole) {
   const Camera camera = parse_camera_toml(
       std::string(shortest) + "[lens]\nrays = \"maker/rays.npy\"\nblur = \"none\"\n",
       "/cameras/mine.toml");
@@ -54,7 +54,7 @@ struct BadLine {
   const char* message;
 };
 
-TEST(CameraLens, IsRefusedWithThePlaceAndTheRule) {
+TEST(CameraLens, ErrorsReportThePlaceAndTheRule) {
   for (const BadLine& bad :
        {BadLine{"lens.blur = \"gaussian\"",
                 "c.toml:2:1: found no lens.blur_sigma_px; expected a line such as "

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Kind = ImpulseResponse::Kind;
 
-// Every table there is, as the documentation shows it.
+// All tables, as shown in the documentation.
 constexpr std::string_view documented = R"(fundamental_frequency_hz = 15e6
 exposure_s = 0.3                 # total
 samples = 240                    # N
@@ -130,7 +130,7 @@ TEST(CameraToml, ReadsEveryTableOfTheDocumentation) {
   EXPECT_EQ(camera.operating.multipath, (OperatingMultipath{{0.1, 0.4}, {0.5, 3.0}, 0.2}));
 }
 
-TEST(CameraToml, AllButTheFrequencyHasADefault) {
+TEST(CameraToml, OnlyTheFrequencyHasNoDefault) {
   Camera expected;
   expected.name = "c";
   expected.fundamental_frequency_hz = 20e6;
@@ -297,7 +297,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:2:32: operating.working_distance_m = [1, 8]; must be [nearest, farthest] "
                 "with nearest < farthest <= the unambiguous range, 7.49481 m"}));
 
-TEST(CameraToml, MoreWeightsOfDepthsThanAnyoneNeedsAreRefused) {
+TEST(CameraToml, TooManyDepthWeightsAreRejected) {
   std::string list = "1";
   for (int i = 0; i < 10000; ++i) list += ",1";
   EXPECT_EQ(refusal(std::string(shortest) + "operating.depths = [" + list + "]"),
@@ -305,12 +305,12 @@ TEST(CameraToml, MoreWeightsOfDepthsThanAnyoneNeedsAreRefused) {
             "of the working distance or range");
 }
 
-TEST(CameraToml, SaysWhereTextThatIsNoTomlBreaksOff) {
+TEST(CameraToml, ReportsWhereInvalidTomlEnds) {
   EXPECT_THAT(refusal("fundamental_frequency_hz = 15e6\n\n[light\n"), HasSubstr("c.toml:3:7: "));
   EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("c.toml:2:"));
 }
 
-TEST(CameraToml, KeysOfVeryManyPartsAreRefused) {
+TEST(CameraToml, KeysOfTooManyPartsAreRejected) {
   std::string key = "a";
   for (int i = 0; i < 200000; ++i) key += ".a";
   for (const std::string& text : {key + " = 1", "[" + key + "]", "x = { " + key + " = 1 }",
@@ -325,11 +325,11 @@ TEST(CameraToml, KeysOfVeryManyPartsAreRefused) {
             dots);
 }
 
-TEST(CameraToml, AMissingFileIsNamed) {
+TEST(CameraToml, ReportsAMissingFile) {
   EXPECT_THAT(io_error_of([] { read_camera_toml("no/such.toml"); }), HasSubstr("no/such.toml"));
 }
 
-TEST(CameraSettings, ReplaceKeysBeforeAnythingIsChecked) {
+TEST(CameraSettings, AreAppliedBeforeValidation) {
   const std::vector<std::string> settings = {
       "samples=120",
       "light.peak_factor = 5",
@@ -355,12 +355,12 @@ TEST(CameraSettings, ReplaceKeysBeforeAnythingIsChecked) {
   EXPECT_EQ(camera.light.binary, true);
 }
 
-TEST(CameraSettings, MayMendAFileThatIsIncomplete) {
+TEST(CameraSettings, CanCompleteAFile) {
   const std::vector<std::string> settings = {"fundamental_frequency_hz=10e6"};
   EXPECT_EQ(parse_camera_toml("", "c.toml", settings).fundamental_frequency_hz, 10e6);
 }
 
-TEST(CameraSettings, WithoutAValueLeaveTheKeyOut) {
+TEST(CameraSettings, WithoutAValueRemoveTheKey) {
   const Camera bare = built_in_camera("paper-10f0");
   const std::vector<std::string> full = {"sensor.full_well_e=3e4", "sensor.shortest_pulse_s=1e-8"};
   const Camera with_both = with_settings(bare, full);
@@ -378,7 +378,7 @@ TEST(CameraSettings, WithoutAValueLeaveTheKeyOut) {
               HasSubstr("fundamental_frequency_hz"));
 }
 
-TEST(CameraSettings, AreNamedInWhatTheyBreak) {
+TEST(CameraSettings, AreReportedInErrorMessages) {
   const auto broken_by = [](const std::string& setting) {
     return refusal(std::string(documented), {setting});
   };
@@ -403,7 +403,7 @@ TEST(CameraSettings, AreNamedInWhatTheyBreak) {
   EXPECT_THAT(broken_by("=5"), HasSubstr("expected key = value"));
 }
 
-TEST(LoadCamera, TakesABuiltInNameOrAFile) {
+TEST(LoadCamera, AcceptsABuiltInNameOrAFile) {
   EXPECT_EQ(load_camera("paper-10f0"), built_in_camera("paper-10f0"));
   const TemporaryDirectory directory;
   std::ofstream(directory / "mine.toml") << shortest;
@@ -416,7 +416,7 @@ TEST(LoadCamera, TakesABuiltInNameOrAFile) {
                     HasSubstr("did you mean paper-10f0?")));
 }
 
-TEST(LoadCamera, ResponsesAreFoundBesideTheFile) {
+TEST(LoadCamera, ResponsesAreFoundNextToTheFile) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "response.csv") << "time_s,value\n0,1\n1e-9,2\n2e-9,1\n";
   std::ofstream(directory / "c.toml")
@@ -426,7 +426,7 @@ TEST(LoadCamera, ResponsesAreFoundBesideTheFile) {
   EXPECT_EQ(parse_camera_toml(camera_to_toml(camera), "elsewhere/c.toml"), camera);
 }
 
-TEST(CameraToml, EveryBeginningIsReadOrRefused) {
+TEST(CameraToml, EveryPrefixIsReadOrRejected) {
   for (std::size_t length = 0; length < documented.size(); ++length) {
     const std::string part(documented.substr(0, length));
     try {

@@ -56,7 +56,7 @@ TEST(LoadCode, ReadsAFileWithTheTapsOfTheCamera) {
   expect_same_samples(load_code(path, camera, {.tap_order = TapOrder::interleaved}), code);
 }
 
-/// A pair of array files as load_code() takes it, with errors in place of a code.
+/// A pair of array files for load_code(), with errors in place of codes.
 struct ArrayPair {
   ArrayPair(const Eigen::MatrixXd& light, const Eigen::MatrixXd& gates) {
     write_npy(directory / "light.npy", array_of(light), OutputPolicy::overwrite);
@@ -71,20 +71,20 @@ struct ArrayPair {
   std::string name;
 };
 
-TEST(LoadCode, ReadsPairsOfArraysOfAnyScaleEitherWayRound) {
+TEST(LoadCode, ReadsPairsOfArraysOfAnyScaleAndOrientation) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = make_family("square-k4", {.samples = 24});
   const Eigen::MatrixXd light = code.modulation_samples(), gates = code.demodulation_samples();
   expect_same_samples(load_code(ArrayPair(light, gates).name, camera), code);
   expect_same_samples(
       load_code(ArrayPair(255 * light.transpose(), 255 * gates.transpose()).name, camera), code);
-  // One light for all exposures, and gates that are not open all the way.
+  // One light waveform for all exposures, and gates that open only partly.
   expect_same_samples(load_code(ArrayPair(light.col(0), gates).name, camera), code);
   const CodeSet half = load_code(ArrayPair(light, 0.5 * gates).name, camera);
   EXPECT_LT((half.demodulation_samples() - 0.5 * gates).norm(), 1e-12);
 }
 
-TEST(LoadCode, PairsOfArraysThatNoExposuresAreAreRefusedWithTheirPlace) {
+TEST(LoadCode, RejectsInvalidPairsOfArraysWithTheirPlace) {
   const Camera camera = built_in_camera("paper-10f0");
   Eigen::MatrixXd light = Eigen::MatrixXd::Ones(24, 3), gates = light;
   EXPECT_THAT(ArrayPair(0 * light, gates).refusal(camera),
@@ -99,7 +99,7 @@ TEST(LoadCode, PairsOfArraysThatNoExposuresAreAreRefusedWithTheirPlace) {
   EXPECT_THAT(ArrayPair(light, gates).refusal(camera), HasSubstr("light.npy[7, 1]: found -1"));
 }
 
-TEST(LoadCode, SaysWhatANameCouldHaveMeant) {
+TEST(LoadCode, SuggestsSimilarNames) {
   const Camera camera = built_in_camera("paper-10f0");
   EXPECT_EQ(io_error_of([&] { load_code("hamiltonain-k4", camera); }),
             "hamiltonain-k4: there is no such file and no built-in family of that name; did you "
@@ -113,13 +113,13 @@ TEST(LoadCode, SaysWhatANameCouldHaveMeant) {
             "mean hamiltonian-k3?");
 }
 
-TEST(TapOrder, IsOneOfTwoWords) {
+TEST(TapOrder, HasTwoValidNames) {
   EXPECT_EQ(parse_tap_order("blocked"), TapOrder::blocked);
   EXPECT_EQ(parse_tap_order("interleaved"), TapOrder::interleaved);
   EXPECT_THROW(parse_tap_order("both"), std::invalid_argument);
 }
 
-TEST(CorrelationFile, ReadsTheSameFunctionsFromEveryFormat) {
+TEST(CorrelationFile, IsReadFromEveryFormat) {
   const TemporaryDirectory directory;
   Eigen::MatrixXd functions = Eigen::MatrixXd::NullaryExpr(
       8, 2, [](Eigen::Index n, Eigen::Index i) { return static_cast<double>(n * 2 + i) / 16; });
@@ -140,7 +140,7 @@ TEST(CorrelationFile, ReadsTheSameFunctionsFromEveryFormat) {
             Eigen::MatrixXd::Constant(10, 1, .5));
 }
 
-TEST(CorrelationFile, RefusesWhatIsNoFunctionOfAPeriod) {
+TEST(CorrelationFile, RejectsInvalidCorrelationFunctions) {
   const TemporaryDirectory directory;
   const auto refusal = [&](const char* name, const NpyArray& array) {
     if (std::filesystem::path(name).extension() == ".npy")
@@ -164,7 +164,7 @@ TEST(CorrelationFile, RefusesWhatIsNoFunctionOfAPeriod) {
               HasSubstr("expected one of .csv, .txt, .tsv, .dat, .npy, .npz"));
 }
 
-TEST(PublishedCodes, AllLoadAndCorrelateAsTheirFilesSay) {
+TEST(PublishedCodes, AllLoadAndCorrelateLikeTheirFiles) {
   const std::filesystem::path directory =
       std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data/itof_codes";
   if (!std::filesystem::exists(directory)) GTEST_SKIP() << "no published codes beside the source";

@@ -19,7 +19,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Two taps, one binary and one sampled waveform of each, values that no decimal can hold.
+/// Returns a code of two taps with one binary and one sampled waveform each, and values without a
+/// finite decimal representation.
 CodeSet awkward_code() {
   Eigen::VectorXd light(4), gains(4);
   light << 1.0 / 3, 0.1, 0.0, 4 - 0.1 - 1.0 / 3;
@@ -34,7 +35,7 @@ CodeSet awkward_code() {
   return code;
 }
 
-/// The document with one change.
+/// Returns the document with one change.
 json changed(const std::string& pointer, const json& value) {
   json document = json::parse(code_to_json(awkward_code()));
   document[json::json_pointer(pointer)] = value;
@@ -57,7 +58,7 @@ TEST(CodeJson, ReadingUndoesWriting) {
   }
 }
 
-TEST(CodeJson, IsWrittenForPeopleToRead) {
+TEST(CodeJson, IsReadable) {
   const CodeSet code = CodeSet::create("k1", 8, 1, {rectangular_pulse(0.25)}, {square_wave(1, 0)});
   EXPECT_EQ(code_to_json(code), R"({
   "format": "tofsmith-code",
@@ -84,14 +85,14 @@ TEST(CodeJson, IsWrittenForPeopleToRead) {
 )");
 }
 
-TEST(CodeJson, ProvenanceMayBeMissingInPartOrAsAWhole) {
+TEST(CodeJson, ProvenanceIsOptional) {
   EXPECT_EQ(parse_code_json(without("", "provenance").dump()).provenance.method, "");
   const CodeSet code = parse_code_json(without("/provenance", "residuals").dump());
   EXPECT_EQ(code.provenance.method, "factorize");
   EXPECT_TRUE(code.provenance.residuals.empty());
 }
 
-TEST(CodeJson, SaysLineAndColumnWhereJsonBreaksOff) {
+TEST(CodeJson, ReportsLineAndColumnWhereJsonEnds) {
   EXPECT_THAT(io_error_of([] { parse_code_json("{\n  \"format\": ,\n}", "c.json"); }),
               HasSubstr("c.json:2:13: "));
   EXPECT_THAT(io_error_of([] { parse_code_json("", "c.json"); }), HasSubstr("c.json:1:1: "));
@@ -180,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/provenance/residuals/1", "x",
                   "c.json: /provenance/residuals/1: found \"x\"; expected a number"}));
 
-TEST(CodeJson, RefusesMissingMembers) {
+TEST(CodeJson, RejectsMissingMembers) {
   EXPECT_EQ(refusal(without("", "samples")), "c.json: found no member \"samples\"; expected one");
   EXPECT_EQ(refusal(without("", "format")), "c.json: found no member \"format\"; expected one");
   EXPECT_EQ(refusal(without("/demodulation/2", "values")),
@@ -188,7 +189,7 @@ TEST(CodeJson, RefusesMissingMembers) {
   EXPECT_EQ(refusal(json(3)), "c.json: found 3; expected an object");
 }
 
-TEST(CodeJson, RefusesNumbersThatAreNoNumbers) {
+TEST(CodeJson, RejectsInvalidNumbers) {
   std::string text = code_to_json(awkward_code());
   for (const char* number : {"NaN", "Infinity", "1e999"}) {
     std::string broken = text;
@@ -199,16 +200,16 @@ TEST(CodeJson, RefusesNumbersThatAreNoNumbers) {
   }
 }
 
-TEST(CodeJson, WhatCannotBeReadIsNotWritten) {
+TEST(CodeJson, RejectsWritingInvalidCodes) {
   CodeSet code = awkward_code();
   code.provenance.depth_error_m = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(code_to_json(code), std::invalid_argument);
   EXPECT_THROW(code_to_json(awkward_code().renamed("\xff")), std::invalid_argument);
 }
 
-TEST(CodeJson, RefusesEveryTruncation) {
+TEST(CodeJson, RejectsEveryTruncation) {
   std::string text = code_to_json(awkward_code());
-  text.pop_back();  // without the last line's end, every beginning is incomplete
+  text.pop_back();  // every prefix of the text without the final line end is incomplete
   const auto parse = [](std::span<const std::byte> bytes) {
     parse_code_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "c.json");
   };

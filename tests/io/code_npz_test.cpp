@@ -25,7 +25,7 @@ Eigen::MatrixXd matrix(const NpzArrays& arrays, const char* name) {
   return matrix_of(arrays.at(name), name);
 }
 
-/// Arrays with one value changed.
+/// Returns the arrays with one value changed.
 FileBytes with_value(const CodeSet& code, const char* name, int n, int i, double value) {
   NpzArrays arrays = parse_npz(serialize_code_npz(code, TapOrder::interleaved), "a.npz");
   Eigen::MatrixXd changed = matrix(arrays, name);
@@ -37,7 +37,7 @@ std::string refusal(const FileBytes& bytes, const TapLayout& layout = {}) {
   return io_error_of([&] { parse_code_npz(bytes, "a.npz", layout); });
 }
 
-TEST(CodeNpz, BinaryCodesOnTheGridComeBackAsTheyWere) {
+TEST(CodeNpz, BinaryCodesOnTheGridAreReadBack) {
   for (const char* name : {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "gray-k4"}) {
     const int samples = std::string(name) == "gray-k4" ? 64 : 60;
     const CodeSet code = make_family(name, {.samples = samples});
@@ -54,16 +54,16 @@ TEST(CodeNpz, BinaryCodesOnTheGridComeBackAsTheyWere) {
   }
 }
 
-TEST(CodeNpz, SampledCodesComeBackExactly) {
+TEST(CodeNpz, SampledCodesAreReadBackExactly) {
   const CodeSet code = make_family("sinusoid-k4", {.samples = 64, .peak_factor = 10});
   const CodeSet back = parse_code_npz(serialize_code_npz(code), "a.npz");
   EXPECT_FALSE(back.modulation(0).is_binary());
   EXPECT_EQ(back.modulation_samples(), code.modulation_samples());
-  // Rounding below 0 is drawn back.
+  // Values rounded below 0 are clipped.
   EXPECT_LT((back.demodulation_samples() - code.demodulation_samples()).norm(), 1e-12);
 }
 
-TEST(CodeNpz, CorrelationsAreThoseOfTheContinuousFunctionsAtTheSamples) {
+TEST(CodeNpz, CorrelationsAreSamplesOfTheContinuousFunctions) {
   const CodeSet code = hamiltonian();
   const NpzArrays arrays = parse_npz(serialize_code_npz(code), "a.npz");
   const Eigen::MatrixXd correlation = matrix(arrays, "corrfs");
@@ -73,7 +73,7 @@ TEST(CodeNpz, CorrelationsAreThoseOfTheContinuousFunctionsAtTheSamples) {
   }
 }
 
-TEST(CodeNpz, TapsComeBackInTheOrderTheyWereWritten) {
+TEST(CodeNpz, TapsAreReadBackInTheOrderWritten) {
   const CodeSet code = hamiltonian().with_two_buckets();
   const FileBytes in_blocks = serialize_code_npz(code, TapOrder::blocked);
   const FileBytes in_turn = serialize_code_npz(code, TapOrder::interleaved);
@@ -93,7 +93,7 @@ TEST(CodeNpz, TheOrderOfTapsIsNeverGuessed) {
             "a.npz: found 6 columns; expected a multiple of taps = 4");
 }
 
-TEST(CodeNpz, OneExposureHasNoOrderToTell) {
+TEST(CodeNpz, OneExposureNeedsNoOrder) {
   std::vector<Waveform> gates;
   for (int tap = 0; tap < 3; ++tap) {
     Eigen::VectorXd gate = Eigen::VectorXd::Zero(60);
@@ -110,14 +110,14 @@ TEST(CodeNpz, OneExposureHasNoOrderToTell) {
   }
 }
 
-TEST(CodeNpz, TapsOfOneExposureSeeTheSameLight) {
+TEST(CodeNpz, TapsOfOneExposureShareTheLight) {
   const CodeSet code = hamiltonian().with_two_buckets();
   EXPECT_EQ(refusal(with_value(code, "modfs", 7, 3, 0.25), interleaved),
             "a.npz: modfs[7, 3]: found 0.25; expected 6 as in column 2, a tap of the same "
             "exposure");
 }
 
-TEST(CodeNpz, RoundingNoiseIsNoNegativeGain) {
+TEST(CodeNpz, RoundingErrorIsNotANegativeGain) {
   const CodeSet code = hamiltonian();
   expect_same_samples(parse_code_npz(with_value(code, "demodfs", 59, 0, -1e-16), "a.npz"), code);
   expect_same_samples(parse_code_npz(with_value(code, "demodfs", 1, 0, 1 + 1e-15), "a.npz"), code);
@@ -133,7 +133,7 @@ TEST(CodeNpz, KeepsTheScaleOfTheModulation) {
   EXPECT_NEAR(code.modulation(0).mean(), 0.9375, 1e-12);
 }
 
-TEST(CodeNpz, RefusesValuesThatNoCodeCanHave) {
+TEST(CodeNpz, RejectsInvalidValues) {
   EXPECT_EQ(refusal(with_value(hamiltonian(), "demodfs", 2, 1, -0.25)),
             "a.npz: demodfs[2, 1]: found -0.25; expected a gain in [0, 1]");
   EXPECT_EQ(refusal(with_value(hamiltonian(), "demodfs", 2, 1, 1.5)),
@@ -146,7 +146,7 @@ TEST(CodeNpz, RefusesValuesThatNoCodeCanHave) {
               HasSubstr("a.npz: modulation 1 mean = 1.1; must be <= 1"));
 }
 
-TEST(CodeNpz, RefusesArraysThatDisagree) {
+TEST(CodeNpz, RejectsInconsistentArrays) {
   const auto refusal_of = [](NpyShape light, NpyShape gains, NpyShape correlation) {
     return refusal(serialize_npz({{"modfs", NpyArray(NpyType::float64, light)},
                                   {"demodfs", NpyArray(NpyType::float64, gains)},

@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// A pair of matrices in files.
+/// A pair of matrix files.
 struct Pair {
   Pair(const Eigen::MatrixXd& light_values, const Eigen::MatrixXd& rows_values)
       : light(directory.path() / "light.npy"), rows(directory.path() / "rows.npy") {
@@ -43,7 +43,7 @@ Eigen::VectorXd pulse(int samples) {
   return light;
 }
 
-TEST(CodeRows, AnyScaleAndEitherWayRoundIsTheSameCode) {
+TEST(CodeRows, AnyScaleAndOrientationGivesTheSameCode) {
   const Eigen::MatrixXd weights = Eigen::MatrixXd::Random(32, 5);
   const Pair columns(pulse(32), weights);
   const CodeSet code = read_rows(columns.light, columns.rows);
@@ -58,14 +58,14 @@ TEST(CodeRows, AnyScaleAndEitherWayRoundIsTheSameCode) {
                    code);
 }
 
-TEST(CodeRows, JsonHoldsThem) {
+TEST(CodeRows, JsonStoresRows) {
   const CodeSet code = build_family("fourier-k5", rows_camera());
   const CodeSet read = parse_code_json(code_to_json(code));
   EXPECT_TRUE(read.is_rows());
   expect_same_code(read, code);
 }
 
-TEST(CodeRows, WhatIsWrongIsSaidWithItsPlace) {
+TEST(CodeRows, ErrorsReportTheirPlace) {
   const Eigen::MatrixXd weights = Eigen::MatrixXd::Random(32, 5);
   Eigen::VectorXd negative = pulse(32);
   negative[7] = -1.0;
@@ -86,7 +86,7 @@ TEST(CodeRows, WhatIsWrongIsSaidWithItsPlace) {
   EXPECT_THAT(Pair(two_lights, weights).refusal(), testing::HasSubstr("the same light"));
 }
 
-TEST(CodeRows, PublishedCodesPlayAsRows) {
+TEST(CodeRows, PublishedCodesAreUsableAsRows) {
   const std::filesystem::path folder =
       std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data/itof_codes";
   const std::filesystem::path file = folder / "k-4_n-64_hamilt.npz";

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Files of codes of a mixer.
+// Code files for a mixer.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ void expect_same_weights(const CodeSet& a, const CodeSet& b) {
   EXPECT_LT((a.modulation_samples() - b.modulation_samples()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(SignedCodes, ComeBackFromEveryKindOfFile) {
+TEST(SignedCodes, AreReadBackFromEveryFormat) {
   const TemporaryDirectory directory;
   Camera camera = mixer_camera();
   for (const CodeSet& code : {build_family("hamiltonian-k4", camera), analog_code()}) {
@@ -61,7 +61,7 @@ TEST(SignedCodes, ComeBackFromEveryKindOfFile) {
   }
 }
 
-TEST(SignedCodes, SayTheirWeights) {
+TEST(SignedCodes, StoreTheirWeights) {
   const std::string json = code_to_json(analog_code());
   EXPECT_THAT(json, HasSubstr("\"signed\": true"));
   EXPECT_THAT(json, HasSubstr("-0.99"));
@@ -77,7 +77,7 @@ std::string refusal(const std::string& json) {
   return "";
 }
 
-TEST(SignedCodes, RefuseWhatNoMixerPlays) {
+TEST(SignedCodes, RejectInvalidWeights) {
   const std::string json = code_to_json(analog_code());
   const auto with = [&](const std::string& before, const std::string& after) {
     std::string changed = json;

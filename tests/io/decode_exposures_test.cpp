@@ -40,7 +40,7 @@ class DecodeExposures : public testing::Test {
                    load_decoding_table("hamiltonian-k4", built_in_camera("paper-10f0")).table));
 };
 
-TEST_F(DecodeExposures, AreMergedAsFramesInMemoryAre) {
+TEST_F(DecodeExposures, AreMergedLikeFramesInMemory) {
   request_.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(request_, *backend_).frames.size(), 2u);
   const Decoder& decoder = *backend_->decoder().correlation_decoder();
@@ -60,7 +60,7 @@ TEST_F(DecodeExposures, AreMergedAsFramesInMemoryAre) {
   EXPECT_EQ(read_npy(path("hdr-averaged.npy")).to_floats(), averaged);
 }
 
-TEST_F(DecodeExposures, RefusesGroupsThatCannotBe) {
+TEST_F(DecodeExposures, RejectsInvalidGroups) {
   const auto refused = [&](const std::vector<double>& hdr, int average, const char* words) {
     request_.hdr = hdr;
     request_.average = average;

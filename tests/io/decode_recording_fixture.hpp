@@ -16,7 +16,7 @@
 
 namespace tofsmith {
 
-/// Three frames of 6 x 5 pixels, each pixel with other measurements.
+/// Three frames of 6 x 5 pixels with different measurements.
 class DecodeRecording : public testing::Test {
  protected:
   DecodeRecording() {
@@ -32,7 +32,7 @@ class DecodeRecording : public testing::Test {
   DecodeRequest request(const char* output) const {
     return {.raw = {path("raw.npy")}, .output = path(output)};
   }
-  /// Of frame number `frame` of a stack.
+  /// Returns a plane of frame number `frame` of a stack.
   std::vector<float> plane(const char* name, std::size_t frame) const {
     const NpyArray array = read_npy(path(name));
     const auto* const first = reinterpret_cast<const float*>(array.bytes().data()) + frame * 6 * 5;

@@ -27,7 +27,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST_F(DecodeRecording, GivesWhatTheDecoderGives) {
+TEST_F(DecodeRecording, EqualsTheDecoder) {
   const DecodedRecording result = decode_recording(request("d.npy"), *backend_);
   ASSERT_EQ(result.files.size(), 3u);
   EXPECT_EQ(result.frames.size(), 3u);
@@ -43,7 +43,7 @@ TEST_F(DecodeRecording, GivesWhatTheDecoderGives) {
   }
 }
 
-TEST_F(DecodeRecording, TellsHowFarItCameWhenItIsStopped) {
+TEST_F(DecodeRecording, ReportsTheFinishedFramesWhenStopped) {
   DecodedRecording result;
   const Progress progress = [](double fraction, std::string_view) { return fraction < 0.5; };
   EXPECT_THROW(decode_recording(request("d.npy"), *backend_, progress, result), Interrupted);
@@ -53,7 +53,7 @@ TEST_F(DecodeRecording, TellsHowFarItCameWhenItIsStopped) {
   EXPECT_TRUE(std::filesystem::exists(result.files.front()));
 }
 
-TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
+TEST_F(DecodeRecording, FiltersLikeTheFilter) {
   const FilterOptions options = FilterOptions::of(FilterStrength::light);
   DecodeRequest filtered = request("f.npy");
   filtered.filter = options;
@@ -108,7 +108,7 @@ class FailingBackend final : public FrameBackend {
   const FrameBackend& works_;
 };
 
-TEST_F(DecodeRecording, LeavesWholeFilesWhereADeviceFailsHalfWay) {
+TEST_F(DecodeRecording, KeepsCompleteFilesIfADeviceFailsHalfWay) {
   const FailingBackend failing(*backend_);
   for (const bool stack : {false, true}) {
     DecodeRequest asked = request("d.npy");
@@ -125,7 +125,7 @@ TEST_F(DecodeRecording, LeavesWholeFilesWhereADeviceFailsHalfWay) {
   }
 }
 
-TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
+TEST_F(DecodeRecording, AveragesFramesLikeTheTimeFilter) {
   const TimeFilterOptions options{.max_frames = 5, .max_difference_sigma = 9.0};
   DecodeRequest added = request("all.npy");
   added.time_filter = options;
@@ -150,7 +150,7 @@ TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
   }
 }
 
-TEST_F(DecodeRecording, AFrameHoldsThoseBeforeItWhenTheyAreAddedUp) {
+TEST_F(DecodeRecording, ASingleFrameIsAveragedWithEarlierFrames) {
   for (const int average : {1, 2}) {
     SCOPED_TRACE(average);
     DecodeRequest all = request("all.npy"), one = request("one.npy");
@@ -167,12 +167,12 @@ TEST_F(DecodeRecording, AFrameHoldsThoseBeforeItWhenTheyAreAddedUp) {
     EXPECT_EQ(result.first_frame, 1);
     EXPECT_EQ(plane("one.npy", 0), plane("all.npy", 1));
     EXPECT_EQ(plane("one-averaged.npy", 0), plane("all-averaged.npy", 1));
-    // Two frames, or a mean of two and the one that is left.
+    // Two frames, or a mean of two and a single frame.
     EXPECT_EQ(plane("all-averaged.npy", 1), std::vector<float>(6 * 5, average == 1 ? 2.0F : 3.0F));
   }
 }
 
-TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
+TEST_F(DecodeRecording, ASingleFrameIsAveragedWithItsLookAhead) {
   TimeFilter both_ways(backend_->decoder().table(),
                        {.max_difference_sigma = 20.0, .look_ahead = 1});
   DecodeRequest all = request("all.npy");
@@ -193,7 +193,7 @@ TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
     decode_recording(one, *backend_);
     EXPECT_EQ(plane("one.npy", 0), plane("all.npy", static_cast<std::size_t>(f)));
   }
-  // No more frames wait than there are, and a recording of one frame is what it is.
+  // The look-ahead is limited to the recording.
   all.time_filter->look_ahead = 1000;
   all.output = path("farther.npy");
   all.memory_mb = 0.1;
@@ -201,18 +201,18 @@ TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
   EXPECT_EQ(plane("farther-averaged.npy", 0), std::vector<float>(6 * 5, 3.0F));
 }
 
-TEST_F(DecodeRecording, NoMeanComesAfterTheLastToBeLookedAheadTo) {
+TEST_F(DecodeRecording, LookAheadEndsWithTheLastMean) {
   DecodeRequest all = request("all.npy");
   all.time_filter = TimeFilterOptions{.max_difference_sigma = 20.0, .look_ahead = 2};
   all.average = 2;
   all.stack = true;
   all.outputs = {DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(all, *backend_).frames.size(), 2u);
-  for (std::size_t f = 0; f < 2; ++f)  // a mean of two and the frame that is left
+  for (std::size_t f = 0; f < 2; ++f)  // a mean of two frames, and a single frame
     EXPECT_EQ(plane("all-averaged.npy", f), std::vector<float>(6 * 5, 3.0F));
 }
 
-TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
+TEST_F(DecodeRecording, MeansOfEqualFramesDifferOnlyInTheirNoise) {
   RawFrames equal = raw_;
   const auto frame_size = static_cast<std::ptrdiff_t>(equal.values.size() / 3);
   equal.frames = 5;
@@ -231,7 +231,7 @@ TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
   const DecodedRecording result = decode_recording(mean, *backend_);
   EXPECT_EQ(result.frames.size(), 2u);
   for (std::size_t f = 0; f < 2; ++f) {
-    const float frames = f == 0 ? 3.0F : 2.0F;  // the last mean is of those that are left
+    const float frames = f == 0 ? 3.0F : 2.0F;  // the last mean is of the remaining two frames
     EXPECT_EQ(plane("mean.npy", f), plane("alone.npy", 0));
     EXPECT_EQ(plane("mean-averaged.npy", f), std::vector<float>(6 * 5, frames));
     const std::vector<float> single = plane("alone-deviation.npy", 0);
@@ -242,7 +242,7 @@ TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
   EXPECT_EQ(plane("alone-averaged.npy", 0), std::vector<float>(6 * 5, 1.0F));
 }
 
-TEST_F(DecodeRecording, MeansMadeElsewhereHaveTheNoiseOfAsManyMeasurements) {
+TEST_F(DecodeRecording, AveragedInputHasTheNoiseOfAllItsMeasurements) {
   DecodeRequest single = request("single.npy");
   single.stack = true;
   single.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
@@ -264,7 +264,7 @@ TEST_F(DecodeRecording, MeansMadeElsewhereHaveTheNoiseOfAsManyMeasurements) {
   EXPECT_EQ(plane("both-averaged.npy", 1), std::vector<float>(6 * 5, 9.0F));
 }
 
-TEST_F(DecodeRecording, OneFilePerMeasurementIsTheRecordingThatTheyMakeTogether) {
+TEST_F(DecodeRecording, OneFilePerMeasurementEqualsAnInterleavedRecording) {
   DecodeRequest together = request("together.npy"), apart = request("apart.npy");
   together.stack = apart.stack = true;
   apart.raw.clear();
@@ -285,14 +285,14 @@ TEST_F(DecodeRecording, OneFilePerMeasurementIsTheRecordingThatTheyMakeTogether)
   decode_recording(bands, *backend_);
   EXPECT_TRUE(
       std::ranges::equal(read_npy(path("bands.npy")).bytes(), read_npy(path("apart.npy")).bytes()));
-  // An input among several is kept, too.
+  // An input of several files may not be overwritten either.
   bands.raw = apart.raw;
   bands.output = apart.raw[2];
   bands.policy = OutputPolicy::overwrite;
   EXPECT_THROW(decode_recording(bands, *backend_), IoError);
 }
 
-TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
+TEST_F(DecodeRecording, MeansAreIndependentOfBandsAndFiltersUseTheirNoise) {
   DecodeRequest mean = request("whole.npy");
   mean.average = 2;
   mean.stack = true;
@@ -318,7 +318,7 @@ TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
     }
 }
 
-TEST_F(DecodeRecording, WhatIsClippedOrInvalidInOneFrameIsSoInTheMean) {
+TEST_F(DecodeRecording, ClippedAndInvalidPixelsOfOneFrameStaySoInTheMean) {
   camera_.sensor.full_well_e = 5000.0;
   const std::unique_ptr<FrameBackend> backend = cpu_backend(
       make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
@@ -337,7 +337,7 @@ TEST_F(DecodeRecording, WhatIsClippedOrInvalidInOneFrameIsSoInTheMean) {
   EXPECT_EQ(result.total().of(PixelStatus::invalid), 2);
 }
 
-TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
+TEST_F(DecodeRecording, RejectsInvalidRequestsBeforeWriting) {
   const auto refused = [&](const DecodeRequest& wrong, const char* words) {
     EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr(words)));
@@ -388,7 +388,7 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
               ThrowsMessage<IoError>(HasSubstr("choose another name")));
 }
 
-TEST(DecodedPlanes, HaveOneNameEach) {
+TEST(DecodedPlanes, HaveUniqueNames) {
   std::set<std::string_view> names;
   for (const PlaneDescription& described : plane_descriptions) {
     names.insert(name_of(described.plane));
@@ -401,7 +401,7 @@ TEST(DecodedPlanes, HaveOneNameEach) {
   EXPECT_EQ(usual_planes(true).size(), 9u);
 }
 
-TEST(LoadDecodingTable, GivesTablesOptionsToTablesOnly) {
+TEST(LoadDecodingTable, AcceptsOptionsOfTablesForTablesOnly) {
   EXPECT_THAT(
       [] {
         load_decoding_table("hamiltonian-k3", built_in_camera("paper-10f0"), {.range_m = 3.0});
@@ -417,8 +417,8 @@ std::size_t number_of_points(const std::filesystem::path& ply) {
   return std::stoul(line.substr(15));
 }
 
-TEST_F(DecodeRecording, CloudsHoldThePointsOfPixelsThatAreOk) {
-  for (std::size_t i = 0; i < 40; ++i) raw_.values[i] = 1e6F;  // constant: nothing returns
+TEST_F(DecodeRecording, CloudsContainThePixelsWithStatusOk) {
+  for (std::size_t i = 0; i < 40; ++i) raw_.values[i] = 1e6F;  // constant: no return
   raw_.values[40] = std::numeric_limits<float>::quiet_NaN();
   write_raw_frames(path("raw.npy"), raw_, OutputPolicy::overwrite);
   DecodeRequest asked = request("d.ply");

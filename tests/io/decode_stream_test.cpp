@@ -28,8 +28,8 @@ class DecodeStream : public DecodeRecording {
         .write(reinterpret_cast<const char*>(stream_.data()), std::ssize(stream_));
   }
 
-  /// What comes out of the first `bytes` of the stream; frames are read only once those before, or
-  /// so many before that as a time filter looks ahead, are out.
+  /// Decodes the first `bytes` of the stream. Each frame is written before the next one is read,
+  /// apart from the look-ahead of a time filter.
   DecodedStream run(DecodeRequest request, std::size_t bytes) {
     request.raw_format = path("s.raw.toml");
     std::size_t at = 0;
@@ -53,7 +53,7 @@ class DecodeStream : public DecodeRecording {
     decode_stream(request, *backend_, read, write, {}, result);
     return result;
   }
-  /// Planes of a stack as they stand in its files, frame by frame.
+  /// Returns the planes of the files of a stack, frame by frame.
   std::vector<std::byte> of_files(DecodeRequest request) {
     request.raw = {path("dump.bin")};
     request.raw_format = path("s.raw.toml");
@@ -102,7 +102,7 @@ TEST_F(DecodeStream, GivesTheBytesOfFilesFrameByFrame) {
   EXPECT_EQ(written_, of_files(depth)) << "depth, if nothing is asked for";
 }
 
-TEST_F(DecodeStream, GivesTheBytesOfFilesOfTurnedImagesWithATrailer) {
+TEST_F(DecodeStream, SupportsRotatedImagesAndTrailers) {
   std::ofstream(path("s.raw.toml"), std::ios::app)
       << "rotate_deg = 90\nnegate_rows = \"odd\"\ntrailer_bytes = 2\n";
   stream_.resize(stream_.size() + 2);
@@ -116,7 +116,7 @@ TEST_F(DecodeStream, GivesTheBytesOfFilesOfTurnedImagesWithATrailer) {
   EXPECT_EQ(written_, of_files(request));
 }
 
-TEST_F(DecodeStream, KeepsWholeFramesOfOneThatBreaksOff) {
+TEST_F(DecodeStream, KeepsTheFramesBeforeATruncation) {
   const std::size_t frame = 6 * 5 * 4 * sizeof(float);
   EXPECT_THAT([&] { run({}, 3 + 2 * frame + 7); },
               ThrowsMessage<IoError>(AllOf(HasSubstr("found 7 bytes and the end"),

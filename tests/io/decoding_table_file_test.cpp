@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Tables of codes as they come from files.
+// Decoding tables of codes from files.
 #include "tofsmith/io/decoding_table_file.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(CodeOfAFile, IsPlayedAtTheSamplesOfTheCamera) {
+TEST(CodeOfAFile, IsResampledToTheCamera) {
   const TemporaryDirectory directory;
   Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k5", camera);
@@ -30,7 +30,7 @@ TEST(CodeOfAFile, IsPlayedAtTheSamplesOfTheCamera) {
   }
 }
 
-TEST(TableOfACode, IsFineEnoughWhateverTheSamples) {
+TEST(TableOfACode, IsFineEnoughForAnyNumberOfSamples) {
   Camera camera = built_in_camera("paper-30x");
   for (const int samples : {8, 60, 1200}) {
     camera.samples = samples;

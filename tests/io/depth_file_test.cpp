@@ -53,25 +53,25 @@ class DepthFormat : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(DepthFormat, ReadingUndoesWriting) {
-  // Whole millimetres, which every format holds.
+  // Whole millimetres, which every format represents exactly.
   const auto depth_m = image_of(2, 3, {0.001f, 1.0f, 2.5f, 65.535f, nan, 0.125f});
   write_depth(file_, depth_m, OutputPolicy::refuse_existing);
   expect_same(read_depth(file_), depth_m);
 }
 
-TEST_P(DepthFormat, WhatDidNotReturnIsNan) {
+TEST_P(DepthFormat, PixelsWithoutReturnAreNaN) {
   write_depth(file_, image_of(1, 4, {0.0f, float_infinity, nan, 2.0f}), overwrite);
   expect_same(read_depth(file_), image_of(1, 4, {nan, nan, nan, 2.0f}));
 }
 
-TEST_P(DepthFormat, RefusesToReplaceAFile) {
+TEST_P(DepthFormat, DoesNotReplaceAFile) {
   const auto depth_m = image_of(1, 1, {1.0f});
   write_depth(file_, depth_m, OutputPolicy::refuse_existing);
   EXPECT_THAT(io_error_of([&] { write_depth(file_, depth_m, OutputPolicy::refuse_existing); }),
               HasSubstr("--force"));
 }
 
-TEST_P(DepthFormat, RefusesAMissingAndAnEmptyFile) {
+TEST_P(DepthFormat, RejectsMissingAndEmptyFiles) {
   EXPECT_THAT(read_refusal(file_), HasSubstr("there is no such file"));
   write_file_atomically(file_, std::string_view(), overwrite);
   EXPECT_THAT(read_refusal(file_), HasSubstr(file_.string()));
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(All, DepthFormat,
 
 class FloatFormat : public testing::TestWithParam<std::string> {};
 
-TEST_P(FloatFormat, FloatImagesKeepEveryBit) {
+TEST_P(FloatFormat, KeepsEveryBitOfFloatImages) {
   const TemporaryDirectory directory;
   const auto image = image_of(2, 2, {0.0f, -0.25f, float_infinity, nan});
   write_float_image(directory / ("a" + GetParam()), image, "offset", overwrite);
@@ -99,7 +99,7 @@ TEST(DepthFile, PngRoundsToTheNearestMillimetre) {
   EXPECT_THAT(read_png(directory / "a.png").values, testing::ElementsAre(1234, 1235, 0, 65535));
 }
 
-TEST(DepthFile, PngRefusesDepthsItCannotHold) {
+TEST(DepthFile, PngRejectsUnrepresentableDepths) {
   const TemporaryDirectory directory;
   for (const float depth_m : {65.536f, 1e30f, -0.001f})
     EXPECT_THAT(io_error_of([&] {
@@ -109,7 +109,7 @@ TEST(DepthFile, PngRefusesDepthsItCannotHold) {
   EXPECT_EQ(directory.files(), 0);
 }
 
-TEST(DepthFile, RefusesUnknownExtensionsAndListsTheKnown) {
+TEST(DepthFile, RejectsUnknownExtensionsAndListsTheKnownOnes) {
   const TemporaryDirectory directory;
   EXPECT_THAT(
       read_refusal(directory / "a.tiff"),
@@ -122,7 +122,7 @@ TEST(DepthFile, RefusesUnknownExtensionsAndListsTheKnown) {
   EXPECT_THROW(write_depth(directory / "a.png", Image<float>(), overwrite), std::invalid_argument);
 }
 
-TEST(DepthFile, RefusesArraysThatAreNoDepthImage) {
+TEST(DepthFile, RejectsArraysThatAreNotDepthImages) {
   const TemporaryDirectory directory;
   write_npy(directory / "a.npy", NpyArray(NpyType::float32, {2, 3, 4}), overwrite);
   EXPECT_THAT(read_refusal(directory / "a.npy"), HasSubstr("shape (2, 3, 4); expected (H, W)"));
@@ -146,7 +146,7 @@ TEST(DepthFile, ReadsHalfPrecision) {
     expect_same(read_depth(directory / file), image_of(1, 3, {1.5f, 0x1p-24f, nan}));
 }
 
-TEST(DepthFile, TakesTheArrayCalledDepthOrTheOnlyOne) {
+TEST(DepthFile, UsesTheArrayNamedDepthOrTheOnlyOne) {
   const TemporaryDirectory directory;
   const NpyArray two(NpyType::float64, {1, 2}), three(NpyType::float64, {1, 3});
   write_npz(directory / "a.npz", {{"depth", two}, {"albedo", three}}, overwrite);
@@ -158,7 +158,7 @@ TEST(DepthFile, TakesTheArrayCalledDepthOrTheOnlyOne) {
               HasSubstr("found the arrays a, b; expected one called 'depth', or only one"));
 }
 
-TEST(DepthFile, TakesTheUsualExrChannels) {
+TEST(DepthFile, UsesTheCommonExrChannels) {
   const TemporaryDirectory directory;
   const auto near = image_of(1, 1, {1.0f}), far = image_of(1, 1, {9.0f});
   const auto depth_of = [&](const ExrPlanes& planes) {
@@ -176,7 +176,7 @@ TEST(DepthFile, TakesTheUsualExrChannels) {
   EXPECT_TRUE(read_exr(directory / "z.exr").contains("Z"));
 }
 
-TEST(DepthFile, RefusesColourAndEightBitImages) {
+TEST(DepthFile, RejectsColourAndEightBitImages) {
   const TemporaryDirectory directory;
   write_png(directory / "a.png", PngImage{1, 1, 1, 8, {1}}, overwrite);
   EXPECT_THAT(read_refusal(directory / "a.png"), HasSubstr("expected 16-bit grey"));

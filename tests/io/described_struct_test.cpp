@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-// Outside the unnamed namespace, as described structs are: describe() is found by its argument.
+// Not in the unnamed namespace, like described structs: describe() is found by its argument.
 struct Fan {
   int blades = 5;
   friend bool operator==(const Fan&, const Fan&) = default;
@@ -95,7 +95,7 @@ TEST(DescribedStruct, IsReadFromToml) {
   EXPECT_EQ(parse("depth_m = 0.3\n").spare, std::nullopt);
 }
 
-TEST(DescribedStruct, IsReadBackFromWhatItIsWrittenAs) {
+TEST(DescribedStruct, ReadingUndoesWriting) {
   const Housing housing{.depth_m = 0.3,
                         .gains = {1.0, 2.0},
                         .cooling = Cooling::forced,
@@ -109,7 +109,7 @@ TEST(DescribedStruct, IsReadBackFromWhatItIsWrittenAs) {
             housing);
 }
 
-TEST(DescribedStruct, RefusesWhatItsDescriptionExcludes) {
+TEST(DescribedStruct, RejectsValuesOutsideItsDescription) {
   EXPECT_EQ(problem_of("mass_kg = 1"),
             "h.toml: found no depth_m; expected a line such as `depth_m = 0.2`");
   EXPECT_EQ(problem_of("depth_m = \"deep\""),
@@ -125,7 +125,7 @@ TEST(DescribedStruct, RefusesWhatItsDescriptionExcludes) {
             "h.toml:2:5: unknown key fan.blade; did you mean fan.blades?");
 }
 
-TEST(DescribedStruct, HasItsRangesChecked) {
+TEST(DescribedStruct, IsCheckedForItsRanges) {
   const auto broken = [](const Housing& housing) -> std::string {
     try {
       check_ranges(housing, "housing.");
@@ -144,7 +144,7 @@ TEST(DescribedStruct, HasItsRangesChecked) {
   EXPECT_EQ(broken({.speed_hz = -1.0}), "") << "a key that does not apply";
 }
 
-TEST(DescribedStruct, HasItsKeysListed) {
+TEST(DescribedStruct, ListsItsKeys) {
   KeyList list;
   Housing housing;
   describe(list, housing);

@@ -35,7 +35,7 @@ DesignOptions options() {
   DesignOptions options = small_options();
   options.target = targets_of(build_family("square-k3", camera()));
   options.target->name = "../a/b \xc3\xbc<script>";
-  options.baselines->push_back("histogram-k4");  // of rows, which this camera does not read
+  options.baselines->push_back("histogram-k4");  // a family for row readout, unlike this camera's
   return options;
 }
 
@@ -96,7 +96,7 @@ TEST(DesignDirectory, ReadingUndoesWriting) {
   EXPECT_EQ(place.files(), 1) << "a code's name must not lead out of the directory";
   const DesignRecord record = directory.read();
   Camera written = camera();
-  written.sensor.impulse_response.file.clear();  // the directory needs no other file
+  written.sensor.impulse_response.file.clear();  // the directory is self-contained
   EXPECT_EQ(record.camera, written);
   EXPECT_EQ(record.result.best, designed().best);
   EXPECT_EQ(record.result.left_out, designed().left_out);
@@ -106,7 +106,7 @@ TEST(DesignDirectory, ReadingUndoesWriting) {
     expect_same_candidate(record.result.candidates[i], designed().candidates[i]);
 }
 
-TEST(DesignDirectory, KeepsErrorsOfOperatingMultipath) {
+TEST(DesignDirectory, KeepsMultipathErrors) {
   Camera two_buckets = small_camera("paper-10f0", DepthErrorKind::circular);
   two_buckets.sensor.taps = 2;
   two_buckets.operating.multipath.emplace();
@@ -134,7 +134,7 @@ TEST(DesignDirectory, KeepsErrorsOfOperatingMultipath) {
   }
 }
 
-TEST(DesignDirectory, FilesInTheWayStayUnlessTheyMayBeReplaced) {
+TEST(DesignDirectory, ExistingFilesAreReplacedOnRequestOnly) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());
   directory.write(camera(), designed(), options(), OutputPolicy::refuse_existing);
@@ -145,7 +145,7 @@ TEST(DesignDirectory, FilesInTheWayStayUnlessTheyMayBeReplaced) {
   EXPECT_TRUE(directory.holds_design());
 }
 
-TEST(DesignDirectory, ReadingOnlyReads) {
+TEST(DesignDirectory, ReadingChangesNothing) {
   const TemporaryDirectory place;
   EXPECT_THROW(DesignDirectory(place.path()).read(), IoError);
   EXPECT_EQ(place.files(), 0);
@@ -164,7 +164,7 @@ void keep_in(const TemporaryDirectory& place, const Candidate& candidate) {
   DesignDirectory(place.path()).store(camera(), options()).save(candidate.code.name(), {candidate});
 }
 
-TEST(DesignStore, ReturnsWhatItSavedForTheSameInputsAlone) {
+TEST(DesignStore, ReturnsADesignForTheSameInputsOnly) {
   const TemporaryDirectory place;
   Candidate unjudged = designed().candidates.back();
   unjudged.error = {};
@@ -201,13 +201,13 @@ TEST(DesignStore, ReturnsWhatItSavedForTheSameInputsAlone) {
 
 fs::path only_file(const fs::path& directory) { return fs::directory_iterator(directory)->path(); }
 
-/// Without the care of an atomic file, which waits for the disk.
+/// Writes without the disk synchronization of an atomic file.
 void overwrite(const fs::path& path, std::span<const std::byte> bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
 }
 
-TEST(DesignStore, WhatIsDamagedIsDesignedAgain) {
+TEST(DesignStore, DamagedDesignsAreDesignedAgain) {
   const TemporaryDirectory place;
   keep_in(place, designed().candidates.back());
   const fs::path path = only_file(place / "finished");
@@ -219,16 +219,16 @@ TEST(DesignStore, WhatIsDamagedIsDesignedAgain) {
   for (std::uint64_t i = 0; i < 150; ++i) {
     RandomStream random(3, i);
     overwrite(path, damaged(whole, random));
-    const auto kept = kept_in(place, camera(), options());  // read or not, never an exception
+    const auto kept = kept_in(place, camera(), options());  // may be read or not, but never throws
     if (kept) {
       EXPECT_NO_THROW(require_fits(kept->code, camera()));
     }
   }
 }
 
-/// Every file of a design, cut and damaged: read() gives a design or an IoError that names a file
-/// of the directory.
-TEST(DesignDirectory, DamageIsReadOrRefusedWithTheFilesName) {
+/// Truncates and damages every file of a design: read() returns a design or throws an IoError that
+/// names a file of the directory.
+TEST(DesignDirectory, DamageIsReadOrRejectedWithTheFileName) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());
   directory.write(camera(), designed(), options(), OutputPolicy::overwrite);
@@ -259,7 +259,7 @@ TEST(DesignDirectory, DamageIsReadOrRefusedWithTheFilesName) {
   EXPECT_EQ(directory.read().result.candidates.size(), designed().candidates.size());
 }
 
-TEST(DesignDirectory, PartsThatDoNotBelongTogetherAreRefused) {
+TEST(DesignDirectory, InconsistentPartsAreRejected) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());
   directory.write(camera(), designed(), options(), OutputPolicy::overwrite);
@@ -294,7 +294,7 @@ TEST(DesignDirectory, PartsThatDoNotBelongTogetherAreRefused) {
               HasSubstr("does not fit the camera"));
 }
 
-TEST(FileName, IsPlainAndDifferentForDifferentNames) {
+TEST(FileName, IsPlainAndUniquePerName) {
   EXPECT_EQ(file_name_of("hamiltonian-k4_2.1"), "hamiltonian-k4_2.1");
   EXPECT_EQ(file_name_of("../a"), "%2E.%2Fa");
   EXPECT_EQ(file_name_of("a/b"), "a%2Fb");

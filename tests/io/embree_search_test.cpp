@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// Every kind of shape, among and within each other.
+/// Returns all kinds of shapes, next to and inside each other.
 std::vector<Shape> mixed_scene() {
   Mesh ball = placed_mesh(tessellated_sphere(3), {1.0, -0.5, 0.7}, 0.9);
   ball.texture = {Texture::Pattern::checker, 0.2, 0.9, 0.15};
@@ -38,7 +38,7 @@ void expect_equal(const std::optional<Hit>& hit, const std::optional<Hit>& expec
   EXPECT_DOUBLE_EQ(hit->albedo, expected->albedo) << "ray " << item;
 }
 
-TEST(EmbreeSearch, MeetsWhatTheReferenceMeetsToDoublePrecision) {
+TEST(EmbreeSearch, FindsTheHitsOfTheReferenceInDoublePrecision) {
   const std::vector<Shape> shapes = mixed_scene();
   const RayCaster caster(shapes, embree_search());
   int hits = 0, checkered = 0;
@@ -53,7 +53,7 @@ TEST(EmbreeSearch, MeetsWhatTheReferenceMeetsToDoublePrecision) {
   EXPECT_GT(checkered, 100) << "on the mesh";
 }
 
-TEST(EmbreeSearch, NeitherAFarMeshNorAFarCameraCostsDigits) {
+TEST(EmbreeSearch, DistantMeshesAndCamerasKeepTheirPrecision) {
   const Eigen::Vector3d far_m(3e6, -2e6, 5e6);
   const std::vector<Shape> shapes = {placed_mesh(tessellated_sphere(2), far_m, 0.1)};
   const RayCaster caster(shapes, embree_search());
@@ -62,20 +62,20 @@ TEST(EmbreeSearch, NeitherAFarMeshNorAFarCameraCostsDigits) {
     Ray ray = ray_about_origin(i, 1.0);
     RandomStream random(28, i);
     const Eigen::Vector3d aim(random.normal(), random.normal(), random.normal());
-    // From near by, and from 10 km.
+    // From nearby and from 10 km.
     ray.origin = far_m - (i % 2 ? 1.0 : 1e4) * ray.direction + 0.05 * aim;
     const auto expected = nearest_hit(shapes, ray);
     const auto hit = caster.nearest(ray);
     ASSERT_EQ(hit.has_value(), expected.has_value()) << i;
     if (!hit) continue;
     ++hits;
-    // Doubles at 6e6 m are 1e-9 m apart.
+    // The spacing of doubles at 6e6 m is 1e-9 m.
     EXPECT_NEAR(hit->distance_m, expected->distance_m, 2e-8) << i;
   }
   EXPECT_GT(hits, 100);
 }
 
-TEST(EmbreeSearch, TinyAndHugeMeshesAreSeenAlike) {
+TEST(EmbreeSearch, IsIndependentOfTheScaleOfAMesh) {
   for (const double scale_m : {1e-9, 1e-3, 1e3, 1e9}) {
     const std::vector<Shape> shapes = {
         placed_mesh(tessellated_sphere(2), scale_m * Eigen::Vector3d(0.1, 0.2, 3), scale_m)};
@@ -93,8 +93,8 @@ TEST(EmbreeSearch, TinyAndHugeMeshesAreSeenAlike) {
   }
 }
 
-TEST(EmbreeSearch, NoRaySlipsBetweenNeighbours) {
-  // From within a closed mesh, straight at its vertices and at the middles of its edges.
+TEST(EmbreeSearch, NoRayPassesBetweenAdjacentTriangles) {
+  // Rays from within a closed mesh, towards its vertices and the midpoints of its edges.
   const Mesh ball = placed_mesh(tessellated_sphere(2), {0.3, 0.1, 0.2}, 1.0);
   const RayCaster caster(std::vector<Shape>{ball}, embree_search());
   const Eigen::Vector3d eye(0.35, 0.05, 0.1);
@@ -139,14 +139,14 @@ TEST(EmbreeSearch, RaysThatStartOnAMeshLeaveIt) {
   }
 }
 
-TEST(EmbreeSearch, TrianglesWithoutAreaAreNeverSeen) {
+TEST(EmbreeSearch, TrianglesWithoutAreaAreInvisible) {
   Mesh slivers;
   slivers.triangles.vertices = {{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {0, 1, 1}};
   slivers.triangles.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 4, 4}};
   const PinholeView view = PinholeView::centred(33, 33, 1.5);
   EXPECT_EQ(RayCaster(std::vector<Shape>{slivers}, embree_search()).see(view).shape.pixels,
             std::vector<std::int32_t>(33 * 33, -1));
-  // Beside a triangle with area they leave it whole; a needle gives no NaN.
+  // They do not affect an adjacent triangle with area; a needle causes no NaN.
   slivers.triangles.triangles.push_back({0, 3, 4});
   slivers.triangles.vertices.push_back({1, 1e-9, 1});
   slivers.triangles.triangles.push_back({0, 3, 5});
@@ -155,8 +155,8 @@ TEST(EmbreeSearch, TrianglesWithoutAreaAreNeverSeen) {
   EXPECT_EQ(seen.shape(17, 17), 0);
 }
 
-TEST(EmbreeSearch, LeavesSmallNumbersAlone) {
-  // Ray tracers like to run with denormal numbers flushed to zero; the threads are not theirs.
+TEST(EmbreeSearch, KeepsDenormalNumbersEnabled) {
+  // Ray tracers often enable flush-to-zero mode, which must not remain set in shared threads.
   const RayCaster caster(mixed_scene(), embree_search());
   (void)caster.see(PinholeView::centred(64, 64, 1.0));
   parallel_for(64, [](std::int64_t) {

@@ -43,7 +43,7 @@ TEST(Exr, ReadingUndoesWriting) {
   }
 }
 
-TEST(Exr, TheSamePlanesGiveTheSameBytes) {
+TEST(Exr, EqualPlanesGiveEqualBytes) {
   EXPECT_EQ(serialize_exr(test_planes()), serialize_exr(test_planes()));
 }
 
@@ -53,8 +53,8 @@ std::string attribute(std::string name, std::string kind, const std::string& val
   return name + '\0' + kind + '\0' + size + value;
 }
 
-/// A file of one line of two half-float pixels, 1.0 and -2.0, uncompressed; `type` is the pixel
-/// type, `flags` the second byte of the version, and `more` stands behind the attributes.
+/// Returns an uncompressed file of one line with two half-float pixels, 1.0 and -2.0. `type` is the
+/// pixel type, `flags` the second version byte, and `more` is appended to the attributes.
 FileBytes small_file(char type = 1, char flags = 0,
                      const std::string& window_corner = std::string("\1\0\0\0\0\0\0\0", 8),
                      const std::string& more = "") {
@@ -74,8 +74,8 @@ FileBytes small_file(char type = 1, char flags = 0,
   const std::size_t offset = file.size() + 8;
   file += static_cast<char>(offset & 0xff);
   file += static_cast<char>(offset >> 8);
-  file += std::string(6, '\0');                // the only line's place in the file
-  file += std::string("\0\0\0\0\4\0\0\0", 8);  // its row and its length
+  file += std::string(6, '\0');                // offset of the only line
+  file += std::string("\0\0\0\0\4\0\0\0", 8);  // its row and length
   file += std::string("\x00\x3c\x00\xc0", 4);  // 1.0, -2.0
   return bytes_of(file);
 }
@@ -85,7 +85,7 @@ TEST(Exr, ReadsHalfFloats) {
   EXPECT_THAT(planes.at("Z").pixels, testing::ElementsAre(1.0f, -2.0f));
 }
 
-TEST(Exr, RefusesWhatItDoesNotRead) {
+TEST(Exr, RejectsUnsupportedFiles) {
   const auto refusal = [](const FileBytes& file) {
     return io_error_of([&] { parse_exr(file, "a.exr"); });
   };
@@ -102,9 +102,9 @@ TEST(Exr, RefusesWhatItDoesNotRead) {
               HasSubstr("found an image"));
 }
 
-// The OpenEXR library reads attributes as long as their types are: sizes that differ made it take
-// what follows for sizes, and gigabytes for a file of 600 bytes.
-TEST(Exr, RefusesAttributesThatAreNotAsLongAsTheirTypes) {
+// The OpenEXR library assumes that attributes are as long as their types: other sizes made it
+// misinterpret the following bytes and allocate gigabytes for a file of 600 bytes.
+TEST(Exr, RejectsAttributesOfOtherSizesThanTheirTypes) {
   const auto refusal = [](const std::string& type, const std::string& value) {
     const FileBytes file =
         small_file(1, 0, std::string("\1\0\0\0\0\0\0\0", 8), attribute("a", type, value));
@@ -127,7 +127,7 @@ TEST(Exr, RefusesEveryTruncation) {
   expect_truncations_refused(serialize_exr(test_planes()), parse);
 }
 
-TEST(Exr, RefusesToWritePlanesThatDoNotFit) {
+TEST(Exr, RejectsWritingPlanesOfDifferentSizes) {
   EXPECT_THROW(serialize_exr({}), std::invalid_argument);
   EXPECT_THROW(serialize_exr({{"", Image<float>(1, 1)}}), std::invalid_argument);
   EXPECT_THROW(serialize_exr({{"Z", Image<float>()}}), std::invalid_argument);

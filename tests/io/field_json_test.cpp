@@ -36,7 +36,7 @@ auto fields_of(ConstOrNot<Finding> auto& f) {
                     Field("bound_m", f.bound_m, at_least(0).or_infinity()));
 }
 
-/// A Finding to which a field was added, and listed, and nothing else was done.
+/// A Finding with one added field, and no other change than its description.
 struct Grown {
   int starts = 4;
   int added = 8;
@@ -84,7 +84,7 @@ TEST(FieldJson, ReadingUndoesWriting) {
     EXPECT_EQ(fields_json(read_back<Finding>(fields_json(written))), fields_json(written));
 }
 
-TEST(FieldJson, RefusesWhatIsMissingOrBreaksTheRule) {
+TEST(FieldJson, RejectsMissingMembersAndInvalidValues) {
   const auto refusal = [](const char* name, const nlohmann::ordered_json& value) {
     nlohmann::ordered_json json = fields_json(finding());
     if (value.is_discarded())
@@ -105,7 +105,7 @@ TEST(FieldJson, RefusesWhatIsMissingOrBreaksTheRule) {
             "a.json: /steps/0: found a list of 1; expected a list of 2: work, error_m");
 }
 
-TEST(Fields, OneThatIsAddedIsInEveryUse) {
+TEST(Fields, AnAddedFieldIsSupportedEverywhere) {
   EXPECT_THROW(check_fields(Grown{.added = 2}), std::invalid_argument);
   EXPECT_NE(key_of(Grown{}), key_of(Grown{.added = 9}));
   EXPECT_EQ(fields_json(Grown{.added = 9})["added"], 9);
@@ -116,7 +116,7 @@ TEST(Fields, OneThatIsAddedIsInEveryUse) {
   EXPECT_EQ(scaled.starts, 4) << "not marked";
 }
 
-/// Changes any one field, of members too, and calls `visit` with it changed.
+/// Changes every field in turn, also of members, and calls `visit` with the changed struct.
 template <typename Struct, typename Visit>
 void for_each_change(Struct& its, const Visit& visit, const std::string& owner = "") {
   for_each_field(its, [&](const auto& field) {
@@ -141,13 +141,13 @@ void for_each_change(Struct& its, const Visit& visit, const std::string& owner =
   });
 }
 
-TEST(FieldKey, DiffersWhereAnyFieldOfADesignsOptionsDoes) {
+TEST(FieldKey, DiffersIfAnyFieldOfDesignOptionsDiffers) {
   DesignOptions options;
   const std::string key = key_of(options);
   int changed = 0;
   for_each_change(options, [&](const std::string& name) {
     if (name == "factorize" || name == "optimize" || name == "search") return;
-    // What the options above set does not count.
+    // Fields that DesignOptions overrides do not count.
     const bool is_set_from_above = name == "factorize.seed" || name == "optimize.seed" ||
                                    name == "search.seed" || name == "search.exposures";
     EXPECT_EQ(key_of(options) == key, is_set_from_above) << name;
@@ -157,7 +157,7 @@ TEST(FieldKey, DiffersWhereAnyFieldOfADesignsOptionsDoes) {
   EXPECT_EQ(key_of(options), key);
 }
 
-TEST(FieldKey, TellsListsApart) {
+TEST(FieldKey, DistinguishesLists) {
   DesignOptions a, b;
   a.baselines = {"x", "y"};
   b.baselines = {"x,y"};

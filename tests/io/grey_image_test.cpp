@@ -41,7 +41,7 @@ void append(FileBytes& bytes, std::uint16_t number, bool big_endian) {
   bytes.insert(bytes.end(), {big_endian ? high : low, big_endian ? low : high});
 }
 
-/// Numbers of a block as they are stored; those outside the image are 0.
+/// Returns the stored values of a block; 0 outside the image.
 FileBytes block_bytes(std::size_t first_row, std::size_t rows, std::size_t first_column,
                       std::size_t columns, bool big_endian, bool differences) {
   FileBytes bytes;
@@ -66,14 +66,14 @@ FileBytes pack_bits(const FileBytes& bytes) {
                   bytes.begin() + static_cast<std::ptrdiff_t>(at + count));
     at += count;
     if (at + 3 < bytes.size() && bytes[at] == bytes[at + 1]) {
-      packed.insert(packed.end(), {std::byte{0xff}, bytes[at]});  // twice
+      packed.insert(packed.end(), {std::byte{0xff}, bytes[at]});  // a run of two
       at += 2;
     }
   }
   return packed;
 }
 
-/// One stored block of Deflate.
+/// Returns one stored block of Deflate.
 FileBytes pack_deflate(const FileBytes& bytes) {
   FileBytes packed = {std::byte{0x78}, std::byte{0x01}, std::byte{0x01}};
   const auto size = static_cast<std::uint16_t>(bytes.size());
@@ -133,7 +133,7 @@ TEST(Tiff, ReadsStripsAndTilesOfEveryCompression) {
       }
 }
 
-TEST(Tiff, RefusesOtherImagesAndNamesTheReason) {
+TEST(Tiff, RejectsUnsupportedImagesWithTheReason) {
   const auto refusal = [](TiffWriter writer, int tag, std::uint32_t value) {
     for (auto& [number, values] : writer.tags)
       if (number == tag) values = {value};
@@ -166,7 +166,7 @@ TEST(Pgm, ReadsBinaryAndTextOfBothSizes) {
               ElementsAre(4095, 7));
 }
 
-TEST(Pgm, RefusesDamagedFilesAndNamesTheReason) {
+TEST(Pgm, RejectsDamagedFilesWithTheReason) {
   const auto refusal = [](const std::string& text) {
     return io_error_of([&] { parse_pgm(pgm(text), "a.pgm"); });
   };
@@ -178,7 +178,7 @@ TEST(Pgm, RefusesDamagedFilesAndNamesTheReason) {
   EXPECT_THAT(refusal("P2 2 1 15 3 x"), AllOf(HasSubstr("a.pgm"), HasSubstr("number of a pixel")));
 }
 
-/// Four phases, one image each.
+/// Writes four phases, one image each.
 std::vector<std::filesystem::path> write_phases(const TemporaryDirectory& directory,
                                                 const std::string& extension) {
   std::vector<std::filesystem::path> files;
@@ -200,7 +200,7 @@ std::vector<std::filesystem::path> write_phases(const TemporaryDirectory& direct
   return files;
 }
 
-TEST(PhaseImages, AreTheFrameOfTheirNumbers) {
+TEST(PhaseImages, FormAFrame) {
   const TemporaryDirectory directory;
   for (const std::string extension : {".png", ".tif", ".pgm"}) {
     const RawFrames frames =
@@ -213,7 +213,7 @@ TEST(PhaseImages, AreTheFrameOfTheirNumbers) {
   }
 }
 
-TEST(PhaseImages, OfAnotherSizeNumberOrColourAreRefused) {
+TEST(PhaseImages, OfDifferentSizeNumberOrColourAreRejected) {
   const TemporaryDirectory directory;
   auto files = write_phases(directory, ".png");
   const auto refusal = [&] {

@@ -22,12 +22,12 @@ using testing::HasSubstr;
 
 constexpr std::uint64_t plenty = 1 << 20;
 
-/// A data set of the numbers 0, 1, 2, .. as `stored` items.
+/// A data set of the numbers 0, 1, 2, ... with items of type `stored`.
 struct Numbers {
   std::string name;
   std::vector<hsize_t> shape;
   hid_t stored = H5T_STD_U16LE;
-  std::vector<hsize_t> chunk;  // none: in one piece
+  std::vector<hsize_t> chunk;  // empty: contiguous
   bool deflate = false;
   bool written = true;
 };
@@ -67,9 +67,9 @@ const std::vector<hid_t>& stored_types() {
   return types;
 }
 
-TEST(Hdf5, AnyStretchOfAnyTypeInAnyChunksIsItsNumbers) {
+TEST(Hdf5, ReadsAnyRangeOfAnyTypeInAnyChunks) {
   const TemporaryDirectory directory;
-  const std::vector<hsize_t> shape = {2, 3, 5, 4};  // 120 numbers, as many as int8 counts
+  const std::vector<hsize_t> shape = {2, 3, 5, 4};  // 120 numbers, which fit int8
   for (const hid_t stored : stored_types())
     for (const std::vector<hsize_t>& chunk :
          {std::vector<hsize_t>{}, {1, 2, 2, 3}, {2, 3, 5, 4}, {1, 1, 1, 1}}) {
@@ -91,7 +91,7 @@ TEST(Hdf5, AnyStretchOfAnyTypeInAnyChunksIsItsNumbers) {
     }
 }
 
-TEST(Hdf5, FramesAreThoseOfTheSameArrayInNpy) {
+TEST(Hdf5, FramesEqualThoseOfTheSameArrayInNpy) {
   const TemporaryDirectory directory;
   std::vector<std::uint16_t> values(2 * 6 * 5 * 4);
   std::iota(values.begin(), values.end(), std::uint16_t{0});
@@ -110,7 +110,7 @@ TEST(Hdf5, FramesAreThoseOfTheSameArrayInNpy) {
     }
 }
 
-TEST(Hdf5, TakesTheOneCalledRawOrTheOnlyOneOrTheOneNamed) {
+TEST(Hdf5, UsesTheDataSetNamedRawOrTheOnlyOneOrTheGivenOne) {
   const TemporaryDirectory directory;
   const auto first_of = [&](const std::vector<Numbers>& all, const std::string& asked) {
     write(directory / "a.h5", all);
@@ -133,7 +133,7 @@ TEST(Hdf5, TakesTheOneCalledRawOrTheOnlyOneOrTheOneNamed) {
   EXPECT_THAT(io_error_of([&] { first_of({text}, ""); }), HasSubstr("no data set of numbers"));
 }
 
-TEST(Hdf5, RefusesWhatWasNeverWrittenAndChunksThatTakeTooMuch) {
+TEST(Hdf5, RejectsUnwrittenDataAndOversizedChunks) {
   const TemporaryDirectory directory;
   write(directory / "a.h5",
         {{.name = "raw", .shape = {1000, 1000}, .chunk = {10, 10}, .written = false}});
@@ -146,7 +146,7 @@ TEST(Hdf5, RefusesWhatWasNeverWrittenAndChunksThatTakeTooMuch) {
   EXPECT_EQ(open_hdf5(directory / "b.h5", "", 4 * plenty).bytes_in_memory, 4u * plenty);
 }
 
-TEST(Hdf5, FollowsNoLinkToAnotherFile) {
+TEST(Hdf5, DoesNotFollowLinksToOtherFiles) {
   const TemporaryDirectory directory;
   write(directory / "secret.h5", {{.name = "raw", .shape = {2, 2}}});
   {
@@ -160,7 +160,7 @@ TEST(Hdf5, FollowsNoLinkToAnotherFile) {
               HasSubstr("there is no data set raw"));
 }
 
-TEST(Hdf5, NamesTheFileThatIsNone) {
+TEST(Hdf5, ReportsFilesThatAreNotHdf5) {
   const TemporaryDirectory directory;
   const auto message = [&](const std::string& name) {
     return io_error_of([&] { RawFramesReader(directory / name); });
@@ -175,9 +175,9 @@ TEST(Hdf5, NamesTheFileThatIsNone) {
               AllOf(HasSubstr("a.npy"), HasSubstr("the data set 'raw' was asked for")));
 }
 
-// Not of bytes changed at random: libhdf5 1.10 itself reads outside of its memory then
+// Randomly damaged files are not tested, because libhdf5 1.10 itself then accesses invalid memory
 // (docs/reliability.md).
-TEST(Hdf5, FilesCutShortAreRefused) {
+TEST(Hdf5, RejectsTruncatedFiles) {
   const TemporaryDirectory directory;
   for (const bool in_chunks : {false, true}) {
     write(directory / "a.h5",

@@ -29,7 +29,7 @@ class ResponseFile : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(ResponseFile, TimesTellTheStep) {
+TEST_F(ResponseFile, TimesDetermineTheStep) {
   const auto path = write("r.csv", "time_s,value\n5e-9,1\n6e-9,3\n7e-9,0.5\n");
   const ImpulseResponse response = read_impulse_response(path);
   EXPECT_EQ(response.kind, ImpulseResponse::Kind::file);
@@ -39,7 +39,7 @@ TEST_F(ResponseFile, TimesTellTheStep) {
   EXPECT_EQ(read_impulse_response(path, 1e-9).time_step_s, 1e-9);
 }
 
-TEST_F(ResponseFile, IsReadAsAnOscilloscopeWroteIt) {
+TEST_F(ResponseFile, ReadsOscilloscopeFiles) {
   const std::vector<double> expected = {1.0, 3.0, 0.5};
   for (const char* text : {"Model,DSO,,5e-9,1,\n,,,6e-9,3,\n,,,7e-9,0.5,\n",
                            "\xef\xbb\xbftime_ns;V\n5;1\n6;3\n7;0,5\n",
@@ -53,7 +53,7 @@ TEST_F(ResponseFile, IsReadAsAnOscilloscopeWroteIt) {
   EXPECT_THAT(refusal("1\n9.91E+37\n", 1e-9), HasSubstr("r.csv:2:1: found '9.91E+37'"));
 }
 
-TEST_F(ResponseFile, ValuesAloneNeedAStep) {
+TEST_F(ResponseFile, ValuesWithoutTimesNeedAStep) {
   EXPECT_THAT(read_impulse_response(write("r.txt", "1\n2\n"), 2e-9).samples, ElementsAre(1.0, 2.0));
   write_npy(directory_ / "r.npy", NpyArray::of<float>({3}, std::vector<float>{1, 2, 4}),
             OutputPolicy::overwrite);
@@ -63,7 +63,7 @@ TEST_F(ResponseFile, ValuesAloneNeedAStep) {
   EXPECT_THAT(refusal("1\n2\n", std::nullopt), HasSubstr("expected time_step_s"));
 }
 
-TEST_F(ResponseFile, RefusesWhatIsNoResponse) {
+TEST_F(ResponseFile, RejectsInvalidResponses) {
   EXPECT_THAT(refusal("0,1\n1e-9,2\n3e-9,1\n", {}),
               HasSubstr("row 1: found the time 1e-09 s; expected 1.5e-09 s"));
   EXPECT_THAT(refusal("2e-9,1\n1e-9,2\n", {}), HasSubstr("do not rise"));

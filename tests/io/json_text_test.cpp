@@ -32,7 +32,7 @@ TEST(JsonText, ErrorsNameLineAndColumn) {
               StartsWith("a.json:2:1: found a byte of 0"));
 }
 
-TEST(JsonText, ErrorsSayWhatWasFound) {
+TEST(JsonText, ErrorsQuoteTheUnexpectedText) {
   EXPECT_THAT(refusal("[1 2]"), HasSubstr("unexpected number literal"));
   EXPECT_THAT(refusal("[1 2]"), testing::Not(HasSubstr("json.exception")));
 }

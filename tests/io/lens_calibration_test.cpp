@@ -16,7 +16,7 @@
 namespace tofsmith {
 namespace {
 
-/// As cv::FileStorage and OpenCV's calibration sample write it.
+/// In the format of cv::FileStorage and OpenCV's calibration sample.
 const std::string opencv_yaml = R"(%YAML:1.0
 ---
 calibration_time: "Mon Nov 23 10:00:00 2026"
@@ -35,7 +35,7 @@ distortion_coefficients: !!opencv-matrix
    data: [ -2.8e-01, 9.5e-02, 1.2e-03, -4.0e-04, -1.1e-02 ]
 )";
 
-/// As a camera_info message is printed.
+/// A printed camera_info message.
 const std::string ros_message = R"(header:
   seq: 0
   frame_id: tof
@@ -51,7 +51,7 @@ binning_y: 0
 roi: {x_offset: 0, y_offset: 0, height: 0, width: 0, do_rectify: false}
 )";
 
-/// As ROS's camera_calibration writes a camera's file.
+/// A camera file written by ROS's camera_calibration.
 const std::string ros_file = R"(image_width: 320
 image_height: 240
 camera_name: tof
@@ -70,7 +70,7 @@ std::string with(std::string text, const std::string& old, const std::string& fr
   return text.replace(text.find(old), old.size(), fresh);
 }
 
-TEST(LensCalibration, ReadsWhatOpenCvWrites) {
+TEST(LensCalibration, ReadsOpenCvFiles) {
   const Lens expected{
       .fx_px = 525.81,
       .fy_px = 524.53,
@@ -82,7 +82,7 @@ TEST(LensCalibration, ReadsWhatOpenCvWrites) {
   EXPECT_EQ(parse_lens_calibration(opencv_yaml, "a.yml"), expected);
 }
 
-TEST(LensCalibration, ReadsWhatRosWrites) {
+TEST(LensCalibration, ReadsRosFiles) {
   const Lens message = parse_lens_calibration(ros_message, "a.yaml");
   EXPECT_EQ(message.fy_px, 226.0);
   EXPECT_EQ(message.width_px, 320);
@@ -95,7 +95,7 @@ TEST(LensCalibration, ReadsWhatRosWrites) {
             (LensDistortion{DistortionModel::fisheye, {0.05, -0.01, 0.004, -0.001}}));
 }
 
-TEST(LensCalibration, FourNumbersAreAFisheyesIfTheFileOrTheCameraSaysSo) {
+TEST(LensCalibration, FourCoefficientsAreFisheyeIfTheFileOrTheCameraSpecifiesIt) {
   const std::string plain = with(ros_file, "distortion_model: equidistant\n", "");
   using enum DistortionModel;
   EXPECT_EQ(parse_lens_calibration(plain, "a").distortion->model, opencv);
@@ -103,7 +103,7 @@ TEST(LensCalibration, FourNumbersAreAFisheyesIfTheFileOrTheCameraSaysSo) {
   EXPECT_EQ(parse_lens_calibration(plain + "fisheye_model: 1\n", "a").distortion->model, fisheye);
 }
 
-TEST(LensCalibration, DistortionOfZeroIsNone) {
+TEST(LensCalibration, ZeroDistortionIsNone) {
   EXPECT_FALSE(parse_lens_calibration(
                    with(ros_message, "[0.42, -2.6, 0.0006, -0.0002, 1.5, 0.31, -2.4, 1.42]",
                         "[0, 0, 0, 0, 0]"),
@@ -111,7 +111,7 @@ TEST(LensCalibration, DistortionOfZeroIsNone) {
                    .distortion);
 }
 
-TEST(LensCalibration, NamesThePlaceAndWhatIsWrong) {
+TEST(LensCalibration, ReportsThePlaceAndTheProblem) {
   const auto message = [](const std::string& text) {
     return io_error_of([&] { parse_lens_calibration(text, "a.yaml"); });
   };
@@ -139,7 +139,7 @@ TEST(LensCalibration, NamesThePlaceAndWhatIsWrong) {
             "a.yaml:13:17: roi.x_offset: expected 0: images that are not cut");
 }
 
-/// Spellings of one lens, as other programs and versions write it.
+/// One lens in the spelling of several programs and versions.
 TEST(LensCalibration, ReadsTheSameLensFromEveryFormat) {
   const Lens expected{
       .fx_px = 60,
@@ -183,7 +183,7 @@ TEST(LensCalibration, ReadsTheSameLensFromEveryFormat) {
     EXPECT_EQ(parse_lens_calibration(text, "a"), expected) << text;
 }
 
-TEST(LensCalibration, SelectsOneOfSeveralCamerasByItsName) {
+TEST(LensCalibration, SelectsOneOfSeveralCamerasByName) {
   const std::string kalibr =
       "cam0: {camera_model: pinhole, distortion_coeffs: [0.1, 0, 0, 0], distortion_model: radtan, "
       "intrinsics: [60, 61, 39, 29]}\n"
@@ -218,7 +218,7 @@ TEST(LensCalibration, SelectsOneOfSeveralCamerasByItsName) {
             "model");
 }
 
-/// With made-up numbers.
+/// With invented values.
 const std::string azure_kinect = R"({"CalibrationInformation": {"Cameras": [
   {"Intrinsics": {"ModelParameterCount": 14, "ModelParameters":
       [0.51, 0.52, 0.48, 0.64, 0.5, -2.6, 1.5, 0.4, -2.4, 1.4, 0, 0, 0, 0],
@@ -244,7 +244,7 @@ TEST(LensCalibration, ReadsTheDepthCameraOfAnAzureKinect) {
   EXPECT_EQ(parse_lens_calibration(azure_kinect + '\0', "k.json"), expected);
   const Lens colour = parse_lens_calibration(azure_kinect, "k.json", {}, "PV0");
   EXPECT_EQ(colour.width_px, 4096);
-  EXPECT_EQ(colour.distortion->max_radius, 1.7);  // the SDK's, as the file has none
+  EXPECT_EQ(colour.distortion->max_radius, 1.7);  // default of the SDK, as the file has none
   const auto message = [](const std::string& old, const std::string& fresh) {
     return io_error_of(
         [&] { parse_lens_calibration(with(azure_kinect, old, fresh), "k", {}, "PV0"); });
@@ -261,8 +261,8 @@ TEST(LensCalibration, ReadsTheDepthCameraOfAnAzureKinect) {
             "k:2:3: found no SensorWidth; expected the calibration of an Azure Kinect");
 }
 
-/// The rays of frames of a mode, as the formula of the SDK images them on the whole sensor.
-TEST(LensCalibration, FramesOfAnAzureKinectAreTheirPartsOfTheSensor) {
+/// Rays of all modes, compared with the SDK's projection onto the whole sensor.
+TEST(LensCalibration, FramesOfAnAzureKinectAreRegionsOfTheSensor) {
   struct Mode {
     int width, height, binning, column, row;
   };
@@ -290,14 +290,14 @@ TEST(LensCalibration, FramesOfAnAzureKinectAreTheirPartsOfTheSensor) {
           const double cross = is_6kt ? 1.0 : 2.0, p1 = -3e-4, p2 = 2e-4;
           const double u = x * radial + (q + 2 * x * x) * p2 + cross * x * y * p1,
                        v = y * radial + (q + 2 * y * y) * p1 + cross * x * y * p2;
-          // From the corner of the sensor, in its pixels.
+          // In sensor pixels from its corner.
           EXPECT_NEAR(1024 * (0.49 * u + 0.5), mode.column + mode.binning * (column + 0.5), 1e-6);
           EXPECT_NEAR(1024 * (0.48 * v + 0.51), mode.row + mode.binning * (row + 0.5), 1e-6);
         }
     }
 }
 
-TEST(LensCalibration, ALensIsTheSameAfterJson) {
+TEST(LensCalibration, JsonPreservesTheLens) {
   for (const Lens& lens : {parse_lens_calibration(azure_kinect, "k.json"),
                            parse_lens_calibration(opencv_yaml, "a"), Lens{.rays = "/a/rays.npy"}})
     EXPECT_EQ(lens_from_json(lens_to_json(lens)), lens);
@@ -305,7 +305,7 @@ TEST(LensCalibration, ALensIsTheSameAfterJson) {
             "lens: found no cy_px; expected a line such as `cy_px = 239.5`");
 }
 
-TEST(LensCalibration, NamesTheLineOfXml) {
+TEST(LensCalibration, ReportsTheLineInXml) {
   const auto message = [](const std::string& text) {
     return io_error_of([&] { parse_lens_calibration(text, "a.xml"); });
   };
@@ -316,7 +316,7 @@ TEST(LensCalibration, NamesTheLineOfXml) {
             "a.xml:2: camera_matrix: found 3 numbers; expected 9, or fx fy cx cy");
 }
 
-TEST(LensCalibration, ACameraTakesItsLensFromTheFileBesideItAndIsWrittenWithTheNumbers) {
+TEST(LensCalibration, ACameraReadsItsLensFromAFileNextToItAndIsWrittenWithTheNumbers) {
   const TemporaryDirectory directory;
   std::ofstream(directory.path() / "lens.yml") << opencv_yaml;
   const std::filesystem::path path = directory.path() / "camera.toml";

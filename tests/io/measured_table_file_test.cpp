@@ -22,14 +22,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Correlation functions of any shape that nothing repeats in, negative ones among them.
+/// Returns arbitrary, partly negative correlation functions without repetition.
 Eigen::MatrixXd sweep(Eigen::Index samples, Eigen::Index columns) {
   return Eigen::MatrixXd::NullaryExpr(samples, columns, [&](Eigen::Index n, Eigen::Index k) {
     return std::cos(2 * M_PI * (double(n) / double(samples) - double(k) / double(columns))) + 0.1;
   });
 }
 
-/// The same with the first sample repeated at the end.
+/// Appends the first sample at the end.
 Eigen::MatrixXd closed(const Eigen::MatrixXd& functions) {
   Eigen::MatrixXd longer(functions.rows() + 1, functions.cols());
   longer << functions, functions.row(0);
@@ -56,7 +56,7 @@ class MeasuredTableFileTest : public testing::Test {
     EXPECT_THAT(message, HasSubstr(path().string()));
     return message.substr(std::min(message.size(), path().string().size()));
   }
-  /// The notes, without the file's name they begin with.
+  /// Returns the notes without the leading file name.
   static std::vector<std::string> without_name(const MeasuredTableFile& file) {
     std::vector<std::string> notes;
     for (const std::string& note : file.notes) notes.push_back(note.substr(note.find("npz: ") + 5));
@@ -67,7 +67,7 @@ class MeasuredTableFileTest : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(MeasuredTableFileTest, IsTheSameFromEveryFormatAndOfAnyLength) {
+TEST_F(MeasuredTableFileTest, IsIndependentOfFormatAndLength) {
   for (const Eigen::Index samples : {8, 61, 1939}) {
     const Eigen::MatrixXd functions = sweep(samples, 4);
     std::ofstream csv(directory_ / "t.csv");
@@ -83,7 +83,7 @@ TEST_F(MeasuredTableFileTest, IsTheSameFromEveryFormatAndOfAnyLength) {
   }
 }
 
-TEST_F(MeasuredTableFileTest, IsTheSameFromEveryDialect) {
+TEST_F(MeasuredTableFileTest, IsIndependentOfTheDialect) {
   const Eigen::MatrixXd functions = sweep(10, 4);
   const auto text_of = [&](const std::string& header, const auto& row) {
     std::string text = header;
@@ -118,7 +118,7 @@ TEST_F(MeasuredTableFileTest, IsTheSameFromEveryDialect) {
               HasSubstr("t.csv:2:3: found '9.9E+37' in column 2"));
 }
 
-TEST_F(MeasuredTableFileTest, KnowsCodesFromTables) {
+TEST_F(MeasuredTableFileTest, DistinguishesCodesFromTables) {
   const NpyArray functions = array_of(sweep(20, 3));
   const auto is_table = [&](const NpzArrays& arrays) {
     write_npz(path(), arrays, OutputPolicy::overwrite);
@@ -134,10 +134,10 @@ TEST_F(MeasuredTableFileTest, KnowsCodesFromTables) {
   EXPECT_FALSE(is_measured_table("hamiltonian-k3"));
 }
 
-TEST_F(MeasuredTableFileTest, DropsARepeatedEndPointAndSaysSo) {
+TEST_F(MeasuredTableFileTest, DropsARepeatedEndPointWithANote) {
   const Eigen::MatrixXd functions = sweep(50, 3);
   Eigen::MatrixXd longer = closed(functions);
-  longer(50, 1) += 1e-7;  // as single precision rounds
+  longer(50, 1) += 1e-7;  // rounding error of single precision
   const MeasuredTableFile dropped = read(longer);
   EXPECT_EQ(dropped.table.correlation, functions);
   EXPECT_THAT(
@@ -160,13 +160,13 @@ TEST_F(MeasuredTableFileTest, KeepsAnEndPointOnAPlateau) {
                                               "neighbours: all 51 were kept"));
 }
 
-TEST_F(MeasuredTableFileTest, TakesTheOtherOrientationWhereItIsTheOnlyOne) {
+TEST_F(MeasuredTableFileTest, UsesTheTransposedOrientationIfItIsTheOnlyValidOne) {
   const Eigen::MatrixXd functions = sweep(1939, 6);
   const MeasuredTableFile lying = read(functions.transpose().eval());
   EXPECT_EQ(lying.table.correlation, functions);
   EXPECT_THAT(without_name(lying), ElementsAre("its shape (6, 1939) was taken as (K, N): 6 "
                                                "measurements of 1939 samples"));
-  // As (N, K) too few samples, or too many measurements.
+  // As (N, K) there would be too few samples or too many measurements.
   EXPECT_EQ(read(sweep(20, 7).transpose().eval()).table.samples(), 20);
   EXPECT_EQ(read(sweep(100, 12).transpose().eval()).table.samples(), 100);
 }
@@ -188,7 +188,7 @@ TEST_F(MeasuredTableFileTest, NeverGuessesTheOrientation) {
   EXPECT_THROW(parse_table_axes("hw"), std::invalid_argument);
 }
 
-TEST_F(MeasuredTableFileTest, PutsTheTapsOfAnExposureSideBySide) {
+TEST_F(MeasuredTableFileTest, GroupsTheTapsOfEachExposure) {
   const Eigen::MatrixXd functions = sweep(40, 6);
   const NpzArrays arrays = {{"corrfs", array_of(functions)},
                             {"ambient", list({0.0, 0.1, 0.2, 0.3, 0.4, 0.5})}};
@@ -206,7 +206,7 @@ TEST_F(MeasuredTableFileTest, PutsTheTapsOfAnExposureSideBySide) {
               HasSubstr("multiple of taps"));
 }
 
-TEST_F(MeasuredTableFileTest, ReadsWhatIsKnownOfEveryColumn) {
+TEST_F(MeasuredTableFileTest, ReadsOptionalDataOfEveryColumn) {
   const MeasuredTableFile file = read({{"corrfs", array_of(sweep(40, 3))},
                                        {"ambient", list({0.5, 0.4, 0.3})},
                                        {"exposure_s", list({0.1, 0.2, 0.3})},
@@ -225,7 +225,7 @@ TEST_F(MeasuredTableFileTest, ReadsWhatIsKnownOfEveryColumn) {
             0);
 }
 
-TEST_F(MeasuredTableFileTest, NamesWhatIsWrong) {
+TEST_F(MeasuredTableFileTest, RejectsInvalidFilesByName) {
   EXPECT_EQ(refusal(sweep(7, 3)),
             ": found the shape (7, 3); expected (N, K) with N in [8, 65536] and K at most 64");
   EXPECT_THAT(refusal(sweep(80, 70)), HasSubstr("K at most 64"));

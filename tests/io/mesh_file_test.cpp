@@ -33,7 +33,7 @@ std::string raw(Value value) {
   return bytes;
 }
 
-// A unit square in two triangles: four vertices once joined.
+// A unit square of two triangles; four vertices after merging.
 const std::string obj_square =
     "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
     "f 1/1/1 2/2/1 3/3/1\nf -4/-4/-1 -2/-2/-1 -1/-1/-1\n";
@@ -85,7 +85,7 @@ std::string stl_binary_square() {
   return text;
 }
 
-/// Corners of every triangle, whatever the order of the vertices.
+/// Returns the corners of every triangle, independent of vertex order.
 std::vector<Eigen::Vector3d> corners(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3d> points;
   for (const auto& triangle : mesh.triangles)
@@ -93,7 +93,7 @@ std::vector<Eigen::Vector3d> corners(const TriangleMesh& mesh) {
   return points;
 }
 
-TEST(MeshFile, EveryFormatHoldsTheSameSquare) {
+TEST(MeshFile, EveryFormatGivesTheSameSquare) {
   const TriangleMesh square = parse(obj_square, "a.obj");
   EXPECT_EQ(square.vertices.size(), 4u);
   EXPECT_EQ(square.triangles.size(), 2u);
@@ -109,7 +109,7 @@ TEST(MeshFile, EveryFormatHoldsTheSameSquare) {
   }
 }
 
-TEST(MeshFile, PlyVerticesMayBeOfAnyNumberType) {
+TEST(MeshFile, PlyVerticesMayHaveAnyNumberType) {
   const auto square = corners(parse(obj_square, "a.obj"));
   for (const std::string& text :
        {ply_binary_square<std::int8_t>("char"), ply_binary_square<std::uint8_t>("uint8"),
@@ -126,14 +126,14 @@ TEST(MeshFile, TextureCoordinatesStayWithTheirVertices) {
     EXPECT_EQ(mesh.texture_coordinates[i], mesh.vertices[i].head<2>());
 }
 
-TEST(MeshFile, TextureCoordinatesOfSomeFacesOnlyAreLeftOut) {
+TEST(MeshFile, TextureCoordinatesOfSomeFacesOnlyAreIgnored) {
   const TriangleMesh mesh = parse(
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\no a\nf 1/1 2/1 3/1\no b\nf 1 3 4\n", "a.obj");
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_TRUE(mesh.texture_coordinates.empty());
 }
 
-TEST(MeshFile, PolygonsAreCutAndGroupsGathered) {
+TEST(MeshFile, PolygonsAreTriangulatedAndGroupsMerged) {
   const TriangleMesh mesh = parse(
       "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 4\no b\nv 5 0 0\nf 1 2 5\n", "a.obj");
   EXPECT_EQ(mesh.triangles.size(), 3u);
@@ -145,7 +145,7 @@ TEST(MeshFile, TinyMeshesKeepTheirVertices) {
   EXPECT_EQ(mesh.vertices.size(), 3u);
 }
 
-TEST(MeshFile, TextureCoordinatesOfPlyAreThoseOfItsVertices) {
+TEST(MeshFile, PlyTextureCoordinatesBelongToVertices) {
   const TriangleMesh mesh = parse(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty float y\n"
       "property float z\nproperty uchar red\nproperty float s\nproperty float t\n"
@@ -280,12 +280,12 @@ FileParser parser_for(const char* file) {
   return [file](std::span<const std::byte> bytes) { parse_mesh(bytes, file); };
 }
 
-TEST(MeshFile, TruncatedBinaryFilesAreRefused) {
+TEST(MeshFile, TruncatedBinaryFilesAreRejected) {
   expect_truncations_refused(bytes_of(ply_binary_square<float>("float")), parser_for("a.ply"));
   expect_truncations_refused(bytes_of(stl_binary_square()), parser_for("a.stl"));
 }
 
-TEST(MeshFile, EveryBeginningOfATextIsReadOrRefused) {
+TEST(MeshFile, EveryPrefixOfATextIsReadOrRejected) {
   for (const auto& [text, file] : {std::pair(obj_square, "a.obj"), std::pair(ply_square, "a.ply"),
                                    std::pair(stl_square, "a.stl")})
     for (std::size_t length = 0; length < text.size(); ++length) {

@@ -15,7 +15,7 @@
 namespace tofsmith {
 namespace {
 
-/// Pixels of two surfaces and, between them, of both; without noise.
+/// Returns noise-free pixels of two surfaces with mixed pixels between them.
 RawFrames edge_seen(const ForwardModel& model, int height, int width) {
   RawFrames raw{.frames = 1,
                 .height = height,
@@ -32,7 +32,7 @@ RawFrames edge_seen(const ForwardModel& model, int height, int width) {
   return raw;
 }
 
-/// A request for depth of frames in a folder of its own.
+/// Returns a request for the depth of frames in its own folder.
 DecodeRequest request_of(const RawFrames& raw, const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
   std::filesystem::create_directories(folder);
@@ -60,7 +60,7 @@ void expect_decoded(const DecodeRequest& request, const FrameBackend& backend,
         << i;
 }
 
-TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
+TEST(MixedRecording, FilesEqualTheMarkedFrameEvenIfOnlyDepthIsWritten) {
   const Camera camera = built_in_camera("paper-10f0");
   const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
   const DecodingTable table = make_decoding_table(model, camera);

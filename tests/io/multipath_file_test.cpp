@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(MultipathFile, TruthThatIsWrittenIsReadAsTheSameReturns) {
+TEST(MultipathFile, WrittenReturnsAreReadBack) {
   SceneImage scene(1, 3);
   scene.depth_m.pixels = {1.0f, 2.0f, 3.0f};
   SceneLight light;
@@ -34,7 +34,7 @@ TEST(MultipathFile, TruthThatIsWrittenIsReadAsTheSameReturns) {
   read.validate(scene, 10.0);
 }
 
-TEST(MultipathFile, RefusesListsThatDoNotFitTheScene) {
+TEST(MultipathFile, RejectsListsThatDoNotMatchTheScene) {
   const TemporaryDirectory directory;
   const auto refuses = [&](const std::vector<double>& first, const std::vector<float>& distance_m,
                            const std::vector<float>& ratio, const char* words) {

@@ -20,7 +20,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A file with this header text, padded as NumPy does, in front of `data`.
+/// Returns a file with this header, padded like NumPy, followed by `data`.
 FileBytes npy_file(std::string header, std::string_view data, int major = 1) {
   const std::size_t prefix = major == 1 ? 10 : 12;
   header.append(63 - (prefix + header.size()) % 64, ' ');
@@ -59,7 +59,7 @@ TYPED_TEST(NpyItem, ReadingUndoesWriting) {
   EXPECT_EQ(back.to_floats()[0], static_cast<float>(values[0]));
 }
 
-TYPED_TEST(NpyItem, ByteOrderDoesNotChangeTheValues) {
+TYPED_TEST(NpyItem, ByteOrderDoesNotChangeValues) {
   const std::vector<TypeParam> values = {0, 1, 2, 100};
   FileBytes file = serialize_npy(NpyArray::of<TypeParam>({4}, values));
   const std::size_t items = file.size() - 4 * sizeof(TypeParam);
@@ -71,7 +71,7 @@ TYPED_TEST(NpyItem, ByteOrderDoesNotChangeTheValues) {
   EXPECT_TRUE(std::ranges::equal(parse_npy(file, "a.npy").as<TypeParam>(), values));
 }
 
-TEST(Npy, HeaderIsTheOneNumpyWrites) {
+TEST(Npy, HeaderEqualsThatOfNumpy) {
   const std::vector<float> values = {1.0f, -2.0f};
   const std::string expected = std::string("\x93NUMPY\x01\x00v\x00", 10) +
                                "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }" +
@@ -81,7 +81,7 @@ TEST(Npy, HeaderIsTheOneNumpyWrites) {
 }
 
 TEST(Npy, FortranOrderBecomesCOrder) {
-  // Item (i, j, k) of shape (2, 3, 2) holds 100 i + 10 j + k and lies first axis fastest.
+  // Element (i, j, k) of shape (2, 3, 2) is 100 i + 10 j + k, stored with the first axis fastest.
   std::string data;
   for (int k = 0; k < 2; ++k)
     for (int j = 0; j < 3; ++j)
@@ -129,7 +129,7 @@ TEST(Npy, BooleansAreZeroOrOne) {
   EXPECT_THAT(array.to_floats(), ElementsAre(0.0f, 1.0f, 1.0f));
 }
 
-TEST(Npy, RefusesItemsItDoesNotUnderstandByName) {
+TEST(Npy, RejectsUnsupportedTypesByName) {
   EXPECT_THAT(descr_refusal("'|O'"), HasSubstr("Python objects"));
   EXPECT_THAT(descr_refusal("'<c8'"), HasSubstr("complex"));
   EXPECT_THAT(descr_refusal("[('x', '<f4'), ('y', '<f4')]"), HasSubstr("records"));
@@ -193,7 +193,7 @@ TEST(Npy, TypedAccessChecksTheType) {
   EXPECT_THROW(NpyArray(NpyType::float32, {1ull << 40, 1ull << 40}), std::invalid_argument);
 }
 
-TEST(NpyReader, ReadsEitherOrderOfAxes) {
+TEST(NpyReader, ReadsBothAxisOrders) {
   const TemporaryDirectory directory;
   std::vector<float> values(5 * 2 * 3);
   std::iota(values.begin(), values.end(), 0.0f);
@@ -217,7 +217,7 @@ TEST(NpyReader, ReadsEitherOrderOfAxes) {
   }
 }
 
-TEST(NpyReader, RefusesFilesThatAreNotAsLongAsTheHeaderSays) {
+TEST(NpyReader, RejectsFilesOfOtherLengthThanTheHeaderStates) {
   const TemporaryDirectory directory;
   FileBytes file = serialize_npy(NpyArray(NpyType::float64, {100, 100}));
   file.pop_back();
@@ -227,7 +227,7 @@ TEST(NpyReader, RefusesFilesThatAreNotAsLongAsTheHeaderSays) {
   EXPECT_THAT(io_error_of([&] { NpyReader(directory / "b.npy"); }), HasSubstr("no such file"));
 }
 
-TEST(NpyReader, NoticesAFileThatShrinks) {
+TEST(NpyReader, DetectsAFileThatShrinks) {
   const TemporaryDirectory directory;
   write_npy(directory / "a.npy", NpyArray(NpyType::float64, {10, 10}), OutputPolicy::overwrite);
   const NpyReader reader(directory / "a.npy");
@@ -235,7 +235,7 @@ TEST(NpyReader, NoticesAFileThatShrinks) {
   EXPECT_THAT(io_error_of([&] { reader.read_all(); }), HasSubstr("the file ends here"));
 }
 
-TEST(NpyReader, GivesAnyItemsInEitherByteOrder) {
+TEST(NpyReader, ReadsAnyItemsInBothByteOrders) {
   const TemporaryDirectory directory;
   for (const char order : {'<', '>'}) {
     const std::string items =

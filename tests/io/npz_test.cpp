@@ -43,7 +43,7 @@ TEST_P(NpzPacking, RefusesEveryTruncation) {
 INSTANTIATE_TEST_SUITE_P(StoredAndDeflated, NpzPacking,
                          testing::Values(NpzCompression::stored, NpzCompression::deflated));
 
-TEST(Npz, TheSameArraysGiveTheSameBytesWithoutADate) {
+TEST(Npz, EqualArraysGiveEqualBytesWithoutADate) {
   const FileBytes bytes = serialize_npz(two_arrays());
   EXPECT_EQ(bytes, serialize_npz(two_arrays()));
   // Time and date of the first local header: midnight, 1980-01-01.
@@ -51,21 +51,21 @@ TEST(Npz, TheSameArraysGiveTheSameBytesWithoutADate) {
               ElementsAre(std::byte{0}, std::byte{0}, std::byte{0x21}, std::byte{0}));
 }
 
-TEST_P(NpzPacking, TheFileHasTheBytesOfTheArchive) {
+TEST_P(NpzPacking, TheFileEqualsTheArchiveInMemory) {
   const TemporaryDirectory directory;
-  for (int time = 0; time < 2; ++time) {  // a new file, and one that is overwritten
+  for (int time = 0; time < 2; ++time) {  // a new file, and an overwritten file
     write_npz(directory / "a.npz", two_arrays(), OutputPolicy::overwrite, GetParam());
     EXPECT_EQ(read_binary_file(directory / "a.npz"), serialize_npz(two_arrays(), GetParam()));
     EXPECT_EQ(directory.files(), 1);
   }
 }
 
-TEST(Npz, DeflatingRepetitionMakesItSmaller) {
+TEST(Npz, DeflateCompressesRepetition) {
   EXPECT_LT(serialize_npz(two_arrays(), NpzCompression::deflated).size() + 500,
             serialize_npz(two_arrays(), NpzCompression::stored).size());
 }
 
-TEST(Npz, ReaderUnpacksOneArrayAndSaysWhichThereAre) {
+TEST(Npz, ReaderUnpacksSingleArraysAndListsAll) {
   const FileBytes bytes = serialize_npz(two_arrays());
   const NpzReader reader(bytes, "a.npz");
   EXPECT_THAT(reader.names(), ElementsAre("depth", "raw"));
@@ -76,8 +76,8 @@ TEST(Npz, ReaderUnpacksOneArrayAndSaysWhichThereAre) {
               HasSubstr("a.npz: there is no array 'corrfs'; found depth, raw"));
 }
 
-TEST(Npz, AnArrayThatIsRefusedDoesNotHideTheOthers) {
-  // Pickled objects beside arrays are common in published archives.
+TEST(Npz, AnUnsupportedArrayDoesNotPreventReadingOthers) {
+  // Published archives often contain pickled objects.
   FileBytes bytes = serialize_npz(two_arrays());
   const FileBytes code = bytes_of("'<u2'");
   const auto at = std::search(bytes.begin(), bytes.end(), code.begin(), code.end());
@@ -89,7 +89,7 @@ TEST(Npz, AnArrayThatIsRefusedDoesNotHideTheOthers) {
   EXPECT_THROW(reader.read("raw"), IoError);
 }
 
-TEST(Npz, AnArrayLargerThanAskedForIsNotUnpacked) {
+TEST(Npz, ArraysAboveTheSizeLimitAreNotUnpacked) {
   const auto content = serialize_npz({{"zeros", NpyArray(NpyType::float64, {1000, 1000})}},
                                      NpzCompression::deflated);
   EXPECT_LT(content.size(), 20'000u);
@@ -106,7 +106,7 @@ TEST(Npz, RefusesToWriteArraysWithoutName) {
   EXPECT_THROW(serialize_npz({{"", NpyArray()}}), std::invalid_argument);
 }
 
-TEST(Npz, AChecksumThatDoesNotMatchIsRefused) {
+TEST(Npz, AWrongChecksumIsRejected) {
   FileBytes bytes = serialize_npz(two_arrays());
   const auto value = std::search_n(bytes.begin(), bytes.end(), 1, std::byte{7});
   ASSERT_NE(value, bytes.end());
@@ -114,8 +114,8 @@ TEST(Npz, AChecksumThatDoesNotMatchIsRefused) {
   EXPECT_THAT(io_error_of([&] { parse_npz(bytes, "a.npz"); }), HasSubstr("entry 'raw'"));
 }
 
-TEST(Npz, SizesThatCannotBeAreRefusedBeforeMemoryIsTaken) {
-  // The unpacked size stands 24 bytes into the central directory's entry.
+TEST(Npz, ImpossibleSizesAreRejectedBeforeAllocation) {
+  // The unpacked size is at byte 24 of the entry in the central directory.
   FileBytes bytes =
       serialize_npz({{"a", NpyArray(NpyType::float32, {1000})}}, NpzCompression::deflated);
   const FileBytes signature = bytes_of("PK\1\2");
@@ -127,7 +127,7 @@ TEST(Npz, SizesThatCannotBeAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THROW(parse_npz(bytes, "a.npz"), IoError);
 }
 
-TEST(Npz, SaysWhatIsWrongWithTheFile) {
+TEST(Npz, ReportsProblemsWithTheFile) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.npz") << "not an archive";
   EXPECT_THAT(io_error_of([&] { read_npz(directory / "a.npz"); }),

@@ -28,7 +28,7 @@ std::string refusal(const std::string& text, const NumberTableOptions& options =
   return io_error_of([&] { parse_number_table(text, "t.csv", options); });
 }
 
-TEST(NumberTable, IsTheSameInEveryDialect) {
+TEST(NumberTable, IsIndependentOfTheDialect) {
   for (const char* text : {"0.5,-1.25\n1.5,3e-3\n",
                            "0.5;-1.25\n1.5;3e-3\n",
                            "0.5\t-1.25\r\n1.5\t3e-3\r\n",
@@ -52,7 +52,7 @@ TEST(NumberTable, IsTheSameInEveryDialect) {
     EXPECT_EQ(parse_number_table(text, "t.csv").values, two_rows()) << text;
 }
 
-TEST(NumberTable, IsTheSameInUtf16) {
+TEST(NumberTable, IsReadFromUtf16) {
   const TemporaryDirectory directory;
   for (const bool is_little : {true, false}) {
     std::string bytes;
@@ -65,7 +65,7 @@ TEST(NumberTable, IsTheSameInUtf16) {
   }
 }
 
-TEST(NumberTable, HasTheNamesOfTheLinesAboveTheNumbers) {
+TEST(NumberTable, HasTheColumnNamesAboveTheNumbers) {
   const NumberTable table = parse_number_table(
       "Model,DSO-X\nRecord Length,2\n# kept apart\nTime (ns),Ch 1\n0.5,-1.25\n1.5,3e-3\n", "t.csv");
   EXPECT_THAT(table.names, ElementsAre("Time (ns)", "Ch 1"));
@@ -91,8 +91,9 @@ TEST(NumberTable, FindsColumnsByNameUnitAndNumber) {
   EXPECT_EQ(shifted.column_of("5", "t.csv"), 1);  // columns are counted in the file
 }
 
-TEST(NumberTable, CommasThatCouldBeEitherAreSettledOrRefused) {
-  EXPECT_EQ(parse_number_table("0,5\n1,7\n2,4\n", "t.csv").values.cols(), 2);  // bins rise
+TEST(NumberTable, AmbiguousCommasAreResolvedOrRejected) {
+  EXPECT_EQ(parse_number_table("0,5\n1,7\n2,4\n", "t.csv").values.cols(), 2);  // the first column
+                                                                               // increases
   EXPECT_EQ(parse_number_table("a,b\n4,5\n1,7\n", "t.csv").values.cols(), 2);
   EXPECT_EQ(parse_number_table("a\n4,5\n1,7\n", "t.csv").values(0, 0), 4.5);
   EXPECT_EQ(parse_number_table("4,5\n1,05\n", "t.csv").values(1, 0), 1.05);
@@ -109,7 +110,7 @@ TEST(NumberTable, CommasThatCouldBeEitherAreSettledOrRefused) {
   EXPECT_EQ(value({.min_columns = 2}), 1.0);
 }
 
-TEST(NumberTable, NamesThePlaceOfAnythingElse) {
+TEST(NumberTable, ReportsThePlaceOfOtherContent) {
   EXPECT_EQ(refusal("t,v\n1.5,2\n2.5,nan\n"),
             "t.csv:3:5: found 'nan' in column 2; expected a finite number");
   EXPECT_EQ(refusal("1.5,2\n2.5, x4\n"),
@@ -126,7 +127,7 @@ TEST(NumberTable, NamesThePlaceOfAnythingElse) {
   EXPECT_THAT(refusal("5,1\nno data\n"), HasSubstr("t.csv:2:1: found 'no data' in column 1"));
 }
 
-TEST(NumberTable, RefusesTheNumbersOfScpiForInfinityAndNotANumber) {
+TEST(NumberTable, RejectsTheScpiValuesOfInfinityAndNaN) {
   for (const char* code : {"9.9E+37", "-9.9E+37", "9.91E+37", "9.90000e37", "9.8999995e+37"})
     EXPECT_THAT(refusal(fmt::format("s,V\n1,2\n3,{}\n", code)),
                 HasSubstr(fmt::format("t.csv:3:3: found '{}' in column 2; expected a finite "
@@ -135,7 +136,7 @@ TEST(NumberTable, RefusesTheNumbersOfScpiForInfinityAndNotANumber) {
   EXPECT_EQ(parse_number_table("9.8e37\n", "t.csv").values(0, 0), 9.8e37);
 }
 
-TEST(NumberTable, OfOneColumnRefusesMore) {
+TEST(NumberTable, OneColumnIsRequiredOnRequest) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "c.txt") << "20,5\n21,5\n";
   EXPECT_EQ(read_number_column(directory / "c.txt", "the temperatures").values(1, 0), 21.5);
@@ -146,7 +147,7 @@ TEST(NumberTable, OfOneColumnRefusesMore) {
               HasSubstr("found 2 columns; expected one column, the temperatures"));
 }
 
-TEST(NumberTable, KnowsUnitsOfTime) {
+TEST(NumberTable, RecognizesUnitsOfTime) {
   EXPECT_EQ(seconds_per_unit("time_ns"), 1e-9);
   EXPECT_EQ(seconds_per_unit("Time (us)"), 1e-6);
   EXPECT_EQ(seconds_per_unit("Time (\xc2\xb5s)"), 1e-6);

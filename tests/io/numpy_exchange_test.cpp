@@ -10,8 +10,7 @@
 #include "temporary_directory.hpp"
 #include "tofsmith/io/npy.hpp"
 
-// Files pass between this library and the NumPy of Debian's python3; numpy_exchange.py is the
-// other side.
+// Files are exchanged between this library and NumPy of Debian's python3 (numpy_exchange.py).
 
 namespace tofsmith {
 namespace {
@@ -25,7 +24,7 @@ bool python_agrees(const std::string& step, const std::filesystem::path& directo
   return std::system(command.c_str()) == 0;
 }
 
-/// 0, 1, 2, .. of the given type, as numpy_exchange.py makes it.
+/// Returns 0, 1, 2, ... of the given type, as numpy_exchange.py does.
 template <typename Item>
 NpyArray counting(NpyShape shape) {
   NpyArray array(npy_type_of<Item>, shape);
@@ -44,7 +43,7 @@ NpzArrays counting_arrays() {
           {"line", counting<float>({12345})}};
 }
 
-TEST(NumpyExchange, NumpyReadsWhatWeWriteAndWouldWriteTheSameBytes) {
+TEST(NumpyExchange, NumpyReadsOurFilesAndWritesTheSameBytes) {
   const TemporaryDirectory directory;
   for (const auto& [name, array] : counting_arrays())
     write_npy(directory / (name + ".npy"), array, overwrite);
@@ -58,7 +57,7 @@ TEST(NumpyExchange, NumpyReadsWhatWeWriteAndWouldWriteTheSameBytes) {
   EXPECT_TRUE(python_agrees("check", directory.path()));
 }
 
-TEST(NumpyExchange, WeReadWhatNumpyWritesInEveryTypeOrderAndVersion) {
+TEST(NumpyExchange, ReadsNumpyFilesOfEveryTypeOrderAndVersion) {
   const TemporaryDirectory directory;
   ASSERT_TRUE(python_agrees("write", directory.path()));
   int files = 0;

@@ -56,7 +56,7 @@ TEST(Pfm, TheFirstRowOfTheFileIsTheBottomRow) {
   EXPECT_EQ(serialize_pfm(image), bytes_of(std::string("Pf\n1 2\n-1\n\0\0\x80\x3f\0\0\0\x40", 18)));
 }
 
-TEST(Pfm, RefusesMalformedHeadersAtAByte) {
+TEST(Pfm, ReportsTheByteOfMalformedHeaders) {
   const auto refusal = [](std::string_view text) {
     return io_error_of([&] { parse_pfm(bytes_of(text), "a.pfm"); });
   };
@@ -73,7 +73,7 @@ TEST(Pfm, RefusesMalformedHeadersAtAByte) {
   EXPECT_THAT(refusal("Pf\n" + std::string(1000, '1')), HasSubstr("the width"));
 }
 
-TEST(Pfm, RefusesToWriteImagesThatAreNone) {
+TEST(Pfm, RejectsWritingInvalidImages) {
   EXPECT_THROW(serialize_pfm(PfmImage{1, 2, 1, 1.0, {1.0f}}), std::invalid_argument);
   EXPECT_THROW(serialize_pfm(PfmImage{1, 1, 2, 1.0, {1.0f, 2.0f}}), std::invalid_argument);
   EXPECT_THROW(serialize_pfm(PfmImage{1, 1, 1, 0.0, {1.0f}}), std::invalid_argument);

@@ -49,7 +49,7 @@ TEST_P(PngKind, RefusesEveryTruncation) {
 INSTANTIATE_TEST_SUITE_P(AllKinds, PngKind,
                          testing::Combine(testing::Values(1, 2, 3, 4), testing::Values(8, 16)));
 
-/// A chunk of a PNG file with its checksum.
+/// Returns a chunk of a PNG file with its checksum.
 std::string chunk(const std::string& type_and_data) {
   std::uint32_t crc = 0xffffffffu;
   for (const char c : type_and_data) {
@@ -67,8 +67,9 @@ std::string chunk(const std::string& type_and_data) {
 
 const std::string png_magic = "\x89PNG\r\n\x1a\n";
 
-TEST(Png, LooksUpPalettesAndSpreadsFewBits) {
-  // 2 x 1 pixels of a palette of two colours at one bit, in one stored deflate block: 0x40 = 0, 1.
+TEST(Png, ResolvesPalettesAndExpandsSmallBitDepths) {
+  // 2 x 1 pixels with a palette of two colours at one bit, in one stored deflate block: 0x40 = 0,
+  // 1.
   const std::string palette_file =
       png_magic + chunk(std::string("IHDR\0\0\0\2\0\0\0\1\1\3\0\0\0", 17)) +
       chunk(std::string("PLTE\x0a\x14\x1e\xff\x80\x01", 10)) +
@@ -87,7 +88,7 @@ TEST(Png, LooksUpPalettesAndSpreadsFewBits) {
   EXPECT_THAT(grey.values, ElementsAre(0, 255));
 }
 
-TEST(Png, RefusesImagesLargerThanTheFileCanHold) {
+TEST(Png, RejectsImagesLargerThanTheFile) {
   const auto claiming = [](const std::string& sides) {
     return bytes_of(png_magic + chunk("IHDR" + sides + std::string("\x10\0\0\0\0", 5)) +
                     chunk(std::string("IDAT\x78\x01", 6)) + chunk("IEND"));
@@ -101,12 +102,12 @@ TEST(Png, RefusesImagesLargerThanTheFileCanHold) {
   EXPECT_THROW(parse_png(claiming("\x7f\xff\xff\xff\x7f\xff\xff\xff"), "a.png"), IoError);
 }
 
-TEST(Png, RefusesWhatIsNoPng) {
+TEST(Png, RejectsOtherFiles) {
   EXPECT_THAT(io_error_of([] { parse_png(bytes_of("Pf\n1 1\n-1\n1234"), "a.png"); }),
               HasSubstr("a.png: damaged PNG: "));
 }
 
-TEST(Png, RefusesToWriteImagesThatAreNone) {
+TEST(Png, RejectsWritingInvalidImages) {
   PngImage image = test_image(1, 8);
   image.values[3] = 256;
   EXPECT_THROW(serialize_png(image), std::invalid_argument);
@@ -117,7 +118,7 @@ TEST(Png, RefusesToWriteImagesThatAreNone) {
   EXPECT_THROW(serialize_png(PngImage{1, 1, 1, 4, {1}}), std::invalid_argument);
 }
 
-TEST(Colour, SrgbAndLinearAreInverse) {
+TEST(Colour, SrgbConversionsAreInverse) {
   for (int i = 0; i <= 255; ++i)
     EXPECT_NEAR(srgb_from_linear(linear_from_srgb(i / 255.0)), i / 255.0, 1e-6);
   EXPECT_EQ(linear_from_srgb(0.0), 0.0);

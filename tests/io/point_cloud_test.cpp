@@ -17,7 +17,7 @@ PointCloud test_cloud() {
   return cloud;
 }
 
-TEST(PointCloud, TheFileIsTheOneTheFormatAsksFor) {
+TEST(PointCloud, TheFileFollowsTheFormat) {
   PointCloud cloud;
   cloud.points_m = {{1.0f, -2.0f, 0.0f}};
   cloud.scalars = {{"intensity", {0.5f}}};
@@ -30,7 +30,7 @@ TEST(PointCloud, TheFileIsTheOneTheFormatAsksFor) {
                      std::string("\0\0\x80\x3f\0\0\0\xc0\0\0\0\0\0\0\0\x3f\1\2\xff", 19)));
 }
 
-TEST(PointCloud, RefusesToWriteCloudsThatAreNone) {
+TEST(PointCloud, RejectsWritingInvalidClouds) {
   PointCloud cloud = test_cloud();
   cloud.colours.pop_back();
   EXPECT_THROW(serialize_ply(cloud), std::invalid_argument);

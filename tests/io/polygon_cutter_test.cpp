@@ -29,14 +29,14 @@ Eigen::Vector3d at(const Corners& corners, std::size_t i) {
   return {p[0], p[1], p[2]};
 }
 
-/// Twice the area of each side, as a vector along its normal.
+/// Returns twice the area of a polygon as a vector along its normal.
 Eigen::Vector3d area_of(const Corners& corners) {
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i) area += at(corners, i).cross(at(corners, i + 1));
   return area;
 }
 
-/// A star around a centre, with corners that stand back, turned anyhow in space.
+/// Returns a star-shaped polygon with concave corners, randomly rotated.
 Corners star(RandomStream& random, int count) {
   const Eigen::Quaterniond turned(
       Eigen::Vector4d(random.normal(), random.normal(), random.normal(), random.normal())
@@ -52,7 +52,7 @@ Corners star(RandomStream& random, int count) {
   return corners;
 }
 
-TEST(PolygonCutter, TrianglesCoverThePolygonOnceAndLookItsWay) {
+TEST(PolygonCutter, TrianglesCoverThePolygonOnceWithItsOrientation) {
   RandomStream random(5, 1);
   for (int round = 0; round < 300; ++round) {
     const Corners corners = star(random, 3 + round % 40);
@@ -63,14 +63,14 @@ TEST(PolygonCutter, TrianglesCoverThePolygonOnceAndLookItsWay) {
     for (const auto& [a, b, c] : triangles) {
       const double area =
           normal.dot((at(corners, b) - at(corners, a)).cross(at(corners, c) - at(corners, a)));
-      EXPECT_GE(area, -1e-6) << round;  // none is turned over, so that none lies on another
+      EXPECT_GE(area, -1e-6) << round;  // no triangle is flipped, so none overlaps another
       sum += area;
     }
     EXPECT_NEAR(sum, whole.norm(), 1e-5) << round;
   }
 }
 
-TEST(PolygonCutter, AFlatOrCrossedPolygonStillGivesItsTriangles) {
+TEST(PolygonCutter, AFlatOrCrossedPolygonIsTriangulated) {
   EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).size(), 2u);
   EXPECT_EQ(cut({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).size(), 3u);
   EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);

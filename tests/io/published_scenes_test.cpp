@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene that others rendered and published; it is no part of this repository.
+// A rendered scene published by others; not part of this repository.
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
@@ -25,7 +25,7 @@ struct FittedPlane {
   double rms_m = 0.0;
 };
 
-/// The plane through what columns [first, last) of a radial depth image see.
+/// Fits a plane to columns [first, last) of a radial depth image.
 FittedPlane fit(const Image<float>& depth_m, const PinholeView& view, int first, int last) {
   Eigen::MatrixX3d points(Eigen::Index{depth_m.height} * (last - first), 3);
   Eigen::Index i = 0;
@@ -39,7 +39,7 @@ FittedPlane fit(const Image<float>& depth_m, const PinholeView& view, int first,
           svd.singularValues()[2] / std::sqrt(static_cast<double>(points.rows()))};
 }
 
-TEST(PublishedScenes, TheGrooveIsTwoWallsWhoseBouncedLightBendsItAsTheLawSays) {
+TEST(PublishedScenes, IndirectLightBendsTheWallsOfTheGrooveAsPredicted) {
   if (!std::filesystem::exists(groove_file)) GTEST_SKIP() << "needs " << groove_file;
   const Image<float> depth_m = read_depth(groove_file);
   const auto view = PinholeView::centred(depth_m.width, depth_m.height, std::numbers::pi / 3);
@@ -57,7 +57,7 @@ TEST(PublishedScenes, TheGrooveIsTwoWallsWhoseBouncedLightBendsItAsTheLawSays) {
     farthest_m = std::max(farthest_m, std::abs(image.depth_m.pixels[i] - depth_m.pixels[i]));
   EXPECT_LT(farthest_m, 2e-3f);
 
-  // Later light comes some centimetres late: too close for any decoder to tell apart.
+  // Indirect light arrives a few centimetres late, too close for any decoder to separate.
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
   const MultipathReturns returns =

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Tables that others measured and published decode; they are no part of this repository.
+// Measured tables published by others; not part of this repository.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ const std::filesystem::path published =
     std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data";
 const std::filesystem::path kea = published / "kea_corrf_hamk3/keatof_2MHz_ham-k3_min.npy";
 
-/// A camera without limits of its own.
+/// Returns a camera without band limits.
 Camera ideal_camera(int samples, int taps, Readout readout = Readout::separate) {
   Camera camera = camera_with("paper-30x", taps, readout);
   camera.samples = samples;
@@ -26,7 +26,7 @@ Camera ideal_camera(int samples, int taps, Readout readout = Readout::separate) 
   return camera;
 }
 
-/// How far each bin's measurements are from what ambient light explains (N).
+/// Returns the norm of each bin's measurements after projecting out ambient light (N).
 Eigen::VectorXd contrast_of(const DecodingTable& table) {
   const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
   Eigen::MatrixXd x = table.correlation * table.exposure_s.asDiagonal();
@@ -34,7 +34,7 @@ Eigen::VectorXd contrast_of(const DecodingTable& table) {
   return x.rowwise().norm();
 }
 
-/// How many bins come back as another one, but for those that look like a lower bin, and those
+/// Returns the number of bins that decode to another bin, except bins equal to a lower one and bins
 /// without contrast, which look like ambient light.
 int wrong_bins(const DecodingTable& table) {
   std::vector<std::int32_t> expected(static_cast<std::size_t>(table.samples()));
@@ -57,8 +57,8 @@ int wrong_bins(const DecodingTable& table) {
   return wrong;
 }
 
-/// Mean circular depth error [m] at a light that is the same for all tables: a tap's correlation
-/// function swings by 1e5 e/s, a difference of taps by twice that; A = 1e4 e/s.
+/// Returns the mean circular depth error [m] at equal light: correlation functions of taps have a
+/// peak-to-peak amplitude of 1e5 e/s, differences of taps twice that; A = 1e4 e/s.
 Estimate estimated_error_m(const DecodingTable& table, Readout readout = Readout::separate) {
   const Eigen::MatrixXd& chi = table.correlation;
   const double swing = (chi.colwise().maxCoeff() - chi.colwise().minCoeff()).maxCoeff();
@@ -81,7 +81,7 @@ TEST(PublishedTables, TheMeasuredHamiltonianTableDecodesItsOwnFrames) {
   MeasuredTableFile file = read_measured_table(kea, {.layout = {2, TapOrder::interleaved}});
   EXPECT_EQ(file.table.samples(), 1939);
   EXPECT_EQ(file.table.columns(), 6);
-  EXPECT_EQ(file.notes.size(), 2u);             // turned, and the end point dropped
+  EXPECT_EQ(file.notes.size(), 2u);             // transposed, and end point dropped
   file.table.ambient_gain.setConstant(6, 0.5);  // each bucket is open for half of the period
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     const Camera camera = ideal_camera(240, 2, readout);
@@ -119,14 +119,14 @@ TEST(PublishedTables, EveryCodeDecodesItsOwnFramesAsCodeAndAsTable) {
     EXPECT_LT((as_table.correlation - as_code.correlation).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_EQ(wrong_bins(as_code), 0);
     EXPECT_EQ(wrong_bins(as_table), 0);
-    // The two project noise in planes that differ by rounding, or not at all: by chance alone.
+    // The projections of both differ by rounding at most, so that only chance separates the errors.
     const Estimate of_code = estimated_error_m(as_code), of_table = estimated_error_m(as_table);
     const double error = of_code.value;
     EXPECT_NEAR(of_table.value, error,
                 5.0 * std::hypot(of_code.standard_error, of_table.standard_error) + 1e-3 * error);
     if (name.find("hamilt") == std::string::npos) continue;
     const double ideal = ideal_hamiltonian_error_m(code.exposures(), layout.taps);
-    // Their edges are rounded to few samples, so that neighbours look the same: that costs bins.
+    // Their edges are rounded to few samples, so that neighbouring bins are equal.
     const std::size_t repeated = ambiguous_depths(as_code).size();
     const double lost_m = static_cast<double>(repeated) / code.samples() * as_code.bin_m();
     GTEST_LOG_(INFO) << name << ": " << 1e3 * error << " mm, ideal code " << 1e3 * ideal

@@ -93,7 +93,7 @@ double random_number(const RawFormat& f, RandomStream& random) {
     return std::floor((random.uniform() - 0.5) * 2048.0) / 1024.0;
   if (f.numbers == RawNumbers::floats)
     return f.bits == 32 ? static_cast<float>(random.uniform() - 0.5) : random.uniform() - 0.5;
-  const int bits = f.sign_bit.value_or(f.bits - 1) + 1;  // that have a meaning
+  const int bits = f.sign_bit.value_or(f.bits - 1) + 1;  // bits that are not ignored
   const double word =
       static_cast<double>((random() & 0xffffffffU) >> (32 - static_cast<unsigned>(bits)));
   if (!f.is_signed) return word;
@@ -101,9 +101,9 @@ double random_number(const RawFormat& f, RandomStream& random) {
   return f.sign_encoding == SignEncoding::sign_magnitude && number < 0.0 ? number + 1.0 : number;
 }
 
-/// Row and column in the file of the pixel at (row, column) of the scene.
+/// Returns the row and column in the file of the scene pixel (row, column).
 std::pair<int, int> row_and_column_in_file(const RawFormat& f, int row, int column) {
-  // Turns back by quarters: the scene's image before a quarter turn clockwise.
+  // Undoes the quarter turns of the image one by one.
   int height = f.output_height(), width = f.output_width();
   for (int turned = 0; turned < f.rotate_deg; turned += 90) {
     std::tie(row, column) = std::pair(width - 1 - column, row);
@@ -112,7 +112,7 @@ std::pair<int, int> row_and_column_in_file(const RawFormat& f, int row, int colu
   return {f.flip_rows ? height - 1 - row : row, f.flip_columns ? width - 1 - column : column};
 }
 
-/// Place of number j of the pixel at (row, column) of the scene in the order of the file.
+/// Returns the position in the file of value j of the scene pixel (row, column).
 std::size_t place_in_file(const RawFormat& f, int frame, int row, int column, int j) {
   const auto [r, c] = row_and_column_in_file(f, row, column);
   int place = 0;
@@ -130,7 +130,7 @@ std::size_t place_in_file(const RawFormat& f, int frame, int row, int column, in
   return static_cast<std::size_t>(place);
 }
 
-/// Numbers of a pixel as they shall come out.
+/// Returns the expected values of a pixel.
 std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>& numbers,
                                    int frame, int row, int column) {
   const auto [r, c] = row_and_column_in_file(f, row, column);
@@ -158,7 +158,7 @@ std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>
   return differences;
 }
 
-TEST(RawFormat, UnpacksWhatWasPackedForAnyDescription) {
+TEST(RawFormat, UnpacksAnyDescription) {
   const TemporaryDirectory directory;
   const auto path = directory / "dump.bin";
   for (std::uint32_t item = 0; item < 400; ++item) {
@@ -198,8 +198,8 @@ TEST(RawFormat, UnpacksWhatWasPackedForAnyDescription) {
   }
 }
 
-// MIPI CSI-2: the first four bytes are bits 9..2, the fifth the bits 1..0, first pixel lowest.
-TEST(RawFormat, UnpacksMipiAsTheStandardShows) {
+// MIPI CSI-2: the first four bytes are bits 9 to 2, the fifth bits 1 to 0, first pixel lowest.
+TEST(RawFormat, UnpacksMipiAccordingToTheStandard) {
   RawFormat f{.width = 4, .height = 1, .measurements = 1, .bits = 10};
   f.packing = RawPacking::mipi;
   const std::array bytes = {std::byte{0xff}, std::byte{0x00}, std::byte{0x80}, std::byte{0x01},
@@ -239,7 +239,7 @@ TEST(RawFormatToml, ReadsADescription) {
   EXPECT_EQ(f.frame_bytes(), 4u * 2 * 11);
 }
 
-TEST(RawFormatToml, SaysWhereAndWhatIsWrong) {
+TEST(RawFormatToml, ReportsThePlaceAndTheProblem) {
   const std::string start = "width = 8\nheight = 2\nmeasurements = 4\nbits = 10\n";
   const auto error = [&](const std::string& line) {
     return io_error_of([&] { parse_raw_format(start + line, "s.raw.toml"); });
@@ -285,11 +285,11 @@ TEST(RawFormatToml, SaysWhereAndWhatIsWrong) {
               HasSubstr("whole groups of 4 numbers (it gives 7)"));
 }
 
-TEST(RawFormat, RefusesFilesThatAreNoWholeNumberOfFrames) {
+TEST(RawFormat, RejectsFilesWithPartialFrames) {
   const TemporaryDirectory directory;
   const auto path = directory / "dump.bin";
   RawReadOptions options;
-  options.format = parse_raw_format(described);  // frames of 88 bytes behind 16
+  options.format = parse_raw_format(described);  // frames of 88 bytes after a header of 16
   const auto error = [&](std::size_t bytes, std::optional<int> measurements = {}) {
     options.measurements = measurements;
     write_file_atomically(path, FileBytes(bytes), OutputPolicy::overwrite);
@@ -307,7 +307,7 @@ TEST(RawFormat, RefusesFilesThatAreNoWholeNumberOfFrames) {
   EXPECT_THAT(error(16 + 88), HasSubstr("found 104 bytes; expected 192"));
 }
 
-TEST(RawFrames, OfHalfPrecisionComeAsFloats) {
+TEST(RawFrames, HalfPrecisionIsReadAsFloat) {
   const TemporaryDirectory directory;
   NpyArray halves(NpyType::float16, {1, 2, 3});
   const std::array<std::uint16_t, 6> bits = {0x3c00, 0xfbff, 0x0001, 0x8000, 0x7c00, 0x3555};
@@ -323,7 +323,7 @@ TEST(RawFrames, OfHalfPrecisionComeAsFloats) {
   }
 }
 
-TEST(RawFrames, OfInt16ComeAsFloats) {
+TEST(RawFrames, Int16IsReadAsFloat) {
   const TemporaryDirectory directory;
   const std::vector<std::int16_t> values = {-32768, -1, 0, 1, 2, 32767};
   const auto array = NpyArray::of<std::int16_t>({1, 2, 3}, values);

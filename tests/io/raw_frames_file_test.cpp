@@ -48,7 +48,7 @@ TEST_P(RawFormat, ReadingUndoesWriting) {
   }
 }
 
-TEST_P(RawFormat, RefusesAnotherNumberOfMeasurementsAndNamesBoth) {
+TEST_P(RawFormat, RejectsAnotherNumberOfMeasurementsWithBothNumbers) {
   const TemporaryDirectory directory;
   const auto file = directory / ("raw" + GetParam());
   write_raw_frames(file, test_frames(1), overwrite);
@@ -90,7 +90,7 @@ TEST(RawFramesFile, ReadsArraysLargerThanOneSlice) {
   EXPECT_EQ(read_raw_frames(directory / "a.npy").values, raw.values);
 }
 
-TEST(RawFramesFile, RefusesArraysThatAreNoFrames) {
+TEST(RawFramesFile, RejectsArraysThatAreNotFrames) {
   const TemporaryDirectory directory;
   const auto refusal = [&](NpyType type, const NpyShape& shape) {
     write_npy(directory / "a.npy", NpyArray(type, shape), overwrite);
@@ -107,7 +107,7 @@ TEST(RawFramesFile, RefusesArraysThatAreNoFrames) {
   EXPECT_THAT(io_error_of([&] { read_raw_frames(directory / "b.npy"); }), HasSubstr("no such"));
 }
 
-TEST(RawFramesFile, RefusesToWriteFramesThatAreNone) {
+TEST(RawFramesFile, RejectsWritingInvalidFrames) {
   const TemporaryDirectory directory;
   EXPECT_THROW(write_raw_frames(directory / "a.npy", RawFrames{}, overwrite),
                std::invalid_argument);

@@ -33,7 +33,7 @@ Number number_of(double value) {
     return static_cast<Number>(value);
 }
 
-/// (F, H, W, K) numbers that noise and light make.
+/// Returns (F, H, W, K) values of light and noise.
 template <typename Number>
 std::vector<Number> recording(const DecodeSetup& setup) {
   const int pixels = static_cast<int>(frames * height * width);
@@ -43,7 +43,7 @@ std::vector<Number> recording(const DecodeSetup& setup) {
   return numbers;
 }
 
-/// (F, H, W, K) to (F, K, H, W).
+/// Converts (F, H, W, K) to (F, K, H, W).
 template <typename Number>
 std::vector<Number> planar(const std::vector<Number>& numbers) {
   std::vector<Number> planes(numbers.size());
@@ -86,7 +86,7 @@ struct Planes {
   }
 };
 
-TYPED_TEST(RawRows, DecodeInBandsAsTheWholeFrameDoes) {
+TYPED_TEST(RawRows, DecodeInBandsLikeTheWholeFrame) {
   for (const RawLayout layout : {RawLayout::interleaved, RawLayout::planar})
     for (const std::string name : {"raw.npy", "raw.npz"}) {
       this->write(name, layout);
@@ -96,7 +96,7 @@ TYPED_TEST(RawRows, DecodeInBandsAsTheWholeFrameDoes) {
       EXPECT_EQ(reader.row_bytes(), width * measurements * sizeof(TypeParam));
       std::vector<std::byte> buffer;
       for (int frame = 0; frame < reader.frames(); ++frame) {
-        // the plain way: one frame of numbers side by side
+        // Reference: one interleaved frame.
         const std::size_t values = height * width * measurements;
         Planes whole;
         this->setup_.decoder.decode(
@@ -119,7 +119,7 @@ TYPED_TEST(RawRows, DecodeInBandsAsTheWholeFrameDoes) {
     }
 }
 
-TYPED_TEST(RawRows, AreTheFilesOwnNumbers) {
+TYPED_TEST(RawRows, EqualTheValuesOfTheFile) {
   for (const RawLayout layout : {RawLayout::interleaved, RawLayout::planar}) {
     this->write("raw.npy", layout);
     const RawFramesReader reader(this->directory_ / "raw.npy", {.layout = layout});
@@ -145,7 +145,7 @@ RawFrames small_frames(int count) {
   return raw;
 }
 
-TEST(RawFramesReader, FramesAreThoseOfTheWholeFile) {
+TEST(RawFramesReader, FramesEqualThoseOfTheWholeFile) {
   const TemporaryDirectory directory;
   for (const int count : {1, 3}) {
     const RawFrames raw = small_frames(count);
@@ -161,7 +161,7 @@ TEST(RawFramesReader, FramesAreThoseOfTheWholeFile) {
   }
 }
 
-TEST(RawFramesReader, RefusesFramesAndRowsThatAreNotThere) {
+TEST(RawFramesReader, RejectsFramesAndRowsOutOfRange) {
   const TemporaryDirectory directory;
   write_raw_frames(directory / "a.npy", small_frames(2), overwrite);
   const RawFramesReader reader(directory / "a.npy");
@@ -174,7 +174,7 @@ TEST(RawFramesReader, RefusesFramesAndRowsThatAreNotThere) {
   EXPECT_EQ(reader.read_rows(0, 2, 0, buffer).height, 0);
 }
 
-TEST(RawFramesReader, SaysWhichLayoutWouldFit) {
+TEST(RawFramesReader, SuggestsTheMatchingLayout) {
   const TemporaryDirectory directory;
   const auto refusal = [&](const NpyShape& shape, RawLayout layout) {
     write_npy(directory / "a.npy", NpyArray(NpyType::uint16, shape), overwrite);
@@ -189,7 +189,7 @@ TEST(RawFramesReader, SaysWhichLayoutWouldFit) {
   EXPECT_THAT(refusal({6, 8}, RawLayout::planar), HasSubstr("expected (K, H, W) or (F, K, H, W)"));
 }
 
-TEST(RawFramesReader, TakesOneFilePerMeasurementAndNamesTheOneThatDiffers) {
+TEST(RawFramesReader, ReadsOneFilePerMeasurementAndReportsTheOneThatDiffers) {
   const TemporaryDirectory directory;
   const auto write = [&](const char* name, const NpyArray& array) {
     write_npy(directory / name, array, overwrite);
@@ -228,7 +228,7 @@ using WholeTypes = testing::Types<std::int8_t, std::int16_t, std::int32_t, std::
                                   std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t>;
 TYPED_TEST_SUITE(WholeNumbers, WholeTypes);
 
-TYPED_TEST(WholeNumbers, AreReadAsTheyAre) {
+TYPED_TEST(WholeNumbers, AreReadUnchanged) {
   const TemporaryDirectory directory;
   const std::vector<TypeParam> numbers = {1, 2, std::numeric_limits<std::int8_t>::max(), 4};
   for (const char* name : {"a.npy", "a.npz"}) {
@@ -253,7 +253,7 @@ TEST(RawFramesReader, DoesNotGuessTheLayoutOfACube) {
   EXPECT_EQ(planes.read_frame(0).values[1], 16.0f);
 }
 
-TEST(RawFramesReader, NoticesAFileThatShrinksAndIgnoresOneThatGrows) {
+TEST(RawFramesReader, DetectsAFileThatShrinksAndIgnoresOneThatGrows) {
   const TemporaryDirectory directory;
   const RawFrames raw = small_frames(3);
   write_raw_frames(directory / "a.npy", raw, overwrite);
@@ -268,7 +268,7 @@ TEST(RawFramesReader, NoticesAFileThatShrinksAndIgnoresOneThatGrows) {
               HasSubstr("bytes of data"));
 }
 
-TEST(RawFramesReader, KeepsWithinTheMemoryItIsGiven) {
+TEST(RawFramesReader, RespectsItsMemoryLimit) {
   const TemporaryDirectory directory;
   const NpyArray array(NpyType::float32, {100, 100, 4});  // 160 kB
   write_npz(directory / "a.npz", {{"raw", array}}, overwrite);
@@ -282,7 +282,7 @@ TEST(RawFramesReader, KeepsWithinTheMemoryItIsGiven) {
 
 TEST(RawFramesReader, ReadsTheEndOfAFileLargerThanMemory) {
   const TemporaryDirectory directory;
-  // 12 GB that are not there: 2000 frames of zeros but for the last number.
+  // A sparse file of 12 GB: 2000 frames of zeros except for the last number.
   {
     NpyItemWriter header(directory / "a.npy", NpyType::uint16, {0, 1000, 1000, 3}, overwrite);
     header.commit();
@@ -292,7 +292,7 @@ TEST(RawFramesReader, ReadsTheEndOfAFileLargerThanMemory) {
   std::string text(header_bytes, ' ');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.replace(text.find("(0, "), 4, "(2000, ");
-  text.erase(text.find("), }") + 4, 3);  // of the padding
+  text.erase(text.find("), }") + 4, 3);  // remove some padding
   const std::uint64_t end = header_bytes + 2000ull * 1000 * 1000 * 3 * 2;
   file.seekp(0);
   file.write(text.data(), static_cast<std::streamsize>(text.size()));

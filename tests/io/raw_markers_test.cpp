@@ -21,7 +21,7 @@ using testing::ThrowsMessage;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Recordings whose pixel 0 is clipped in one number, and pixel 1 invalid.
+/// Recordings in which one value of pixel 0 is clipped, and pixel 1 is invalid.
 class RawMarkersOfRecordings : public DecodeRecording {
  protected:
   std::unique_ptr<FrameBackend> backend(const std::vector<std::string>& settings) {
@@ -47,7 +47,7 @@ class RawMarkersOfRecordings : public DecodeRecording {
     std::ofstream(path(name), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   }
-  /// Numbers of one frame, 4 or 8 a pixel.
+  /// Returns the values of one frame, 4 or 8 per pixel.
   template <typename Number>
   std::vector<Number> numbers(int per_pixel, double offset) {
     std::vector<Number> all;
@@ -55,7 +55,7 @@ class RawMarkersOfRecordings : public DecodeRecording {
       all.push_back(static_cast<Number>(offset + 10.0 + i * 37 % 101));
     return all;
   }
-  /// Statuses of the first frame.
+  /// Returns the statuses of the first frame.
   std::vector<std::uint8_t> statuses(DecodeRequest request, const FrameBackend& backend) {
     request.output = path("out.npy");
     request.stack = true;
@@ -83,7 +83,7 @@ class RawMarkersOfRecordings : public DecodeRecording {
   std::vector<std::string> notes_;
 };
 
-TEST_F(RawMarkersOfRecordings, MeanTheSameInEveryTypeOfNumber) {
+TEST_F(RawMarkersOfRecordings, AreIndependentOfTheNumberType) {
   const std::unique_ptr<FrameBackend> of_markers =
       backend({"raw.saturated=[255, 127]", "raw.invalid=[0, 126]"});
   const auto check = [&]<typename Number>(Number saturated, Number invalid) {
@@ -94,7 +94,7 @@ TEST_F(RawMarkersOfRecordings, MeanTheSameInEveryTypeOfNumber) {
     DecodeRequest request{.raw = {path("m.npy")}};
     expect_first_two(statuses(request, *of_markers));
     request.average = 1;
-    request.memory_mb = 0.05;  // in bands
+    request.memory_mb = 0.05;  // decode in bands
     expect_first_two(statuses(request, *of_markers));
   };
   check(std::uint8_t{255}, std::uint8_t{0});
@@ -116,7 +116,7 @@ TEST_F(RawMarkersOfRecordings, NaNCanMeanSaturated) {
   expect_first_two(statuses({.raw = {path("m.npy")}}, *of_markers));
 }
 
-TEST_F(RawMarkersOfRecordings, CountBeforeFramesAreAveraged) {
+TEST_F(RawMarkersOfRecordings, ApplyBeforeFramesAreAveraged) {
   const std::unique_ptr<FrameBackend> of_markers =
       backend({"raw.saturated=[65535]", "raw.invalid=[0]"});
   std::vector<std::uint16_t> raw = numbers<std::uint16_t>(4, 0.0);
@@ -137,7 +137,7 @@ TEST_F(RawMarkersOfRecordings, CountBeforeFramesAreAveraged) {
     EXPECT_NE(static_cast<PixelStatus>(status), PixelStatus::invalid) << "one exposure is left";
 }
 
-TEST_F(RawMarkersOfRecordings, AreSoughtInEachFileOfOneMeasurement) {
+TEST_F(RawMarkersOfRecordings, ApplyToEachFileOfOneMeasurement) {
   const std::unique_ptr<FrameBackend> of_markers =
       backend({"raw.saturated=[65535]", "raw.invalid=[0]"});
   const std::vector<std::uint16_t> raw = numbers<std::uint16_t>(4, 0.0);
@@ -154,8 +154,8 @@ TEST_F(RawMarkersOfRecordings, AreSoughtInEachFileOfOneMeasurement) {
   expect_first_two(statuses(request, *of_markers));
 }
 
-TEST_F(RawMarkersOfRecordings, CountBeforeTheBlackLevelOfADump) {
-  // 12-bit numbers without a marker of the saturated ones: the converter's largest number is one.
+TEST_F(RawMarkersOfRecordings, ApplyBeforeTheBlackLevelOfADump) {
+  // 12-bit values without a saturation marker: the largest value of the converter is saturated.
   const std::unique_ptr<FrameBackend> of_markers =
       backend({"sensor.adc_bits=12", "sensor.gain_e_per_dn=5", "raw.invalid=[7]"});
   std::vector<std::uint16_t> raw = numbers<std::uint16_t>(4, 200.0);
@@ -169,13 +169,13 @@ TEST_F(RawMarkersOfRecordings, CountBeforeTheBlackLevelOfADump) {
   expect_first_two(statuses(request, *of_markers));
 }
 
-TEST_F(RawMarkersOfRecordings, TapsThatAreSubtractedCountOneByOne) {
+TEST_F(RawMarkersOfRecordings, ApplyToEachSubtractedTap) {
   const std::unique_ptr<FrameBackend> of_taps =
       difference_backend({"sensor.adc_bits=12", "sensor.gain_e_per_dn=5", "raw.invalid=[0]"});
   std::vector<std::uint16_t> raw = numbers<std::uint16_t>(8, 1500.0);
   raw[3] = 4095;
   raw[8] = 0;
-  raw[16] = raw[17];  // a difference of 0 is a measurement
+  raw[16] = raw[17];  // a difference of 0 is a valid measurement
   write_dump("ab.bin", raw);
   std::ofstream(path("ab.raw.toml")) << "width = 5\nheight = 6\nmeasurements = 8\nbits = 12\n"
                                         "layout = 'interleaved'\ntaps = 'subtract'\n";
@@ -205,7 +205,7 @@ TEST_F(RawMarkersOfRecordings, TapsThatAreSubtractedCountOneByOne) {
   expect_first_two(of_stream);
 }
 
-TEST_F(RawMarkersOfRecordings, RailsOfDifferencesAreThoseOfTheStoredNumbers) {
+TEST_F(RawMarkersOfRecordings, LimitsOfDifferencesApplyToStoredValues) {
   const std::vector<std::string> converter = {"sensor.adc_bits=12", "sensor.gain_e_per_dn=5",
                                               "raw.invalid=[1]"};
   const std::unique_ptr<FrameBackend> differences = difference_backend(converter);
@@ -225,7 +225,7 @@ TEST_F(RawMarkersOfRecordings, RailsOfDifferencesAreThoseOfTheStoredNumbers) {
   expect_first_two(statuses({.raw = {path("around.npy")}}, *middle));
 }
 
-TEST_F(RawMarkersOfRecordings, ThatCannotOccurAreRefused) {
+TEST_F(RawMarkersOfRecordings, ImpossibleMarkersAreRejected) {
   const auto refused = [&](const char* setting, const char* words) {
     camera_ = built_in_camera("paper-10f0");
     const std::unique_ptr<FrameBackend> of_markers = backend({setting});
@@ -243,7 +243,7 @@ TEST_F(RawMarkersOfRecordings, ThatCannotOccurAreRefused) {
   refused("raw.invalid=[16777217]", "raw.invalid = 16777217");
 }
 
-TEST_F(RawMarkersOfRecordings, ANoteOnElectronsIsLeftOutWhereALimitIsSet) {
+TEST_F(RawMarkersOfRecordings, ALimitSuppressesTheNoteOnElectrons) {
   write_array("m.npy", numbers<std::int16_t>(4, 0.0));
   const DecodeRequest request{.raw = {path("m.npy")}};
   const auto notes = [&](std::vector<std::string> settings) {
@@ -256,7 +256,7 @@ TEST_F(RawMarkersOfRecordings, ANoteOnElectronsIsLeftOutWhereALimitIsSet) {
   EXPECT_THAT(notes({"sensor.full_well_e=30000"}), testing::Each(Not(HasSubstr(words))));
   EXPECT_THAT(notes({"sensor.adc_bits=12", "sensor.gain_e_per_dn=1"}),
               testing::Each(Not(HasSubstr(words))));
-  write_array("m.npy", numbers<float>(4, 0.0));  // electrons may be floats, counts are whole
+  write_array("m.npy", numbers<float>(4, 0.0));  // electrons may be floats, counts are integers
   EXPECT_THAT(notes({}), testing::Each(Not(HasSubstr(words))));
 }
 
@@ -276,7 +276,7 @@ TEST(RawMarkersOfCameras, AreReadAndWritten) {
   EXPECT_THAT(camera_to_toml(built_in_camera("paper-10f0")), Not(HasSubstr("[raw]")));
 }
 
-TEST(RawMarkersOfCameras, WithTwoMeaningsAreRefusedWhereTheyAreWritten) {
+TEST(RawMarkersOfCameras, WithTwoMeaningsAreRejectedWithTheirPlace) {
   const auto refused = [](const std::string& lines, const char* place, const char* words) {
     EXPECT_THAT(
         [&] { parse_camera_toml("fundamental_frequency_hz = 15e6\n[raw]\n" + lines, "c.toml"); },

@@ -32,7 +32,7 @@ const Keys point_keys{"signal_e_per_s",       "ambient_e_per_s",       "linear_m
                       "circular_rmse_se_m",   "outlier_rate",          "cramer_rao_mae_m",
                       "receiver_bound_mae_m", "direct_tof_bound_mae_m"};
 
-TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
+TEST(EvaluationDocument, HasExactlyTheSpecifiedKeys) {
   const Camera camera = small_camera("paper-5f0");
   const EvaluateOptions options{.trials = 1000, .seed = 18446744073709551615ull};
   std::vector<EvaluatedCode> codes{
@@ -65,7 +65,7 @@ TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
             codes[0].error.linear_rmse.geometric_mean_m.value);
 }
 
-TEST(EvaluationDocument, BoundsThatAreNoneAreNull) {
+TEST(EvaluationDocument, MissingBoundsAreNull) {
   Camera camera = small_camera("paper-5f0");
   camera.light.impulse_response = camera.sensor.impulse_response = ImpulseResponse();
   const EvaluateOptions options{.trials = 1000};
@@ -86,7 +86,7 @@ TEST(EvaluationDocument, NamesTheDecoder) {
   EXPECT_EQ(document["unwrap_weights"], "frequency");
 }
 
-TEST(EvaluationDocument, SetsWhatZnccMakesOfTheSameTrialsBesideMaximumLikelihood) {
+TEST(EvaluationDocument, ComparesMaximumLikelihoodWithZnccOnTheSameTrials) {
   const Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   EvaluateOptions options{.trials = 1000, .method = DecodeMethod::ml};
@@ -117,7 +117,7 @@ TEST(EvaluationDocument, SetsWhatZnccMakesOfTheSameTrialsBesideMaximumLikelihood
                    own["circular_mde_m"].get<double>());
 }
 
-TEST(EvaluationDocument, SetsRobustnessBesideTheErrors) {
+TEST(EvaluationDocument, IncludesRobustness) {
   const Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   EvaluatedCode evaluated{evaluate(code, camera, {.trials = 200})};
@@ -134,7 +134,7 @@ TEST(EvaluationDocument, SetsRobustnessBesideTheErrors) {
             evaluated.robustness->perturbed[5].uncalibrated_m.value);
 }
 
-TEST(DesignDocument, AddsTheBestAndHowEachDesignedCodeCompares) {
+TEST(DesignDocument, AddsTheBestCodeAndComparisons) {
   const Camera camera = small_camera("paper-5f0");
   const DesignOptions options = small_options();
   const DesignResult result = design(camera, options);

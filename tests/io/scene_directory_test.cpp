@@ -89,13 +89,13 @@ TEST(SceneDirectory, ReadingUndoesWriting) {
   }
 }
 
-/// Without the care of an atomic file, which waits for the disk.
+/// Writes without the disk synchronization of an atomic file.
 void overwrite(const fs::path& path, std::span<const std::byte> bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
 }
 
-TEST(SceneDirectory, DamageIsReadOrRefusedWithTheFilesName) {
+TEST(SceneDirectory, DamageIsReadOrRejectedWithTheFileName) {
   const TemporaryDirectory place;
   write_scene_result(place.path(), scene(), OutputPolicy::overwrite);
   for (const char* name : {"scene.json", "albedo.npy", "low-hamiltonian-k4.npy"}) {
@@ -124,7 +124,7 @@ TEST(SceneDirectory, DamageIsReadOrRefusedWithTheFilesName) {
   EXPECT_NO_THROW(read_scene_result(place.path()));
 }
 
-TEST(SceneDirectory, RefusesPlanesOfAnotherSizeAndFilesElsewhere) {
+TEST(SceneDirectory, RejectsPlanesOfAnotherSizeAndFilesElsewhere) {
   const TemporaryDirectory place;
   write_scene_result(place.path(), scene(), OutputPolicy::overwrite);
   SceneResult larger{.name = "larger", .truth = SceneImage(4, 4)};

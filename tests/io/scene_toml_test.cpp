@@ -82,7 +82,7 @@ TEST(SceneToml, ReadsEveryShape) {
       << "the camera looks to the right";
 }
 
-TEST(SceneToml, ThePointLookedAtIsInTheMiddle) {
+TEST(SceneToml, ThePointLookedAtIsInTheImageCentre) {
   const StagedScene scene = parse_scene_toml(
       "[view]\nwidth_px = 65\nheight_px = 49\n[camera]\nposition_m = [1, -2, 0]\n"
       "look_at_m = [0, 0, 3]\n[[sphere]]\ncentre_m = [0, 0, 3]\nradius_m = 0.5\n");
@@ -94,7 +94,7 @@ TEST(SceneToml, ThePointLookedAtIsInTheMiddle) {
   EXPECT_GT(scene.camera_to_world.linear()(1, 1), 0.0) << "down stays down";
 }
 
-TEST(SceneToml, AFocalLengthGoesWithTheMiddle) {
+TEST(SceneToml, TheFocalLengthDefaultsToACentredPinhole) {
   const StagedScene scene = parse_scene_toml(
       "[view]\nwidth_px = 64\nheight_px = 48\nfx_px = 50\ncy_px = 20\n[[sphere]]\ncentre_m = "
       "[0, 0, 3]\nradius_m = 0.5\n");
@@ -108,7 +108,7 @@ TEST(SceneToml, SettingsReplaceKeys) {
   EXPECT_EQ(parse_scene_toml(every_shape, "s.toml", settings).view.width, 10);
 }
 
-TEST(SceneToml, FilesAreFoundBesideTheScene) {
+TEST(SceneToml, FilesAreFoundNextToTheScene) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   Image<float> cover(2, 2, 2.0f);
@@ -125,7 +125,7 @@ TEST(SceneToml, FilesAreFoundBesideTheScene) {
   EXPECT_EQ(mesh.texture.albedo, 1.0);
 }
 
-TEST(SceneToml, ShapesAndTheCameraMoveAboutTheirMiddles) {
+TEST(SceneToml, ShapesAndTheCameraRotateAboutTheirCentres) {
   const StagedScene scene = parse_scene_toml(
       "[camera]\nposition_m = [0, -1, 0]\nturn_deg_per_s = [0, 90, 0]\n"
       "[[plane]]\npoint_m = [0, 0, 4]\nnormal = [0, 0, -1]\n"
@@ -147,7 +147,7 @@ TEST(SceneToml, ShapesAndTheCameraMoveAboutTheirMiddles) {
   EXPECT_TRUE(first<Capsule>(later).start.isApprox(Eigen::Vector3d(1, 0, 2)));
 }
 
-TEST(SceneToml, ShapesThatStandStillHaveNoMotions) {
+TEST(SceneToml, StaticShapesHaveNoMotions) {
   const StagedScene scene = parse_scene_toml(every_shape);
   EXPECT_TRUE(scene.is_still());
   EXPECT_TRUE(scene.shape_motions.empty());
@@ -259,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"[camera]\nlook_at_m = [0, 1, 1]\nrotation_deg = [0, 0, 0]",
                  "s.toml:6:16: camera.rotation_deg: is only valid with no look_at_m"}));
 
-TEST(SceneToml, DamagedTexturesAreNamedWithTheirPixel) {
+TEST(SceneToml, DamagedTexturesAreReportedWithTheirPixel) {
   const TemporaryDirectory directory;
   Image<float> cover(2, 3, 0.5f);
   cover(1, 2) = -0.25f;

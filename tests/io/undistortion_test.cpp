@@ -19,7 +19,7 @@ PinholeView view_with(double k1) {
           .distortion = LensDistortion{DistortionModel::opencv, {k1, 0.0, 1e-3, -1e-3}}};
 }
 
-TEST(Undistortion, TakesThePixelNearestToWhereTheRayIsSeen) {
+TEST(Undistortion, UsesTheNearestPixelOfTheRay) {
   const PinholeView view = view_with(-0.2);
   Image<std::int32_t> places(view.height, view.width);
   for (std::size_t i = 0; i < places.size(); ++i) places.pixels[i] = static_cast<std::int32_t>(i);
@@ -29,13 +29,13 @@ TEST(Undistortion, TakesThePixelNearestToWhereTheRayIsSeen) {
       const auto seen_at = view.pixel_of(view.ideal().ray(row, column));
       ASSERT_TRUE(seen_at);
       const int source = places(row, column);
-      ASSERT_GE(source, 0);  // a barrel lens sees more than the pinhole
+      ASSERT_GE(source, 0);  // a barrel lens has a wider view than the pinhole
       EXPECT_LE(std::abs(source % view.width - seen_at->x()), 0.5);
       EXPECT_LE(std::abs(source / view.width - seen_at->y()), 0.5);
     }
 }
 
-TEST(Undistortion, APlaneAcrossTheAxisStaysOne) {
+TEST(Undistortion, APlanePerpendicularToTheAxisStaysFlat) {
   const PinholeView view = view_with(-0.2);
   const Undistortion undistortion(view);
   Image<float> depth_m = radial_from_z(Image<float>(view.height, view.width, 2.0f), view);
@@ -44,8 +44,8 @@ TEST(Undistortion, APlaneAcrossTheAxisStaysOne) {
   for (const float z_m : z_from_radial(depth_m, view.ideal()).pixels) EXPECT_NEAR(z_m, 2.0, 1e-6);
 }
 
-TEST(Undistortion, PixelsThatTheLensDoesNotSeeHoldNothing) {
-  const PinholeView view = view_with(0.3);  // a pincushion sees less
+TEST(Undistortion, PixelsOutsideTheLensViewAreEmpty) {
+  const PinholeView view = view_with(0.3);  // a pincushion lens has a narrower view
   Image<float> plane(view.height, view.width, 1.0f);
   Undistortion(view).apply(plane, NAN);
   EXPECT_TRUE(std::isnan(plane(0, 0)));

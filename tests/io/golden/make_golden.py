@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the golden files beside this script from the layouts of docs/formats.md alone, without
-tofsmith. The waveform has 8 points of a period of 5 MHz, -0.5 V to 1.5 V, named modulation_1."""
+"""Writes the golden files in this folder according to docs/formats.md, without tofsmith.
+The waveform has 8 points in a period of 5 MHz, from -0.5 V to 1.5 V, and the name modulation_1.
+"""
 
 import os
 import struct
@@ -12,7 +13,7 @@ LOW, HIGH, RATE = -0.5, 1.5, 40e6
 
 
 def codes(levels):
-    """Ends, middle and neighbours of what a point can be."""
+    """Returns the ends, the middle and their neighbours of the range of a point."""
     top = levels - 1
     return [0, top, top // 2, 1, top - 1, 0, top // 3, top]
 
@@ -70,7 +71,7 @@ def tektronix():
 
 
 def memories():
-    """Two exposures, three words each: light in bit 0, taps in bits 1 and 2, trigger in bit 3."""
+    """Two exposures of three words: light in bit 0, taps in bits 1 and 2, trigger in bit 3."""
     words = [0b1011, 0b1001, 0b0100, 0b1101, 0b1010, 0b0001]
     fields = ["bit 0: light", "bit 1: tap_1", "bit 2: tap_2", "bit 3: trigger",
               "word of point j of exposure e (both from 0): e * 3 + j"]
