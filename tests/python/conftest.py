@@ -12,7 +12,7 @@ matplotlib.use("Agg")
 
 
 def page_without_command(path):
-    """A page without its section with the command line: pages of Python have none."""
+    """Returns a page without its command-line section, which pages written by Python lack."""
     viewer, mark, rest = path.read_text().partition('id="document">')
     text, end, script = rest.partition("</script>")
     assert mark and end and script.rstrip().endswith("</html>")
@@ -24,7 +24,7 @@ def page_without_command(path):
 
 @pytest.fixture(scope="session")
 def cli():
-    """The command line, which must say the same as the package."""
+    """Path of the command-line program, the reference for the package."""
     path = os.environ.get("TOFSMITH_CLI")
     if not path:
         pytest.skip("TOFSMITH_CLI does not name the command line")

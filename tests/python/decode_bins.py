@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bins of random codes against brute force in NumPy: every score of every pixel, in double.
+"""Compares bins of random codes with brute force in NumPy: every score of every pixel, in double.
 
-Run by scripts/differential.sh. Item i of a seed is always the same: a code (K = 3 .. 16 measurements,
-N = 8 .. 5000 bins: smooth, of chips, of noise, or of steps), a type of raw numbers and a noise. What
-was done is kept in a tally, and the next run goes on behind it.
+Run by scripts/differential.sh. Item i of a seed is deterministic: a code (K = 3 to 16 measurements,
+N = 8 to 5000 bins: smooth, of chips, of noise, or of steps), a type of raw values and a noise
+level. Progress is stored in a tally file, and the next run continues there.
 
     decode_bins.py --pixels N [--seed S] [--tally FILE]
 """
@@ -23,11 +23,11 @@ import tofsmith as ts
 KINDS = ("smooth", "chips", "noise", "steps")
 TYPES = (np.uint8, np.uint16, np.float32, np.float64)
 PIXELS_OF_ITEM = 100_000
-SCORES_AT_ONCE = 200_000  # they stay in a core's cache
+SCORES_AT_ONCE = 200_000  # fits into a core's cache
 
 
 def random_table(rng):
-    """(N, K), and what it is."""
+    """Returns the kind of the table and the table (N, K)."""
     measurements = int(rng.integers(3, 17))
     samples = int(np.exp(rng.uniform(np.log(8), np.log(5000))))
     kind = KINDS[rng.integers(len(KINDS))]
@@ -38,7 +38,7 @@ def random_table(rng):
             swing = rng.normal(size=measurements) / harmonic
             table += swing * np.cos(harmonic * phase[:, None]
                                     + rng.uniform(0, 2 * np.pi, measurements))
-        # Noise, so that the table is decoded row by row and not interpolated.
+        # Noise prevents interpolation of the table as a smooth curve.
         table += rng.normal(scale=1e-4, size=table.shape)
     elif kind == "chips":
         light, sensor = rng.integers(0, 2, (2, samples, measurements))
@@ -54,7 +54,7 @@ def random_table(rng):
 
 
 def random_frame(rng, table, pixels):
-    """Raw numbers (1, pixels, K) of depths anywhere, with light and noise of all sizes."""
+    """Returns raw values (1, pixels, K) at random depths, for all magnitudes of light and noise."""
     samples, measurements = table.shape
     at = rng.uniform(0, samples, pixels)
     before = at.astype(int)
@@ -73,7 +73,7 @@ def random_frame(rng, table, pixels):
 
 
 def wrong_bins(table, raw, found):
-    """Pixels that did not get the lowest of the best bins."""
+    """Returns the pixels that were not assigned the lowest of the best bins."""
     unit = table - table.mean(axis=1, keepdims=True)
     size = np.linalg.norm(unit, axis=1)
     told = np.flatnonzero(size > 1e-12 * size.max())
@@ -86,12 +86,11 @@ def wrong_bins(table, raw, found):
     wrong = (bins == -1) == valid
     pixels = np.flatnonzero(valid & ~wrong)
     at = among_told[bins[pixels]]
-    wrong[pixels[at < 0]] = True  # a bin without a direction
+    wrong[pixels[at < 0]] = True  # a bin without contrast
     pixels, at = pixels[at >= 0], at[at >= 0]
     y = y[pixels]
-    # The lowest bin within 1e-11 of the best, as docs/decoding.md says; what lies within a tenth of
-    # that border, or as near as numbers far above their differences are rounded, may be on either
-    # side.
+    # Expected is the lowest bin within 1e-11 of the best score (docs/decoding.md). Scores within 10
+    # % of that limit, or within the rounding error of large values, may fall on either side.
     rounding = 2e-15 * np.abs(y).max(axis=1, initial=0)
     y -= y.mean(axis=1, keepdims=True)
     norm = np.linalg.norm(y, axis=1)
@@ -111,13 +110,13 @@ def wrong_bins(table, raw, found):
 
 
 def check_item(seed, item, pixels):
-    """How many pixels were compared; raises AssertionError at the first that is wrong."""
+    """Returns the number of compared pixels; raises AssertionError at the first wrong one."""
     rng = np.random.default_rng([seed, item])
     kind, table = random_table(rng)
     raw = random_frame(rng, table, pixels)
     try:
         decoder = ts.Decoder(ts.DecodingTable.of_measured(table, range_m=1.0))
-    except ValueError:  # a code that tells no depths
+    except ValueError:  # a code without depth information
         return 0
     found = decoder.decode(raw, planes=["bin"]).bin
     wrong = wrong_bins(table, raw, found)
@@ -140,7 +139,7 @@ def main():
     state = tally.setdefault(str(arguments.seed), {"items": 0, "pixels": 0})
     done = 0
     while done < arguments.pixels:
-        # The same for a seed in every run: no item's size depends on what is asked for.
+        # The size of an item must not depend on the number of requested pixels.
         done += (pixels := check_item(arguments.seed, state["items"], PIXELS_OF_ITEM))
         state["items"] += 1
         state["pixels"] += pixels

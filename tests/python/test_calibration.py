@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Calibrations say and write what the command line does, and decoding takes what they found."""
+"""Calibrations return and write the same as the command line; decoding accepts their results."""
 
 import json
 import re
@@ -18,7 +18,7 @@ sensor = {"impulse_response": narrow, "adc_bits": 12, "gain_e_per_dn": 8, "black
 
 
 def printed(cli, directory, *arguments):
-    """What the command line prints with --json, run in a directory."""
+    """Runs the command line with --json in a directory and returns the printed document."""
     done = subprocess.run([cli, "--json", "calibrate", *map(str, arguments)], cwd=directory,
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -31,7 +31,7 @@ def pair(values):
 
 @pytest.fixture(scope="module")
 def both(tmp_path_factory):
-    """A folder for the command's files and one for Python's."""
+    """Two folders, for the files of the command line and of Python."""
     folders = tmp_path_factory.mktemp("command"), tmp_path_factory.mktemp("python")
     base.write(folders[0] / "base.toml")
     return folders
@@ -48,7 +48,7 @@ def same_page(both, name):
 
 @pytest.fixture(scope="module")
 def scope(both):
-    """A Gaussian pulse in nanoseconds, with noise."""
+    """A noisy Gaussian pulse in nanoseconds."""
     t = np.arange(400) * 0.1
     values = np.exp(-((t - 20) / 1.5) ** 2 / 2) + 0.01 * np.random.default_rng(1).normal(size=400)
     path = both[0] / "scope.csv"
@@ -56,7 +56,7 @@ def scope(both):
     return path
 
 
-def test_a_response_is_that_of_the_command(both, scope, cli):
+def test_impulse_response_equals_the_command(both, scope, cli):
     said = printed(cli, both[0], "impulse-response", scope, "--camera", "base.toml", "-o", "mine.toml",
                 "--report", "mine.html")
     found = ts.calibrate_impulse_response(scope, base)
@@ -77,7 +77,7 @@ def test_a_response_is_that_of_the_command(both, scope, cli):
 
 @pytest.fixture(scope="module")
 def sweep():
-    """A flat target at 60 delays and the first again, through arms of 75 MHz, on 3 x 4 pixels."""
+    """A flat target of 3 x 4 pixels at 60 delays plus the first one again, with arms of 75 MHz."""
     camera = base.replace(light={"impulse_response": narrow}, sensor={"impulse_response": narrow})
     model = ts.ForwardModel("hamiltonian-k4", camera)
     rng = np.random.default_rng(2)
@@ -87,7 +87,7 @@ def sweep():
     return ts.DelaySweep(bins / 60, frames.astype(np.float32))
 
 
-def test_a_sweep_gives_what_the_command_writes(both, sweep, cli):
+def test_delay_sweep_equals_the_command(both, sweep, cli):
     measured = sweep
     ts.write_raw(both[0] / "frames.npy", measured.frames)
     np.savetxt(both[0] / "shifts.txt", measured.delay_periods, "%.17g")
@@ -116,7 +116,7 @@ def test_a_sweep_gives_what_the_command_writes(both, sweep, cli):
     assert fits[0].code == "hamiltonian-k4"
 
 
-def test_noise_is_that_of_the_command(both, cli):
+def test_noise_equals_the_command(both, cli):
     rng = np.random.default_rng(3)
     levels = [np.round(100 + rng.poisson(e, (2, 32, 32, 1)) / 8 + rng.normal(0, 2.5, (2, 32, 32, 1)))
               for e in (0, 800, 4000, 12000)]
@@ -136,7 +136,7 @@ def test_noise_is_that_of_the_command(both, cli):
     assert found.full_well_e is None
 
 
-def test_noise_of_differences_takes_their_code():
+def test_noise_of_differences_requires_their_code():
     camera = base.replace(sensor=sensor | {"taps": 2, "readout": "difference", "read_noise_e": 20.0})
     dark, *levels = (ts.capture(np.full((48, 48), 2.0), "sinusoid-k4", camera, signal_e_per_s=signal,
                                 ambient_e_per_s=0.0, seed=i, frames=2)
@@ -148,7 +148,7 @@ def test_noise_of_differences_takes_their_code():
         ts.photon_transfer(levels, base, dark=dark, code="sinusoid-k4")
 
 
-def test_drift_is_that_of_the_command(both, cli):
+def test_drift_equals_the_command(both, cli):
     degrees = np.linspace(20, 44, 9)
     truth = base.replace(temperature={"reference_c": 20.0, "offset_m_per_c": 2e-3,
                                       "signal_per_c": -4e-3})
@@ -172,7 +172,7 @@ def test_drift_is_that_of_the_command(both, cli):
         base.at_temperature(30.0)
 
 
-def test_stray_light_is_that_of_the_command(both, cli):
+def test_stray_light_equals_the_command(both, cli):
     target = np.full((8, 30, 30, 4), 100.0)
     target[:, 12:16, 12:16] += [900, 500, 200, 700]
     target += np.random.default_rng(4).normal(0, 3, target.shape)
@@ -233,12 +233,12 @@ refusals = [
 
 
 @pytest.mark.parametrize("call, kind, message", refusals, ids=[r[2][:50] for r in refusals])
-def test_bad_input_is_refused_by_name(call, kind, message):
+def test_rejects_bad_input_by_name(call, kind, message):
     with pytest.raises(kind, match=re.escape(message)):
         call()
 
 
-def test_existing_files_stay(both, scope, sweep):
+def test_existing_files_are_kept(both, scope, sweep):
     found = ts.calibrate_impulse_response(scope, base)
     path = both[1] / "kept.toml"
     found.write_camera(path, base)
@@ -250,7 +250,7 @@ def test_existing_files_stay(both, scope, sweep):
         ts.calibrate_correlation(means, base).write_maps(both[1] / "map.npy")
 
 
-def test_each_frequency_of_a_kinect_has_its_offset_and_contrast():
+def test_kinect_frequencies_have_their_own_offsets_and_contrasts():
     camera, code = ts.Camera("kinect-v2"), "multifrequency-2x3-10x3-15x3"
     offset_rad, contrast = np.array([0.78, -2.16, 0.24]), np.array([0.6, 0.45, 0.37])
     real = camera.replace(playback={"offset_rad": list(offset_rad)},
@@ -273,7 +273,7 @@ def test_each_frequency_of_a_kinect_has_its_offset_and_contrast():
         assert np.abs(image.depth_m - depth[2])[image.status == 0].max() < 0.15
 
 
-def test_reference_depth_gives_the_commands_table(both, cli):
+def test_reference_depth_equals_the_command(both, cli):
     camera = base.replace(fundamental_frequency_hz=60e6, sensor={
         "taps": 2, "readout": "difference", "drain": False})
     camera.write(both[0] / "phases.toml")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A component that is not installed is named with its Debian package."""
+"""A missing component is reported with its Debian package."""
 
 import subprocess
 import sys
@@ -8,7 +8,7 @@ import sys
 from tofsmith import _components
 
 
-def test_a_missing_library_names_its_package():
+def test_a_missing_library_is_reported_with_its_package():
     loader = "libtofsmith_lab.so.0.1: cannot open shared object file: No such file or directory"
     said = str(_components.explained(ImportError(loader, name="_tofsmith")))
     assert "component lab, which is not installed" in said
@@ -16,7 +16,7 @@ def test_a_missing_library_names_its_package():
     assert loader in said
 
 
-def test_other_errors_stay_as_they_are():
+def test_other_errors_are_unchanged():
     error = ImportError("libembree3.so.3: cannot open shared object file")
     assert _components.explained(error) is error
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A few codes of what scripts/differential.sh runs for hours."""
+"""A few of the random codes that scripts/differential.sh tests for hours."""
 
 import sys
 from pathlib import Path
@@ -13,11 +13,11 @@ import decode_bins  # noqa: E402
 
 
 @pytest.mark.parametrize("item", range(12))
-def test_bins_of_random_codes_are_those_of_brute_force(item):
+def test_bins_of_random_codes_equal_brute_force(item):
     assert decode_bins.check_item(seed=7, item=item, pixels=4000) in (0, 4000)
 
 
-def test_a_bin_that_is_wrong_is_found():
+def test_a_wrong_bin_is_detected():
     rng = np.random.default_rng(1)
     table = rng.normal(size=(50, 4))
     raw = decode_bins.random_frame(rng, table, 300)

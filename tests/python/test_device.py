@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Filtering and decoding on an OpenCL device, where there is one."""
+"""Filtering and decoding on an OpenCL device; skipped without one."""
 
 import io
 import pickle
@@ -13,7 +13,7 @@ import tofsmith as ts
 
 @pytest.fixture(scope="module")
 def decoders():
-    """One of the processor and one of the first device."""
+    """Two decoders, on the CPU and on the first device."""
     try:
         return ts.Decoder("hamiltonian-k4", "paper-10f0"), ts.Decoder(
             "hamiltonian-k4", "paper-10f0", device="0")
@@ -25,7 +25,7 @@ def raw_frames():
     return np.random.default_rng(1).poisson(3000, (2, 30, 40, 4)).astype(np.uint16)
 
 
-def test_a_device_gives_the_planes_of_the_processor(decoders):
+def test_a_device_gives_the_same_planes_as_the_cpu(decoders):
     here, there = decoders
     assert here.device == "cpu" and there.device != "cpu"
     raw = raw_frames()
@@ -36,8 +36,8 @@ def test_a_device_gives_the_planes_of_the_processor(decoders):
                                   here.decode(raw, planes=["bin"]).bin)
 
 
-def test_steps_of_recordings_and_streams_reach_a_device(decoders, tmp_path):
-    """Other combinations: tests/gpu/device_pipeline_test.cpp."""
+def test_options_of_recordings_and_streams_reach_a_device(decoders, tmp_path):
+    """See tests/gpu/device_pipeline_test.cpp for other combinations."""
     raw = np.concatenate([raw_frames(), raw_frames()]).astype("<u2")
     np.save(tmp_path / "raw.npy", raw)
     (tmp_path / "s.raw.toml").write_text("width = 40\nheight = 30\nmeasurements = 4\nbits = 16\n"
@@ -57,7 +57,7 @@ def test_steps_of_recordings_and_streams_reach_a_device(decoders, tmp_path):
         np.testing.assert_allclose(found["depth"], expected["depth"], rtol=1e-5)
 
 
-def test_a_filter_has_a_device_of_its_own(decoders):
+def test_a_filter_can_use_another_device(decoders):
     here = ts.Filter("hamiltonian-k4", "paper-10f0")
     there = ts.Filter("hamiltonian-k4", "paper-10f0", device="0")
     assert (here.device, there.device) == ("cpu", decoders[1].device)
@@ -71,12 +71,12 @@ def test_a_filter_has_a_device_of_its_own(decoders):
         ts.Filter("hamiltonian-k4", "paper-10f0", device="7000")
 
 
-def test_a_decoder_keeps_its_device_when_it_is_pickled(decoders):
+def test_a_pickled_decoder_keeps_its_device(decoders):
     there = decoders[1]
     assert pickle.loads(pickle.dumps(there)).device == there.device
 
 
-def test_devices_and_methods_that_do_not_go_are_refused(decoders):
+def test_rejects_unsupported_devices_and_methods(decoders):
     with pytest.raises(OSError, match="expected one of 0 "):
         ts.Decoder("hamiltonian-k4", "paper-10f0", device="7000")
     with pytest.raises(ValueError, match="must be zncc"):
@@ -84,7 +84,7 @@ def test_devices_and_methods_that_do_not_go_are_refused(decoders):
     assert ts.Decoder("hamiltonian-k4", "paper-10f0", method="ml", device="auto").device == "cpu"
 
 
-def test_auto_decodes_whatever_there_is():
+def test_auto_decodes_with_and_without_a_device():
     raw = raw_frames()
     expected = ts.Decoder("hamiltonian-k4", "paper-10f0").decode(raw)
     found = ts.Decoder("hamiltonian-k4", "paper-10f0", device="auto").decode(raw)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every example runs as it stands, and its twin in C++ says the same."""
+"""Every example runs unchanged, and its C++ counterpart prints the same."""
 
 import os
 import re
@@ -25,7 +25,7 @@ def output_of(command, directory):
 
 
 @pytest.mark.parametrize("example", examples, ids=lambda path: path.stem)
-def test_twins_run_and_say_the_same(example, tmp_path):
+def test_counterparts_run_and_print_the_same(example, tmp_path):
     said = output_of([sys.executable, "-B", example], tmp_path / "python")
     assert said[0]
     if programs:
@@ -41,11 +41,11 @@ def snippets():
 
 
 @pytest.mark.parametrize("snippet", snippets())
-def test_what_pages_show_runs(snippet, tmp_path):
+def test_snippets_of_pages_run(snippet, tmp_path):
     output_of([sys.executable, "-B", "-c", snippet], tmp_path / "page")
 
 
-def test_every_example_has_a_twin():
+def test_every_example_has_a_counterpart():
     assert len(examples) == 7
     twins = sorted(path.stem for path in (folder / "cpp").glob("[0-9]*.cpp"))
     assert twins == [path.stem for path in examples]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sweeps and training sets on executors: the same bytes on any of them, and after lost workers."""
+"""Sweeps and training sets give the same bytes on any executor and after losing workers."""
 
 import contextlib
 import multiprocessing
@@ -34,7 +34,7 @@ ITEMS = 40
 
 
 class Inline(Executor):
-    """Computes in submit(); `outcome(call number)` may return an exception instead."""
+    """Computes in submit(); `outcome(call number)` may return an exception to raise."""
 
     def __init__(self, outcome=lambda call: None):
         self.calls, self.outcome = 0, outcome
@@ -62,7 +62,7 @@ def sweep(tmp_path):
 
 @pytest.fixture
 def export(cli, sweep):
-    """Bytes of the export of a store."""
+    """Returns a function that exports a store and returns the bytes."""
     def bytes_of(store):
         output = store.with_suffix(".json")
         subprocess.run([cli, "sweep", sweep, "--store", store, "--status", "--export", output,
@@ -109,13 +109,13 @@ def test_finished_items_are_not_computed_again(sweep, tmp_path):
     assert first.calls > 0 and second.calls == 0
 
 
-def test_lost_pieces_are_repeated(sweep, export, expected, tmp_path):
+def test_lost_tasks_are_repeated(sweep, export, expected, tmp_path):
     flaky = Inline(lambda call: OSError("lost") if call % 3 == 1 else None)
     ts.run_sweep(sweep, tmp_path / "s.sqlite", executor=flaky)
     assert export(tmp_path / "s.sqlite") == expected
 
 
-def test_a_piece_that_always_fails_ends_the_run(sweep, tmp_path):
+def test_a_task_that_always_fails_ends_the_run(sweep, tmp_path):
     executor = Inline(lambda call: OSError("no room") if call > 5 else None)
     with pytest.raises(RuntimeError, match="failed 4 times, the last time with OSError: no room"):
         ts.run_sweep(sweep, tmp_path / "s.sqlite", executor=executor)
@@ -123,7 +123,7 @@ def test_a_piece_that_always_fails_ends_the_run(sweep, tmp_path):
 
 
 class KilledPool:
-    """Starts process pools, and kills a worker of the first during the work."""
+    """Starts process pools, and kills a worker of the first pool while it computes."""
 
     def __init__(self):
         self.pools = []
@@ -135,7 +135,7 @@ class KilledPool:
     def progress(self, fraction, _):
         if len(self.pools) == 1 and fraction > 0.1:
             for process in list(self.pools[0]._processes)[:1]:
-                with contextlib.suppress(ProcessLookupError):  # killed before
+                with contextlib.suppress(ProcessLookupError):  # already killed
                     os.kill(process, signal.SIGKILL)
 
 
@@ -146,7 +146,7 @@ def test_a_new_pool_continues_after_a_killed_worker(sweep, export, expected, tmp
     assert export(tmp_path / "s.sqlite") == expected
 
 
-def test_a_broken_pool_keeps_what_is_finished(sweep, export, expected, tmp_path):
+def test_a_broken_pool_keeps_finished_items(sweep, export, expected, tmp_path):
     killed = KilledPool()
     with killed() as broken, pytest.raises(RuntimeError, match="finished items are kept. Call"):
         ts.run_sweep(sweep, tmp_path / "s.sqlite", executor=broken, progress=killed.progress)
@@ -173,14 +173,14 @@ def test_progress_stops_and_the_sweep_resumes(sweep, export, expected, tmp_path)
     assert export(tmp_path / "s.sqlite") == expected
 
 
-def test_items_that_fail_are_listed(tmp_path):
+def test_failed_items_are_listed(tmp_path):
     text = 'method = "unwrap"\n' + SWEEP.format(trials=16).replace("square", "sinusoid")
     alone = ts.run_sweep(text, tmp_path / "alone.sqlite")
     results = ts.run_sweep(text, tmp_path / "s.sqlite", executor=Inline())
     assert sorted(results.failures) == sorted(alone.failures) and results.failed == ITEMS // 2
 
 
-def test_workers_of_other_builds_are_refused():
+def test_workers_of_other_builds_are_rejected():
     with pytest.raises(RuntimeError, match="0.0 on ABACUS: results would differ"):
         _executor.require_build(("0.0", "ABACUS"))
 
@@ -226,6 +226,6 @@ def test_an_interrupted_training_set_continues(tmp_path):
     (3, 1, "executor: got int 3; needs a concurrent.futures.Executor"),
     (Inline(), -1, "threads: got"),
 ])
-def test_bad_arguments_are_refused(executor, threads, message, tmp_path):
+def test_rejects_bad_arguments(executor, threads, message, tmp_path):
     with pytest.raises((TypeError, ValueError), match=re.escape(message)):
         ts.run_sweep(SWEEP.format(trials=16), tmp_path / "s", executor=executor, threads=threads)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Mapping of factorize(), alternate() and the actual waveforms of a camera."""
+"""Bindings of factorize(), alternate() and the actual waveforms of a camera."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ import tofsmith as ts
 few = {"random_starts": 2, "refined": 2, "kept": 2}
 
 
-def test_factorizes_every_measurement_or_those_asked_for():
+def test_factorizes_all_or_selected_measurements():
     found = ts.factorize("hamiltonian-k3", "paper-30x", seed=1, **few)
     assert len(found) == 3
     only, = ts.factorize("hamiltonian-k3", "paper-30x", measurements=[2], seed=1, **few)
@@ -18,13 +18,13 @@ def test_factorizes_every_measurement_or_those_asked_for():
     assert only.best.modulation == found[2].best.modulation
     residuals = [pair.residual_rms for pair in only.pairs]
     assert residuals == sorted(residuals) and len(only.iterations_per_start) == 2
-    # The residual is that of the correlation function which the forward model has.
+    # The residual must equal that of the forward model's correlation function.
     code = ts.CodeSet.from_waveforms([only.best.modulation], [only.best.demodulation], samples=240)
     chi = ts.ForwardModel(code, "paper-30x").correlation_table()[:, 0]
     assert np.sqrt(np.mean((chi - only.target) ** 2)) == pytest.approx(only.best.residual_rms, abs=1e-6)
 
 
-def test_a_table_is_a_target_as_in_design():
+def test_accepts_tables_as_targets():
     table = np.zeros((240, 1))
     table[:120, 0] = 1
     found, = ts.factorize(table, "paper-5f0", **few)
@@ -39,7 +39,7 @@ def test_alternation_has_relaxed_and_playable_waveforms():
     assert len(one.objective) == len(one.playable_residual_rms) <= 5
 
 
-def test_actual_waveforms_are_those_of_the_generators():
+def test_actual_waveforms_equal_those_of_the_generators():
     camera = ts.Camera("prototype")
     code = ts.build_family("hamiltonian-k5", camera)
     modulation, demodulation = ts.actual_waveforms(code, camera)
@@ -68,6 +68,6 @@ def test_arm_output_is_the_smoothed_waveform():
     (lambda: ts.arm_output(ts.Waveform.sampled([1.0]), "paper-30x", arm="lens"), "light, sensor"),
     (lambda: ts.actual_waveforms("sinusoid-k4", "nowhere.toml"), "nowhere.toml"),
 ])
-def test_refuses_by_name(call, said):
+def test_rejects_bad_input_by_name(call, said):
     with pytest.raises((ValueError, TypeError, OSError), match=said):
         call()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every figure draws, in matplotlib and as an HTML page."""
+"""Every figure is drawn in matplotlib and as an HTML page."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -45,7 +45,7 @@ def test_figures_are_pages_with_documents(name, things, tmp_path):
 
 
 @pytest.mark.parametrize("name", drawings)
-def test_plots_draw_and_leave_the_users_style(name, things, tmp_path):
+def test_plots_do_not_change_the_users_style(name, things, tmp_path):
     before = plt.rcParams["font.size"]
     drawings[name](plot, things).savefig(tmp_path / "figure.pdf")
     plt.close("all")
@@ -60,19 +60,19 @@ def test_correlation_functions_draw_on_a_given_figure(things):
     plt.close("all")
 
 
-def test_sweep_maps_hold_means_over_all_else(things):
+def test_sweep_maps_average_over_all_other_axes(things):
     sweep = things["sweep"]
     twice = ts.SweepResults({name: np.concatenate([column, column[:-1]])
                              for name, column in sweep.columns.items()})
     twice.columns["linear_mde_m"][12:] *= 4
     axis = plot.sweep_map(twice, "light.peak_factor", "signal_e_per_s").axes[1]
     mean_mm = np.ma.getdata(axis.images[0].get_array())
-    assert mean_mm.shape == (3, 2) and np.isnan(mean_mm[2, 1])  # one of two is not finished
+    assert mean_mm.shape == (3, 2) and np.isnan(mean_mm[2, 1])  # one of two items is unfinished
     assert mean_mm[0, 0] == pytest.approx(1e3 * 2 * 1e3 / 5e3)
     plt.close("all")
 
 
-def test_figures_refuse_what_they_cannot_draw(things):
+def test_figures_reject_unsupported_input(things):
     for of in (plot, figures):
         with pytest.raises(ValueError, match="kind: got str 'mean'; needs one of linear, circular"):
             of.depth_error_map(things["reports"], kind="mean")
@@ -87,7 +87,7 @@ def test_figures_refuse_what_they_cannot_draw(things):
             of.depth_maps(np.ones(3))
 
 
-def test_maps_of_errors_take_the_kind_that_the_camera_asks_for_and_show_standard_errors(things):
+def test_error_maps_use_the_cameras_error_kind_and_show_standard_errors(things):
     report = ts.evaluate("square-k4", things["camera"].replace(operating={"error": "circular"}),
                          trials=20)
     for kind, errors_m in (("circular", report.circular_se_m), ("linear", report.linear_se_m)):
@@ -105,10 +105,10 @@ def test_maps_of_errors_take_the_kind_that_the_camera_asks_for_and_show_standard
 
 
 def test_binary_waveforms_are_drawn_by_their_switching_times(things):
-    # 7 edges per period do not fall onto cells: means over cells would have shoulders.
+    # The 7 edges per period are not on cell borders; averaging over cells would blur them.
     on = [[0.0, 0.123456], [0.2, 0.41], [0.5003, 0.77]]
     light, gate = ts.Waveform.binary(on, 1.5), ts.Waveform.binary(on)
-    # What goes on beyond the end of the period begins it.
+    # The part beyond the end of the period wraps around to its beginning.
     late = plot.waveforms("hamiltonian-k3", things["camera"]).axes[7].patches[0].get_data()
     np.testing.assert_allclose(late.values, [0, 1, 0, 1, 0])
     np.testing.assert_allclose(late.edges, [0, 0, 1 / 6, 2 / 3, 1, 1], atol=1e-9)
@@ -124,7 +124,7 @@ def test_binary_waveforms_are_drawn_by_their_switching_times(things):
     plt.close("all")
 
 
-def test_differences_of_depths_have_a_diverging_scale(things):
+def test_depth_differences_have_a_diverging_scale(things):
     depth_m = things["scene"].depth_m
     difference_m = depth_m - np.nanmean(depth_m)
     for shown, label, map_name in ((depth_m, "depth", "viridis"),

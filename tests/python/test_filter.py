@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements of the same depth may be added: what the filter gives is what decoders take."""
+"""Filtered frames are accepted by decoders."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def raw(camera):
                       ambient_e_per_s=1e4, seed=5, frames=3)
 
 
-def test_filtered_numbers_are_decoded_with_their_noise(camera, raw):
+def test_filtered_values_are_decoded_with_their_noise(camera, raw):
     decoder = ts.Decoder(code, camera)
     numbers, averaged = ts.Filter(code, camera).apply(raw[0])
     assert (numbers.shape, numbers.dtype) == (raw[0].shape, np.float32)
@@ -47,7 +47,7 @@ def test_stacks_and_layouts_are_filtered_frame_by_frame(camera, raw):
     assert decoded.depth_m.shape == (3, 30, 40)
 
 
-def test_options_take_the_place_of_a_strength_s(camera):
+def test_options_override_a_strength(camera):
     light = ts.Filter(code, camera, strength="light").options
     assert (light["windows"], light["slope_rounds"]) == (1, 0)
     changed = ts.Filter(code, camera, strength="light", options={"slope_rounds": 1}).options
@@ -58,7 +58,7 @@ def test_options_take_the_place_of_a_strength_s(camera):
     (np.ones((40, 30)), r"averaged: got shape \(40, 30\); needs shape \(30, 40\)"),
     (np.zeros((30, 40)), "averaged: got 0; needs finite numbers > 0"),
 ])
-def test_counts_that_cannot_be_are_refused(camera, raw, averaged, words):
+def test_rejects_invalid_counts(camera, raw, averaged, words):
     with pytest.raises(ValueError, match=words):
         ts.Decoder(code, camera).decode(raw[0], averaged=averaged)
 
@@ -68,7 +68,7 @@ def test_filtering_can_be_stopped(camera, raw):
         ts.Filter(code, camera).apply(raw, progress=lambda share, step: False)
 
 
-def test_frames_go_through_a_time_filter_one_by_one_or_as_a_stack(camera, raw):
+def test_time_filter_accepts_single_frames_and_stacks(camera, raw):
     filter = ts.TimeFilter(code, camera)
     numbers, averaged = filter.add(raw)
     assert (numbers.shape, averaged.shape) == (raw.shape, raw.shape[:3])
@@ -83,7 +83,7 @@ def test_frames_go_through_a_time_filter_one_by_one_or_as_a_stack(camera, raw):
         filter.add(raw[0, :, :20])
 
 
-def test_looking_ahead_gives_the_last_frames_at_the_end(camera, raw):
+def test_look_ahead_returns_the_last_frames_at_the_end(camera, raw):
     filter = ts.TimeFilter(code, camera, look_ahead=2)
     first = filter.add(raw[:2])
     assert (first[0].shape, first[1].shape) == ((0, 0, 0, 4), (0, 0, 0))

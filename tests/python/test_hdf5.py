@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What h5py writes is read as NumPy's own files are."""
+"""HDF5 files written by h5py are read like NumPy files."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ h5py = pytest.importorskip("h5py")
 @pytest.mark.parametrize("options", [
     {}, {"chunks": True, "compression": "gzip", "shuffle": True},
     {"chunks": (1, 3, 2, 4)}, {"fletcher32": True}])
-def test_frames_are_those_of_the_array(tmp_path, kind, options):
+def test_frames_equal_the_array(tmp_path, kind, options):
     raw = np.arange(2 * 6 * 5 * 4).reshape(2, 6, 5, 4).astype(kind)
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file.create_dataset("camera/quads", data=raw, **options)
@@ -42,7 +42,7 @@ def test_recordings_decode_to_the_same_bytes(tmp_path):
             decoder.decode_recording(tmp_path / name, tmp_path / "none.npy", stack=True)
 
 
-def test_half_precision_decodes_as_the_same_numbers_in_single_precision(tmp_path):
+def test_half_precision_decodes_like_single_precision(tmp_path):
     halves = np.linspace(-3e4, 3e4, 4 * 4 * 4).reshape(4, 4, 4).astype(np.float16)
     halves[0, 0] = [np.float16(6e-8), np.inf, -np.inf, np.nan]
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -54,7 +54,7 @@ def test_half_precision_decodes_as_the_same_numbers_in_single_precision(tmp_path
         np.testing.assert_array_equal(read.reshape(halves.shape), halves.astype(np.float32))
 
 
-def test_types_that_are_no_numbers_are_not_taken(tmp_path):
+def test_rejects_non_numeric_types(tmp_path):
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["mask"] = np.zeros((4, 4, 4), bool)
         file["complex"] = np.zeros((4, 4, 4), np.complex64)

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Uploads through PyVISA to simulated generators on the loopback, with faults and hostile answers."""
+"""Uploads through PyVISA to simulated generators on the loopback interface, with faults and hostile
+answers."""
 
 import random
 import re
@@ -38,13 +39,13 @@ def upload(address, timeout_s=5.0, progress=None, camera=TARGET[1], **options):
 
 
 def sent_points(script, channel):
-    """The bytes of the table that a channel of a script plays."""
+    """Returns the bytes of the table of a script's channel."""
     (data,) = [s.data for s in script.steps if s.what == f"load {channel.plays}"]
     return data[2 + int(data[1:2]):] if data[:1] == b"#" else data
 
 
 def plays(simulated, report, script, output_on):
-    """Whether a simulated generator plays what was requested."""
+    """Returns whether a simulated generator outputs the requested waveforms."""
     for channel in report.channels:
         n = channel.channel
         keys = {"siglent": ("C{}:BSWV AMP", "C{}:BSWV OFST", "C{}:BSWV FRQ", "C{}:OUTP LOAD"),
@@ -58,12 +59,13 @@ def plays(simulated, report, script, output_on):
             return False
         if simulated.is_on(n) != output_on or simulated.played(n) != sent_points(script, channel):
             return False
-    return simulated.phases_locked or simulated.family != "siglent"  # nothing else confirms it
+    return simulated.phases_locked or simulated.family != "siglent"  # other families do not confirm
+                                                                     # it
 
 
 @pytest.mark.parametrize("output_on", [False, True])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_every_family_plays_what_was_sent(family, output_on):
+def test_every_family_outputs_what_was_sent(family, output_on):
     fractions = []
     options = {"output_on": output_on, "exposure": 2, "all": family != "tektronix"}
     with generator(family) as simulated:
@@ -82,7 +84,7 @@ def test_every_family_plays_what_was_sent(family, output_on):
     assert len(report.steps) == len(script.steps)
 
 
-def test_a_siglent_takes_three_headers_and_its_own_clock():
+def test_siglent_accepts_three_headers_and_its_own_clock():
     for header in ("length", "plain", "minimal"):
         with generator("siglent") as simulated:
             report = upload(simulated.address, wave_header=header)
@@ -98,7 +100,7 @@ def test_a_siglent_takes_three_headers_and_its_own_clock():
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_points_that_are_not_read_back_are_unverified(family):
+def test_points_without_read_back_are_unverified(family):
     with generator(family) as simulated:
         report = upload(simulated.address, read_back=False)
     assert not report.verified and report.message.startswith("unverified")
@@ -107,7 +109,7 @@ def test_points_that_are_not_read_back_are_unverified(family):
 
 
 def outcome(simulated, script, output_on, upload_to_it):
-    """"failed", or "verified", and then the simulated generator plays what was requested."""
+    """Returns "failed", or "verified" if the generator then outputs the requested waveforms."""
     fault = simulated.family, simulated.fault, simulated.fault_message, simulated.detail
     with simulated:
         try:
@@ -120,7 +122,7 @@ def outcome(simulated, script, output_on, upload_to_it):
 
 
 def random_faults(family, faults, count, upload_to):
-    """The outcomes of uploads with one random fault each."""
+    """Returns the outcomes of uploads with one random fault each."""
     choice = random.Random(4)
     scripts = [instruments.upload_script(*TARGET, MODELS[family], output_on=on, **QUICK)
                for on in (False, True)]
@@ -135,14 +137,15 @@ def random_faults(family, faults, count, upload_to):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_random_faults_never_leave_a_wrong_waveform_that_is_verified(family):
+def test_random_faults_never_verify_a_wrong_waveform(family):
     faults = FAULTS[FAMILIES.index(family)::len(FAMILIES)]
     random_faults(family, faults, len(faults), lambda faulty, on: upload(
         faulty.address, timeout_s=0.1, output_on=on))
 
 
 class MemorySession(instruments._Session):
-    """A connection to a simulated generator without network: what is not there at once never is."""
+    """A connection to a simulated generator without network; answers arrive immediately or never.
+    """
 
     simulated = None
 
@@ -180,7 +183,7 @@ def test_300_random_faults_without_network(family, monkeypatch):
 @pytest.mark.parametrize("fault", ["corrupts_point", "other_value", "answers_garbage",
                                    "swallows_answer", "extra_line"])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_after_a_fault_outputs_are_off(family, fault):
+def test_outputs_are_off_after_a_fault(family, fault):
     with generator(family, fault, 8, 77) as simulated:
         with pytest.raises(OSError):
             upload(simulated.address, timeout_s=0.2, output_on=True)
@@ -188,7 +191,7 @@ def test_after_a_fault_outputs_are_off(family, fault):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_an_upload_that_is_stopped_leaves_outputs_off(family):
+def test_a_stopped_upload_leaves_outputs_off(family):
     def interrupt(fraction, step):
         if fraction > 0.5:
             raise KeyboardInterrupt
@@ -201,7 +204,7 @@ def test_an_upload_that_is_stopped_leaves_outputs_off(family):
         assert not simulated.is_on(1) and not simulated.is_on(2)
 
 
-def test_an_error_names_the_step_what_was_sent_and_what_was_received():
+def test_errors_report_the_step_and_both_messages():
     with generator("keysight", "other_value", 0, 1) as simulated:
         with pytest.raises(OSError, match=re.escape(
                 "check channel 1: sent 'OUTP1:LOAD?': channel 1 load_ohm: found "
@@ -218,7 +221,7 @@ def test_an_error_names_the_step_what_was_sent_and_what_was_received():
 
 
 class Hostile:
-    """An instrument that answers its first messages like a Tektronix and then as `attack` does."""
+    """An instrument that answers its first messages like a Tektronix and then like `attack`."""
 
     def __init__(self, attack, answered=0):
         self.attack, self.answered = attack, answered
@@ -281,7 +284,7 @@ ATTACKS = {
 
 @pytest.mark.parametrize("answered", [0, 1, 30])  # until *IDN?, *CLS, reading points back
 @pytest.mark.parametrize("attack", ATTACKS)
-def test_hostile_answers_neither_hang_nor_fill_memory(attack, answered):
+def test_hostile_answers_cause_no_hang_and_bounded_memory(attack, answered):
     with Hostile(ATTACKS[attack], answered) as address:
         tracemalloc.start()
         start = time.monotonic()
@@ -301,7 +304,7 @@ def test_an_instrument_that_accepts_no_data_does_not_block():
         assert time.monotonic() - start < 20
 
 
-def test_other_instruments_and_absent_ones_are_refused():
+def test_rejects_other_and_absent_instruments():
     with SimulatedGenerator("keysight", "34465A") as simulated:
         with pytest.raises(OSError, match="found the instrument 34465A of Keysight"):
             upload(simulated.address)
@@ -333,7 +336,7 @@ def test_addresses_become_visa_resource_names():
             name(bad)
 
 
-def test_the_script_of_an_upload_is_that_of_the_command(cli):
+def test_upload_script_equals_the_command(cli):
     more = {"exposure": 2, "tables": {"samples": 12, "low_v": 0, "high_v": 2}}
     options = ["--exposure", "2", "--samples", "12", "--volts", "0,2"]
     for model in ("SDG2042X", "33522", "AFG3252"):
@@ -348,7 +351,7 @@ def test_the_script_of_an_upload_is_that_of_the_command(cli):
     assert [len(channel.stored) for channel in whole.channels] == [3, 3]
 
 
-def test_without_pyvisa_uploads_say_what_to_install():
+def test_missing_pyvisa_is_reported_with_its_package():
     for hidden in ("pyvisa", "pyvisa_py"):
         code = (f"import sys; sys.modules['{hidden}'] = None\n"
                 "from tofsmith import instruments\n"
@@ -370,7 +373,7 @@ refusals = [
 
 
 @pytest.mark.parametrize("options, message", refusals, ids=[r[1][:30] for r in refusals])
-def test_bad_options_are_refused_by_name_before_connecting(options, message):
+def test_rejects_bad_options_by_name_before_connecting(options, message):
     options = {"model": "33522"} | options
     kind = TypeError if "exposre" in options else ValueError
     with pytest.raises(kind, match=re.escape(message)):
@@ -379,7 +382,7 @@ def test_bad_options_are_refused_by_name_before_connecting(options, message):
         instruments.upload("square-k4", "paper-10f0", "127.0.0.1:1", **options)
 
 
-def test_bad_arguments_are_refused_by_name():
+def test_rejects_bad_arguments_by_name():
     for arguments, message in (({"address": "http://x"}, "tcp://host:port"),
                                ({"address": "x", "timeout_s": 0}, "timeout_s: got 0; needs a number")):
         with pytest.raises(ValueError, match=re.escape(message)):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The package says what the command line and the formulas say."""
+"""The package gives the same results as the command line and as formulas."""
 
 import json
 import pickle
@@ -19,7 +19,7 @@ def run(cli, *arguments):
     return done.stdout
 
 
-def test_cameras_come_from_names_files_and_keywords_alike(tmp_path):
+def test_cameras_are_equal_from_names_files_and_keywords(tmp_path):
     by_name = ts.Camera("paper-10f0", light={"peak_factor": 5}, samples=120)
     file = tmp_path / "mine.toml"
     file.write_text(by_name.to_toml())
@@ -38,7 +38,7 @@ def test_every_key_of_a_camera_file_is_an_attribute():
              "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
         *path, last = key.split(".")
-        if key == "lens.calibration":  # a file in place of the other keys
+        if key == "lens.calibration":  # a file that replaces the other keys
             continue
         owner = parts[path[-1]] if path else ts.Camera
         known = getattr(owner, "__dataclass_fields__", vars(owner))
@@ -68,7 +68,7 @@ def test_a_lens_is_a_pinhole_and_a_blur(camera):
     assert camera.replace(lens=pinhole).lens == pinhole and camera.replace(lens=pinhole).blur is None
 
 
-def test_staged_captures_are_those_of_the_command_line(cli, tmp_path):
+def test_staged_captures_equal_the_command(cli, tmp_path):
     raw, truth = tmp_path / "raw.npy", tmp_path / "truth.npy"
     near, far = tmp_path / "near.npy", tmp_path / "far.npy"
     camera = ts.Camera("paper-10f0", exposure_s=8e-3, sensor={"readout_gap_s": 1e-3},
@@ -91,14 +91,14 @@ def test_staged_captures_are_those_of_the_command_line(cli, tmp_path):
         still, ts.capture(ts.built_in_scene("ball"), "hamiltonian-k4", "paper-10f0", seed=2))
 
 
-def test_measured_impulse_responses_are_keywords_too():
+def test_measured_impulse_responses_are_keywords():
     samples = np.array([1.0, 2.0, 1.0])
     camera = ts.Camera(fundamental_frequency_hz=15e6, light={
         "impulse_response": {"kind": "file", "samples": samples, "time_step_s": 1e-9}})
     assert camera.light.impulse_response.samples == (1.0, 2.0, 1.0)
 
 
-def test_codes_survive_arrays_files_and_pickles(camera, tmp_path):
+def test_codes_are_preserved_by_arrays_files_and_pickles(camera, tmp_path):
     code = ts.build_family("hamiltonian-k4", camera)
     assert (code.exposures, code.taps, code.measurements, code.samples) == (4, 1, 4, 120)
     again = ts.CodeSet.from_arrays(code.modulation, code.demodulation, name=code.name)
@@ -121,7 +121,7 @@ def test_codes_survive_arrays_files_and_pickles(camera, tmp_path):
     assert np.allclose(cosines.cell_averages(1000), expected, atol=1e-5)
 
 
-def test_rows_are_a_code_and_have_bounds():
+def test_rows_are_a_code_with_bounds():
     camera = ts.Camera(fundamental_frequency_hz=5e6, exposure_s=1, samples=60,
                        sensor={"readout": "rows", "read_noise_e": 3},
                        light={"impulse_response": {"kind": "gaussian", "cutoff_hz": 30e6}})
@@ -157,7 +157,7 @@ def test_models_and_bounds_have_the_shapes_of_their_arguments(camera):
 
 
 def layouts(raw):
-    """The same frame in other types and layouts."""
+    """Returns the same frame in other types and layouts."""
     planar = np.ascontiguousarray(np.moveaxis(raw, -1, 0))
     padded = np.zeros((raw.shape[0], raw.shape[1] + 3, 2 * raw.shape[2]), np.float32)
     padded[:, 1:-2, ::2] = raw
@@ -216,14 +216,14 @@ def test_every_method_recovers_depth(method, code):
     assert (image.returns is not None) == (method in ("two-return", "tail"))
 
 
-def test_status_values_are_those_of_the_library():
+def test_status_values_equal_those_of_the_library():
     from tofsmith import _tofsmith
 
     assert _tofsmith.pixel_statuses() == {s.name: s.value for s in ts.PixelStatus}
     assert _tofsmith.return_statuses() == {s.name: s.value for s in ts.ReturnStatus}
 
 
-def test_design_keeps_baselines_and_reports_itself(camera):
+def test_design_keeps_baselines_and_reports_results(camera):
     quick = {"random_starts": 2, "max_iterations": 2, "refined": 2, "structured_starts": False}
     later = {"ratio": [0.2, 0.4], "delay_m": [0.5, 3], "weight": 0.2}
     meets = camera.replace(operating={"multipath": later})
@@ -240,7 +240,7 @@ def test_design_keeps_baselines_and_reports_itself(camera):
     baseline = result["hamiltonian-k3"]
     assert baseline.error.trials == 1000
     assert baseline.multipath.single_path_linear_m[0] > baseline.error.linear.geometric_mean_m
-    assert baseline.multipath.two_return_linear_m is None  # three means cannot tell them
+    assert baseline.multipath.two_return_linear_m is None  # three-step codes cannot separate them
 
 
 def test_sweeps_run_resume_and_read_exports(cli, tmp_path):
@@ -278,7 +278,7 @@ def test_files_of_depth_and_points(tmp_path):
     assert np.array_equal(ts.read_raw(tmp_path / "raw.npz", measurements=4), raw[None])
 
 
-def test_import_is_lean():
+def test_import_loads_few_modules():
     said = subprocess.run(
         [sys.executable, "-c", "import tofsmith.plot, sys; print('matplotlib' in sys.modules)"],
         capture_output=True, text=True)

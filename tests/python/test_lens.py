@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Lenses that distort: OpenCV's own numbers, and what is seen through them."""
+"""Lens distortion, compared with OpenCV."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def lens_of(model, coefficients):
 
 
 @pytest.mark.parametrize("model, coefficients", LENSES)
-def test_opencv_images_the_ray_of_a_pixel_at_that_pixel(model, coefficients):
+def test_opencv_projects_the_ray_of_a_pixel_to_that_pixel(model, coefficients):
     cv2 = pytest.importorskip("cv2", reason="OpenCV, the oracle, is missing (python3-opencv)")
     points = ts.points_m(np.ones((240, 320)), lens_of(model, coefficients))
     matrix = np.array([[PINHOLE["fx_px"], 0, PINHOLE["cx_px"]],
@@ -32,10 +32,10 @@ def test_opencv_images_the_ray_of_a_pixel_at_that_pixel(model, coefficients):
                     np.array(coefficients))
     row, column = np.mgrid[:240, :320]
     error = np.abs(at.reshape(240, 320, 2) - np.stack([column, row], axis=-1))
-    assert error.max() <= 1e-4  # of points in float32; a hundredth of a pixel is asked for
+    assert error.max() <= 1e-4  # for points in float32; the requirement is 0.01 pixels
 
 
-def test_calibrations_that_opencv_writes_are_read(tmp_path):
+def test_reads_calibrations_written_by_opencv(tmp_path):
     cv2 = pytest.importorskip("cv2", reason="OpenCV, which writes them, is missing")
     matrix = np.array([[220.0, 0, 158.0], [0, 222.0, 121.5], [0, 0, 1]])
     for name in ("lens.yml", "lens.yaml"):
@@ -50,7 +50,7 @@ def test_calibrations_that_opencv_writes_are_read(tmp_path):
                                distortion=tuple(LENSES[1][1]), width_px=320, height_px=240)
 
 
-def test_undistorted_planes_are_opencvs_remap(tmp_path):
+def test_undistorted_planes_equal_opencv_remap(tmp_path):
     cv2 = pytest.importorskip("cv2", reason="OpenCV, the oracle, is missing (python3-opencv)")
     model, coefficients = LENSES[1]
     raw = np.random.default_rng(2).poisson(500, (240, 320, 4)).astype(np.float32)
@@ -64,7 +64,7 @@ def test_undistorted_planes_are_opencvs_remap(tmp_path):
                                        cv2.CV_32FC1)
     at_x, at_y = np.rint(x).astype(int), np.rint(y).astype(int)
     seen = (at_x >= 0) & (at_x < 320) & (at_y >= 0) & (at_y < 240)
-    # Halfway between two pixels either is the nearest.
+    # Half-way between two pixels, either may be the nearest.
     clear = (np.abs(x - at_x) < 0.49) & (np.abs(y - at_y) < 0.49)
     expected = np.full((240, 320), np.nan, np.float32)
     expected[seen] = np.load(tmp_path / "z.npy")[at_y[seen], at_x[seen]]
@@ -79,7 +79,7 @@ def test_undistorted_planes_are_opencvs_remap(tmp_path):
     assert np.array_equal(np.load(tmp_path / "s.npy")[0], planes["depth"], equal_nan=True)
 
 
-def test_rays_of_the_maker_stand_for_the_lens(tmp_path):
+def test_ray_tables_replace_the_lens_model(tmp_path):
     lens = lens_of(*LENSES[0])
     rays = ts.points_m(np.ones((240, 320)), lens).astype(float)
     blind = 3 * rays
@@ -105,7 +105,7 @@ def test_rays_of_the_maker_stand_for_the_lens(tmp_path):
     assert np.allclose(found["depth"], truth, rtol=1e-6, equal_nan=True)
 
 
-def test_lenses_that_do_not_fit_are_refused(tmp_path):
+def test_rejects_lenses_that_do_not_fit(tmp_path):
     with pytest.raises(ValueError, match="image size = 100 x 100; must be 240 x 320"):
         ts.points_m(np.ones((100, 100)), ts.Lens(**PINHOLE, width_px=320, height_px=240))
     ts.write_raw(tmp_path / "raw.npy", np.ones((240, 320, 4), np.float32))

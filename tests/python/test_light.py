@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Light that comes back twice, evaluations to an accuracy, and what hardware makes of a code: as on
-the command line."""
+"""Multipath, evaluations to a target accuracy and the losses of generators equal the command line.
+"""
 
 import hashlib
 import json
@@ -28,7 +28,7 @@ def small():
                      operating={"signal_e_per_s": [1e5], "ambient_e_per_s": [1e3]})
 
 
-def test_trials_go_on_until_the_target(small, cli):
+def test_trials_continue_until_the_target(small, cli):
     report = ts.evaluate("hamiltonian-k4", small, trials=100, target_standard_error=0.05)
     assert report.points_short_of_target == 0 and report.point_trials[0] > 100
     assert report.linear_se_m[0] <= 0.05 * report.linear_mde_m[0]
@@ -43,7 +43,7 @@ def test_trials_go_on_until_the_target(small, cli):
     assert few.points_short_of_target == 1 and few.trials <= 200
 
 
-def test_captures_of_multipath_are_those_of_the_command_line(cli, tmp_path):
+def test_multipath_captures_equal_the_command(cli, tmp_path):
     file = tmp_path / "raw.npy"
     scene = ts.built_in_scene("wall", 8, 6)
     light = {"signal_e_per_s": 1e6, "ambient_e_per_s": 1e3}
@@ -74,7 +74,7 @@ def test_captures_of_multipath_are_those_of_the_command_line(cli, tmp_path):
                        atol=5 * np.sqrt(direct.max()))
 
 
-def test_multipath_maps_are_those_of_the_bound(small):
+def test_multipath_maps_are_consistent_with_the_law_and_the_bound(small):
     report = ts.multipath_error(code, small, delay_m=[0.8, 2], ratio=[0.1, 0.3, 0.6], tail_m=[0.5],
                                 signal_e_per_s=[1e6], ambient_e_per_s=1e3, trials=40)
     assert report.why_no_two_returns == "" and len(report.maps) == 1
@@ -91,7 +91,7 @@ def test_multipath_maps_are_those_of_the_bound(small):
     assert bound.tail_sigma_m(1e6, 1e3, ts.ExponentialTail(0.5, 0.3)).shape == (60,)
 
 
-def test_generators_cost_what_the_command_line_says(cli, tmp_path):
+def test_generator_losses_equal_the_command(cli, tmp_path):
     camera = ts.Camera("prototype", operating={"signal_e_per_s": [1e5], "ambient_e_per_s": [1e3]})
     folder = tmp_path / "bench"
     written = ts.export_waveforms("hamiltonian-k3", camera, folder, "keysight-arb", samples=100)
@@ -113,7 +113,7 @@ def test_generators_cost_what_the_command_line_says(cli, tmp_path):
     assert "keysight-arb" in [f.name for f in ts.waveform_formats()]
 
 
-def test_options_reach_evaluations_and_decoders(small):
+def test_options_are_passed_to_evaluations_and_decoders(small):
     every = ts.evaluate("hamiltonian-k4", small, trials=200, draw_every_measurement=True)
     assert every.circular_mde_m[0] != ts.evaluate("hamiltonian-k4", small, trials=200).circular_mde_m[0]
     error_m, se_m = ts.table_depth_error_m(ts.DecodingTable.of_code("hamiltonian-k4", small), 1e5, 1e3)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels that see two surfaces are treated in memory as in recordings."""
+"""Mixed pixels are handled equally in memory and in recordings."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ NEAR_M, FAR_M, EDGE = 3.0, 5.0, 16
 
 @pytest.fixture(scope="module")
 def raw():
-    """Near on the left, far on the right, and half of both in one column."""
+    """Near surface on the left, far on the right, and a mixed column between them."""
     def seen(depth_m):
         scene = np.full((24, 33), depth_m, np.float32)
         return ts.capture(scene, code, camera, signal_e_per_s=1e5, ambient_e_per_s=1e4, falloff=False)
@@ -24,7 +24,7 @@ def raw():
 
 
 @pytest.mark.parametrize("mixed", ["label", "snap", "drop", None])
-def test_filtered_frames_are_decoded_as_recordings_are(raw, mixed, tmp_path):
+def test_filtered_frames_decode_like_recordings(raw, mixed, tmp_path):
     decoder = ts.Decoder(code, camera)
     np.save(tmp_path / "raw.npy", raw)
     decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "depth.npz", filter="light",
@@ -37,6 +37,6 @@ def test_filtered_frames_are_decoded_as_recordings_are(raw, mixed, tmp_path):
     assert (found.status == ts.PixelStatus.mixed).any() == (mixed is not None)
 
 
-def test_another_word_is_refused(raw):
+def test_rejects_unknown_names(raw):
     with pytest.raises(ValueError, match="mixed: .*label"):
         ts.Decoder(code, camera).decode(raw, mixed="near")

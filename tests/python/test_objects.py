@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Objects behave as users of NumPy and notebooks expect."""
+"""Objects behave as expected by users of NumPy and notebooks."""
 
 import copy
 import html
@@ -17,7 +17,7 @@ raw = np.random.default_rng(2).poisson(900, (6, 8, 4)).astype(np.uint16)
 
 
 class Tensor:
-    """What torch, xarray and others have in common."""
+    """The common interface of torch, xarray and similar arrays."""
 
     def __init__(self, values):
         self.values = values
@@ -31,7 +31,7 @@ def decoder():
     return ts.Decoder("hamiltonian-k4", "paper-10f0", min_confidence=0.3)
 
 
-def test_raw_numbers_may_be_what_numpy_makes_an_array_of(decoder):
+def test_raw_accepts_anything_numpy_converts_to_an_array(decoder):
     truth = decoder.decode(raw)
     assert decoder.decode(Tensor(raw)) == truth
     assert decoder.decode([Tensor(raw[..., k]) for k in range(4)]) == truth
@@ -45,7 +45,7 @@ def test_raw_numbers_may_be_what_numpy_makes_an_array_of(decoder):
     assert np.array_equal(masked.depth_m[kept], truth.depth_m[kept], equal_nan=True)
 
 
-def test_numbers_of_any_size_are_those_of_float32(decoder):
+def test_all_number_types_decode_like_float32(decoder):
     truth = decoder.decode(raw)
     for kind in (np.int16, np.int32, np.int64, np.uint32, np.float16, np.float32):
         assert decoder.decode(raw.astype(kind)) == truth, kind
@@ -53,7 +53,7 @@ def test_numbers_of_any_size_are_those_of_float32(decoder):
         decoder.decode(raw > 900)
 
 
-def test_a_number_will_do_for_a_map_that_is_the_same_everywhere():
+def test_a_scalar_replaces_a_constant_map():
     depth_m = np.full((6, 8), 2.0, np.float32)
     maps = {name: np.full((6, 8), 0.5, np.float32) for name in ("albedo", "cosine", "ambient_scale")}
     numbers = ts.Scene(depth_m, albedo=0.5, cosine=0.5, ambient_scale=0.5)
@@ -64,7 +64,7 @@ def test_a_number_will_do_for_a_map_that_is_the_same_everywhere():
         ts.capture(ts.Scene(depth_m, albedo="half"), "hamiltonian-k4", "paper-10f0")
 
 
-def test_equal_is_what_holds_the_same(decoder):
+def test_objects_are_equal_if_their_contents_are(decoder):
     image, other = decoder.decode(raw), decoder.decode(raw)
     assert image == other
     other.depth_m[0, 0] += 1
@@ -102,7 +102,7 @@ def test_notebooks_without_matplotlib_get_the_repr(monkeypatch):
         assert value._repr_html_() == f"<code>{html.escape(repr(value))}</code>"
 
 
-def test_decoders_copy_and_pickle(decoder, tmp_path):
+def test_decoders_can_be_copied_and_pickled(decoder, tmp_path):
     assert copy.copy(decoder) is decoder
     assert copy.deepcopy({"decoder": decoder})["decoder"] is decoder
     camera = ts.Camera("paper-10f0", lens={"fx_px": 9.0, "fy_px": 9.0, "cx_px": 4.0, "cy_px": 3.0})
@@ -122,7 +122,7 @@ def test_decoders_copy_and_pickle(decoder, tmp_path):
     assert (tmp_path / "a.npy").read_bytes() == (tmp_path / "b.npy").read_bytes()
 
 
-def test_planes_have_either_name(decoder, tmp_path):
+def test_planes_accept_both_names(decoder, tmp_path):
     image = decoder.decode(raw, planes=["depth", "deviation"])
     assert list(image.planes()) == ["depth_m", "predicted_standard_deviation_m"]
     ts.write_raw(tmp_path / "raw.npy", raw)
@@ -131,13 +131,13 @@ def test_planes_have_either_name(decoder, tmp_path):
     assert done.outputs == ["depth", "signal"]
 
 
-def test_figures_are_there_without_an_import_of_their_own():
+def test_figure_modules_need_no_separate_import():
     lines = "import tofsmith; tofsmith.plot.waveforms; tofsmith.figures.waveforms; tofsmith.plots"
     done = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True)
     assert "module 'tofsmith' has no attribute 'plots'" in done.stderr.splitlines()[-1]
 
 
-def test_only_what_draws_is_listed():
+def test_only_plot_functions_are_listed():
     from tofsmith import plot
 
     assert dir(plot) == sorted(plot.__all__)
@@ -146,7 +146,7 @@ def test_only_what_draws_is_listed():
     assert drawing == set(plot.__all__)
 
 
-def test_the_atlas_lends_codes_where_nothing_is_searched():
+def test_the_atlas_provides_codes_without_a_search():
     entries = ts.atlas()
     assert entries
     for entry in entries:
@@ -160,7 +160,7 @@ def test_the_atlas_lends_codes_where_nothing_is_searched():
     assert {c.method for c in alone.candidates} == {"family"}
 
 
-def test_one_number_will_do_where_a_list_is_asked_for():
+def test_a_scalar_is_accepted_as_a_list():
     found = ts.design("paper-10f0", exposures=3, effort=0.01, trials=1000, method="factorize")
     designed = [c for c in found.candidates if c.method == "factorize"]
     assert designed and {c.code.exposures for c in designed} == {3}
@@ -190,13 +190,13 @@ def test_one_number_will_do_where_a_list_is_asked_for():
     (lambda: ts.design("paper-10f0", exposures=[2.5]), TypeError,
      "exposures: got list [2.5]; needs a list of whole numbers"),
 ])
-def test_what_is_meant_otherwise_is_told(call, error, text):
+def test_misspelt_arguments_are_reported(call, error, text):
     with pytest.raises(error) as caught:
         call()
     assert text in str(caught.value)
 
 
-def test_a_mixer_plays_weights_of_both_signs():
+def test_mixers_use_signed_weights():
     camera = ts.Camera("paper-10f0", sensor={"demodulation": "signed"})
     assert camera.sensor.demodulation == "signed"
     family = ts.build_family("hamiltonian-k4", camera)

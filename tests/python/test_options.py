@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Options have the names of the library's headers, none missing."""
+"""Option names match the C++ headers; none is missing."""
 
 import dataclasses
 import re
@@ -16,8 +16,8 @@ from tofsmith._decoded_planes import multipath_planes, plane_types, plane_words,
 headers = Path(__file__).resolve().parents[2] / "include" / "tofsmith"
 quick = {"trials": 1000, "method": "factorize"}
 
-#: Struct, header, a call that names the options it knows when it is given `unknown`, and the fields
-#: that are given in other ways.
+# #: Struct, header, a call that lists the options it supports when given `unknown`, and the fields
+# specified in other ways.
 structs = [
     ("FactorizeOptions", "design/factorize.hpp",
      lambda o: ts.design("paper-10f0", **quick, factorize=o), {"seed"}),
@@ -32,7 +32,7 @@ structs = [
     ("ReturnPrior", "decode/multipath_decoder.hpp",
      lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath={"prior": o}), set()),
 ]
-#: Struct, header, function or class whose keywords are its fields.
+# #: Struct, header, function or class whose keywords are its fields.
 keywords = [
     ("EvaluateOptions", "simulate/depth_error.hpp", ts.evaluate, set()),
     ("EvaluateOptions", "simulate/depth_error.hpp", ts.generator_loss, set()),
@@ -62,7 +62,7 @@ keywords = [
 
 
 def fields(struct, header):
-    """Names of the members of a struct without methods' names."""
+    """Returns the names of the data members of a struct."""
     text = re.sub(r"//.*", "", (headers / header).read_text())
     body = re.search(rf"\nstruct {struct} {{\n(.*?)\n}};", text, re.DOTALL).group(1)
     names = re.findall(r"^  [\w:<>*]+ (\w+)\s*(?:=[^;]*)?;", body, re.MULTILINE)
@@ -71,11 +71,11 @@ def fields(struct, header):
 
 
 @pytest.mark.parametrize("struct, header, call, elsewhere", structs, ids=[s[0] for s in structs])
-def test_every_option_can_be_given(struct, header, call, elsewhere):
+def test_every_option_is_accepted(struct, header, call, elsewhere):
     with pytest.raises(ValueError, match="the unknown name 'unknown'; needs one of ") as refused:
         call({"unknown": 1})
     known = re.search(r"needs one of ([\w, ]+)", str(refused.value)).group(1).split(", ")
-    # design() gives factorize the seed of all, unless it has one of its own.
+    # design() passes the common seed to factorize, unless that has one.
     assert set(known) == fields(struct, header) - elsewhere
 
 
@@ -92,7 +92,7 @@ uploads = ("UploadRequest", "waveforms/upload_script.hpp"), (
     "UploadSelection", "waveforms/upload_script.hpp")
 
 
-def test_every_option_of_an_upload_can_be_given():
+def test_every_option_of_an_upload_is_accepted():
     import inspect
 
     known = set.union(*(fields(*struct) for struct in uploads)) - {"channels"} | {"tables"}

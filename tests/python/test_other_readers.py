@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Files of OpenCV, Pillow and NumPy are read as these read them themselves, and they read ours."""
+"""OpenCV, Pillow and NumPy read the same values from our files, and we from theirs."""
 
 import io
 import itertools
 import os
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before cv2 is loaded
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is loaded
 
 import numpy as np
 import pytest
@@ -21,20 +21,20 @@ REC709 = np.array([0.2126, 0.7152, 0.0722])
 
 
 def albedo_of(tmp_path, image):
-    """What an image says, 0 .. 1, as albedo of a scene that is a plane."""
+    """Returns the values of an image, 0 to 1, as the albedo of a plane."""
     height, width = cv2.imread(str(image), cv2.IMREAD_UNCHANGED).shape[:2]
     np.save(tmp_path / "depth.npy", np.ones((height, width), np.float32))
     return ts.load_scene(tmp_path / "depth.npy", image=image, linear_image=True).albedo
 
 
 def luminance(rgb, full):
-    """Of grey values, or of red, green and blue; alpha is left out."""
+    """Returns the luminance of grey or RGB values; alpha is ignored."""
     share = np.asarray(rgb, np.float64) / full
     return share if share.ndim == 2 else share[..., :3] @ REC709
 
 
 @pytest.mark.parametrize("mode, channels", [("1", 0), ("L", 0), ("LA", 2), ("RGB", 3), ("RGBA", 4)])
-def test_png_of_8_bits_is_what_pillow_reads(tmp_path, mode, channels):
+def test_8_bit_png_equals_pillow(tmp_path, mode, channels):
     values = RANDOM.integers(0, 256, (5, 7, channels) if channels else (5, 7), np.uint8)
     image = pillow.fromarray(values) if mode != "1" else pillow.fromarray(values > 127)
     image.save(tmp_path / "a.png")
@@ -46,7 +46,7 @@ def test_png_of_8_bits_is_what_pillow_reads(tmp_path, mode, channels):
 
 
 @pytest.mark.parametrize("colours, transparent", [(2, None), (16, None), (256, 3)])
-def test_png_with_a_palette_is_what_pillow_reads(tmp_path, colours, transparent):
+def test_png_with_a_palette_equals_pillow(tmp_path, colours, transparent):
     image = pillow.fromarray(RANDOM.integers(0, colours, (5, 7), np.uint8), "P")
     image.putpalette(RANDOM.integers(0, 256, 3 * colours, np.uint8).tobytes())
     options = {} if transparent is None else {"transparency": transparent}
@@ -57,7 +57,7 @@ def test_png_with_a_palette_is_what_pillow_reads(tmp_path, colours, transparent)
 
 
 @pytest.mark.parametrize("channels", [1, 3, 4])
-def test_png_of_16_bits_is_what_opencv_writes(tmp_path, channels):
+def test_16_bit_png_equals_opencv(tmp_path, channels):
     values = RANDOM.integers(0, 65536, (5, 7, channels), np.uint16).squeeze()
     assert cv2.imwrite(str(tmp_path / "a.png"), values)
     rgb = values if channels == 1 else values[..., 2::-1]
@@ -65,7 +65,7 @@ def test_png_of_16_bits_is_what_opencv_writes(tmp_path, channels):
                                atol=2e-7)
 
 
-def test_depth_in_png_is_the_same_for_opencv_both_ways(tmp_path):
+def test_depth_in_png_is_exchanged_with_opencv(tmp_path):
     values = RANDOM.integers(1, 65536, (5, 7), np.uint16)
     assert cv2.imwrite(str(tmp_path / "a.png"), values)
     depth = ts.read_depth(tmp_path / "a.png")
@@ -74,13 +74,13 @@ def test_depth_in_png_is_the_same_for_opencv_both_ways(tmp_path):
     np.testing.assert_array_equal(cv2.imread(str(tmp_path / "b.png"), cv2.IMREAD_UNCHANGED), values)
 
 
-def test_opencv_reads_the_floats_we_write(tmp_path):
+def test_opencv_reads_our_floats(tmp_path):
     depth = RANDOM.normal(3, 1, (5, 7)).astype(np.float32)
     for name in ("a.pfm", "a.exr"):
         ts.write_depth(tmp_path / name, depth)
     content = (tmp_path / "a.exr").read_bytes()
     at = content.index(b"chlist\0") + 11
-    assert content[at:at + 2] == b"Z\0"  # for distance; OpenCV looks for Y and colours alone
+    assert content[at:at + 2] == b"Z\0"  # Z for distance; OpenCV supports Y and colours only
     (tmp_path / "a.exr").write_bytes(content[:at] + b"Y" + content[at + 1:])
     for name in ("a.pfm", "a.exr"):
         found = cv2.imread(str(tmp_path / name), cv2.IMREAD_UNCHANGED)
@@ -89,7 +89,7 @@ def test_opencv_reads_the_floats_we_write(tmp_path):
 
 @pytest.mark.parametrize("kind, compression", itertools.product(
     ["half", "float"], ["no", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"]))
-def test_exr_of_every_kind_is_what_opencv_reads(tmp_path, kind, compression):
+def test_exr_of_every_kind_equals_opencv(tmp_path, kind, compression):
     values = RANDOM.uniform(0.1, 1, (37, 41)).astype(np.float32)
     path = str(tmp_path / "a.exr")
     assert cv2.imwrite(path, values, [
@@ -105,7 +105,7 @@ def test_exr_of_every_kind_is_what_opencv_reads(tmp_path, kind, compression):
 
 
 @pytest.mark.parametrize("order", "<>")
-def test_pfm_of_either_byte_order_is_read(tmp_path, order):
+def test_pfm_of_both_byte_orders_is_read(tmp_path, order):
     values = RANDOM.uniform(0, 1, (5, 7, 3)).astype(np.float32)
     for name, kind, image in (("grey", "Pf", values[..., 0]), ("colour", "PF", values)):
         with open(tmp_path / f"{name}.pfm", "wb") as file:
@@ -119,7 +119,7 @@ def test_pfm_of_either_byte_order_is_read(tmp_path, order):
 
 
 def ply_of(vertices, triangles, form, number, count):
-    """A mesh as NumPy's records lay it out."""
+    """Returns the bytes of a mesh, laid out with NumPy records."""
     order = ">" if form == "binary_big_endian" else "<"
     names = {"f4": "float", "f8": "double", "u1": "uchar", "i4": "int", "u2": "ushort"}
     file = io.BytesIO()
@@ -138,7 +138,7 @@ def ply_of(vertices, triangles, form, number, count):
     return file.getvalue()
 
 
-def test_ply_of_every_form_is_the_same_mesh(tmp_path):
+def test_ply_of_every_format_gives_the_same_mesh(tmp_path):
     vertices = np.array([[-1, -1, 2], [1, -1, 2], [0, 1, 3], [0, 0, 1.5]], np.float32)
     triangles = np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     seen = []
@@ -155,13 +155,13 @@ def test_ply_of_every_form_is_the_same_mesh(tmp_path):
     (".tiff", {"compression": None}), (".tif", {"compression": "tiff_lzw"}),
     (".tiff", {"compression": "tiff_adobe_deflate"}), (".tiff", {"compression": "packbits"}),
     (".png", {})])
-def test_phase_images_of_pillow_decode_as_their_array(tmp_path, extension, options):
+def test_phase_images_of_pillow_decode_like_their_array(tmp_path, extension, options):
     decode_phases(tmp_path, extension,
                   lambda image, path: pillow.fromarray(image).save(path, **options))
 
 
 @pytest.mark.parametrize("extension", [".tiff", ".png", ".pgm"])
-def test_phase_images_of_opencv_decode_as_their_array(tmp_path, extension):
+def test_phase_images_of_opencv_decode_like_their_array(tmp_path, extension):
     decode_phases(tmp_path, extension, lambda image, path: cv2.imwrite(str(path), image))
 
 

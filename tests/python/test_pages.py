@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reports and the paper's figures are those of the command line."""
+"""Reports and figures of the paper are the same as from the command line."""
 
 import pickle
 import re
@@ -24,7 +24,7 @@ def small():
                      operating={"signal_e_per_s": [1e4, 1e5], "ambient_e_per_s": [1e3]})
 
 
-def test_an_evaluation_has_the_page_of_the_command(small, cli, tmp_path):
+def test_evaluation_page_equals_the_command(small, cli, tmp_path):
     small.write(tmp_path / "small.toml")
     camera = ts.Camera(tmp_path / "small.toml")
     codes = ["square-k4", "hamiltonian-k3"]
@@ -38,7 +38,7 @@ def test_an_evaluation_has_the_page_of_the_command(small, cli, tmp_path):
         ts.write_evaluation_report(tmp_path / "one.html", codes[0], camera, again)
 
 
-def test_a_design_is_written_as_the_command_writes_it(small, cli, tmp_path):
+def test_design_files_equal_the_command(small, cli, tmp_path):
     result = ts.design(small, method="factorize", exposures=[3], trials=1000, search_trials=100,
                        baselines=["sinusoid-k3"],
                        factorize={"random_starts": 0, "max_iterations": 3})
@@ -70,6 +70,6 @@ refusals = [
 
 
 @pytest.mark.parametrize("call, kind, message", refusals, ids=[r[2][:50] for r in refusals])
-def test_bad_input_is_refused_by_name(call, kind, message):
+def test_rejects_bad_input_by_name(call, kind, message):
     with pytest.raises(kind, match=re.escape(message)):
         call()

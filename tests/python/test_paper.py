@@ -20,7 +20,7 @@ from tofsmith import paper  # noqa: E402
 from tofsmith.paper.bench import Plane, Sphere, fit_without_outliers  # noqa: E402
 
 HOLDS, IN_PART = "holds", "holds in part"
-#: Verdicts in the order of each figure's findings. Those that few trials leave open are None.
+# #: Verdicts in the order of each figure's findings; None if few trials leave them undecided.
 VERDICTS = {
     "fig2": [HOLDS, HOLDS, HOLDS, IN_PART, HOLDS, HOLDS],
     "fig3": [HOLDS] * 5,
@@ -39,7 +39,7 @@ VERDICTS = {
 
 @pytest.fixture(scope="module")
 def output(tmp_path_factory):
-    """Figures share designed codes."""
+    """Output folder; figures share designed codes."""
     return tmp_path_factory.mktemp("paper")
 
 
@@ -75,12 +75,12 @@ def test_finished_figures_are_kept_unless_options_differ(tmp_path):
     paper.reproduce("fig5", tmp_path, fast=True, overwrite=True, on_item=note)
     assert kept == [False, True, False]
     assert (tmp_path / "fig5/response.pdf").read_bytes() == picture
-    (tmp_path / "fig5/findings.json").write_text("{")  # damaged: made again
+    (tmp_path / "fig5/findings.json").write_text("{")  # damaged, so it is created again
     paper.reproduce("fig5", tmp_path, fast=True, on_item=note)
     assert kept[-1] is False
 
 
-def test_pages_of_others_are_not_replaced(tmp_path):
+def test_foreign_pages_are_not_replaced(tmp_path):
     (tmp_path / "index.html").write_text("<html>mine</html>")
     with pytest.raises(OSError, match="index.html.*--force"):
         paper.reproduce("fig5", tmp_path)
@@ -88,7 +88,7 @@ def test_pages_of_others_are_not_replaced(tmp_path):
 
 
 def test_a_mesh_replaces_the_hand(tmp_path, output):
-    if (output / "codes").exists():  # of the figures above
+    if (output / "codes").exists():  # codes of previous figures
         shutil.copytree(output / "codes", tmp_path / "out/codes")
     corners = [(x, y, z) for x in (0, 7) for y in (0, 9) for z in (0, 2)]
     faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
@@ -100,7 +100,7 @@ def test_a_mesh_replaces_the_hand(tmp_path, output):
     assert "box.obj" in document["options"]
 
 
-def test_fits_leave_out_a_few_outliers():
+def test_fits_ignore_a_few_outliers():
     rng = np.random.default_rng(1)
     directions = rng.normal(size=(400, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
@@ -123,7 +123,7 @@ def test_fits_leave_out_a_few_outliers():
     (("fig99", "out"), "must be all or one of fig2"),
     (("fgi5", "out"), "did you mean fig5?"),
 ])
-def test_refuses_unknown_figures(arguments, said):
+def test_rejects_unknown_figures(arguments, said):
     with pytest.raises(paper.UsageError, match=said.replace("?", r"\?")):
         paper.reproduce(*arguments)
 
@@ -146,7 +146,7 @@ def test_the_command_runs_the_module(tmp_path):
     assert "fig5: Impulse responses and their band limits (finished before)" in again.stdout
 
 
-def test_the_command_refuses_as_others_do(tmp_path):
+def test_the_command_rejects_like_other_commands(tmp_path):
     for words, code, said in ((["fig99"], 2, "must be all or one of fig2"),
                               (["fig5", "--mesh", "cow.obj"], 2, "only fig7"),
                               (["fig7", "--mesh", "none.obj"], 1, "none.obj")):
@@ -155,16 +155,16 @@ def test_the_command_refuses_as_others_do(tmp_path):
         assert "Traceback" not in done.stderr
 
 
-def test_a_missing_matplotlib_is_named(tmp_path):
+def test_a_missing_matplotlib_is_reported(tmp_path):
     (tmp_path / "matplotlib.py").write_text("raise ImportError('hidden by a test')")
-    # The package of the build comes first on the path; matplotlib is found before the system's.
+    # The package of the build comes first on the path, followed by a fake matplotlib.
     done = command(tmp_path, "fig5", python_path=str(tmp_path))
     assert done.returncode == 1
     assert "apt install python3-matplotlib" in done.stderr and "Traceback" not in done.stderr
 
 
-def test_a_missing_package_is_named(tmp_path):
-    # A copy of the program elsewhere, and a Python without the package.
+def test_a_missing_package_is_reported(tmp_path):
+    # A copy of the program in another place, with a Python that lacks the package.
     program = tmp_path / "bin" / "tofsmith"
     program.parent.mkdir()
     if "TOFSMITH_CLI" not in os.environ:
@@ -178,7 +178,7 @@ def test_a_missing_package_is_named(tmp_path):
     assert done.returncode == 1 and "apt install python3-tofsmith" in done.stderr, done.stderr
 
 
-def test_a_missing_python_is_named(tmp_path):
+def test_a_missing_python_is_reported(tmp_path):
     done = command(tmp_path, "fig5", TOFSMITH_PYTHON=str(tmp_path / "no-python"))
     assert done.returncode == 1 and "no-python" in done.stderr
 

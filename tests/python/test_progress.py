@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Long work reports, can be stopped, and lets other threads run."""
+"""Long computations report progress, can be stopped and do not block other threads."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ import pytest
 
 import tofsmith as ts
 
-long_work = {"trials": 2_000_000_000, "seed": 1}  # many minutes, unless it is stopped
+long_work = {"trials": 2_000_000_000, "seed": 1}  # runs for many minutes unless stopped
 
 
 def test_progress_rises_to_the_end(camera):
@@ -26,7 +26,7 @@ def test_false_stops(camera):
         ts.evaluate("square-k4", camera, progress=lambda f, step: False, **long_work)
 
 
-def test_what_the_callback_raises_passes_on(camera):
+def test_exceptions_of_the_callback_propagate(camera):
     with pytest.raises(ZeroDivisionError):
         ts.evaluate("square-k4", camera, progress=lambda f, step: 1 // 0, **long_work)
 
@@ -51,7 +51,7 @@ def test_other_threads_run_meanwhile(camera):
     thread = threading.Thread(target=work)
     thread.start()
     thread.join(0.2)
-    assert thread.is_alive()  # and yet we are here
+    assert thread.is_alive()  # still computing
     stop.set()
     thread.join()
     assert stopped

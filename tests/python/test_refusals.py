@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bad input is refused by name: what was given, what is needed."""
+"""Errors name the invalid argument, its value and the requirement."""
 
 import re
 from functools import cache
@@ -144,12 +144,12 @@ refusals = [
 
 
 @pytest.mark.parametrize("call, kind, message", refusals, ids=[r[2][:50] for r in refusals])
-def test_bad_input_is_refused_by_name(call, kind, message):
+def test_rejects_bad_input_by_name(call, kind, message):
     with pytest.raises(kind, match=re.escape(message)):
         call()
 
 
-def test_errors_keep_what_they_speak_of():
+def test_errors_store_their_details():
     with pytest.raises(ValueError) as refused:
         ts.build_family("square-k1", "paper-10f0")
     assert refused.value.field == "code"
@@ -160,7 +160,7 @@ def test_errors_keep_what_they_speak_of():
     assert str(missing.value).startswith(missing.value.place)
 
 
-def test_what_cannot_be_played_is_said_or_raised():
+def test_unsuitable_codes_are_reported_or_raise():
     code = ts.build_family("hamiltonian-k3", "paper-10f0")
     assert ts.why_not_playable(code, "paper-10f0") is None
     two_taps = ts.Camera("paper-10f0", sensor={"taps": 2})
@@ -169,7 +169,7 @@ def test_what_cannot_be_played_is_said_or_raised():
     assert ts.why_not_playable(code, two_taps) == str(refused.value)
 
 
-def test_existing_files_stay(tmp_path):
+def test_existing_files_are_kept(tmp_path):
     path = tmp_path / "depth.npy"
     ts.write_depth(path, depth)
     with pytest.raises(OSError, match="exists already; .* overwrite=True"):

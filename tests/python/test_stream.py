@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Frames that come one after another decode as files of them do."""
+"""Frames of a stream decode like frames of files."""
 
 import io
 import os
@@ -29,7 +29,7 @@ def layout(tmp_path):
 
 
 class Read:
-    """A stream that only reads, and in pieces."""
+    """A stream that supports only read() and returns partial data."""
 
     def __init__(self, data):
         self.data = io.BytesIO(data)
@@ -38,7 +38,7 @@ class Read:
         return self.data.read(min(count, 7))
 
 
-def test_frames_are_those_of_the_decoder(decoder, layout):
+def test_frames_equal_those_of_the_decoder(decoder, layout):
     whole = decoder.decode(raw)
     for source in (io.BytesIO(raw.tobytes()), Read(raw.tobytes())):
         taken = []
@@ -51,7 +51,7 @@ def test_frames_are_those_of_the_decoder(decoder, layout):
         assert taken[0]["bin"].dtype == np.int32
 
 
-def test_file_objects_get_the_bytes_of_the_command(decoder, layout, tmp_path):
+def test_file_objects_receive_the_bytes_of_the_command(decoder, layout, tmp_path):
     (tmp_path / "dump.bin").write_bytes(raw.tobytes())
     options = {"raw_format": layout, "filter": "normal", "offset_m": 0.25, "kind": "z"}
     sink = io.BytesIO()
@@ -60,8 +60,8 @@ def test_file_objects_get_the_bytes_of_the_command(decoder, layout, tmp_path):
     assert sink.getvalue() == np.load(tmp_path / "d.npy").tobytes()
 
 
-def test_frames_come_out_before_the_next_is_read(decoder, layout):
-    """A camera that sends the next frame once the last has come."""
+def test_each_frame_is_returned_before_the_next_is_read(decoder, layout):
+    """Simulates a camera that sends a frame only after the previous one was decoded."""
     read_end, write_end = os.pipe()
     came = threading.Semaphore(1)
 
@@ -79,7 +79,7 @@ def test_frames_come_out_before_the_next_is_read(decoder, layout):
     assert done.frames == frames
 
 
-def test_exposures_come_in_whole_groups(decoder, layout):
+def test_exposures_are_read_in_whole_groups(decoder, layout):
     taken = []
     decoder.decode_stream(io.BytesIO(raw.tobytes()), taken.append, raw_format=layout, hdr=(1, 2, 4))
     numbers, averaged = ts.merge_exposures(raw, (1, 2, 4), "hamiltonian-k4", "paper-10f0")
@@ -122,7 +122,7 @@ def failing(planes):
     (io.BytesIO(raw.tobytes()), 3, TypeError, "sink: got int 3"),
     (io.BytesIO(raw.tobytes()), failing, LookupError, "of the sink"),
 ])
-def test_what_cannot_be_read_or_taken_is_told(decoder, layout, source, sink, error, text):
+def test_read_and_write_errors_are_reported(decoder, layout, source, sink, error, text):
     with pytest.raises(error) as caught:
         decoder.decode_stream(source, sink, raw_format=layout)
     assert text in str(caught.value)

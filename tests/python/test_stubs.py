@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Types, stubs and docstrings are there and say what the package does."""
+"""Types, stubs and docstrings are complete and match the package."""
 
 import inspect
 import os
@@ -23,16 +23,16 @@ def run_mypy(tmp_path, *arguments):
         capture_output=True, text=True, cwd=tmp_path, env=environment)
 
 
-def test_types_hold(tmp_path):
+def test_types_are_correct(tmp_path):
     pytest.importorskip("mypy", reason="mypy is not installed")
     done = run_mypy(tmp_path, "mypy", "--config-file", str(root / "pyproject.toml"),
                     "--cache-dir", str(tmp_path), "-p", "tofsmith")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_stubs_agree_with_the_compiled_part(tmp_path):
+def test_stubs_match_the_compiled_module(tmp_path):
     pytest.importorskip("mypy", reason="mypy is not installed")
-    # What pybind11 makes of any class: a metaclass, and an __init__ that refuses where there is none.
+    # pybind11 adds to every class a metaclass and, without a constructor, an __init__ that raises.
     allowed = tmp_path / "allowed.txt"
     allowed.write_text("tofsmith\\._tofsmith\\.[A-Z]\\w*(\\.__init__)?\n")
     done = run_mypy(tmp_path, "mypy.stubtest", "--allowlist", str(allowed),

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The same request by command, in C++ (tests/apps/three_ways_cli.cpp) and in Python gives the same
-bytes."""
+"""The same request gives the same bytes from the command line, in C++
+(tests/apps/three_ways_cli.cpp) and in Python."""
 
 import json
 import os
@@ -22,7 +22,7 @@ def camera():
 
 
 class Ways:
-    """Runs a request in a directory for each way, and compares what lies there afterwards."""
+    """Runs a request in one directory per interface and compares the resulting files."""
 
     def __init__(self, cli, folder):
         self.cli = cli
@@ -31,7 +31,7 @@ class Ways:
             way.mkdir()
 
     def give(self, name, content):
-        """A file that every way finds."""
+        """Writes an input file into every directory."""
         for folder in self.folders.values():
             if isinstance(content, np.ndarray):
                 np.save(folder / name, content)
@@ -57,7 +57,7 @@ class Ways:
                 for path in folder.rglob("*") if path.is_file()}
 
     def same(self, *ignored, change=lambda content: content):
-        """Every file but the ignored ones; gives their names."""
+        """Compares all files except `ignored`; returns their names."""
         found = {way: {name: change(content) for name, content in self.files(way).items()
                        if name not in ignored} for way in self.folders}
         for way in ("cpp", "python"):
@@ -93,7 +93,7 @@ def test_simulate(ways, camera):
                  "--frames", "3", "-o", "raw.npy")
     ts.write_raw("raw.npy", capture(camera))
     ways.cpp("simulate")
-    # Beside its frames the command leaves the camera, for those who decode them.
+    # Only the command line writes the camera next to the frames, for later decoding.
     assert ways.same("raw.camera.toml") == ["raw.npy"]
 
 
@@ -174,7 +174,7 @@ def test_decode(ways, camera):
     assert len(ways.same()) == len(given) + 7 * 3 + 1 + 2 + 3 + 3 + 3 + 2 + 3 + 3
 
 
-def test_decode_refuses_alike(ways, camera):
+def test_decode_rejects_equally(ways, camera):
     ways.give("raw.npy", capture(camera))
     decoder = ts.Decoder("hamiltonian-k4", camera)
     for error, word, arguments, options in (
@@ -255,7 +255,7 @@ def test_design(ways, camera):
     ts.design(camera, method="factorize", exposures=3, effort=0.01, trials=1000).write("design")
     ways.cpp("design")
     seconds = re.compile(rb'"seconds": ?[-+.\de]+')
-    # The page tells the command; finished codes stay of a run that could have been interrupted.
+    # The page contains the command line; finished codes belong to interrupted runs.
     ignored = [name for name in ways.files("command") if "report.html" in name or "/finished/" in name]
     assert len(ways.same(*ignored, change=lambda content: seconds.sub(b"", content))) >= 5
 
@@ -278,7 +278,7 @@ def test_require(ways):
         assert command[f"found/{name}"] == python[f"found/{name}"]
     document = json.loads(command["found/requirements.json"])
     assert document["varied"][0]["factor"] == power.factor
-    # What was written does what was said.
+    # The written files must give the reported error.
     assert ts.Camera("found/power.camera.toml") == power.camera
     error = ts.evaluate("found/power.code.json", power.camera, trials=1000).circular
     assert error.geometric_mean_m == pytest.approx(power.error_m, rel=0.1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""tofsmith.torch: gradients are those of differences, values those of the library."""
+"""tofsmith.torch: gradients equal finite differences, values equal the library."""
 
 import re
 import subprocess
@@ -41,7 +41,8 @@ def doubles(values):
 
 
 def waveforms(camera, seed=1):
-    """Smooth waveforms of three exposures that the camera can play, shaken."""
+    """Returns smooth waveforms of three exposures with random perturbations, valid for the camera.
+    """
     random = np.random.default_rng(seed)
     taps, time = camera.sensor.taps, np.arange(N) / N
     places = np.arange(3) / 3
@@ -68,14 +69,14 @@ def given(table):
 
 
 def holds(function, *inputs):
-    """The gradient is that of differences to 1e-6, of values of size 1."""
+    """Returns whether the gradient equals finite differences to 1e-6, relative to the function."""
     tensors = [t.detach().clone().requires_grad_() for t in inputs]
     size = function(*tensors).detach().abs().max()
     return gradcheck(lambda *x: function(*x) / size, tensors, rtol=1e-6, atol=1e-6)
 
 
 @every_camera
-def test_values_are_those_of_the_library(camera):
+def test_values_equal_the_library(camera):
     modulation, demodulation = waveforms(camera)
     table = tst.measurement_table(modulation, demodulation, camera)
     code = ts.CodeSet.from_arrays(modulation.numpy(), demodulation.numpy(), taps=camera.sensor.taps)
@@ -94,7 +95,7 @@ def test_values_are_those_of_the_library(camera):
 
 
 @every_camera
-def test_gradients_are_those_of_differences(camera):
+def test_gradients_equal_finite_differences(camera):
     made = tst.MeasurementTable
     table, (depth_m, signal, ambient) = table_of(camera), pixels(camera)
     shares = doubles(np.random.default_rng(4).standard_normal((len(given(table)), 1, 1)))
@@ -111,7 +112,7 @@ def test_gradients_are_those_of_differences(camera):
                  *given(table))
     assert holds(lambda y, h, *t: tst.soft_depth_error_m(1e4 * y, depth_m, made(*t), camera, 1e8 * h),
                  y, heat, *given(table))
-    # Where depths are nearly flat, bounds are steep: tables in smaller steps.
+    # Bounds change rapidly where depth information almost vanishes: use smaller steps.
     assert holds(lambda s, a, *t: tst.cramer_rao_bound_m(
         made(*(0.1 * x for x in t)), camera, 1e5 * s, 1e4 * a).log(),
         doubles([1.0, 0.3]), doubles([1.0, 0.5]), *(10 * x for x in given(table)))
@@ -129,19 +130,19 @@ def test_captures_have_the_mean_and_variance_of_the_camera(camera):
     assert not torch.equal(y, tst.capture(table, camera, *light, seed=8))
 
 
-def test_without_noise_a_cold_decoder_finds_every_depth():
+def test_a_sharp_decoder_finds_every_depth_without_noise():
     for camera in cameras.values():
         table, (depth_m, signal, ambient) = table_of(camera), pixels(camera, 50)
         y = tst.expected_electrons(table, camera, depth_m, signal, ambient)
         found = tst.soft_decode(y, table, camera, 1e-2)
-        # The decoder's curve is straight between these few bins.
+        # The decoder interpolates linearly between these few bins.
         assert (found - depth_m).abs().max() < 0.25 * camera.range_m / N
         error = tst.soft_depth_error_m(y, depth_m, table, camera, 1e-2)
         torch.testing.assert_close(error, (found - depth_m).abs(), rtol=0, atol=1e-3)
 
 
 @every_camera
-def test_a_batch_is_a_loop(camera):
+def test_a_batch_equals_a_loop(camera):
     codes = [waveforms(camera, seed) for seed in (1, 2, 3)]
     batch = tst.measurement_table(*(torch.stack(w) for w in zip(*codes)), camera)
     lights = [pixels(camera, 70, seed) for seed in (4, 5, 6)]
@@ -160,7 +161,7 @@ def test_a_batch_is_a_loop(camera):
     assert image.shape == (3, 2, 35, y.shape[-1])
 
 
-def test_threads_change_no_bit():
+def test_results_are_bit_identical_for_any_number_of_threads():
     camera = cameras["two taps, circular"]
     modulation, demodulation = (w.requires_grad_() for w in waveforms(camera))
     depth_m, signal, ambient = pixels(camera, 3000)
@@ -182,7 +183,7 @@ def test_threads_change_no_bit():
     assert all(torch.equal(a, b) for a, b in zip(one, three))
 
 
-def test_many_codes_are_worked_on_by_many_threads():
+def test_many_codes_on_many_threads_give_equal_results():
     camera = cameras["limited"]
     code = (w.float().expand(200, -1, -1) for w in waveforms(camera))
     table = tst.measurement_table(*code, camera)
@@ -195,7 +196,7 @@ def test_many_codes_are_worked_on_by_many_threads():
     assert all(torch.equal(found[0], again) for again in found)
 
 
-def test_float32_comes_close():
+def test_float32_is_accurate():
     camera = cameras["two taps, circular"]
     depth_m, signal, ambient = pixels(camera, 50)
     answers = []
@@ -210,7 +211,7 @@ def test_float32_comes_close():
         assert (double - single).norm() < 1e-3 * double.norm()
 
 
-def test_bad_input_is_refused_by_name():
+def test_rejects_bad_input_by_name():
     camera = cameras["limited"]
     modulation, demodulation = waveforms(camera)
     table, (depth_m, signal, ambient) = table_of(camera), pixels(camera)
@@ -254,7 +255,7 @@ def test_bad_input_is_refused_by_name():
         gradient.sum().backward()
 
 
-def test_the_page_runs(tmp_path):
+def test_the_documentation_page_runs(tmp_path):
     text = (root / "docs" / "torch.md").read_text()
     snippet = "".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL))
     done = subprocess.run([sys.executable, "-B", "-c", snippet], cwd=tmp_path, capture_output=True,
@@ -262,7 +263,7 @@ def test_the_page_runs(tmp_path):
     assert done.returncode == 0 and snippet, done.stderr
 
 
-def test_the_example_learns(tmp_path):
+def test_the_example_reduces_its_loss(tmp_path):
     done = subprocess.run(
         [sys.executable, "-B", root / "examples" / "python" / "learn_a_code.py", "5", "3"],
         cwd=tmp_path, capture_output=True, text=True)

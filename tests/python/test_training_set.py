@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Training sets of scenes in memory are those that the command line makes of files."""
+"""Training sets from scenes in memory are the same as from files on the command line."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ depths = {f"{name}.npy": np.full((6, 8), metres) + np.linspace(0, 0.5, 8)
           for name, metres in (("far", 6.0), ("near", 1.5))}
 
 
-def test_the_files_are_those_of_the_command(cli, tmp_path):
+def test_files_equal_the_command(cli, tmp_path):
     camera.write(tmp_path / "mine.toml")
     (tmp_path / "scenes").mkdir()
     for name, depth_m in depths.items():
@@ -40,7 +40,7 @@ def test_the_files_are_those_of_the_command(cli, tmp_path):
     assert (again.written, again.kept) == (0, 2)
 
 
-def test_a_scene_that_cannot_be_had_is_reported(tmp_path):
+def test_an_invalid_scene_is_reported(tmp_path):
     scenes = {"good": depths["far.npy"], "none": lambda: 1 // 0, "flat": np.ones(3)}
     run = ts.write_training_set(tmp_path / "set", scenes, "square-k4", camera, frames=2)
     assert run.written == 1
@@ -52,7 +52,7 @@ def test_a_scene_that_cannot_be_had_is_reported(tmp_path):
         np.testing.assert_allclose(arrays["true_depth_m"], depths["far.npy"], rtol=1e-6)
 
 
-def test_progress_stops_and_what_is_finished_stays(tmp_path):
+def test_a_stopped_run_keeps_finished_frames(tmp_path):
     with pytest.raises(ts.Interrupted):
         ts.write_training_set(tmp_path, depths, "square-k4", camera, progress=lambda f, step: False)
     assert ts.write_training_set(tmp_path, depths, "square-k4", camera).scenes == 2
@@ -75,6 +75,6 @@ refusals = [
 
 
 @pytest.mark.parametrize("call, kind, message", refusals, ids=[r[2][:50] for r in refusals])
-def test_bad_input_is_refused_by_name(call, kind, message):
+def test_rejects_bad_input_by_name(call, kind, message):
     with pytest.raises(kind, match=re.escape(message)):
         call()
