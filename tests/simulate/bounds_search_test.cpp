@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Looks for codes that break the receiver bound.
+// Searches for codes that violate the receiver bound.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,15 +15,16 @@
 namespace tofsmith {
 namespace {
 
-/// A code of pulse trains: all that a search may change.
+/// A code of pulse trains with the parameters of the search.
 struct TrainCode {
   int frequency = 1;          // pulses and gates per period
-  double pulse_duty = 0.1;    // of the light
+  double pulse_duty = 0.1;    // duty of the light
   std::vector<double> gate;   // duty of every tap of every exposure
   std::vector<double> begin;  // where the first gate of every exposure opens, in gate periods
 };
 
-/// `count` gates per period, on for `duty` of it from `begin` gate periods on.
+/// Returns `count` gates per period, each open for the fraction `duty` from `begin` (in gate
+/// periods).
 Waveform gates(int count, double duty, double begin) {
   std::vector<OnInterval> on;
   for (int i = 0; i < count; ++i) {
@@ -52,14 +53,15 @@ CodeSet build(const TrainCode& train, const Camera& camera) {
                          std::move(demodulation));
 }
 
-/// The receiver bound by information alone, as a Cramer-Rao bound does not know of confusion
-/// either.
+/// Returns the receiver bound from information only: like a Cramer-Rao bound, it ignores confusion
+/// of depths.
 double bound_by_information_m(const ReceiverBound& bound, const Camera& camera,
                               const OperatingPoint& point) {
   return camera.range_m() * std::sqrt(2.0 / std::numbers::pi / bound.information(point));
 }
 
-/// Cramer-Rao bound of a code over the receiver bound of its camera: must not fall below 1.
+/// Returns the Cramer-Rao bound of a code over the receiver bound of its camera; must be at least
+/// 1.
 double ratio_of(const CodeSet& code, const Camera& camera, const OperatingPoint& point,
                 double bound_m) {
   return CramerRaoBound(ForwardModel(code, camera), camera).mae_m(point) / bound_m;
@@ -79,7 +81,7 @@ Camera camera_for(const char* name, int taps, bool drain, double peak_factor) {
   return camera;
 }
 
-/// Wide pulses and evenly spread gates, so that no depth is lost from the start.
+/// Returns wide pulses and evenly spaced gates, so that no depth is undetermined initially.
 TrainCode even_train(RandomStream& random, const Camera& camera, int exposures) {
   TrainCode train;
   train.frequency = 2 + static_cast<int>(3 * random.uniform());
@@ -100,7 +102,8 @@ TrainCode neighbour(TrainCode train, RandomStream& random, double step) {
   return train;
 }
 
-/// The least ratio a hill climb finds; every code on its way must keep the bound.
+/// Returns the smallest ratio found by hill climbing; every intermediate code must respect the
+/// bound.
 double climb(const Camera& camera, const OperatingPoint& point, int exposures, std::uint64_t item) {
   RandomStream random(11, item);
   TrainCode best = even_train(random, camera, exposures);
@@ -118,7 +121,7 @@ double climb(const Camera& camera, const OperatingPoint& point, int exposures, s
   return least;
 }
 
-TEST(ReceiverBoundSearch, HillClimbsOverPulseTrainsStayAboveItAndComeNear) {
+TEST(ReceiverBoundSearch, HillClimbingOverPulseTrainsApproachesButRespectsTheBound) {
   double nearest = 100.0;
   std::uint64_t item = 0;
   for (const int taps : {1, 2, 3, 4})
@@ -140,7 +143,7 @@ TEST(ReceiverBoundSearch, HillClimbsOverPulseTrainsStayAboveItAndComeNear) {
 }
 
 TEST(ReceiverBoundSearch, HoldsForEveryKindOfSensorAndLight) {
-  // One good train on cameras that differ from the plain one in every way there is.
+  // One good pulse train on cameras that vary all properties.
   TrainCode train{.frequency = 6, .pulse_duty = 0.3, .gate = {}, .begin = {0.0, 0.33, 0.66}};
   train.gate = {0.5, 0.5, 0.5, 0.5, 0.4, 0.45};
   const Camera plain = camera_for("paper-10f0", 2, true, 5.0);
@@ -154,7 +157,7 @@ TEST(ReceiverBoundSearch, HoldsForEveryKindOfSensorAndLight) {
   cameras[7].light.edge_jitter_s = cameras[7].sensor.edge_jitter_s = 500e-12;
   cameras[8].light.impulse_response = {};
   cameras[9].light.impulse_response = {.kind = ImpulseResponse::Kind::lowpass, .cutoff_hz = 60e6};
-  // A measured response that rings below 0.
+  // A measured response with negative values.
   cameras[10].sensor.impulse_response = {.kind = ImpulseResponse::Kind::file,
                                          .samples = {0.3, 1.0, 0.6, -0.25, 0.1, -0.05},
                                          .time_step_s = 1.5e-9};
@@ -171,7 +174,7 @@ TEST(ReceiverBoundSearch, HoldsForEveryKindOfSensorAndLight) {
   }
 }
 
-/// A frequency and a delay, in its periods, for each exposure: pulses and half-open gates.
+/// Frequency and delay (in its periods) of each exposure: pulses and gates open half of the time.
 struct ToneCode {
   std::vector<int> frequency;
   std::vector<double> begin;
@@ -188,8 +191,9 @@ struct ToneCode {
   }
 };
 
-TEST(ReceiverBoundSearch, CodesForDimLightStayAboveItAndComeNear) {
-  // Where it is the Ziv-Zakai bound: climbs by what trials measure, not by information.
+TEST(ReceiverBoundSearch, CodesForDimLightApproachButRespectTheBound) {
+  // In dim light the Ziv-Zakai bound is the larger one: climb by Monte Carlo error, not by
+  // information.
   Camera camera = camera_for("paper-10f0", 1, true, 15.0);
   camera.samples = 48;
   double nearest = 100.0;

@@ -24,17 +24,17 @@ CramerRaoBound bound_of(const CodeSet& code, const Camera& camera,
   return {ForwardModel(code, camera), camera, information};
 }
 
-/// The receiver bound by information alone, as a Cramer-Rao bound does not know of confusion
-/// either.
+/// Returns the receiver bound from information only: like a Cramer-Rao bound, it ignores confusion
+/// of depths.
 double by_information_m(const ReceiverBound& bound, const Camera& camera,
                         const OperatingPoint& point) {
   return camera.range_m() * std::sqrt(2 / pi / bound.information(point));
 }
 
-TEST(CramerRaoBound, OfSinusoidsUnderStrongAmbientLightIsThatOfFourPhases) {
+TEST(CramerRaoBound, EqualsTheFourPhaseFormulaUnderStrongAmbientLight) {
   Camera camera = built_in_camera("paper-30x");
   const CramerRaoBound bound = bound_of(build_family("sinusoid-k4", camera), camera);
-  // chi = 1/2 + cos / 4: phase deviates by sqrt(V / 2) / a with a = T S / 4, T = 0.3 s / 4.
+  // chi = 1/2 + cos / 4: the phase deviation is sqrt(V / 2) / a with a = T S / 4, T = 0.3 s / 4.
   const double S = 1e5, A = 1e8, T = 0.3 / 4;
   const double V = T * (S + A) / 2 + 400.0;
   const double sigma_m = camera.range_m() / (2 * pi) * std::sqrt(V / 2) / (T * S / 4);
@@ -65,7 +65,7 @@ TEST(CramerRaoBound, MatchesAnInverseOfTheFisherMatrix) {
   }
 }
 
-TEST(CramerRaoBound, VarianceAddsLittleInformationAndNeverTakesAny) {
+TEST(CramerRaoBound, VarianceAddsLittleInformation) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const double mean = bound_of(code, camera).mae_m({1e4, 1e4});
@@ -74,8 +74,8 @@ TEST(CramerRaoBound, VarianceAddsLittleInformationAndNeverTakesAny) {
   EXPECT_GT(both, 0.99 * mean);
 }
 
-TEST(CramerRaoBound, NeedsNoAmbientInTheMeasurements) {
-  // Differences of buckets cancel ambient light: its column of the Fisher matrix is zero.
+TEST(CramerRaoBound, AllowsMeasurementsWithoutAmbientLight) {
+  // Ambient light cancels in differences of buckets: its column of the Fisher matrix is zero.
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
   const CodeSet code = build_family("hamiltonian-k3", camera);
@@ -87,22 +87,22 @@ TEST(CramerRaoBound, NeedsNoAmbientInTheMeasurements) {
   EXPECT_LT(difference, 1.2 * separate);
 }
 
-TEST(CramerRaoBound, IsInfiniteWhereDepthChangesNothing) {
+TEST(CramerRaoBound, IsInfiniteWhereMeasurementsDoNotDependOnDepth) {
   const Camera camera = built_in_camera("paper-30x");
-  // One narrow pulse against half-open gates: away from the edges nothing changes.
+  // With one narrow pulse and gates open half of the time, measurements only change near the edges.
   const CodeSet code =
       CodeSet::create("dead zones", 240, 1, {3, rectangular_pulse(1.0 / 30)},
                       {square_wave(1, 0.0), square_wave(1, 1.0 / 3), square_wave(1, 2.0 / 3)});
   EXPECT_TRUE(std::isinf(bound_of(code, camera).mae_m({1e5, 1e3})));
 }
 
-TEST(CramerRaoBound, UniformAlbedoCostsMoreThanFullAlbedoAndStaysFinite) {
+TEST(CramerRaoBound, UniformAlbedoIncreasesTheBoundButKeepsItFinite) {
   const Camera camera = built_in_camera("paper-10f0");
   const CramerRaoBound bound = bound_of(build_family("hamiltonian-k4", camera), camera);
   const OperatingPoint point{1e5, 1e3};
   EXPECT_GT(bound.mae_uniform_albedo_m(point), bound.mae_m(point));
   EXPECT_LT(bound.mae_uniform_albedo_m(point), camera.range_m() / 4);
-  // Against a plain midpoint sum over 400 albedos.
+  // Compare with a midpoint sum over 400 albedos.
   double sum = 0.0;
   for (int i = 0; i < 400; ++i)
     sum += std::min(camera.range_m() / 4, bound.mae_m({(i + 0.5) / 400 * 1e5, 1e3}));
@@ -126,9 +126,9 @@ TEST(ReceiverBound, IsTheClosedFormForOneTap) {
   EXPECT_NEAR(bound.tap_information({S, A}) / (v * S * S * T * T * gated), 1.0, 1e-6);
 }
 
-TEST(ReceiverBound, OfPhotonsIsThatOfTheBestGateOfThem) {
-  // Without noise other than the photons' own, a Gaussian response of deviation s has 1 / s^2 per
-  // photon, of which a gate that passes the share Q(x) keeps phi(x)^2 / Q(x): .405 at the most.
+TEST(ReceiverBound, OfPhotonsEqualsThatOfTheBestGate) {
+  // With photon noise only, a Gaussian response of deviation s has information 1 / s^2 per photon.
+  // A gate that passes the fraction Q(x) retains phi(x)^2 / Q(x) of it, at most 0.405.
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.impulse_response = {};
   camera.sensor.read_noise_e = 0.0;
@@ -149,8 +149,8 @@ TEST(ReceiverBound, IsZeroWithoutImpulseResponses) {
   EXPECT_EQ(ReceiverBound(built_in_camera("paper-30x"), 4).mae_m({1e4, 1e4}), 0.0);
 }
 
-TEST(ReceiverBound, ALightThatCannotBeBrighterThanItsAverageMayStillBlink) {
-  // With peak factor 1 the largest harmonic needs only half of the mean power.
+TEST(ReceiverBound, LightOfPeakFactorOneMayStillBlink) {
+  // With peak factor 1, the largest harmonic needs only half of the mean power.
   Camera camera = built_in_camera("paper-5f0");
   camera.light.peak_factor = 1.0;
   std::vector<Waveform> gates;
@@ -188,7 +188,7 @@ TEST(ReceiverBound, HoldsForDifferencesAndUniformAlbedo) {
               error.receiver_bound_mae_m);
 }
 
-TEST(CameraBounds, AreThoseOfEachCodeAlone) {
+TEST(CameraBounds, EqualThoseOfEachCode) {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 60;
   camera.operating.signal_e_per_s = {1e3, 1e5};
@@ -212,7 +212,7 @@ TEST(CameraBounds, AreThoseOfEachCodeAlone) {
   }
 }
 
-TEST(ReceiverBound, IsAGuessWithoutLightAndByInformationInBrightLight) {
+TEST(ReceiverBound, IsAQuarterOfTheRangeWithoutLightAndFollowsInformationInBrightLight) {
   const Camera camera = built_in_camera("paper-10f0");
   const ReceiverBound bound(camera, 4);
   EXPECT_DOUBLE_EQ(bound.mae_m({0.0, 1e4}), camera.range_m() / 4);
@@ -230,7 +230,7 @@ TEST(ReceiverBound, IsAGuessWithoutLightAndByInformationInBrightLight) {
   EXPECT_GT(bound.mae_m(dim), 1.5 * by_information_m(bound, camera, dim));
 }
 
-TEST(ReceiverBound, ThrowingChargeAwayCanOnlyHelp) {
+TEST(ReceiverBound, ADrainCanOnlyReduceIt) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
   const OperatingPoint point{1e3, 1e7};

@@ -26,7 +26,7 @@ Camera noiseless_camera() {
   return camera;
 }
 
-/// Largest distance from the model's exact function, at the middle of every cell of the table.
+/// Returns the largest difference from the exact function, at the centres of the table's cells.
 double largest_error(const FineCorrelation& fine, const ForwardModel& model) {
   const Eigen::MatrixXd exact = model.tap_correlation_table(2 * fine.points());
   Eigen::VectorXd chi(fine.tap_values());
@@ -75,7 +75,7 @@ TEST(Capture, SameBitsForAnyNumberOfThreads) {
             0);
 }
 
-TEST(Capture, FramesAndSeedsDifferPixelsRepeat) {
+TEST(Capture, FramesAndSeedsDifferAndPixelsAreReproducible) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   SceneImage scene(4, 4);
@@ -131,7 +131,7 @@ TEST(Capture, NoReturnSeesAmbientOnly) {
   for (const float value : raw.values) EXPECT_NEAR(value / (1e9 / 4 * 100.0 * 0.5), 1.0, 1e-4);
 }
 
-TEST(Capture, WithoutFalloffOnlyAlbedoCounts) {
+TEST(Capture, WithoutFalloffOnlyAlbedoMatters) {
   SceneImage scene(1, 1);
   scene.depth_m(0, 0) = 4.0f;
   scene.albedo(0, 0) = 0.25f;
@@ -160,7 +160,7 @@ TEST(Capture, DecodesBackToTheScene) {
   }
 }
 
-TEST(Capture, StopsWhenAskedAndRefusesNonsense) {
+TEST(Capture, StopsOnRequestAndRejectsInvalidInputs) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   const SceneImage scene(8, 8);

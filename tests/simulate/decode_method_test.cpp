@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error of the same code by ZNCC and by phase unwrapping.
+// Depth error of the same code with ZNCC and with phase unwrapping.
 #include <gtest/gtest.h>
 
 #include "tofsmith/simulate/depth_error.hpp"
@@ -8,7 +8,7 @@
 namespace tofsmith {
 namespace {
 
-/// Circular depth error [m] of a code at one light level.
+/// Returns the circular depth error [m] of a code at one light level.
 Estimate error_of(const char* code, const char* camera_name, OperatingPoint point,
                   DecodeMethod method, UnwrapWeights weights = UnwrapWeights::variance) {
   Camera camera = built_in_camera(camera_name);
@@ -37,8 +37,8 @@ TEST(DecodeMethods, AgreeOnASingleFrequency) {
   }
 }
 
-TEST(DecodeMethods, ClassicalUnwrappingIsBeatenAtLowLight) {
-  // Both decode the same noise, so that ratios are far sharper than errors.
+TEST(DecodeMethods, ZnccBeatsClassicalUnwrappingInLowLight) {
+  // Both decode the same noise, so that ratios are far more precise than errors.
   const OperatingPoint low{3162.3, 1e3};
   EXPECT_GT(ratio_of("paper-30x", low, UnwrapWeights::frequency), 1.0);
   EXPECT_GT(ratio_of("paper-10f0", low, UnwrapWeights::frequency), 1.02);
@@ -65,7 +65,7 @@ TEST(DecodeMethods, FrequencyWeightsCostMoreUnderABandLimit) {
   EXPECT_LT(by_variance, by_frequency);
 }
 
-TEST(DecodeMethods, WhatCannotBeUnwrappedIsRefused) {
+TEST(DecodeMethods, UnsuitableCodesAreRejected) {
   const Camera camera = built_in_camera("paper-10f0");
   EXPECT_THROW(evaluate(build_family("hamiltonian-k3", camera), camera,
                         {.trials = 100, .method = DecodeMethod::unwrap}),

@@ -29,8 +29,8 @@ double joint(const Estimate& a, const Estimate& b) {
 }
 
 TEST(Evaluate, SinusoidsAtHighSignalFollowTheClosedForm) {
-  // Phase from four steps of chi = 1/2 + cos / 4 deviates by sqrt(V / 2) / a, with a = T S / 4 and
-  // V = T (S + A) / 2 + sigma_r^2, at every depth.
+  // With chi = 1/2 + cos / 4, the deviation of the phase from four steps is sqrt(V / 2) / a at
+  // every depth, with a = T S / 4 and V = T (S + A) / 2 + sigma_r^2.
   const Camera camera = camera_at("paper-30x", {1e5}, {1e2, 1e4});
   const DepthErrorReport result = evaluate(build_family("sinusoid-k4", camera), camera);
   for (const PointDepthError& error : result.points) {
@@ -44,7 +44,7 @@ TEST(Evaluate, SinusoidsAtHighSignalFollowTheClosedForm) {
   }
 }
 
-/// The same figure by a plain loop: exact correlation, another generator, exhaustive search.
+/// Reference: a plain loop with exact correlation, another random generator and exhaustive search.
 struct PlainErrors {
   RunningStatistics linear, circular;
 };
@@ -74,7 +74,7 @@ PlainErrors plain_errors(const CodeSet& code, const Camera& camera, int trials) 
   return errors;
 }
 
-TEST(Evaluate, AgreesWithAPlainLoop) {
+TEST(Evaluate, AgreesWithTheReferenceLoop) {
   for (const char* camera_name : {"paper-30x", "paper-10f0"}) {
     for (const char* name : {"hamiltonian-k4", "square-k3", "pulsed-multifrequency-k5"}) {
       for (const auto& [S, A] : {std::pair(3e3, 1e3), std::pair(1e4, 3e4)}) {
@@ -98,9 +98,9 @@ struct ReferenceRow {
   double signal_e_per_s, ambient_e_per_s, mde_mm, standard_error_mm, cramer_rao_mm;
 };
 
-// From an independent implementation in numpy: circular error without clipping, range 10 m, no
-// band limit, peak factor 30. It draws few depths, which its error and its bound share: where the
-// deviation depends on depth both are off alike, and only their ratio is sharp.
+// Results of an independent implementation in NumPy: circular error without clipping, range 10 m,
+// no band limit, peak factor 30. It samples few depths. Where the deviation depends on depth, this
+// affects error and bound equally, and only their ratio is accurate.
 constexpr ReferenceRow reference_rows[] = {
     {"sinusoid-k3", 1e4, 1e4, 155.02, 0.83, 155.07},
     {"sinusoid-k3", 1e5, 1e5, 42.072, 0.22, 42.245},
@@ -133,7 +133,7 @@ TEST(Evaluate, AgreesWithTheReferenceImplementation) {
   }
 }
 
-TEST(Evaluate, SlicedDepthsAreUnbiasedAndTheirStandardErrorIsHonest) {
+TEST(Evaluate, StratifiedDepthsAreUnbiasedWithCorrectStandardErrors) {
   const Camera camera = camera_at("paper-30x", {3e3}, {1e3});
   const CodeSet code = build_family("hamiltonian-k3", camera);
   const Estimate truth = evaluate(code, camera, {.trials = 100000}).points[0].linear_mde_m;
@@ -145,11 +145,11 @@ TEST(Evaluate, SlicedDepthsAreUnbiasedAndTheirStandardErrorIsHonest) {
   }
   EXPECT_NEAR(values.mean(), truth.value,
               4 * std::hypot(values.standard_error(), truth.standard_error));
-  // A variance of 160 values is known to about 1 part in 9.
+  // The relative standard error of a variance of 160 values is about 1/9.
   EXPECT_NEAR(stated_variance.mean() / values.variance(), 1.0, 0.45);
 }
 
-TEST(Evaluate, MeansAreOverThePoints) {
+TEST(Evaluate, MeansAreTakenOverThePoints) {
   const Camera camera = camera_at("paper-10f0", {1e4, 1e5}, {1e3, 1e4});
   const DepthErrorReport result =
       evaluate(build_family("hamiltonian-k3", camera), camera, {.trials = 1000});
@@ -170,7 +170,7 @@ TEST(Evaluate, MeansAreOverThePoints) {
               1e-12);
 }
 
-TEST(Evaluate, DepthsOnBinsFlatter) {
+TEST(Evaluate, DepthsOnBinsUnderestimateTheError) {
   const Camera camera = camera_at("paper-30x", {1e5}, {1e2});
   const CodeSet code = build_family("hamiltonian-k5", camera);
   const EvaluateOptions on_bins{.trials = 4000, .sub_bin = false, .depth = DepthSampling::bins};
@@ -179,7 +179,7 @@ TEST(Evaluate, DepthsOnBinsFlatter) {
             0.1 * evaluate(code, camera, between).circular.mean_m.value);
 }
 
-TEST(Evaluate, ClippingActsAtLowAmbientOnly) {
+TEST(Evaluate, ClippingAffectsLowAmbientLightOnly) {
   for (const auto& [A, changes] : {std::pair(1e2, true), std::pair(1e5, false)}) {
     const Camera camera = camera_at("paper-30x", {1e4}, {A});
     const CodeSet code = build_family("hamiltonian-k3", camera);
@@ -187,7 +187,7 @@ TEST(Evaluate, ClippingActsAtLowAmbientOnly) {
                              .circular.mean_m.value;
     const double clipped =
         evaluate(code, camera, {.trials = 8000, .clip_to_open_sensor = true}).circular.mean_m.value;
-    // The reference implementation finds 45.1 instead of 50.7 mm at A = 1e2.
+    // The reference implementation has an error of 45.1 instead of 50.7 mm at A = 1e2.
     if (changes)
       EXPECT_NEAR(clipped / plain, 45.137 / 50.662, 0.03);
     else
@@ -198,7 +198,7 @@ TEST(Evaluate, ClippingActsAtLowAmbientOnly) {
 TEST(Evaluate, UniformAlbedoAveragesOverSignals) {
   Camera camera = camera_at("paper-10f0", {1e5}, {1e3});
   const CodeSet code = build_family("hamiltonian-k3", camera);
-  // Nodes crowd towards albedo 0: albedo = x^2, d albedo = 2 x dx.
+  // Quadrature with more nodes near albedo 0: albedo = x^2, d albedo = 2 x dx.
   double plain = 0.0;
   for (int i = 0; i < 40; ++i) {
     const double x = (i + 0.5) / 40;
@@ -212,7 +212,7 @@ TEST(Evaluate, UniformAlbedoAveragesOverSignals) {
   EXPECT_GT(error.cramer_rao_mae_m, error.receiver_bound_mae_m);
 }
 
-/// Mean circular error of sums of `n` captured pixels of one depth, decoded.
+/// Returns the mean circular error of decoded sums of `n` captured pixels at one depth.
 Estimate error_of_sums(const CodeSet& code, const Camera& camera, int n) {
   constexpr int depths = 4000;
   SceneImage scene(1, depths);
@@ -244,14 +244,14 @@ Estimate error_of_sums(const CodeSet& code, const Camera& camera, int n) {
   return circular.estimate();
 }
 
-TEST(Evaluate, NeighboursAreJudgedAsSumsOfPixelsAre) {
+TEST(Evaluate, NeighboursAreEquivalentToSumsOfPixels) {
   for (const bool counts : {false, true})
     for (const char* name : {"hamiltonian-k4", "sinusoid-k3"}) {
       Camera camera = camera_at("paper-10f0", {5e3}, {3e3});
       camera.sensor.noise = NoiseModel::poisson;
       if (counts) {
         camera.sensor.adc_bits = 10;
-        camera.sensor.gain_e_per_dn = 60.0;  // a step as coarse as the noise
+        camera.sensor.gain_e_per_dn = 60.0;  // a quantization step as large as the noise
         camera.sensor.black_level_dn = 64.0;
       }
       const CodeSet code = build_family(name, camera);
@@ -264,7 +264,7 @@ TEST(Evaluate, NeighboursAreJudgedAsSumsOfPixelsAre) {
     }
 }
 
-TEST(Evaluate, StopsWhenAskedAndRefusesNonsense) {
+TEST(Evaluate, StopsOnRequestAndRejectsInvalidOptions) {
   const Camera camera = camera_at("paper-10f0", {1e4}, {1e4});
   const CodeSet code = build_family("hamiltonian-k3", camera);
   EXPECT_THROW(evaluate(code, camera, {}, [](double, std::string_view) { return false; }),
@@ -293,8 +293,8 @@ TEST(BestRotation, PredictsTheErrorOfTheRotatedCode) {
             0.95 * rotation.linear_geometric_mean_m[0]);
 }
 
-// A hundred points in 300 bins: a pulse that comes one bin later is rounded to another.
-TEST(BestRotation, AGeneratorPlaysTheRotatedCodeAlike) {
+// The generator has 100 points for 300 bins: a pulse shifted by one bin is rounded differently.
+TEST(BestRotation, AGeneratorReproducesTheRotatedCode) {
   const Camera camera = built_in_camera("prototype");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const int bins = best_rotation(code, camera, {.trials = 400}).rotation_bin;

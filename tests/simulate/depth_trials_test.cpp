@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The engine of the trials, beside plain references.
+// The trial engine, compared with plain references.
 #include "simulate/depth_trials.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ double joint(const Estimate& a, const Estimate& b) {
   return std::hypot(a.standard_error, b.standard_error);
 }
 
-/// Where the first `count` trials of a round are, and where they are found.
+/// True and decoded positions of the first `count` trials of a round.
 struct Positions {
   std::vector<double> truth, found;
 };
@@ -49,7 +49,7 @@ Positions positions_of(const DepthTrials& trials, std::int64_t of, std::int64_t 
   return positions;
 }
 
-TEST(DepthTrials, ATrialDependsOnItsNumberAlone) {
+TEST(DepthTrials, ATrialDependsOnlyOnItsNumber) {
   for (const bool is_poisson : {false, true}) {
     Camera camera = camera_at(1e4, 1e4);
     if (is_poisson) camera.sensor.noise = NoiseModel::poisson;
@@ -67,7 +67,7 @@ TEST(DepthTrials, ATrialDependsOnItsNumberAlone) {
   }
 }
 
-TEST(DepthTrials, OneDepthInEverySlice) {
+TEST(DepthTrials, EverySliceHasOneDepth) {
   const Camera camera = camera_at(1e4, 1e4);
   const ForwardModel model(build_family("sinusoid-k4", camera), camera);
   for_each_target([&] {
@@ -85,13 +85,13 @@ TEST(DepthTrials, OneDepthInEverySlice) {
   });
 }
 
-/// Mean and covariance of what stands in the plane, at one depth.
+/// Mean and covariance of projected measurements at one depth.
 struct PlaneMoments {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
 };
 
-TEST(DepthTrials, NoiseInThePlaneHasTheProjectedCovariance) {
+TEST(DepthTrials, ProjectedNoiseHasTheProjectedCovariance) {
   for (const auto& [name, taps] :
        {std::pair("hamiltonian-k3", 1), std::pair("hamiltonian-k5", 1),
         std::pair("hamiltonian-k4", 2), std::pair("hamiltonian-k8", 1)}) {
@@ -151,7 +151,7 @@ TEST(DepthTrials, NoiseInThePlaneHasTheProjectedCovariance) {
   }
 }
 
-TEST(DepthTrials, NoiseInThePlaneGivesTheErrorsOfNoiseByMeasurement) {
+TEST(DepthTrials, ProjectedNoiseGivesTheErrorsOfNoisePerMeasurement) {
   for (const auto& [name, taps] :
        {std::pair("hamiltonian-k3", 1), std::pair("hamiltonian-k5", 1),
         std::pair("pulsed-multifrequency-k5", 1), std::pair("hamiltonian-k4", 2)})
@@ -176,7 +176,7 @@ TEST(DepthTrials, NoiseInThePlaneGivesTheErrorsOfNoiseByMeasurement) {
     }
 }
 
-TEST(DepthTrials, PoissonAndNormalNoiseAgreeInPlentyOfLight) {
+TEST(DepthTrials, PoissonAndNormalNoiseAgreeInBrightLight) {
   Camera camera = camera_at(1e4, 3e4);
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const Estimate normal = evaluate(code, camera).points[0].circular_mde_m;
@@ -185,7 +185,7 @@ TEST(DepthTrials, PoissonAndNormalNoiseAgreeInPlentyOfLight) {
   EXPECT_NEAR(poisson.value, normal.value, 4 * joint(poisson, normal));
 }
 
-TEST(DepthTrials, ClipsAndCountsAsPixelNoiseDoes) {
+TEST(DepthTrials, ClipsAndQuantizesLikePixelNoise) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     Camera camera = camera_at(1e4, 1e4, 2);
     camera.sensor.readout = readout;
@@ -219,7 +219,7 @@ TEST(DepthTrials, ClipsAndCountsAsPixelNoiseDoes) {
   }
 }
 
-TEST(AdaptiveTrials, MeetTheTargetOrSaySo) {
+TEST(AdaptiveTrials, MeetTheTargetOrReportFailure) {
   Camera camera = camera_at(1e4, 1e3);
   camera.operating.signal_e_per_s = {1e3, 1e4};
   const CodeSet code = build_family("hamiltonian-k4", camera);
@@ -242,8 +242,9 @@ TEST(AdaptiveTrials, MeetTheTargetOrSaySo) {
   for (const PointDepthError& point : capped.points) EXPECT_EQ(point.trials, 5000);
 }
 
-TEST(AdaptiveTrials, StandardErrorsAreHonest) {
-  // The spread over seeds is what is stated, though each run chose its trials by what it saw.
+TEST(AdaptiveTrials, StandardErrorsAreCorrect) {
+  // The spread over seeds equals the standard error, although the number of trials depends on the
+  // data.
   const Camera camera = camera_at(3e3, 1e3);
   const CodeSet code = build_family("hamiltonian-k3", camera);
   RunningStatistics values, variance;
@@ -261,7 +262,7 @@ TEST(AdaptiveTrials, StandardErrorsAreHonest) {
               4 * std::hypot(values.standard_error(), truth.standard_error) + 0.01 * truth.value);
 }
 
-TEST(RootMeanSquare, IsThatOfThePlainSquares) {
+TEST(RootMeanSquare, EqualsThatOfPlainSquares) {
   for (const std::int64_t count : {1000, 1022}) {
     const Camera camera = camera_at(2e3, 1e3);
     const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
@@ -298,19 +299,20 @@ TEST(RootMeanSquare, OfNormalErrorsIsTheRootOfHalfPiTimesTheMean) {
   const Camera camera = camera_at(1e5, 1e2);
   const PointDepthError error =
       evaluate(build_family("sinusoid-k4", camera), camera, {.trials = 40000}).points[0];
-  // The deviation depends on depth by a few per cent: that raises the ratio by the square of it.
+  // The deviation varies with depth by a few percent, which raises the ratio to second order only.
   EXPECT_NEAR(error.circular_rmse_m.value / error.circular_mde_m.value,
               std::sqrt(std::numbers::pi / 2), 0.02);
 }
 
-TEST(RootMeanSquare, TheStatedStandardErrorIsTheSpreadOverSeeds) {
+TEST(RootMeanSquare, TheStandardErrorIsTheSpreadOverSeeds) {
   struct Case {
     double signal_e_per_s;
     std::int64_t trials;
     double target;
     bool is_poisson;
   };
-  // Wraps decide the linear error, wrong lobes the circular one of dim light; rounds are merged.
+  // Wraps dominate the linear error, wrong lobes the circular error in dim light; rounds are
+  // merged.
   for (const Case& its :
        {Case{3e3, 600, 0.0, false}, Case{3e4, 400, 0.0, true}, Case{3e3, 200, 0.1, false}}) {
     SCOPED_TRACE(testing::Message() << its.signal_e_per_s << " e/s, target " << its.target);
@@ -334,8 +336,8 @@ TEST(RootMeanSquare, TheStatedStandardErrorIsTheSpreadOverSeeds) {
         evaluate(code, camera, {.trials = 400000, .seed = 999, .bounds = false}).points[0];
     const auto expect = [](const RunningStatistics& values, const RunningStatistics& variance,
                            const Estimate& is) {
-      // A variance of 200 values is known to about 1 part in 8 where they are normal. The root is
-      // low by the variance over twice itself, to first order.
+      // For normal values, the relative standard error of a variance of 200 values is about 1/8.
+      // The root is biased by -variance / (2 * root) to first order.
       EXPECT_NEAR(variance.mean() / values.variance(), 1.0, 0.45);
       EXPECT_NEAR(values.mean() + values.variance() / (2 * is.value), is.value,
                   4 * std::hypot(values.standard_error(), is.standard_error) + 0.01 * is.value);
@@ -345,8 +347,8 @@ TEST(RootMeanSquare, TheStatedStandardErrorIsTheSpreadOverSeeds) {
   }
 }
 
-TEST(RootMeanSquare, OfRowsIsThatOfTheirErrors) {
-  // So few photons that some depths are wrong by far.
+TEST(RootMeanSquare, OfRowsEqualsThatOfTheirErrors) {
+  // With so little light, some depths have gross errors.
   Camera camera = rows_camera(120, 15, 30);
   camera.sensor.noise = NoiseModel::poisson;
   const CodeSet code = build_family("fourier-k6", camera);
@@ -357,7 +359,7 @@ TEST(RootMeanSquare, OfRowsIsThatOfTheirErrors) {
               4 * joint(error.circular_rmse_m, again.circular_rmse_m));
 }
 
-TEST(AdaptiveTrials, RefuseTargetsThatMakeNoSense) {
+TEST(AdaptiveTrials, RejectInvalidTargets) {
   const Camera camera = camera_at(1e4, 1e4);
   const CodeSet code = build_family("hamiltonian-k3", camera);
   for (const double target : {-0.1, 1.0, std::nan("")})

@@ -25,14 +25,14 @@ Camera gaussian_light(double cutoff_hz, double peak_factor) {
   return camera;
 }
 
-/// Deviation of a Gaussian response in periods; |H(cutoff)|^2 = 1/2.
+/// Returns the deviation of a Gaussian response in periods; |H(cutoff)|^2 = 1/2.
 double deviation(const Camera& camera) {
   return std::sqrt(std::log(2.0)) / (2 * pi) * camera.fundamental_frequency_hz /
          camera.light.impulse_response.cutoff_hz;
 }
 
 TEST(DirectTofBound, OfSinglePhotonsIsThatOfTheirArrivalTimes) {
-  // Without ambient light, n photons of normal arrival times know their mean to s / sqrt(n).
+  // Without ambient light, the mean of n normal arrival times has a standard error of s / sqrt(n).
   const Camera camera = gaussian_light(150e6, 1000.0);
   const double s = deviation(camera);
   EXPECT_NEAR(DirectTofBound(camera).photon_information({1e4, 0.0}) * s * s / (1e4 * 0.3), 1.0,
@@ -58,7 +58,7 @@ TEST(DirectTofBound, OfAModulationIsThePlainIntegral) {
 }
 
 TEST(DirectTofBound, NoModulationBeatsIt) {
-  // Single pulses, trains, trains of uneven pulses and random words; some come near.
+  // Single pulses, trains, trains of unequal pulses and random words; some approach the bound.
   double closest = 0.0;
   for (const double peak_factor : {1.3, 2.0, 10.0, 40.0}) {
     for (const auto& [name, cutoff_hz] : {std::pair("narrow", 45e6), std::pair("wide", 200e6)}) {
@@ -111,7 +111,7 @@ TEST(DirectTofBound, IsNeverAboveTheReceiverBound) {
       }
 }
 
-TEST(DirectTofBound, IsZeroWhereTheLightHasNoLimit) {
+TEST(DirectTofBound, IsZeroForUnlimitedLight) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.impulse_response = {};
   EXPECT_EQ(DirectTofBound(camera).mae_m({1e4, 1e4}), 0.0);
@@ -120,7 +120,7 @@ TEST(DirectTofBound, IsZeroWhereTheLightHasNoLimit) {
   EXPECT_GT(DirectTofBound(camera).mae_m({1e4, 1e4}), 0.0);
 }
 
-TEST(DirectTofBound, CountsListedExposures) {
+TEST(DirectTofBound, AccountsForListedExposures) {
   Camera camera = gaussian_light(100e6, 10.0);
   const double even = DirectTofBound(camera).mae_m({1e4, 1e3});
   camera.exposure_s.each_s = {0.25, 0.04, 0.01};

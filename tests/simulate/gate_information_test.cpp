@@ -30,7 +30,7 @@ Eigen::VectorXcd transfer_of(ImpulseResponse::Kind kind) {
   return camera.transfer(highest);
 }
 
-/// Information at every depth of a light and a gate, both as Fourier sums at `points` depths.
+/// Information at every depth for a light and a gate, as Fourier sums at `points` depths.
 struct Information {
   double mean = 0.0, largest = 0.0;
 };
@@ -55,7 +55,7 @@ Information information_of(const Eigen::VectorXcd& transfer, const Eigen::Vector
   return information;
 }
 
-TEST(GateInformation, NoGateOfNoLightHasMoreAndSquareWavesComeNear) {
+TEST(GateInformation, NoGateHasMoreAndSquareWavesComeNear) {
   for (const ImpulseResponse::Kind kind :
        {ImpulseResponse::Kind::hann, ImpulseResponse::Kind::gaussian,
         ImpulseResponse::Kind::lowpass}) {
@@ -95,7 +95,7 @@ TEST(GateInformation, NoGateOfNoLightHasMoreAndSquareWavesComeNear) {
         hold(rectangular_pulse(0.02 + 0.2 * random.uniform()),
              Waveform::binary_from_samples(gate, 1.0));
       }
-      // In bright light: where other noise decides, what taps gather is the closer bound.
+      // Only in bright light: if other noise dominates, the limit by taps is the tighter bound.
       if (light.other_e2 + light.ambient_e < light.signal_e) {
         EXPECT_GT(nearest.mean, 0.5 * mean) << light.signal_e << " " << light.ambient_e;
         EXPECT_GT(nearest.largest, 0.7 * any) << light.signal_e << " " << light.ambient_e;
@@ -104,7 +104,7 @@ TEST(GateInformation, NoGateOfNoLightHasMoreAndSquareWavesComeNear) {
   }
 }
 
-/// at_any_depth() by gates that open at the points of the period in the order of slope over light.
+/// Reference of at_any_depth(): opens gates in the order of slope over light.
 double of_sorted_points(const Eigen::VectorXcd& transfer, const Light& of) {
   constexpr int fine = 8192;
   Eigen::VectorXd response(fine), slope(fine);
@@ -136,7 +136,7 @@ double of_sorted_points(const Eigen::VectorXcd& transfer, const Light& of) {
   return largest;
 }
 
-TEST(GateInformation, IsThatOfSortedPointsAndNeverBelow) {
+TEST(GateInformation, EqualsThatOfSortedPointsAndIsNeverBelow) {
   for (const ImpulseResponse::Kind kind :
        {ImpulseResponse::Kind::hann, ImpulseResponse::Kind::gaussian,
         ImpulseResponse::Kind::lowpass}) {
@@ -151,7 +151,7 @@ TEST(GateInformation, IsThatOfSortedPointsAndNeverBelow) {
   }
 }
 
-TEST(GateInformation, NeedsLightAndGrowsWithIt) {
+TEST(GateInformation, RequiresLightAndIncreasesWithIt) {
   const GateInformation bound(transfer_of(ImpulseResponse::Kind::hann));
   EXPECT_EQ(bound.mean_over_depths(0.0, 100.0, 400.0), 0.0);
   EXPECT_EQ(bound.at_any_depth(0.0, 100.0, 400.0), 0.0);

@@ -14,7 +14,7 @@ Camera small_camera() {
   return camera;
 }
 
-TEST(GeneratorLoss, IsNothingWhereTheGeneratorPlaysTheCodeExactly) {
+TEST(GeneratorLoss, IsZeroIfTheGeneratorReproducesTheCodeExactly) {
   Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k3", camera);
   camera.light.generator = camera.sensor.generator = Generator{.sample_rate_hz = 60 * 15e6};
@@ -25,7 +25,7 @@ TEST(GeneratorLoss, IsNothingWhereTheGeneratorPlaysTheCodeExactly) {
   for (const double change : loss.correlation_change) EXPECT_LT(change, 1e-9);
 }
 
-TEST(GeneratorLoss, OfFewPointsIsSeenByTheSameTrialsAsEvaluate) {
+TEST(GeneratorLoss, OfFewPointsEqualsThatOfEvaluateWithTheSameTrials) {
   Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const EvaluateOptions options{.trials = 1000, .seed = 7};

@@ -26,7 +26,7 @@ const LensBlur disc{.kind = LensBlur::Kind::disc,
                     .pixel_pitch_m = 10e-6,
                     .pixel_samples = 2};
 
-/// Shot and read noise far below every tolerance.
+/// Returns a camera with shot and read noise far below every tolerance.
 Camera quiet_camera(const LensBlur& blur) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.noise = NoiseModel::gaussian;
@@ -38,7 +38,7 @@ Camera quiet_camera(const LensBlur& blur) {
 
 CodeSet code_of(const Camera& camera) { return build_family("hamiltonian-k4", camera); }
 
-/// Captured without falloff and ambient light.
+/// Captures without falloff and ambient light.
 RawFrames captured(const SceneImage& scene, const Camera& camera) {
   return capture(scene, code_of(camera), camera, {.ambient_e_per_s = 0.0, .falloff = false});
 }
@@ -59,12 +59,12 @@ double largest_relative_difference(const RawFrames& a, const RawFrames& b) {
   return largest;
 }
 
-TEST(Lens, KernelsShareAllLightOut) {
+TEST(Lens, KernelsDistributeAllLight) {
   for (const double sigma_px : {0.0, 0.1, 0.5, 3.0})
     for (const int samples : {1, 2, 3, 5}) {
       const AxisKernel kernel(sigma_px, samples);
       ASSERT_EQ(kernel.weights.size(), static_cast<std::size_t>(samples + 2 * kernel.reach));
-      // All rays of one place among the pixel's give their light away exactly once.
+      // The rays at one position within their pixels distribute their light exactly once.
       for (int place = 0; place < samples; ++place) {
         double sum = 0.0;
         for (std::size_t i = 0; i < kernel.weights.size(); ++i)
@@ -74,7 +74,7 @@ TEST(Lens, KernelsShareAllLightOut) {
     }
 }
 
-TEST(Lens, AreasOfADiscWithinSquaresAreThoseOfFineSums) {
+TEST(Lens, AreasOfADiscWithinSquaresEqualFineSums) {
   for (const double radius : {0.3, 1.0, 2.7}) {
     EXPECT_NEAR(disc_area(radius, -radius, radius, -radius, radius),
                 std::numbers::pi * radius * radius, 1e-12);
@@ -90,18 +90,18 @@ TEST(Lens, AreasOfADiscWithinSquaresAreThoseOfFineSums) {
   }
 }
 
-TEST(Lens, LeavesAUniformWallAsItIs) {
+TEST(Lens, DoesNotChangeAUniformWall) {
   const SceneImage wall = image_of(21, 17, [](int, int) { return 1.5f; });
   const RawFrames sharp = captured(wall, quiet_camera({}));
   for (LensBlur blur : {gaussian, disc}) {
     EXPECT_LT(largest_relative_difference(captured(wall, quiet_camera(blur)), sharp), 1e-6);
-    blur.blur_sigma_px = 6.0;  // wider than the image together with its mirror images
+    blur.blur_sigma_px = 6.0;  // wider than the image with its mirror images
     blur.focus_distance_m = 0.3;
     EXPECT_LT(largest_relative_difference(captured(wall, quiet_camera(blur)), sharp), 1e-6);
   }
 }
 
-TEST(Lens, KeepsTheLightOfTheWholeImage) {
+TEST(Lens, ConservesTheLightOfTheImage) {
   SceneImage scene = image_of(24, 31, [](int row, int column) {
     return (row * column) % 7 == 0 ? std::nanf("") : 0.8f + 0.1f * static_cast<float>(row % 9);
   });
@@ -121,7 +121,7 @@ TEST(Lens, KeepsTheLightOfTheWholeImage) {
   }
 }
 
-/// A near half-plane before a far wall, its edge at an odd place within a pixel.
+/// Returns a near half-plane in front of a far wall, with its edge within a pixel.
 StagedScene edge_scene(int width, int height) {
   return {.shapes = {Box{.centre = {-1.03, 0.0, 1.0},
                          .size_m = {2.0, 4.0, 0.001},
@@ -130,8 +130,8 @@ StagedScene edge_scene(int width, int height) {
           .view = PinholeView::centred(width, height, 0.6)};
 }
 
-/// Electrons per exposure of a view so much finer, summed over its pixels with the weights of the
-/// point spread: a reference that knows nothing of kernels on rays.
+/// Returns electrons per exposure of a supersampled view, summed over its pixels with the weights
+/// of the point spread function: a reference without kernels on rays.
 RawFrames by_brute_force(const StagedScene& scene, const Camera& camera, int parts, int margin_px) {
   Camera sharp = camera;
   sharp.blur.reset();
@@ -179,10 +179,10 @@ RawFrames by_brute_force(const StagedScene& scene, const Camera& camera, int par
   return raw;
 }
 
-TEST(Lens, AnEdgeGivesTheMixtureOfBothSides) {
+TEST(Lens, AnEdgeMixesBothSides) {
   const StagedScene scene = edge_scene(16, 6);
   for (LensBlur blur : {gaussian, disc}) {
-    blur.pixel_samples = 16;  // the edge falls where it does to 1/32 of a pixel
+    blur.pixel_samples = 16;  // locates the edge to 1/32 of a pixel
     const Camera camera = quiet_camera(blur);
     const StagedCapture made =
         capture(scene, code_of(camera), camera, {.ambient_e_per_s = 0.0, .falloff = false});
@@ -196,12 +196,12 @@ TEST(Lens, AnEdgeGivesTheMixtureOfBothSides) {
   }
 }
 
-TEST(Lens, AnImageOfTwoDepthsMixesByTheSharesOfTheirPixels) {
+TEST(Lens, AnImageOfTwoDepthsMixesByPixelArea) {
   const SceneImage scene =
       image_of(1, 12, [](int, int column) { return column < 6 ? 1.0f : 3.0f; });
   const Camera camera = quiet_camera(gaussian);
   const RawFrames mixed = captured(scene, camera), sharp = captured(scene, quiet_camera({}));
-  // A pixel's own square, blurred and summed over the next.
+  // Integral of the blurred indicator of a pixel over an adjacent pixel.
   const auto integral = [](double x) {
     const double s = gaussian.blur_sigma_px;
     return 0.5 * x * (1.0 + std::erf(x / (s * std::numbers::sqrt2))) +
@@ -215,7 +215,7 @@ TEST(Lens, AnImageOfTwoDepthsMixesByTheSharesOfTheirPixels) {
   }
 }
 
-TEST(Lens, SaysWhichDepthsAPixelMixes) {
+TEST(Lens, ReportsTheDepthsThatAPixelMixes) {
   const StagedScene scene = edge_scene(16, 6);
   const Camera camera = quiet_camera(gaussian);
   const StagedCapture made = capture(scene, code_of(camera), camera, {});
@@ -230,7 +230,7 @@ TEST(Lens, SaysWhichDepthsAPixelMixes) {
   EXPECT_LE(mixed, 4);
 }
 
-TEST(Lens, DepthImagesWithNothingToBlurAreAsWithoutALens) {
+TEST(Lens, DepthImagesWithoutBlurAreUnchanged) {
   Camera camera = built_in_camera("paper-10f0");
   const SceneImage scene =
       image_of(9, 7, [](int row, int) { return 1.0f + 0.1f * static_cast<float>(row); });
@@ -239,7 +239,7 @@ TEST(Lens, DepthImagesWithNothingToBlurAreAsWithoutALens) {
   EXPECT_EQ(capture(scene, code_of(camera), camera, {.frames = 2}).values, without.values);
 }
 
-TEST(Lens, ShapesWithoutALensAreCapturedAsTheirImage) {
+TEST(Lens, ShapesWithoutALensAreCapturedLikeTheirImage) {
   Camera camera = built_in_camera("paper-10f0");
   const StagedScene scene = built_in_scene("table-top", 32, 24);
   const CaptureOptions options{.seed = 3, .frames = 2};
@@ -251,7 +251,7 @@ TEST(Lens, ShapesWithoutALensAreCapturedAsTheirImage) {
 }
 
 TEST(Lens, NoiseIsDrawnOncePerPixelWithTheSameNumbers) {
-  // A blur far below a pixel changes the light by nearly nothing, and so each number.
+  // A blur far below a pixel changes the light, and thus each value, by almost nothing.
   Camera camera = built_in_camera("paper-10f0");
   const SceneImage scene = image_of(9, 7, [](int, int) { return 1.0f; });
   const RawFrames sharp = capture(scene, code_of(camera), camera, {.frames = 2});
@@ -261,7 +261,7 @@ TEST(Lens, NoiseIsDrawnOncePerPixelWithTheSameNumbers) {
       1e-6);
 }
 
-TEST(Lens, AmbientLightThatVariesIsBlurredToo) {
+TEST(Lens, VaryingAmbientLightIsBlurred) {
   Camera camera = quiet_camera(gaussian);
   SceneImage dark(1, 9);  // no return anywhere
   dark.ambient_scale = Image<float>(1, 9, 0.0f);
@@ -274,7 +274,7 @@ TEST(Lens, AmbientLightThatVariesIsBlurredToo) {
 
 TEST(Lens, StrayLightIsTheScatteredImageOfEachMeasurement) {
   Image<float> kernel(5, 7, 0.004f);
-  kernel(2, 5) = 0.02f;  // to one side
+  kernel(2, 5) = 0.02f;  // on one side only
   StagedScene moving = edge_scene(16, 6);
   moving.shape_motions = {Motion{.velocity_m_per_s = {0.1, 0, 0}}, Motion{}};
   for (const LensBlur& blur : {LensBlur{}, gaussian, disc})
@@ -304,7 +304,7 @@ TEST(Lens, StrayLightIsTheScatteredImageOfEachMeasurement) {
                std::invalid_argument);
 }
 
-TEST(Lens, RefusesDiscsThatCoverTheImageAndPicturesOfAnotherSize) {
+TEST(Lens, RejectsDiscsThatCoverTheImageAndTexturesOfAnotherSize) {
   const SceneImage close = image_of(4, 4, [](int, int) { return 0.01f; });
   const Camera camera = quiet_camera(disc);
   try {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error of the same trials by maximum likelihood and by ZNCC.
+// Depth error of the same trials with maximum likelihood and with ZNCC.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ Camera camera_at(OperatingPoint point, std::vector<double> exposure_s = {}) {
   return camera;
 }
 
-/// Circular error [bin] of every trial of the camera's first operating point, on the same noise.
+/// Returns the circular error [bin] of every trial at the first operating point, with equal noise.
 std::vector<double> errors_bin(const CodeSet& code, const Camera& camera, DecodeMethod method) {
   constexpr std::int64_t count = 10240;
   const ForwardModel model(code, camera);
@@ -39,7 +39,7 @@ std::vector<double> errors_bin(const CodeSet& code, const Camera& camera, Decode
 }
 
 struct Comparison {
-  RunningStatistics zncc, ml, rise;  ///< rise: error by ml less that by zncc, trial by trial
+  RunningStatistics zncc, ml, rise;  ///< rise: error with ml minus error with zncc, per trial
 
   Comparison(const CodeSet& code, const Camera& camera) {
     const std::vector<double> by_zncc = errors_bin(code, camera, DecodeMethod::zncc);
@@ -65,8 +65,8 @@ TEST(MaximumLikelihood, IsNotWorseThanZnccOnGoodCodes) {
     }
 }
 
-TEST(MaximumLikelihood, IsBetterInLittleAmbientLight) {
-  // Shot noise then differs from measurement to measurement, and ambient light is not negative.
+TEST(MaximumLikelihood, IsBetterInLowAmbientLight) {
+  // Shot noise then differs between measurements, and ambient light is known to be non-negative.
   const Camera camera = camera_at({1e5, 1e2});
   EXPECT_LT(Comparison(build_family("hamiltonian-k5", camera), camera).ratio(), 0.96);
   EXPECT_LT(Comparison(build_family("gray-k4", camera), camera).ratio(), 0.81);
@@ -80,7 +80,7 @@ TEST(MaximumLikelihood, IsBetterOnUnequalExposures) {
   }
 }
 
-/// Windows of a tenth, a half and nine tenths of the period over a short pulse.
+/// Returns gates of 10 %, 50 % and 90 % of the period with a short pulse.
 CodeSet code_of_unequal_duties(int samples) {
   const std::vector<Waveform> pulse(5, Waveform::binary({{0.0, 0.125}}, 8.0));
   return CodeSet::create("unequal-duties", samples, 1, pulse,

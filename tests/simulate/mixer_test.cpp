@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Mixers: weights from -1 to 1, from the model to depth errors.
+// Mixers (weights from -1 to 1), from the forward model to depth errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ Camera mixer_camera() {
   return camera;
 }
 
-/// E sampled weights, mean `mean`, and pulses of light of 5 cells.
+/// Returns sampled weights with mean `mean`, and light pulses of 5 cells.
 CodeSet analog_code(int samples, double mean = 0.0) {
   constexpr int exposures = 4;
   std::vector<Waveform> light;
@@ -52,7 +52,7 @@ SceneImage random_depths(int height, int width, double range_m) {
   return scene;
 }
 
-TEST(Mixer, AWeightThatSwitchesMeasuresWhatTwoBucketsDo) {
+TEST(Mixer, ABinaryWeightMeasuresLikeTwoBuckets) {
   Camera camera = mixer_camera();
   camera.sensor.modulation_contrast = 0.8;
   camera.sensor.dark_current_e_per_s = 700.0;
@@ -68,7 +68,7 @@ TEST(Mixer, AWeightThatSwitchesMeasuresWhatTwoBucketsDo) {
     const std::vector<Return> light{{1e4, 31.7}, {2e3, 80.2}};
     EXPECT_LT((one.expected_electrons(light, 3e3) - two.expected_electrons(light, 3e3)).norm(),
               1e-9);
-    if (!code.demodulation(0).is_binary()) continue;  // the noise is less, below
+    if (!code.demodulation(0).is_binary()) continue;  // other weights have less noise, tested below
     EXPECT_LT((one.variance_e2(light, 3e3) - two.variance_e2(light, 3e3)).norm(), 1e-8);
     EXPECT_LT((one.covariance_e2(light, 3e3) - two.covariance_e2(light, 3e3)).norm(), 1e-8);
     const OperatingPoint point{1e4, 3e3};
@@ -83,7 +83,7 @@ TEST(Mixer, AWeightThatSwitchesMeasuresWhatTwoBucketsDo) {
   }
 }
 
-TEST(Mixer, ErrsAsTwoBucketsDo) {
+TEST(Mixer, HasTheErrorOfTwoBuckets) {
   for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian}) {
     Camera camera = mixer_camera();
     camera.sensor.noise = noise;
@@ -100,21 +100,21 @@ TEST(Mixer, ErrsAsTwoBucketsDo) {
   }
 }
 
-TEST(Mixer, PhotonsTellNoMoreThanWithAllOfItsNoise) {
+TEST(Mixer, PhotonInformationIsThatOfAllPhotonNoise) {
   Camera analog = mixer_camera();
   analog.sensor.binary = false;
-  Camera taps = built_in_camera("paper-10f0");  // so many that they know when photons came
+  Camera taps = built_in_camera("paper-10f0");  // enough taps to resolve arrival times
   taps.sensor.taps = 16;
   for (const double read_noise_e : {0.0, 20.0, 2000.0}) {
     analog.sensor.read_noise_e = taps.sensor.read_noise_e = read_noise_e;
     const ReceiverBound bound(analog, 4), of_taps(taps, 4);
-    // In much noise gates of one tap each gather less.
+    // If other noise dominates, gates of one tap each gather less.
     for (const OperatingPoint& point : {OperatingPoint{1e5, 1e3}, OperatingPoint{1e3, 1e5}})
       if (read_noise_e < 100.0) {
         EXPECT_NEAR(bound.photon_information(point) / of_taps.photon_information(point), 1.0, 1e-9)
             << read_noise_e;
       }
-    // Weights of any size against all of the light of the shortest pulse that responses let pass.
+    // Weights of any size, for the shortest pulse that the responses pass.
     const Eigen::VectorXcd transfer = analog.transfer(120);
     Eigen::VectorXd light, slope;
     sample_with_slope(transfer, light, slope);
@@ -125,7 +125,7 @@ TEST(Mixer, PhotonsTellNoMoreThanWithAllOfItsNoise) {
     double nearest = 0.0;
     for (std::uint64_t item = 0; item < 40; ++item) {
       RandomStream random(9, item);
-      // Near the best weights, which go as the slope over the light, and away from them.
+      // The best weights are proportional to slope over light; also test weights far from them.
       const double steep = std::pow(10.0, 4.0 * random.uniform() - 3.0), noise = random.uniform();
       Eigen::ArrayXd weight = steep * rate_slope / (rate + c);
       for (double& w : weight) w = std::clamp(w + 0.3 * noise * noise * random.normal(), -1.0, 1.0);
@@ -168,7 +168,7 @@ TEST(Mixer, NoiseIsThatOfTheSquareOfItsWeight) {
   }
 }
 
-TEST(Mixer, CapturesHaveMeanAndVarianceOfTheModel) {
+TEST(Mixer, CapturesHaveTheMeanAndVarianceOfTheModel) {
   Camera camera = mixer_camera();
   camera.light.peak_factor = 60.0;
   camera.light.impulse_response = camera.sensor.impulse_response = {};
@@ -178,7 +178,7 @@ TEST(Mixer, CapturesHaveMeanAndVarianceOfTheModel) {
       camera.sensor.noise = noise;
       const CodeSet code =
           switches ? build_family("hamiltonian-k4", camera) : analog_code(camera.samples, 0.1);
-      // Next to no ambient light: the weight of all light may be small.
+      // Almost no ambient light, so that the mean weight of all light may be small.
       const double S = 2e3, A = 10.0, depth_bin = 47.0;
       SceneImage scene(100, 100);
       for (float& depth_m : scene.depth_m.pixels)
@@ -200,12 +200,12 @@ TEST(Mixer, CapturesHaveMeanAndVarianceOfTheModel) {
     }
 }
 
-TEST(Mixer, PoissonElectronsOfAnyWeightHaveItsMeanAndVariance) {
+TEST(Mixer, PoissonElectronsOfAnyWeightHaveTheCorrectMeanAndVariance) {
   Sensor sensor;
   sensor.demodulation = Demodulation::weight;
   sensor.read_noise_e = 0.0;
   const PixelNoise noise(sensor);
-  // a = (w^2 + w) / 2, b = (w^2 - w) / 2 of 8 electrons, some of w = 1/4.
+  // a = (w^2 + w) / 2, b = (w^2 - w) / 2 for 8 electrons, in some cases with w = 1/4.
   for (const auto& [mean, variance] :
        {std::pair{8.0, 8.0}, {2.0, 8.0}, {-2.0, 0.5}, {3.0, 1.0}, {0.0, 5.0}, {0.0, 0.0}}) {
     RandomStream random(7, 1);
@@ -217,7 +217,7 @@ TEST(Mixer, PoissonElectronsOfAnyWeightHaveItsMeanAndVariance) {
   }
 }
 
-TEST(Mixer, TrialsOfEveryMeasurementErrAsThoseInThePlane) {
+TEST(Mixer, ProjectedTrialsHaveTheErrorsOfTrialsPerMeasurement) {
   Camera camera = mixer_camera();
   camera.light.peak_factor = 60.0;
   camera.sensor.noise = NoiseModel::gaussian;
@@ -240,10 +240,10 @@ TEST(Mixer, TrialsOfEveryMeasurementErrAsThoseInThePlane) {
   }
 }
 
-TEST(Mixer, CapturedDepthsAreDecodedWhateverTheAmbientLight) {
+TEST(Mixer, CapturedDepthsAreDecodedInAnyAmbientLight) {
   Camera camera = mixer_camera();
   camera.light.peak_factor = 60.0;
-  camera.exposure_s.total_s = 3000.0;  // next to no noise
+  camera.exposure_s.total_s = 3000.0;  // almost no noise
   const SceneImage scene = random_depths(20, 30, camera.range_m());
   for (const CodeSet& code :
        {build_family("hamiltonian-k4", camera), build_family("sinusoid-k4", camera),
@@ -260,7 +260,7 @@ TEST(Mixer, CapturedDepthsAreDecodedWhateverTheAmbientLight) {
   }
 }
 
-TEST(Mixer, ClipsAndCountsBothSigns) {
+TEST(Mixer, ClipsAndQuantizesBothSigns) {
   Sensor sensor;
   sensor.demodulation = Demodulation::weight;
   sensor.full_well_e = 1000.0;
@@ -291,7 +291,7 @@ TEST(Mixer, ClipsAndCountsBothSigns) {
       ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
                                              camera.range_m())),
                 0.3);
-    // Trials clip as captures do: coarse counts err more.
+    // Trials clip like captures: coarse quantization increases the error.
     camera.operating.signal_e_per_s = {1e5};
     camera.operating.ambient_e_per_s = {1e3};
     const double fine_m = evaluate(code, camera, {.trials = 2000}).circular.geometric_mean_m.value;
@@ -309,7 +309,7 @@ std::string refusal_of(const Camera& camera) {
   return "";
 }
 
-TEST(Mixer, RefusesWhatIsOfTaps) {
+TEST(Mixer, RejectsSettingsOfTaps) {
   Camera camera = mixer_camera();
   EXPECT_EQ(refusal_of(camera), "");
   camera.sensor.taps = 2;

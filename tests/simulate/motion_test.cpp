@@ -10,7 +10,7 @@
 namespace tofsmith {
 namespace {
 
-/// Four exposures of 10 ms with gaps of 2 ms; a frame every 60 ms.
+/// Returns a camera with four exposures of 10 ms, gaps of 2 ms and a frame every 60 ms.
 Camera timed_camera() {
   Camera camera = built_in_camera("paper-10f0");
   camera.exposure_s.total_s = 40e-3;
@@ -21,7 +21,7 @@ Camera timed_camera() {
 
 CodeSet code_of(const Camera& camera) { return build_family("hamiltonian-k4", camera); }
 
-/// A wall that comes nearer, seen along its normal.
+/// Returns a wall that approaches along its normal.
 StagedScene approaching_wall(double velocity_m_per_s) {
   StagedScene scene{.shapes = {Plane{.point = {0, 0, 3.0}, .texture = {.image = {}}}},
                     .view = PinholeView::centred(6, 4, 0.5)};
@@ -60,7 +60,7 @@ TEST(Motion, AShapeIsDisplacedByItsVelocityInTheMiddleOfEachFrame) {
   }
 }
 
-TEST(Motion, EveryExposureSeesTheSceneOfItsOwnTime) {
+TEST(Motion, EveryExposureSeesTheSceneAtItsTime) {
   Camera camera = timed_camera();
   camera.sensor.taps = 2;
   const CodeSet code = code_of(camera);
@@ -69,8 +69,8 @@ TEST(Motion, EveryExposureSeesTheSceneOfItsOwnTime) {
   const StagedCapture made = capture(scene, code, camera, options);
   ASSERT_EQ(made.raw.measurements, 8);
   for (int exposure = 0; exposure < 4; ++exposure) {
-    // As if all of the frame were captured then: the same light in this exposure's taps. Its noise
-    // draws on the same stream, at the same place in it for normal noise.
+    // A static capture of the scene at this time has the same light in this exposure's taps. Its
+    // normal noise uses the same place of the same random stream.
     const StagedScene then = scene.at(camera.exposure_middle_s(0, exposure, 4));
     const StagedCapture still = capture(then, code, camera, options);
     for (std::size_t pixel = 0; pixel < 24; ++pixel)
@@ -82,7 +82,7 @@ TEST(Motion, EveryExposureSeesTheSceneOfItsOwnTime) {
   }
 }
 
-TEST(Motion, TurnsAboutItsCentreWhichMovesAlong) {
+TEST(Motion, RotatesAboutItsMovingCentre) {
   const double quarter = 2.0 * std::atan(1.0);
   const Motion motion{.velocity_m_per_s = {0, 0, 1.0},
                       .turn_rad_per_s = {0, 0, quarter},
@@ -94,8 +94,8 @@ TEST(Motion, TurnsAboutItsCentreWhichMovesAlong) {
   EXPECT_TRUE(motion.at(0.0).isApprox(Eigen::Isometry3d::Identity()));
 }
 
-TEST(Motion, EveryKindOfShapeMovesAsABody) {
-  // The picture of a body moved is that of the body from a camera moved the other way.
+TEST(Motion, EveryKindOfShapeMovesRigidly) {
+  // Moving a body is equivalent to moving the camera inversely.
   const Motion motion{.velocity_m_per_s = {0.3, -0.2, 0.5},
                       .turn_rad_per_s = {0.4, 0.9, -0.3},
                       .turn_centre_m = {0.1, 0.2, 2.0}};
@@ -128,7 +128,7 @@ TEST(Motion, EveryKindOfShapeMovesAsABody) {
   }
 }
 
-TEST(Motion, ACameraThatMovesAwaySeesWhatAnApproachingWallShows) {
+TEST(Motion, MovingTheCameraEqualsMovingTheWall) {
   const Camera camera = timed_camera();
   StagedScene rides = approaching_wall(0.0);
   rides.camera_motion.velocity_m_per_s = {0, 0, 2.0};
@@ -139,7 +139,7 @@ TEST(Motion, ACameraThatMovesAwaySeesWhatAnApproachingWallShows) {
     EXPECT_NEAR(a.raw.values[i] / b.raw.values[i], 1.0, 1e-5);
 }
 
-TEST(Motion, ScenesThatStandStillAreCapturedAsBefore) {
+TEST(Motion, StaticScenesAreUnchanged) {
   const Camera plain = built_in_camera("paper-10f0");
   Camera timed = plain;
   timed.sensor.readout_gap_s = 1e-3;
@@ -152,12 +152,12 @@ TEST(Motion, ScenesThatStandStillAreCapturedAsBefore) {
   const StagedCapture made = capture(scene, code_of(plain), timed, options);
   EXPECT_EQ(made.raw.values, image.values);
   EXPECT_EQ(made.truth.size(), 1u);
-  // And a motion too slow to see goes through the moving capture to the same numbers.
+  // A negligible motion uses the code for moving scenes and gives the same values.
   scene.camera_motion.velocity_m_per_s = {1e-30, 0, 0};
   EXPECT_EQ(capture(scene, code_of(plain), timed, options).raw.values, image.values);
 }
 
-TEST(Motion, LightByLongerWaysIsThatOfEachTime) {
+TEST(Motion, IndirectLightIsThatOfEachTime) {
   const Camera camera = timed_camera();
   int asked = 0;
   const StagedSetup setup{.search_of = {},
@@ -177,7 +177,7 @@ TEST(Motion, LightByLongerWaysIsThatOfEachTime) {
             capture(approaching_wall(1.0), code_of(camera), camera, {}).raw.values);
 }
 
-TEST(Motion, RefusesMotionsThatDoNotFit) {
+TEST(Motion, RejectsInvalidMotions) {
   const Camera camera = timed_camera();
   StagedScene scene = approaching_wall(1.0);
   scene.shape_motions.emplace_back();

@@ -28,7 +28,7 @@ SceneImage flat_scene(int width) {
   return scene;
 }
 
-/// A camera without noise but that of electrons, in so much light that they do not matter.
+/// A camera with electron noise only, and enough light to make it negligible.
 struct Noiseless {
   Camera camera = two_bucket_camera();
   CodeSet code;
@@ -65,7 +65,7 @@ TEST(ExponentialAverage, OfAHarmonicIsItsTransform) {
   EXPECT_NEAR(average.col(0).sum(), 0.0, 1e-8);
 }
 
-TEST(MultipathCapture, AddsReturnsTailAndTransientAsTheModelDoes) {
+TEST(MultipathCapture, AddsReturnsTailAndTransientLikeTheModel) {
   const Noiseless setup;
   const SceneImage scene = flat_scene(3);
   const double bin_m = setup.camera.bin_m(), s = setup.options.signal_e_per_s;
@@ -93,7 +93,7 @@ TEST(MultipathCapture, AddsReturnsTailAndTransientAsTheModelDoes) {
   }
 }
 
-TEST(MultipathCapture, OfDirectLightAloneIsTheSameBitByBit) {
+TEST(MultipathCapture, OfDirectLightOnlyIsBitIdentical) {
   const Noiseless setup;
   const SceneImage scene = flat_scene(5);
   const RawFrames direct = capture(scene, setup.code, setup.camera);
@@ -103,7 +103,7 @@ TEST(MultipathCapture, OfDirectLightAloneIsTheSameBitByBit) {
   EXPECT_EQ(direct.values, capture(scene, nothing_later, setup.code, setup.camera).values);
 }
 
-TEST(MultipathCapture, TellsTheTruthOfEveryReturn) {
+TEST(MultipathCapture, ReportsTheTruthOfEveryReturn) {
   const SceneImage scene = flat_scene(2);
   SceneLight light;
   light.returns = MultipathReturns(1, 2);
@@ -118,7 +118,7 @@ TEST(MultipathCapture, TellsTheTruthOfEveryReturn) {
   EXPECT_EQ(truth.direct_e_per_s(0, 1), 8.0f);
 }
 
-TEST(MultipathCapture, RefusesLightThatMakesNoSense) {
+TEST(MultipathCapture, RejectsInvalidLight) {
   const Camera camera = two_bucket_camera();
   const SceneImage scene = flat_scene(2);
   const auto refused = [&](const SceneLight& light, const char* what) {
@@ -148,7 +148,7 @@ TEST(MultipathCapture, RefusesLightThatMakesNoSense) {
   refused(transient({1.0, 1.0, 1.0}, 4.0), "no longer than the period");
 }
 
-TEST(MultipathBound, OfNoSecondReturnIsNoLessThanThatOfOneAndFallsWithDelay) {
+TEST(MultipathBound, WithoutASecondReturnIsAtLeastThatOfOneAndDecreasesWithDelay) {
   const Camera camera = two_bucket_camera();
   const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
   const MultipathBound bound(model, camera);
@@ -164,7 +164,7 @@ TEST(MultipathBound, OfNoSecondReturnIsNoLessThanThatOfOneAndFallsWithDelay) {
   EXPECT_NEAR(bound.mae_m(bound.sigma_m(point, 0.3, 1.0)), 0.010, 0.004);
 }
 
-TEST(MultipathError, TwoReturnsBeatOneWhereTheBoundSaysSo) {
+TEST(MultipathError, TwoReturnsBeatOneWhereTheBoundPredictsIt) {
   MultipathErrorOptions options{
       .delay_m = {1.0}, .ratio = {0.3}, .tail_m = {0.5}, .signal_e_per_s = {1e5}, .trials = 300};
   const Camera camera = two_bucket_camera();

@@ -15,7 +15,7 @@ struct Moments {
   double mean, mean_se, variance, variance_se;
 };
 
-/// Sample moments of 40000 draws and their standard errors, the fourth moment included.
+/// Returns sample moments of 40,000 draws with standard errors from the fourth moment.
 template <typename Draw>
 Moments moments_of(Draw&& draw) {
   constexpr int count = 40000;
@@ -47,7 +47,7 @@ TEST(PixelNoise, ElectronsHaveTheMomentsOfTheModel) {
   }
 }
 
-TEST(PixelNoise, WithoutReadNoisePoissonCountsElectrons) {
+TEST(PixelNoise, PoissonWithoutReadNoiseGivesIntegers) {
   Sensor sensor;
   sensor.read_noise_e = 0.0;
   const PixelNoise noise(sensor);
@@ -59,13 +59,13 @@ TEST(PixelNoise, WithoutReadNoisePoissonCountsElectrons) {
   }
 }
 
-TEST(PixelNoise, ConvertsNothingUnlessAsked) {
+TEST(PixelNoise, ConvertsNothingByDefault) {
   const PixelNoise noise{Sensor{}};
   for (const double electrons : {-40.25, 0.0, 1.5, 1e7})
     EXPECT_EQ(noise.convert(electrons), electrons);
 }
 
-TEST(PixelNoise, CountsWithGainBlackLevelAndLimits) {
+TEST(PixelNoise, ConvertsWithGainBlackLevelAndLimits) {
   Sensor sensor;
   sensor.adc_bits = 10;
   sensor.gain_e_per_dn = 2.5;
@@ -80,7 +80,7 @@ TEST(PixelNoise, CountsWithGainBlackLevelAndLimits) {
   EXPECT_EQ(noise.convert(1e6), 1023.0);
 }
 
-TEST(PixelNoise, FullWellClipsBeforeCounting) {
+TEST(PixelNoise, FullWellClipsBeforeConversion) {
   Sensor sensor;
   sensor.full_well_e = 1000.0;
   EXPECT_EQ(PixelNoise(sensor).convert(1500.0), 1000.0);
@@ -105,7 +105,7 @@ TEST(PixelNoise, QuantizationAddsATwelfthOfTheStepSquared) {
   EXPECT_NEAR(m.variance, 500.0 + 12.0, 4 * m.variance_se);
 }
 
-TEST(PixelNoise, DifferencesAreOfNeighbouringBuckets) {
+TEST(PixelNoise, DifferencesUseNeighbouringBuckets) {
   Sensor sensor;
   sensor.taps = 2;
   double raw[] = {7.0, 3.0, 1.0, 5.0};
@@ -119,13 +119,13 @@ TEST(PixelNoise, DifferencesAreOfNeighbouringBuckets) {
   EXPECT_EQ(raw[1], -4.0);
 }
 
-TEST(PixelNoise, IsNotThatOfTheGenerator) {
+TEST(PixelNoise, DoesNotIncludeTheGenerator) {
   Sensor sensor;
-  sensor.generator = Generator{.edge_grid_s = 1.0 / (7e6 * 12)};  // of a camera of 7 MHz
+  sensor.generator = Generator{.edge_grid_s = 1.0 / (7e6 * 12)};  // for a camera of 7 MHz
   EXPECT_NO_THROW(PixelNoise{sensor});
 }
 
-TEST(PixelNoise, RefusesSettingsThatMakeNoSense) {
+TEST(PixelNoise, RejectsInvalidSettings) {
   Sensor sensor;
   sensor.full_well_e = -1.0;
   EXPECT_THROW(PixelNoise{sensor}, std::invalid_argument);

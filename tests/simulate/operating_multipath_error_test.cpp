@@ -24,7 +24,7 @@ Camera bright_camera() {
   return camera;
 }
 
-TEST(OperatingMultipathError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsBetterFarOff) {
+TEST(OperatingMultipathError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsBetterFarAway) {
   const Camera camera = bright_camera();
   const CodeSet code = build_family("hamiltonian-k5", camera);
   EvaluateOptions options;
@@ -40,7 +40,7 @@ TEST(OperatingMultipathError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsB
               evaluate(code, camera, options).circular.geometric_mean_m.value, 0.001);
 }
 
-TEST(OperatingMultipathError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellThem) {
+TEST(OperatingMultipathError, IsReportedWithoutTwoReturnsIfTheCodeCannotSeparateThem) {
   const Camera camera = bright_camera();
   EvaluateOptions options;
   options.trials = 200;
@@ -51,7 +51,7 @@ TEST(OperatingMultipathError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellT
   }
 }
 
-TEST(OperatingMultipathError, RefusesWhatCannotBe) {
+TEST(OperatingMultipathError, RejectsInvalidSettings) {
   const Camera camera = bright_camera();
   const CodeSet code = build_family("hamiltonian-k5", camera);
   for (const OperatingMultipath& later :
@@ -62,7 +62,7 @@ TEST(OperatingMultipathError, RefusesWhatCannotBe) {
     EXPECT_THROW(operating_multipath_report(code, camera, later), std::invalid_argument);
 }
 
-TEST(MultipathScene, OfACornerIsBentInSinglePathDecodingAndCountsEveryPixel) {
+TEST(MultipathScene, OfACornerIsBentBySinglePathDecodingAndCoversEveryPixel) {
   const Camera camera = bright_camera();
   const StagedScene corner = built_in_scene("corner", 32, 8);
   const SceneImage image = RayCaster(corner.shapes).see(corner.view).image;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Clocks, droop and all changes at once; the others are in robustness_test.cpp.
+// Clock, droop and combined perturbations; the others are in robustness_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ PerturbedCamera of_clock(const Camera& camera, double clock_s) {
   return {.name = "clock", .camera = camera, .clock_s = clock_s};
 }
 
-TEST(Perturbations, ByDefaultNeitherClockNorDroopNorAllAtOnce) {
+TEST(Perturbations, ByDefaultExcludeClockDroopAndCombination) {
   for (const PerturbedCamera& p : perturbations(built_in_camera("paper-10f0"))) {
     EXPECT_EQ(p.clock_s, 0.0);
     EXPECT_EQ(p.droop, 0.0);
@@ -25,7 +25,7 @@ TEST(Perturbations, ByDefaultNeitherClockNorDroopNorAllAtOnce) {
   }
 }
 
-TEST(Perturbations, TogetherAreAllOfThem) {
+TEST(Perturbations, TogetherCombineAllOfThem) {
   const Camera camera = built_in_camera("paper-10f0");
   RobustnessOptions options = nothing;
   options.bandwidth = 0.2;
@@ -48,7 +48,7 @@ TEST(Perturbations, TogetherAreAllOfThem) {
   EXPECT_EQ(all.droop, 0.03);
 }
 
-TEST(PerturbedCode, SwitchesOnThePointsOfAClock) {
+TEST(PerturbedCode, SwitchesOnClockTicks) {
   const Camera camera = built_in_camera("paper-10f0");  // period 66.7 ns
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const double clock_s = 5e-9;
@@ -69,7 +69,7 @@ TEST(PerturbedCode, SwitchesOnThePointsOfAClock) {
   EXPECT_THROW(perturbed_code(code, of_clock(camera, 60e-9)), std::invalid_argument);
 }
 
-TEST(PerturbedCode, DroopsFromEveryRiseOn) {
+TEST(PerturbedCode, DroopsAfterEveryRise) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet square = build_family("square-k4", camera);  // on for half the period
   const PerturbedCamera droopy{.name = "droop", .camera = camera, .droop = 0.1};
@@ -82,7 +82,7 @@ TEST(PerturbedCode, DroopsFromEveryRiseOn) {
               1e-12);
   EXPECT_LT(actual.modulation(0).peak(), nominal.level());
   EXPECT_EQ(actual.demodulation(0), square.demodulation(0));
-  // The last cell of a plateau of half a period is a tenth lower.
+  // The last cell of a pulse of half a period is 10 % lower.
   const CodeSet half = CodeSet::create("half", 240, 1, {Waveform::binary({{0.0, 0.5}}, 2.0)},
                                        {Waveform::binary({{0.0, 0.5}})});
   const Eigen::VectorXd cells = perturbed_code(half, droopy).modulation(0).samples();
@@ -90,14 +90,14 @@ TEST(PerturbedCode, DroopsFromEveryRiseOn) {
   EXPECT_EQ(cells[120], 0.0);
 }
 
-TEST(PerturbedCode, WithoutAChangeIsTheCode) {
+TEST(PerturbedCode, WithoutAChangeEqualsTheCode) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   const CodeSet same = perturbed_code(code, {.name = "none", .camera = camera});
   for (int k = 0; k < 3; ++k) EXPECT_EQ(same.modulation(k), code.modulation(k));
 }
 
-TEST(Robustness, ReportsClockDroopAndAllTogether) {
+TEST(Robustness, ReportsClockDroopAndCombination) {
   Camera camera = built_in_camera("paper-10f0");
   camera.operating.signal_e_per_s = {1e5};
   camera.operating.ambient_e_per_s = {1e4};

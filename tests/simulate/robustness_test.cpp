@@ -34,7 +34,7 @@ CodeSet code_of(const Camera& camera, const Waveform& modulation) {
                          {square_wave(1, 0.0), square_wave(1, 0.33), square_wave(1, 0.66)});
 }
 
-TEST(Perturbations, ChangeOneThingEach) {
+TEST(Perturbations, ChangeOnePropertyEach) {
   const Camera camera = small_camera();
   const auto cameras = perturbations(camera);
   ASSERT_EQ(cameras.size(), 6u);
@@ -56,14 +56,14 @@ TEST(Perturbations, ChangeOneThingEach) {
   EXPECT_EQ(find(cameras, "tap mismatch 2 %").camera, uneven);
 }
 
-TEST(Perturbations, OfNoSizeAreNone) {
+TEST(Perturbations, OfZeroSizeAreOmitted) {
   EXPECT_TRUE(
       perturbations(small_camera(),
                     {.bandwidth = 0.0, .peak = 0.0, .edge_jitter_s = 0.0, .tap_mismatch = 0.0})
           .empty());
 }
 
-TEST(Perturbations, OfBandwidthNeedALimitedCamera) {
+TEST(Perturbations, OfBandwidthRequireALimitedCamera) {
   const auto cameras = perturbations(small_camera("paper-30x"));
   EXPECT_EQ(cameras.size(), 4u);
   for (const PerturbedCamera& p : cameras) EXPECT_FALSE(p.name.starts_with("bandwidth")) << p.name;
@@ -90,7 +90,7 @@ TEST(Perturbations, AddJitterInQuadrature) {
   EXPECT_EQ(jittered.sensor.edge_jitter_s, 40e-12);
 }
 
-TEST(Perturbations, RefuseNonsense) {
+TEST(Perturbations, RejectInvalidOptions) {
   EXPECT_THROW(perturbations(small_camera(), {.bandwidth = 1.0}), std::invalid_argument);
   EXPECT_THROW(perturbations(small_camera(), {.peak = -0.1}), std::invalid_argument);
   EXPECT_THROW(perturbations(small_camera(), {.edge_jitter_s = NAN}), std::invalid_argument);
@@ -117,10 +117,10 @@ TEST(PerturbedCode, KeepsPowerAndCentresOfPulses) {
   }
 }
 
-TEST(PerturbedCode, MergesPulsesThatComeToOverlap) {
+TEST(PerturbedCode, MergesOverlappingPulses) {
   const Camera camera = small_camera();
   const PerturbedCamera dimmer = with_peak(camera, 0.9);
-  // Inside the period and across its end; long ones that swallow short ones; a full period.
+  // Inside the period and across its end; long pulses covering short ones; a full period.
   const Waveform close = Waveform::binary({{0.0, 0.3}, {0.31, 0.6}, {0.7, 0.99}}, 1.1);
   const Waveform m = perturbed_code(code_of(camera, close), dimmer).modulation(0);
   EXPECT_EQ(m.on_intervals().size(), 1u);
@@ -130,7 +130,7 @@ TEST(PerturbedCode, MergesPulsesThatComeToOverlap) {
   const Waveform always =
       perturbed_code(code_of(camera, swallowed), with_peak(camera, 0.8)).modulation(0);
   EXPECT_EQ(always.duty(), 1.0);
-  // A pulse that begins the period stretches over its beginning.
+  // A pulse at the start of the period extends across it.
   const Waveform first = Waveform::binary({{0.0, 0.5}}, 2.0);
   EXPECT_NEAR(perturbed_code(code_of(camera, first), dimmer).modulation(0).mean(), 1.0, 1e-12);
 }
@@ -145,13 +145,13 @@ TEST(PerturbedCode, OfAnalogLightKeepsPowerAndScalesThePeak) {
     EXPECT_NEAR(m.mean(), samples.mean(), 1e-12);
     EXPECT_NEAR(m.peak(), peak * samples.maxCoeff(), 1e-12);
   }
-  // Cut at 0, at the same power.
+  // Clipped at 0, with unchanged power.
   const Waveform deep = perturbed_code(code, with_peak(camera, 2.0)).modulation(0);
   EXPECT_GE(deep.minimum(), 0.0);
   EXPECT_NEAR(deep.mean(), samples.mean(), 1e-12);
 }
 
-TEST(Robustness, OfNoPerturbationIsTheDepthErrorItself) {
+TEST(Robustness, OfNoPerturbationEqualsTheDepthError) {
   const Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const RobustnessReport report = robustness(code, camera,
@@ -169,7 +169,7 @@ TEST(Robustness, OfNoPerturbationIsTheDepthErrorItself) {
   EXPECT_EQ(report.worst_calibrated_m().value, report.nominal_m.value);
 }
 
-TEST(Robustness, CalibratedIsTheDepthErrorOfThePerturbedCamera) {
+TEST(Robustness, CalibratedEqualsTheDepthErrorOfThePerturbedCamera) {
   Camera camera = small_camera();
   camera.operating.error = DepthErrorKind::circular;
   const CodeSet code = build_family("hamiltonian-k4", camera);
@@ -187,7 +187,7 @@ TEST(Robustness, CalibratedIsTheDepthErrorOfThePerturbedCamera) {
   }
 }
 
-/// Two measurements, in which ambient light cancels where the taps are equal.
+/// Returns two measurements in which ambient light cancels if the taps are equal.
 CodeSet two_differences(const Camera& camera) {
   const Waveform light = rectangular_pulse(0.1);
   const auto gate = [](double begin) { return square_wave(1, begin); };
@@ -195,7 +195,7 @@ CodeSet two_differences(const Camera& camera) {
                          {gate(0.0), gate(0.5), gate(0.25), gate(0.75)});
 }
 
-TEST(Robustness, WhereAPerturbedCameraMeasuresNoDepthTheDecoderIsTheNominalOne) {
+TEST(Robustness, UsesTheNominalDecoderIfThePerturbedCameraMeasuresNoDepth) {
   Camera camera = small_camera();
   camera.sensor.taps = 2;
   camera.sensor.readout = Readout::difference;
@@ -209,10 +209,10 @@ TEST(Robustness, WhereAPerturbedCameraMeasuresNoDepthTheDecoderIsTheNominalOne) 
   EXPECT_GT(mismatched->calibrated_m.value, report.nominal_m.value);
 }
 
-TEST(Robustness, LeavesOutPerturbationsThatTheGeneratorCannotPlay) {
+TEST(Robustness, ExcludesPerturbationsBeyondTheGenerator) {
   Camera camera = small_camera();
   camera.light.generator = Generator{.sample_rate_hz = 12 * camera.fundamental_frequency_hz};
-  // The first point is played while the pulse covers its middle, at 0.5 / 12 of the period.
+  // The first point is on if the pulse covers its middle, at 0.5 / 12 of the period.
   const CodeSet code = code_of(camera, Waveform::binary({{0.499 / 12, 0.6 / 12}}, 15.0));
   ASSERT_EQ(why_not_playable(code, camera), std::nullopt);
   std::vector<std::string> names;
@@ -222,9 +222,9 @@ TEST(Robustness, LeavesOutPerturbationsThatTheGeneratorCannotPlay) {
   EXPECT_EQ(std::count(names.begin(), names.end(), "peak power +10 %"), 0);
 }
 
-TEST(Robustness, ADecoderThatBelievesAWrongCameraErrs) {
-  // So bright that the residual is bias. (Jitter blurs to both sides alike and leaves next to
-  // none.)
+TEST(Robustness, ADecoderForAnotherCameraHasLargerErrors) {
+  // In very bright light the remaining error is bias. Jitter is excluded, because it blurs
+  // symmetrically and causes almost no bias.
   Camera camera = small_camera();
   camera.operating.signal_e_per_s = {1e9};
   camera.operating.ambient_e_per_s = {0.0};
@@ -234,7 +234,7 @@ TEST(Robustness, ADecoderThatBelievesAWrongCameraErrs) {
     EXPECT_GT(p.uncalibrated_m.value, p.calibrated_m.value) << p.name;
 }
 
-TEST(Robustness, GrowsWithThePerturbation) {
+TEST(Robustness, IncreasesWithThePerturbation) {
   const Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k4", camera);
   double last = 0.0;
@@ -256,7 +256,7 @@ TEST(Robustness, GrowsWithThePerturbation) {
   EXPECT_GT(last, 1.2);
 }
 
-TEST(Robustness, StopsWhenAsked) {
+TEST(Robustness, StopsOnRequest) {
   const Camera camera = small_camera();
   EXPECT_ANY_THROW(robustness(build_family("hamiltonian-k3", camera), camera, {},
                               [](double fraction, std::string_view) { return fraction < 0.3; }));

@@ -67,7 +67,7 @@ TEST(RowsBounds, CramerRaoIsTheInverseOfTheFisherMatrixOfCorrelatedNoise) {
   }
 }
 
-TEST(RowsBounds, ARowForEveryBinSeesTheWholeHistogram) {
+TEST(RowsBounds, ARowForEveryBinUsesTheWholeHistogram) {
   const Camera camera = rows_camera(16);
   const CodeSet pulse = build_family("histogram-k4", camera);
   const CodeSet all =
@@ -80,12 +80,12 @@ TEST(RowsBounds, ARowForEveryBinSeesTheWholeHistogram) {
     for (const CodeSet& code : {all, mixed})
       EXPECT_NEAR(CramerRaoBound(ForwardModel(code, camera), camera).mae_m(point), expected_m,
                   1e-5 * expected_m);
-    // Fewer rows see less.
+    // Fewer rows contain less information.
     EXPECT_GT(CramerRaoBound(ForwardModel(pulse, camera), camera).mae_m(point), expected_m);
   }
 }
 
-TEST(RowsBounds, NoRowsAreBetterThanThePhotonsOfTheReceiver) {
+TEST(RowsBounds, NoRowsBeatThePhotonsOfTheReceiver) {
   const Camera camera = rows_camera();
   const ReceiverBound receiver(camera, 1);
   for (const char* name : {"fourier-k8", "hamiltonian-k4", "histogram-k6"}) {
@@ -113,7 +113,7 @@ TEST(RowsError, BothDecodersReachTheBoundInBrightLight) {
     }
 }
 
-TEST(RowsError, PoissonAndNormalNoiseErrAlikeWhereLightIsBright) {
+TEST(RowsError, PoissonAndNormalNoiseHaveEqualErrorsInBrightLight) {
   Camera camera = rows_camera(60, 1e3, 5e3);
   camera.sensor.read_noise_e = 5.0;
   const CodeSet code = build_family("hamiltonian-k4", camera);
@@ -124,8 +124,8 @@ TEST(RowsError, PoissonAndNormalNoiseErrAlikeWhereLightIsBright) {
               4 * std::hypot(poisson.standard_error, normal.standard_error));
 }
 
-TEST(RowsError, AnyInvertibleMixtureOfRowsErrsTheSameByMl) {
-  // Whitening makes of them the same measurements.
+TEST(RowsError, AnyInvertibleMixtureOfRowsHasTheSameErrorWithMl) {
+  // Whitening makes them equivalent.
   const Camera camera = rows_camera(60, 1e3, 5e2);
   const CodeSet code = build_family("fourier-k4", camera);
   Eigen::Matrix4d mix;

@@ -29,8 +29,8 @@ const Camera& camera() {
   return paper;
 }
 
-TEST(SceneError, CountsWhatIsDecodedAndWhatIsNot) {
-  // Errors .1 and .2, one outlier of 1, one pixel without depth; the last has no true depth.
+TEST(SceneError, CountsDecodedAndOtherPixels) {
+  // Errors 0.1 and 0.2, one outlier of 1, one pixel without depth; the last has no true depth.
   const SceneImage scene = scene_of({2.0f, 3.0f, 4.0f, 5.0f, nan_m});
   const Image<float> decoded = image_of({2.1f, 2.8f, 5.0f, nan_m, 7.0f});
   const SceneError error = scene_error(decoded, scene, camera(), DepthErrorKind::circular);
@@ -54,7 +54,7 @@ TEST(SceneError, WrapsTrueDepthAndTheCircularDifference) {
   EXPECT_NEAR(linear.pixels[1], range_m - 0.2, 1e-5);
 }
 
-TEST(SceneError, OfNothingIsZero) {
+TEST(SceneError, OfAnEmptySceneIsZero) {
   const SceneError nothing =
       scene_error(image_of({1.0f}), scene_of({nan_m}), camera(), DepthErrorKind::circular);
   EXPECT_EQ(nothing.pixels, 0);
@@ -65,7 +65,7 @@ TEST(SceneError, OfNothingIsZero) {
   EXPECT_EQ(blind.decoded_share, 0.0);
 }
 
-TEST(SceneError, RefusesImagesOfAnotherSize) {
+TEST(SceneError, RejectsImagesOfAnotherSize) {
   EXPECT_THROW(
       scene_error(image_of({1.0f, 2.0f}), scene_of({1.0f}), camera(), DepthErrorKind::circular),
       std::invalid_argument);

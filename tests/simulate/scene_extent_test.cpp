@@ -7,9 +7,9 @@
 namespace tofsmith {
 namespace {
 
-TEST(SceneExtent, CountsWhatReturnsAndWhatWraps) {
+TEST(SceneExtent, CountsReturnsAndWraps) {
   const Camera camera = built_in_camera("paper-10f0");  // 9.99 m
-  SceneImage scene(1, 5);                               // nothing returns
+  SceneImage scene(1, 5);                               // no return
   scene.depth_m.pixels[1] = 2.0f;
   scene.depth_m.pixels[2] = 10.5f;
   scene.depth_m.pixels[4] = 9.0f;
@@ -25,7 +25,7 @@ TEST(SceneExtent, CountsWhatReturnsAndWhatWraps) {
   EXPECT_EQ(beyond_range(scene, camera).pixels, (std::vector<std::uint8_t>{0, 0, 1, 0, 0}));
 }
 
-TEST(SceneExtent, OfNothingIsZero) {
+TEST(SceneExtent, OfAnEmptySceneIsZero) {
   const SceneExtent extent = scene_extent(SceneImage(2, 2), built_in_camera("paper-10f0"));
   EXPECT_EQ(extent.returns, 0);
   EXPECT_EQ(extent.farthest_m, 0.0);

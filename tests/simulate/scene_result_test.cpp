@@ -21,7 +21,7 @@ SceneResult small_scene() {
   return scene;
 }
 
-TEST(CaptureAndDecode, FillsOneDecodingPerLightAndCodeTheSameForAnyThreads) {
+TEST(CaptureAndDecode, FillsOneDecodingPerLightAndCodeForAnyNumberOfThreads) {
   const Camera camera = built_in_camera("paper-30x");
   const std::vector<CodeSet> codes{build_family("sinusoid-k4", camera),
                                    build_family("hamiltonian-k3", camera)};
@@ -55,7 +55,7 @@ TEST(CaptureAndDecode, FillsOneDecodingPerLightAndCodeTheSameForAnyThreads) {
     EXPECT_LT(d.error.mean_m, 0.01) << "plenty of light";
 }
 
-TEST(CaptureAndDecode, FiltersTheSameRawNumbersBesides) {
+TEST(CaptureAndDecode, AlsoFiltersTheSameRawValues) {
   const Camera camera = built_in_camera("paper-30x");
   const std::vector<CodeSet> codes{build_family("hamiltonian-k4", camera)};
   const std::vector<NamedLight> lights{{"dim", {1e5, 1e3}}};
@@ -72,7 +72,7 @@ TEST(CaptureAndDecode, FiltersTheSameRawNumbersBesides) {
   EXPECT_LT(d.filtered->error.mean_m, 0.5 * d.error.mean_m);
 }
 
-TEST(CaptureAndDecode, StopsWhenAsked) {
+TEST(CaptureAndDecode, StopsOnRequest) {
   const Camera camera = built_in_camera("paper-30x");
   SceneResult scene = small_scene();
   EXPECT_THROW(capture_and_decode(scene, std::vector{build_family("sinusoid-k4", camera)}, camera,
@@ -81,7 +81,7 @@ TEST(CaptureAndDecode, StopsWhenAsked) {
                Interrupted);
 }
 
-TEST(MedianDepth, LeavesOutPixelsWithoutReturn) {
+TEST(MedianDepth, IgnoresPixelsWithoutReturn) {
   SceneImage scene(1, 3);
   EXPECT_EQ(median_depth_m(scene), 1.0);
   scene.depth_m.pixels = {2.0f, std::numeric_limits<float>::quiet_NaN(), 3.0f};

@@ -10,7 +10,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(TableDepthError, IsTheDepthErrorOfTheCode) {
+TEST(TableDepthError, EqualsTheDepthErrorOfTheCode) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     Camera camera = camera_with("paper-30x", 2, readout);
     camera.operating.signal_e_per_s = {1e4};
@@ -37,7 +37,7 @@ TEST(TableDepthError, DoesNotDependOnGainOffsetOrThreads) {
   EXPECT_EQ(table_depth_error_m(setup.decoder.table(), {2e4, 1e3}, 4000).value, electrons_m);
 }
 
-TEST(TableDepthError, FallsWithLight) {
+TEST(TableDepthError, DecreasesWithLight) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   EXPECT_LT(table_depth_error_m(table, {1e5, 1e3}).value,

@@ -13,18 +13,18 @@
 namespace tofsmith {
 namespace {
 
-/// Doubles in a vector of an instruction set.
+/// Returns the number of doubles in a vector of an instruction set.
 std::size_t lanes_of(std::int64_t target) {
   if (target == HWY_SCALAR) return 1;
   if (target == HWY_AVX3) return 8;
   return target == HWY_AVX2 ? 4 : 2;
 }
 
-TEST(TrialKernel, SumsErrorsInTheOrderThatItsVectorsHaveWithEveryHighwayVersion) {
+TEST(TrialKernel, SumsErrorsInVectorOrderWithEveryHighwayVersion) {
   constexpr std::size_t pairs = 8;
   std::array<double, 2 * pairs> true_bin{}, decoded_bin{};
   std::array<double, pairs> pair_sum{};
-  for (std::size_t i = 0; i < pairs; ++i) {  // whose sum is rounded in every order
+  for (std::size_t i = 0; i < pairs; ++i) {  // values whose sum depends on the order
     const double a = std::exp(1.7 * static_cast<double>(i)) / 3e4, b = 0.1 * a;
     decoded_bin[2 * i] = a;
     decoded_bin[2 * i + 1] = b;

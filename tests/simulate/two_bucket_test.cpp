@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Two-bucket pairs from capture to depth error.
+// Two-bucket sensors, from capture to depth error.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Camera two_bucket_camera(int samples = 240) {
   return camera;
 }
 
-/// H x W pixels at random depths of the range, albedo 1.
+/// Returns H x W pixels at random depths of the range, with albedo 1.
 SceneImage random_depths(int height, int width, double range_m) {
   SceneImage scene(height, width);
   RandomStream random(4, 0);
@@ -31,7 +31,7 @@ SceneImage random_depths(int height, int width, double range_m) {
   return scene;
 }
 
-TEST(TwoBuckets, CapturedPairsHoldAllLightAndTwoReadNoises) {
+TEST(TwoBuckets, CapturedPairsContainAllLightAndTwoReadNoises) {
   for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian}) {
     Camera camera = two_bucket_camera();
     camera.sensor.noise = noise;
@@ -69,7 +69,7 @@ TEST(TwoBuckets, CapturedDepthsAreDecoded) {
     for (const Readout readout : {Readout::separate, Readout::difference}) {
       Camera camera = two_bucket_camera(c.samples);
       camera.sensor.readout = readout;
-      camera.exposure_s.total_s = 3000.0;  // next to no noise
+      camera.exposure_s.total_s = 3000.0;  // almost no noise
       const CodeSet code = build_family(c.name, camera);
       const SceneImage scene = random_depths(20, 30, camera.range_m());
       const RawFrames raw = capture(scene, code, camera, {.falloff = false});
@@ -83,7 +83,7 @@ TEST(TwoBuckets, CapturedDepthsAreDecoded) {
     }
 }
 
-TEST(TwoBuckets, TheSecondBucketLessensTheError) {
+TEST(TwoBuckets, TheSecondBucketReducesTheError) {
   for (const TwoBucketCode& c : two_bucket_codes) {
     Camera camera = two_bucket_camera(c.samples);
     camera.operating.signal_e_per_s = {1e5};
@@ -95,7 +95,7 @@ TEST(TwoBuckets, TheSecondBucketLessensTheError) {
     const DepthErrorReport one = evaluate(build_family(c.name, camera), camera, {.trials = 4000});
     EXPECT_EQ(one.exposures, two.exposures);
     EXPECT_LT(two.circular.mean_m.value, 0.9 * one.circular.mean_m.value) << c.name;
-    // Never below what the camera's light allows.
+    // Never below the receiver bound.
     EXPECT_GT(two.circular.mean_m.value, two.points[0].receiver_bound_mae_m) << c.name;
   }
 }

@@ -27,7 +27,7 @@ Camera small_camera(Weights depths = {}) {
   return camera;
 }
 
-/// Weights of so many parts, of which depths lie in one alone.
+/// Returns `parts` weights that restrict depths to one part.
 std::vector<double> only(int part, int parts) {
   std::vector<double> weights(static_cast<std::size_t>(parts), 0.0);
   weights[static_cast<std::size_t>(part)] = 2.0;
@@ -47,7 +47,7 @@ void expect_same_bits(const CodeSet& code, const Camera& one, const Camera& othe
             best_rotation(code, other, {.trials = 2000}).linear_geometric_mean_m);
 }
 
-TEST(WeighedDepths, EvenWeightsAreTheSameBitsAsNone) {
+TEST(WeighedDepths, EqualWeightsGiveTheSameBitsAsNone) {
   const Camera none = small_camera(), even = small_camera(std::vector<double>(12, 0.3));
   Camera whole = none;
   whole.operating.working_distance_m = {0.0, none.range_m()};
@@ -62,7 +62,7 @@ TEST(WeighedDepths, TheScaleOfWeightsDoesNotMatter) {
   expect_same_bits(build_family("hamiltonian-k4", one), one, other);
 }
 
-TEST(WeighedDepths, AWorkingDistanceIsWeightsOfOneWithinIt) {
+TEST(WeighedDepths, AWorkingDistanceEqualsWeightsOfOneWithinIt) {
   const Camera weighed = small_camera(Weights({0.0, 1.0, 1.0, 0.0}));
   Camera within = small_camera();
   within.operating.working_distance_m = {0.25 * within.range_m(), 0.75 * within.range_m()};
@@ -74,7 +74,7 @@ TEST(WeighedDepths, AWorkingDistanceIsWeightsOfOneWithinIt) {
   EXPECT_NEAR(a.receiver_bound_mae_m, b.receiver_bound_mae_m, 1e-9 * a.receiver_bound_mae_m);
 }
 
-TEST(WeighedDepths, TheErrorIsTheWeighedMeanOfTheErrorsOfParts) {
+TEST(WeighedDepths, TheErrorIsTheWeightedMeanOverParts) {
   constexpr int parts = 5;
   const CodeSet code = build_family("hamiltonian-k4", small_camera());
   std::vector<PointDepthError> of_part;
@@ -113,9 +113,9 @@ TEST(WeighedDepths, ANarrowPeakGivesTheErrorOfThatDepth) {
   }
 }
 
-TEST(WeighedDepths, OnBinsTheyAreThoseBelowWhatOccurs) {
+TEST(WeighedDepths, OnBinsTheyUseTheBinBelow) {
   Camera camera = small_camera(Weights(only(7, 60)));
-  camera.operating.signal_e_per_s = {1e8};  // no error but that of rounding depths
+  camera.operating.signal_e_per_s = {1e8};  // only the rounding error of depths remains
   const CodeSet code = build_family("hamiltonian-k3", camera);
   EvaluateOptions options{.trials = 200, .sub_bin = false};
   const double bin_m = camera.bin_m();
@@ -125,7 +125,7 @@ TEST(WeighedDepths, OnBinsTheyAreThoseBelowWhatOccurs) {
   EXPECT_EQ(evaluate(code, camera, options).points[0].circular_mde_m.value, 0.0);
 }
 
-TEST(WeighedDepths, ErrorsByRotationAreThoseOfEveryTrialRotated) {
+TEST(WeighedDepths, ErrorsByRotationMatchTrialsRotatedOneByOne) {
   constexpr int samples = 24;
   const DepthPrior prior({0.0, 3.0, 1.0, 0.0, 2.0});
   const Eigen::VectorXd weight = samples * prior.masses(samples);
@@ -166,7 +166,7 @@ TEST(WeighedDepths, TheBestRotationPredictsTheErrorOfTheRotatedCode) {
   }
 }
 
-TEST(WeighedDepths, NoCodeIsBelowTheBoundOfTheReceiver) {
+TEST(WeighedDepths, NoCodeBeatsTheReceiverBound) {
   Camera camera = small_camera();
   camera.operating.signal_e_per_s = {1e6};
   const CodeSet code = build_family("hamiltonian-k4", camera);
@@ -177,7 +177,7 @@ TEST(WeighedDepths, NoCodeIsBelowTheBoundOfTheReceiver) {
   }
 }
 
-TEST(WeighedDepths, TheBoundOfAHistogramIsTheMeanOverThemWithinABin) {
+TEST(WeighedDepths, TheHistogramBoundIsTheMeanOverThemWithinABin) {
   Camera camera = small_camera();
   camera.sensor.readout = Readout::rows;
   camera.sensor.read_noise_e = 0.0;
@@ -195,14 +195,14 @@ TEST(WeighedDepths, TheBoundOfAHistogramIsTheMeanOverThemWithinABin) {
   EXPECT_NEAR(sum_m / 4, anywhere_m, 1e-9 * anywhere_m);
 }
 
-/// Depths where nothing wraps: the linear error is the circular one.
+/// Returns a camera for depths where nothing wraps: linear and circular error are equal.
 Camera camera_of_the_middle() {
   Camera camera = small_camera(Weights({0, 0, 0, 1, 1, 0, 0, 0}));
   camera.operating.signal_e_per_s = {1e6};
   return camera;
 }
 
-TEST(WeighedDepths, MultipathOfTheOperatingRangeIsJudgedAtThem) {
+TEST(WeighedDepths, MultipathOfTheOperatingRangeUsesThem) {
   Camera camera = camera_of_the_middle();
   const CodeSet code = build_family("sinusoid-k4", camera);
   const OperatingMultipath later{.ratio = {0.1, 0.3}, .delay_m = {0.2, 0.5}};
@@ -215,7 +215,7 @@ TEST(WeighedDepths, MultipathOfTheOperatingRangeIsJudgedAtThem) {
   EXPECT_GT(anywhere.linear_m.value, anywhere.circular_m.value);
 }
 
-TEST(WeighedDepths, MapsOfMultipathAreTheMeanOverThem) {
+TEST(WeighedDepths, MultipathMapsAreTheMeanOverThem) {
   constexpr int parts = 5;
   Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k4", camera);

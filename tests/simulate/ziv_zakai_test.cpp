@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// The integral over shifts for given shares, by brute force.
+/// Integrates over shifts for given weights of the harmonics, by brute force.
 double confusion_of(const Eigen::VectorXd& power, const Eigen::VectorXd& shares) {
   constexpr int cells = 20000;
   double sum = 0.0;
@@ -33,7 +33,7 @@ double confusion_of(const Eigen::VectorXd& power, const Eigen::VectorXd& shares)
   return 0.5 * sum / cells;
 }
 
-TEST(ZivZakai, IsAGuessWithoutSignalAndTheDeviationWithMuch) {
+TEST(ZivZakai, IsAQuarterWithoutSignalAndTheDeviationWithMuch) {
   EXPECT_EQ(ziv_zakai_mae(Eigen::VectorXd(), 0.0), 0.25);
   EXPECT_EQ(ziv_zakai_mae(Eigen::VectorXd::Zero(5), infinity), 0.25);
   EXPECT_NEAR(ziv_zakai_mae(Eigen::VectorXd::Constant(3, 1e-9), infinity), 0.25, 1e-4);
@@ -44,7 +44,7 @@ TEST(ZivZakai, IsAGuessWithoutSignalAndTheDeviationWithMuch) {
   }
 }
 
-TEST(ZivZakai, OfInformationAloneIsTheDeviationUpToAGuess) {
+TEST(ZivZakai, OfInformationAloneIsTheDeviationUpToAQuarter) {
   for (const double information : {1e3, 1e9})
     EXPECT_NEAR(ziv_zakai_mae(Eigen::VectorXd(), information) * std::sqrt(information),
                 std::sqrt(2 / pi), 0.002);
@@ -55,7 +55,7 @@ TEST(ZivZakai, OfInformationAloneIsTheDeviationUpToAGuess) {
       << "the smaller of both counts";
 }
 
-TEST(ZivZakai, OfOneToneIsTheIntegral) {
+TEST(ZivZakai, OfOneToneEqualsTheIntegral) {
   for (const double power : {0.1, 1.0, 30.0}) {
     const Eigen::VectorXd one = Eigen::VectorXd::Constant(1, power);
     EXPECT_NEAR(ziv_zakai_mae(one, infinity) / confusion_of(one, Eigen::VectorXd::Ones(1)), 1.0,
@@ -63,7 +63,7 @@ TEST(ZivZakai, OfOneToneIsTheIntegral) {
   }
 }
 
-TEST(ZivZakai, NoEstimateOfAPhaseBeatsItAndTheBestComesNear) {
+TEST(ZivZakai, NoPhaseEstimateBeatsItAndTheBestComesNear) {
   // (cos, sin) of the phase times an amplitude, in unit noise.
   for (const double amplitude : {0.0, 0.3, 1.0, 2.0, 4.0, 10.0}) {
     RandomStream random(5, static_cast<std::uint64_t>(10 * amplitude));
@@ -82,7 +82,7 @@ TEST(ZivZakai, NoEstimateOfAPhaseBeatsItAndTheBestComesNear) {
   }
 }
 
-TEST(ZivZakai, IsBelowWhateverSharesTheHarmonicsHave) {
+TEST(ZivZakai, IsALowerLimitForAnySharesOfHarmonics) {
   for (std::uint64_t item = 0; item < 6; ++item) {
     RandomStream random(6, item);
     Eigen::VectorXd power(2 + static_cast<int>(6 * random.uniform()));
@@ -101,7 +101,7 @@ TEST(ZivZakai, IsBelowWhateverSharesTheHarmonicsHave) {
   }
 }
 
-TEST(ZivZakai, MorePowerNeverRaisesItAndManyHarmonicsAreTakenTogether) {
+TEST(ZivZakai, MorePowerNeverRaisesItAndManyHarmonicsAreGrouped) {
   Eigen::VectorXd few = Eigen::VectorXd::Constant(90, 3.0);
   Eigen::VectorXd many = Eigen::VectorXd::Constant(400, 3.0);
   EXPECT_LE(ziv_zakai_mae(many, infinity), ziv_zakai_mae(few, infinity) * 1.003);
