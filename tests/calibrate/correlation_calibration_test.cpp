@@ -19,14 +19,14 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-constexpr double scale = 1000.0, level = 300.0;  // raw numbers
+constexpr double scale = 1000.0, level = 300.0;  // raw values
 
 struct Bench {
-  int side = 8;           // pixels each way
+  int side = 8;           // pixels in each direction
   int steps = 30;         // per period
-  int frames = 31;        // the last repeats the first
-  double noise = 3.0;     // raw numbers
-  double drift = 0.0;     // of the light, from the first to the last frame
+  int frames = 31;        // the last frame repeats the first
+  double noise = 3.0;     // raw values
+  double drift = 0.0;     // relative change of light from the first to the last frame
   double mismatch = 0.0;  // of two taps
   double first = 0.0;     // delay of the first frame [steps]
   std::uint64_t seed = 1;
@@ -43,7 +43,7 @@ Camera camera_of(const Bench& bench, int taps = 1) {
 double delay_of(int p) { return 0.004 * std::sin(1.7 * p); }  // periods
 double gain_of(int p) { return 1.0 + 0.2 * std::cos(2.3 * p); }
 
-/// Raw numbers of pixels with delays and gains of their own, whose means are 0 and 1.
+/// Returns raw values of pixels with individual delays and gains, whose means are 0 and 1.
 DelaySweep sweep_of(const Bench& bench, const ForwardModel& model) {
   DelaySweep sweep;
   const int pixels = bench.side * bench.side, columns = model.measurements();
@@ -72,8 +72,8 @@ DelaySweep sweep_of(const Bench& bench, const ForwardModel& model) {
   return sweep;
 }
 
-/// Largest and mean square distance from the truth in standard errors. Light that drifted is known
-/// in the middle of the sweep.
+/// Returns the largest and mean square deviation from the truth in standard errors. Drifting light
+/// is known at the middle of the sweep.
 std::pair<double, double> distance(const CalibratedCorrelation& found, const ForwardModel& model) {
   const Eigen::MatrixXd truth =
       (scale * model.correlation_table(found.table.samples())).array() + level;
@@ -97,7 +97,7 @@ TEST(CorrelationCalibration, RecoversTheTableWithinFourStandardErrorsAtEverySamp
     const auto [largest, square] = distance(found, model);
     EXPECT_LT(largest, 4.0);
     mean_square += square / seeds;
-    // The maps: delays and gains of the pixels.
+    // Maps of the delays and gains of the pixels.
     RunningStatistics offset, gain;
     for (int p = 0; p < bench.side * bench.side; ++p) {
       const auto i = static_cast<std::size_t>(p);
@@ -119,7 +119,7 @@ TEST(CorrelationCalibration, DecodersTolerateTheErrorsOfItsTable) {
   const DelaySweep sweep = sweep_of(bench, model);
   CorrelationCalibrationOptions options{.range_m = camera.range_m(), .black_level = level};
   const CalibratedCorrelation found = calibrate_correlation(sweep, options);
-  // The same numbers of unequal exposures are as certain; ambient light explains less of them.
+  // With unequal exposures the values are equally certain, but ambient light explains less of them.
   options.exposure_s = Eigen::Vector4d(1.0, 1.0, 20.0, 20.0);
   const double of_unequal = calibrate_correlation(sweep, options).table.model_error_percent;
   EXPECT_LT(of_unequal, found.table.model_error_percent);
@@ -146,7 +146,7 @@ TEST(CorrelationCalibration, DecodersTolerateTheErrorsOfItsTable) {
   EXPECT_LT(found.table.model_error_percent, 1.0);
 }
 
-TEST(CorrelationCalibration, OfAMixerFindsItsTableOfBothSigns) {
+TEST(CorrelationCalibration, OfAMixerFindsItsSignedTable) {
   Camera camera = camera_of({});
   camera.sensor.demodulation = Demodulation::weight;
   camera.sensor.adc_bits = 12;
@@ -165,7 +165,7 @@ TEST(CorrelationCalibration, OfAMixerFindsItsTableOfBothSigns) {
   const Eigen::ArrayXXd off =
       found.table.correlation - scale * model.correlation_table(found.table.samples());
   EXPECT_LT((off / found.standard_error.array()).abs().maxCoeff(), 4.0);
-  // What is calibrated decodes depths of the mixer.
+  // The calibrated table decodes depths of the mixer.
   const Decoder decoder(make_decoding_table(found.table, camera));
   for (int bin = 0; bin < model.samples(); bin += 7) {
     const Eigen::VectorXf raw =
@@ -178,7 +178,7 @@ TEST(CorrelationCalibration, OfAMixerFindsItsTableOfBothSigns) {
   }
 }
 
-TEST(CorrelationCalibration, TakesOutDriftThatRepeatsTell) {
+TEST(CorrelationCalibration, RemovesDriftFoundByRepeatedDelays) {
   const Bench bench{.frames = 60, .drift = 0.05};
   const Camera camera = camera_of(bench);
   const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
@@ -187,7 +187,7 @@ TEST(CorrelationCalibration, TakesOutDriftThatRepeatsTell) {
   EXPECT_TRUE(found.drift_corrected);
   EXPECT_NEAR(found.light_drift.value, 0.05, 4 * found.light_drift.standard_error + 0.002);
   EXPECT_THAT(found.notes, Contains(HasSubstr("light changed by +5")));
-  // Without repeats nobody can know.
+  // Without repeated delays the drift is unknown.
   const Bench once{.frames = 30};
   const CalibratedCorrelation blind =
       calibrate_correlation(sweep_of(once, model), {.range_m = camera.range_m()});
@@ -195,7 +195,7 @@ TEST(CorrelationCalibration, TakesOutDriftThatRepeatsTell) {
   EXPECT_THAT(blind.notes, Contains(HasSubstr("measure the first delay again")));
 }
 
-TEST(CorrelationCalibration, LeavesDeadPixelsOut) {
+TEST(CorrelationCalibration, ExcludesDeadPixels) {
   const Bench bench;
   const Camera camera = camera_of(bench);
   const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
@@ -206,7 +206,7 @@ TEST(CorrelationCalibration, LeavesDeadPixelsOut) {
     for (int k = 0; k < columns; ++k) {
       float* frame = sweep.frames.frame(f);
       frame[0 * columns + k] = 17.0f;                                         // constant
-      frame[5 * columns + k] = 300.0f + static_cast<float>(random.normal());  // hardly responds
+      frame[5 * columns + k] = 300.0f + static_cast<float>(random.normal());  // almost no response
       if (f == 3) frame[7 * columns + k] = NAN;
       if (f == 4) frame[9 * columns + k] = 5000.0f;  // saturated
     }
@@ -236,7 +236,7 @@ TEST(CorrelationCalibration, FindsTheImbalanceOfTaps) {
   EXPECT_LT(distance(found, model).first, 4.5);
 }
 
-TEST(CorrelationCalibration, ReadsASweepThatStartsAnywhereAndTablesOfMeans) {
+TEST(CorrelationCalibration, AcceptsAnyStartOfTheSweepAndTablesOfMeans) {
   const Bench bench{.side = 1, .frames = 90, .noise = 0.2, .first = 0.37};
   const Camera camera = camera_of(bench);
   const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
@@ -252,7 +252,7 @@ TEST(CorrelationCalibration, ReadsASweepThatStartsAnywhereAndTablesOfMeans) {
   EXPECT_NEAR(table.noise_rms, 0.2, 0.08);
 }
 
-TEST(CorrelationCalibration, RefusesWhatIsLessThanAPeriod) {
+TEST(CorrelationCalibration, RejectsLessThanAPeriod) {
   const Camera camera = camera_of({});
   const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
   const auto refusal = [&](const Bench& bench) -> std::string {
@@ -290,7 +290,7 @@ TEST(IdealCodeFit, FindsCodeDelayAndResponse) {
       EXPECT_GT(best.ideal_residual, 2 * best.residual);
       const Camera fitted = with_fit(built_in_camera("paper-30x"), best);
       EXPECT_EQ(fitted.sensor.impulse_response, best.response);
-    } else {  // a sinusoid passes any response, a square with it may look like one
+    } else {  // any response passes a sinusoid, and may turn a square wave into one
       EXPECT_LT(best.residual, 0.01) << best.code;
     }
     EXPECT_THROW(fit_ideal_codes(found.table.correlation, found.standard_error, camera,

@@ -33,7 +33,7 @@ class SweepFile : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(SweepFile, TextHoldsDelaysInTheUnitOfItsHeader) {
+TEST_F(SweepFile, TextHasDelaysInTheUnitOfItsHeader) {
   const DelaySweepOptions options{.fundamental_frequency_hz = 10e6};  // 100 ns: 20 steps of 5 ns
   const DelaySweep sweep = read_delay_sweep(write("s.csv", rows(21, "delay_ns,a,b\n")), options);
   EXPECT_EQ(sweep.frames.frames, 21);
@@ -47,7 +47,7 @@ TEST_F(SweepFile, TextHoldsDelaysInTheUnitOfItsHeader) {
               1e-12);
 }
 
-TEST_F(SweepFile, IsTheSameInEveryDialect) {
+TEST_F(SweepFile, IsIndependentOfTheDialect) {
   const DelaySweepOptions options{.fundamental_frequency_hz = 10e6};
   const DelaySweep expected = read_delay_sweep(write("s.csv", rows(21, "delay_ns,a,b\n")), options);
   std::string commas = "\xef\xbb\xbfn;delay;a;b\n;ns;DN;DN\n", beside;
@@ -63,7 +63,7 @@ TEST_F(SweepFile, IsTheSameInEveryDialect) {
   }
 }
 
-TEST_F(SweepFile, SaysWhatOfThePeriodIsMissing) {
+TEST_F(SweepFile, ReportsTheMissingPartOfThePeriod) {
   const DelaySweepOptions options{.fundamental_frequency_hz = 10e6};
   EXPECT_THAT(
       io_error_of([&] { read_delay_sweep(write("s.csv", rows(12, "delay_ns,a,b\n")), options); }),
@@ -92,12 +92,12 @@ TEST_F(SweepFile, AnArrayIsOnePeriodInEqualSteps) {
     for (int k = 0; k < 3; ++k) values.push_back((n % 16) * (k + 1.0));
   write_npy(directory_ / "t.npy", NpyArray::of<double>({17, 3}, values), OutputPolicy::overwrite);
   const DelaySweep sweep = read_delay_sweep(directory_ / "t.npy", {});
-  EXPECT_EQ(sweep.frames.frames, 16);  // the repeated end point is gone
+  EXPECT_EQ(sweep.frames.frames, 16);  // the repeated end point is removed
   EXPECT_THAT(sweep.notes, Contains(HasSubstr("repeats the first and was dropped")));
   EXPECT_THAT(sweep.notes, Contains(HasSubstr("equal steps of one period")));
 }
 
-TEST(DelayUnit, IsAKnownWord) {
+TEST(DelayUnit, HasKnownNames) {
   EXPECT_EQ(parse_delay_unit("ns"), DelayUnit::second);
   EXPECT_EQ(parse_delay_unit("bin"), DelayUnit::bin);
   EXPECT_THROW(parse_delay_unit("furlong"), std::invalid_argument);

@@ -33,14 +33,14 @@ Camera phase_camera() {
   return camera;
 }
 
-/// A camera that errs in a known way, and a scene with its true depth.
+/// A camera with known depth errors, and a scene with its true depth.
 struct Bench {
   int frames = 6, height = 40, width = 56;
-  double first_share = 0.0, last_share = 1.0;  // of the range that the scene spans
+  double first_share = 0.0, last_share = 1.0;  // of the range, spanned by the scene
   double wrong_share = 0.05;                   // of reference pixels
-  double second_harmonic = 0.0;                // over the first; no depth explains it
+  double second_harmonic = 0.0;                // relative to the first; not explained by any depth
   bool reversed = false;
-  bool one_albedo = false;  // signal falls with the distance squared, and with nothing else
+  bool one_albedo = false;  // signal depends on the distance squared only
   std::uint64_t seed = 1;
 
   DepthErrorTerms truth;
@@ -84,7 +84,7 @@ struct Bench {
     return calibrate_depth(raw, reference, build_family("sinusoid-k4", camera), camera);
   }
 
-  /// Decodes by the table and takes its correction off: median of what is left [m].
+  /// Decodes with the table, subtracts its correction and returns the median error [m].
   double median_error_m(const MeasuredTable& measured) const {
     const Decoder decoder(make_decoding_table(measured, phase_camera()));
     std::vector<double> left_m;
@@ -115,7 +115,7 @@ DepthErrorTerms wiggle() {
   return terms;
 }
 
-/// What a camera errs by, at random: some of the harmonics to 8 of 1 to 20 mm, slopes, any offset.
+/// Returns random depth errors: some harmonics up to the 8th of 1 to 20 mm, slopes, any offset.
 DepthErrorTerms random_terms(std::uint64_t seed) {
   RandomStream random(seed, 9, 0);
   const auto signed_m = [&](double min_m, double max_m) {
@@ -131,7 +131,7 @@ DepthErrorTerms random_terms(std::uint64_t seed) {
   return terms;
 }
 
-/// The term that a calibration calls by this name [m].
+/// Returns the true value of a calibrated term [m].
 double term_m(const DepthErrorTerms& terms, const std::string& name) {
   if (name == "offset") return terms.offset_m;
   if (name == "row") return terms.field_m[0];
@@ -163,7 +163,7 @@ TEST(DepthCalibration, RecoversKnownTermsWithinTheirIntervalsIn200Cameras) {
   RecordProperty("all", all);
 }
 
-TEST(DepthCalibration, FindsTheModelErrorThatDecodersMustTolerate) {
+TEST(DepthCalibration, EstimatesTheModelErrorThatDecodersMustTolerate) {
   const auto inconsistent_share = [](const Bench& bench, const MeasuredTable& table) {
     const Decoder decoder(make_decoding_table(table, phase_camera()));
     const DepthImage image = decoder.decode(bench.raw, 2);
@@ -181,7 +181,8 @@ TEST(DepthCalibration, FindsTheModelErrorThatDecodersMustTolerate) {
                 return note.find("no depth explains") != std::string::npos;
               }));
     EXPECT_GE(percent, 100.0 * share);
-    EXPECT_LE(percent, 170.0 * share);  // at the depth where it is largest: sqrt(2), by fifths
+    EXPECT_LE(percent, 170.0 * share);  // at the depth of the maximum: factor sqrt(2), rounded to
+                                        // 20 %
     EXPECT_LT(inconsistent_share(bench, found.table), 0.02);
     MeasuredTable strict = found.table;
     strict.model_error_percent = 0.0;
@@ -193,7 +194,7 @@ TEST(DepthCalibration, FindsTheModelErrorThatDecodersMustTolerate) {
   }
 }
 
-TEST(DepthCalibration, TheModelErrorOfACodeWithoutDegreesOfFreedomIsNotKnown) {
+TEST(DepthCalibration, TheModelErrorOfACodeWithoutDegreesOfFreedomIsUnknown) {
   Bench bench{.truth = wiggle()};
   bench.run();
   Camera camera = phase_camera();
@@ -203,7 +204,7 @@ TEST(DepthCalibration, TheModelErrorOfACodeWithoutDegreesOfFreedomIsNotKnown) {
   RawFrames three = bench.raw;
   three.measurements = 3;
   three.values.clear();
-  // Phases 0, 120 and 240 degrees from those at 0 and 90 degrees, with ambient light.
+  // Computes phases 0, 120 and 240 degrees from 0 and 90 degrees, with ambient light.
   for (std::size_t i = 0; i < bench.raw.values.size(); i += 4) {
     const float c = bench.raw.values[i], s = bench.raw.values[i + 1];
     for (int k = 0; k < 3; ++k) {
@@ -219,14 +220,14 @@ TEST(DepthCalibration, TheModelErrorOfACodeWithoutDegreesOfFreedomIsNotKnown) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("no degrees of freedom")));
 }
 
-TEST(DepthCalibration, DelayThatRunsBackwardsIsTurnedInTableAndCamera) {
+TEST(DepthCalibration, ReversedDelayIsCorrectedInTableAndCamera) {
   Bench bench{.reversed = true, .truth = wiggle()};
   bench.run();
   const CalibratedDepth found = bench.calibrate();
   EXPECT_TRUE(found.reversed);
   EXPECT_THAT(found.notes, Contains(HasSubstr("backwards")));
   EXPECT_LT(bench.median_error_m(found.table), 2e-3);
-  // The camera alone decodes with its code, up to the wiggle.
+  // The camera without the table decodes up to the harmonic errors.
   const Camera camera = with_depth(phase_camera(), found);
   ASSERT_TRUE(camera.playback);
   EXPECT_TRUE(camera.playback->reversed);
@@ -237,7 +238,7 @@ TEST(DepthCalibration, DelayThatRunsBackwardsIsTurnedInTableAndCamera) {
   EXPECT_LT(bench.median_error_m(plain), 15e-3);
 }
 
-TEST(DepthCalibration, APartOfTheRangeIsKnownAndTheRestIsTheModelsWord) {
+TEST(DepthCalibration, PartOfTheRangeIsKnownAndTheRestIsExtrapolated) {
   Bench bench{.last_share = 0.4, .truth = wiggle()};
   bench.run();
   const CalibratedDepth found = bench.calibrate();
@@ -245,7 +246,7 @@ TEST(DepthCalibration, APartOfTheRangeIsKnownAndTheRestIsTheModelsWord) {
   EXPECT_LT(found.known_share, 0.5);
   EXPECT_THAT(found.notes, Contains(HasSubstr("model's word")));
   EXPECT_LT(bench.median_error_m(found.table), 2e-3);
-  // Harmonics share the offset there; the camera gets what is off in the mean.
+  // There, harmonics contribute to the offset; the camera stores the mean error.
   EXPECT_NEAR(with_depth(phase_camera(), found).playback->offset_m, 0.7, 15e-3);
 }
 
@@ -264,7 +265,7 @@ TEST(DepthCalibration, TermsHaveTheSizeOfDepthErrorsOnAnyPartOfTheRange) {
     }
 }
 
-TEST(DepthCalibration, TargetsOfOneAlbedoDoNotDetermineTermsInTheSignal) {
+TEST(DepthCalibration, TargetsOfOneAlbedoDoNotDetermineSignalTerms) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Bench bench{.last_share = 0.5, .one_albedo = true, .seed = seed, .truth = wiggle()};
     bench.run();
@@ -276,7 +277,7 @@ TEST(DepthCalibration, TargetsOfOneAlbedoDoNotDetermineTermsInTheSignal) {
   }
 }
 
-TEST(DepthCalibration, DepthAlongTheAxisIsTurnedByTheLens) {
+TEST(DepthCalibration, DepthAlongTheAxisIsConvertedWithTheLens) {
   Bench bench{.wrong_share = 0.0, .truth = wiggle()};
   bench.run();
   Camera camera = phase_camera();
@@ -295,7 +296,7 @@ TEST(DepthCalibration, DepthAlongTheAxisIsTurnedByTheLens) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("lens = none")));
 }
 
-TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
+TEST(DepthCalibration, RejectsReferencesOfOtherUnitsOrientationsAndShapes) {
   Bench bench{.truth = wiggle()};
   bench.run();
   const auto refuses = [&](const Bench& changed, const char* why) {
@@ -325,7 +326,7 @@ TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
   Bench few = bench;
   few.reference.depth_m.resize(2);
   refuses(few, "one for each of the 6 frames");
-  // Codes of several frequencies read the reference first.
+  // With several frequencies, the reference is checked first.
   const Camera camera = phase_camera();
   RawFrames two_frequencies{.frames = 32, .height = 8, .width = 8, .measurements = 8};
   two_frequencies.values.assign(32 * 64 * 8, 1.0f);
@@ -337,7 +338,7 @@ TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
       ThrowsMessage<std::invalid_argument>(HasSubstr("one for each of the 32 frames")));
 }
 
-TEST(DepthCalibration, AFewDepthsDoNotPassForAnotherUnit) {
+TEST(DepthCalibration, AFewDepthsAreNotMistakenForAnotherUnit) {
   Bench bench{.first_share = 0.1, .last_share = 0.2, .truth = wiggle()};
   bench.truth.offset_m = 0.1;
   bench.run();
@@ -353,7 +354,7 @@ TEST(DepthCalibration, AFewDepthsDoNotPassForAnotherUnit) {
   refuses([&](float) { return static_cast<float>(bench.range_m * random.uniform()); }, "agreement");
 }
 
-TEST(DepthCalibration, ExposuresInAnotherOrderAreAskedFor) {
+TEST(DepthCalibration, ReportsExposuresInAnotherOrder) {
   Bench bench{.first_share = 0.4, .last_share = 0.5, .truth = wiggle()};
   bench.run();
   EXPECT_THAT(bench.calibrate().notes, Not(Contains(HasSubstr("order of exposures"))));
@@ -362,7 +363,7 @@ TEST(DepthCalibration, ExposuresInAnotherOrderAreAskedFor) {
   EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("order of exposures")));
 }
 
-TEST(DepthCalibration, ErrorsThatNoCameraMakesAreTold) {
+TEST(DepthCalibration, ReportsImplausibleErrors) {
   Bench bench{.first_share = 0.3, .last_share = 0.6};
   bench.run();
   EXPECT_THAT(bench.calibrate().notes, Not(Contains(HasSubstr("more than cameras wiggle"))));
@@ -380,14 +381,14 @@ TEST(DepthCalibration, AConstantReferenceGivesAnOffsetAndAField) {
   EXPECT_LT(bench.median_error_m(found.table), 2e-3);
 }
 
-TEST(DepthCalibration, AReferenceOfAnotherSceneIsTold) {
+TEST(DepthCalibration, ReportsAReferenceOfAnotherScene) {
   Bench bench{.first_share = 0.4, .last_share = 0.6, .truth = wiggle()};
   bench.run();
   for (Image<float>& depth_m : bench.reference.depth_m) depth_m = Image<float>(1, 1, 0.8f);
   EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("0.8 m everywhere")));
 }
 
-TEST(DepthCalibration, ThePictureShowsTheErrorAndWhatIsLeft) {
+TEST(DepthCalibration, ThePictureShowsErrorsBeforeAndAfter) {
   Bench bench{.frames = 8, .truth = wiggle()};
   bench.run();
   const DepthErrorPicture picture = bench.calibrate().picture;
@@ -404,7 +405,7 @@ TEST(DepthCalibration, ThePictureShowsTheErrorAndWhatIsLeft) {
   for (const float left_m : picture.after_image_m.pixels) EXPECT_NEAR(left_m, 0.0, 0.02);
 }
 
-TEST(DepthCalibration, LeavesLessThanThePublishedModelsOnARealCamera) {
+TEST(DepthCalibration, LeavesSmallerErrorsThanPublishedModelsOnARealCamera) {
   const auto folder = std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data/melexis_quads";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without the recording";
   std::vector<std::vector<double>> quads;

@@ -33,12 +33,12 @@ Camera two_frequencies() {
   return camera;
 }
 
-/// Frames of a sensor whose frequencies, 4 f0 and 5 f0, have their own offset, contrast and third
-/// harmonic.
+/// Frames of a sensor whose frequencies, 4 f0 and 5 f0, have different offsets, contrasts and third
+/// harmonics.
 struct SensorUnderTest {
   std::array<double, 2> offset_rad{}, contrast{1.0, 1.0}, third{}, third_rad{};
   double nearest_m = 0.3, farthest_m = 7.0;
-  double wrong_share = 0.0;  // of the reference
+  double wrong_share = 0.0;  // of the reference pixels
   bool reversed = false;
   int frames = 6, height = 24, width = 32;
 
@@ -77,7 +77,7 @@ struct SensorUnderTest {
     return calibrate_depth(raw, reference, build_family(code_name, camera), camera);
   }
 
-  /// Root mean square depth error without the 2 % largest [m].
+  /// Returns the root mean square depth error [m], excluding the largest 2 %.
   double error_m(const DecodingTable& table,
                  const std::optional<DepthCorrection>& correction) const {
     const Decoder decoder(table);
@@ -139,7 +139,7 @@ TEST(FrequencyCalibration, FindsOffsetContrastAndHarmonicsOfEachFrequency) {
   }
 }
 
-TEST(FrequencyCalibration, LeavesTheNoiseOnly) {
+TEST(FrequencyCalibration, LeavesOnlyNoise) {
   SensorUnderTest exact;
   exact.run(7);
   const Camera camera = two_frequencies();
@@ -153,7 +153,7 @@ TEST(FrequencyCalibration, LeavesTheNoiseOnly) {
   const CalibratedDepth found = sensor.calibrate();
   EXPECT_LT(sensor.error_m(make_decoding_table(found.table, camera), found.table.correction),
             2.0 * noise_m);
-  // The camera alone has offsets and contrasts, but no harmonics.
+  // The camera without the table has offsets and contrasts, but no harmonics.
   const Camera calibrated = with_depth(camera, found);
   const DecodingTable table = make_decoding_table(
       ForwardModel(build_family(code_name, calibrated), calibrated), calibrated);
@@ -161,7 +161,7 @@ TEST(FrequencyCalibration, LeavesTheNoiseOnly) {
   EXPECT_EQ(calibrated.playback->offsets_m.size(), 2u);
 }
 
-TEST(FrequencyCalibration, ReportsWhatASingleDistanceDoesNotDetermine) {
+TEST(FrequencyCalibration, ReportsTermsThatASingleDistanceDoesNotDetermine) {
   SensorUnderTest sensor{.offset_rad = {0.7, -0.4}, .nearest_m = 2.0, .farthest_m = 2.0 + 1e-9};
   sensor.run(3);
   const CalibratedDepth found = sensor.calibrate();
@@ -173,7 +173,7 @@ TEST(FrequencyCalibration, ReportsWhatASingleDistanceDoesNotDetermine) {
       2e-3);
 }
 
-TEST(FrequencyCalibration, IsNotForASingleFrequency) {
+TEST(FrequencyCalibration, DoesNotApplyToASingleFrequency) {
   Camera camera = two_frequencies();
   SensorUnderTest sensor;
   sensor.run(1);

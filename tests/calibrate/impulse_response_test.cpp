@@ -23,8 +23,8 @@ ImpulseResponse response_of(Kind kind) {
   return {.kind = kind, .f_max_hz = 150e6, .cutoff_hz = 90e6};
 }
 
-/// What an oscilloscope shows of a response at `onset_s`: the response by its transfer function
-/// alone, in the time domain, of height 1, with normal noise.
+/// Returns an oscilloscope record of a response that starts at `onset_s`: computed in the time
+/// domain from its transfer function, with height 1 and normal noise.
 ResponseRecord record_of(const ImpulseResponse& response, Excitation excitation, double noise,
                          std::uint64_t seed) {
   constexpr int harmonics = 6000;
@@ -82,7 +82,7 @@ TEST_P(Recovers, TheBandwidthWithinTwoPercentAt40Decibels) {
     EXPECT_NEAR(fitted.value, true_hz, 0.02 * true_hz);
     EXPECT_NEAR(fitted.value, true_hz, 4 * fitted.standard_error);
     EXPECT_LT(fitted.standard_error, 0.01 * true_hz);
-    // The measured response too, without any kind.
+    // Also without assuming a kind of response.
     EXPECT_NEAR(result.bandwidth_hz.value, true_hz, 0.05 * true_hz);
     EXPECT_NEAR(bandwidth_hz(result.response), true_hz, 0.06 * true_hz);
     EXPECT_EQ(result.peaks.size(), 1u);
@@ -114,7 +114,7 @@ TEST(CalibratedResponse, IsCentredAndOnTheCamerasGrid) {
   }
 }
 
-TEST(CalibratedResponse, ErrorsAreHonest) {
+TEST(CalibratedResponse, StandardErrorsAreCorrect) {
   const ResponseRecord clean = record_of(response_of(Kind::gaussian), Excitation::pulse, 0.0, 0);
   const double true_hz = bandwidth_hz(response_of(Kind::gaussian));
   double fitted = 0.0, measured = 0.0;
@@ -130,7 +130,7 @@ TEST(CalibratedResponse, ErrorsAreHonest) {
     fitted += square(fit_of(result, Kind::gaussian).bandwidth_hz);
     measured += square(result.bandwidth_hz);
   }
-  EXPECT_GT(fitted, 0.35);  // chi^2 of 24 over 24
+  EXPECT_GT(fitted, 0.35);  // reduced chi^2, 24 degrees of freedom
   EXPECT_LT(fitted, 2.2);
   EXPECT_GT(measured, 0.3);
   EXPECT_LT(measured, 3.0);
@@ -149,7 +149,7 @@ TEST(CalibratedResponse, KeepsASecondPeakWithANote) {
   EXPECT_THAT(result.notes, testing::Contains(HasSubstr("second peak of 0.6")));
 }
 
-TEST(CalibratedResponse, NotesAPulseWithAFlatTop) {
+TEST(CalibratedResponse, ReportsAPulseWithAFlatTop) {
   const auto has_note = [](const ResponseRecord& record) {
     for (const std::string& note : calibrate_impulse_response(record).notes)
       if (note.find("the top of the pulse is flat") != std::string::npos) return true;
@@ -168,7 +168,7 @@ TEST(CalibratedResponse, NotesAPulseWithAFlatTop) {
   }
 }
 
-TEST(CalibratedResponse, TurnsRoundAFallingOrRolledRecord) {
+TEST(CalibratedResponse, InvertsFallingRecordsAndRotatesWrappedOnes) {
   const ResponseRecord clean = record_of(response_of(Kind::hann), Excitation::pulse, 0.002, 7);
   const double expected_hz = calibrate_impulse_response(clean).fits.front().bandwidth_hz.value;
   ResponseRecord falling = clean;
@@ -183,7 +183,7 @@ TEST(CalibratedResponse, TurnsRoundAFallingOrRolledRecord) {
   EXPECT_THAT(unrolled.notes, testing::Contains(HasSubstr("turned round")));
 }
 
-TEST(CalibratedResponse, RefusesARecordWithoutAResponse) {
+TEST(CalibratedResponse, RejectsARecordWithoutAResponse) {
   ResponseRecord record;
   record.time_step_s = 1e-9;
   record.values = Eigen::VectorXd::Zero(100);

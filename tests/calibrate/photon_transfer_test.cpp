@@ -24,7 +24,7 @@ Camera known_camera() {
   return camera;
 }
 
-/// Frames of a flat wall whose pixels differ, under ambient light only.
+/// Returns frames of a flat wall with differing pixels, in ambient light only.
 RawFrames frames_of(const Camera& camera, double ambient_e_per_s, std::uint64_t seed) {
   SceneImage scene(24, 24);
   scene.ambient_scale = Image<float>(24, 24, 1.0f);
@@ -44,7 +44,7 @@ PhotonTransfer calibrated(const Camera& camera, std::uint64_t seed, double brigh
   return photon_transfer(levels, frames_of(camera, 0.0, 100 * seed), options);
 }
 
-TEST(PhotonTransfer, RecoversAKnownSensorWithHonestErrors) {
+TEST(PhotonTransfer, RecoversAKnownSensorWithCorrectStandardErrors) {
   const Camera camera = known_camera();
   constexpr int seeds = 12;
   double gain = 0.0, noise = 0.0, black = 0.0;
@@ -61,13 +61,13 @@ TEST(PhotonTransfer, RecoversAKnownSensorWithHonestErrors) {
     EXPECT_LT(found.read_noise_e.standard_error, 0.05 * 28.0);
     EXPECT_FALSE(found.full_well_e);
   }
-  for (const double chi2 : {gain, noise, black}) {  // of 12 over 12
+  for (const double chi2 : {gain, noise, black}) {  // reduced, 12 degrees of freedom
     EXPECT_GT(chi2, 0.25);
     EXPECT_LT(chi2, 2.7);
   }
 }
 
-TEST(PhotonTransfer, FindsTheFullWellAndLeavesSaturatedFramesOut) {
+TEST(PhotonTransfer, FindsTheFullWellAndExcludesSaturatedFrames) {
   Camera camera = known_camera();
   camera.sensor.full_well_e = 12000.0;  // DN 1664, below the converter's 4095
   const PhotonTransfer found = calibrated(camera, 3, 5e7);
@@ -80,17 +80,17 @@ TEST(PhotonTransfer, FindsTheFullWellAndLeavesSaturatedFramesOut) {
   EXPECT_EQ(written.sensor.adc_bits, 12);
 }
 
-TEST(PhotonTransfer, SaysWhenTheConverterEndsFirst) {
+TEST(PhotonTransfer, ReportsWhenTheConverterSaturatesFirst) {
   Camera camera = known_camera();
   camera.sensor.adc_bits = 11;
   const PhotonTransfer found = calibrated(camera, 4, 8e7, {});
-  EXPECT_EQ(found.adc_bits, 12);  // 2047 is none of the usual 8, 10, 12, ..
+  EXPECT_EQ(found.adc_bits, 12);  // 2047 is none of the usual 8, 10, 12, ... bits
   const PhotonTransfer with_bits = calibrated(camera, 4, 8e7, {.adc_bits = 11});
   EXPECT_FALSE(with_bits.full_well_e);
   EXPECT_THAT(with_bits.notes, testing::Contains(HasSubstr("last number 2047")));
 }
 
-TEST(PhotonTransfer, AsksForWhatItNeeds) {
+TEST(PhotonTransfer, ReportsMissingInput) {
   const Camera camera = known_camera();
   RawFrames one = frames_of(camera, 1e6, 1);
   EXPECT_THROW(photon_transfer({one}, {}), std::invalid_argument);  // no black level
@@ -102,7 +102,7 @@ TEST(PhotonTransfer, AsksForWhatItNeeds) {
   EXPECT_THROW(photon_transfer({one}, dark), std::invalid_argument);
 }
 
-/// A camera that reads A - B.
+/// Returns a camera that reads A - B.
 Camera difference_camera() {
   Camera camera = known_camera();
   camera.sensor.taps = 2;
@@ -110,7 +110,7 @@ Camera difference_camera() {
   return camera;
 }
 
-/// A pair of frames of a slanted plane of many albedos, under the camera's own light only.
+/// Returns a pair of frames of a slanted plane with many albedos, without ambient light.
 RawFrames differences_of(const Camera& camera, double signal_e_per_s, std::uint64_t seed) {
   SceneImage scene(32, 32);
   for (int row = 0; row < 32; ++row)
@@ -126,7 +126,7 @@ RawFrames differences_of(const Camera& camera, double signal_e_per_s, std::uint6
                   .frames = 2});
 }
 
-TEST(PhotonTransfer, OfDifferencesIsThatOfTheTaps) {
+TEST(PhotonTransfer, OfDifferencesEqualsThatOfTheTaps) {
   const Camera camera = difference_camera();
   const DecodingTable table =
       make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
@@ -150,13 +150,13 @@ TEST(PhotonTransfer, OfDifferencesIsThatOfTheTaps) {
     const Camera written = with_noise(camera, found);
     EXPECT_EQ(written.sensor.black_level_dn, camera.sensor.black_level_dn);
   }
-  for (const double chi2 : {gain, noise}) {  // of 12 over 12
+  for (const double chi2 : {gain, noise}) {  // reduced, 12 degrees of freedom
     EXPECT_GT(chi2, 0.25);
     EXPECT_LT(chi2, 2.7);
   }
 }
 
-TEST(PhotonTransfer, OfMeansIsThatOfSingleFrames) {
+TEST(PhotonTransfer, OfMeansEqualsThatOfSingleFrames) {
   const Camera camera = known_camera();
   constexpr int averaged = 4;
   std::vector<RawFrames> levels;
@@ -177,7 +177,7 @@ TEST(PhotonTransfer, OfMeansIsThatOfSingleFrames) {
   EXPECT_NEAR(found.read_noise_e.value, 28.0, 4 * found.read_noise_e.standard_error);
 }
 
-TEST(PhotonTransfer, OfDifferencesLeavesOutLightThatChanges) {
+TEST(PhotonTransfer, OfDifferencesToleratesChangingLight) {
   const Camera camera = difference_camera();
   const DecodingTable table =
       make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
@@ -190,7 +190,7 @@ TEST(PhotonTransfer, OfDifferencesLeavesOutLightThatChanges) {
   EXPECT_NEAR(weaker.gain_e_per_dn.value, steady.gain_e_per_dn.value, 0.05 * 7.5);
 }
 
-TEST(PhotonTransfer, OfDifferencesLeavesOutBucketsThatAreClipped) {
+TEST(PhotonTransfer, OfDifferencesExcludesClippedBuckets) {
   const Camera camera = difference_camera();
   const DecodingTable table =
       make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
@@ -203,7 +203,7 @@ TEST(PhotonTransfer, OfDifferencesLeavesOutBucketsThatAreClipped) {
   EXPECT_THAT(found.notes, testing::Contains(HasSubstr("left out: one of their buckets")));
 }
 
-TEST(PhotonTransfer, OfDifferencesAsksForWhatItNeeds) {
+TEST(PhotonTransfer, OfDifferencesReportsMissingInput) {
   const Camera camera = difference_camera();
   const DecodingTable table =
       make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);

@@ -39,7 +39,7 @@ class RecordFile : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(RecordFile, TakesTimesInTheUnitOfTheirName) {
+TEST_F(RecordFile, TimesAreInTheUnitOfTheirName) {
   const ResponseRecord record = read_response_record(write(rows(1.0)));
   EXPECT_NEAR(record.time_step_s, 1e-9, 1e-18);
   EXPECT_EQ(record.values.size(), 20);
@@ -51,14 +51,14 @@ TEST_F(RecordFile, TakesTimesInTheUnitOfTheirName) {
   EXPECT_THAT(seconds.notes, ElementsAre(HasSubstr("taken as seconds")));
 }
 
-/// Multiples of 3 at steps of 0.1 ns with `row(number, time, value)` as text.
+/// Returns multiples of 3 at steps of 0.1 ns, formatted by `row(number, time, value)`.
 std::string record_text(const std::string& header, auto&& row) {
   std::string text = header;
   for (int i = 0; i < 20; ++i) text += row(i, fmt::format("{:.4e}", 1e-10 * i), 3.0 * i);
   return text;
 }
 
-TEST_F(RecordFile, IsTheSameFromEveryOscilloscope) {
+TEST_F(RecordFile, IsReadFromEveryOscilloscope) {
   const auto timed = [](int, const std::string& t, double v) {
     return fmt::format("{},{}\n", t, v);
   };
@@ -106,7 +106,7 @@ TEST_F(RecordFile, IsTheSameFromEveryOscilloscope) {
   }
 }
 
-TEST_F(RecordFile, ASampleCounterIsNoTime) {
+TEST_F(RecordFile, ASampleCounterIsNotATime) {
   const std::string counted = rows(1.0, "");
   EXPECT_THAT(refusal(counted), HasSubstr("found a sample counter in column 1"));
   EXPECT_EQ(read_response_record(write(counted), {.time_step_s = 2e-10}).time_step_s, 2e-10);
@@ -122,14 +122,14 @@ TEST_F(RecordFile, ResamplesUnequalTimesWithANote) {
     EXPECT_NEAR(record.values[i], 2e9 * record.time_step_s * static_cast<double>(i), 1e-6);
 }
 
-TEST_F(RecordFile, RefusesTimesThatFallOrLeap) {
+TEST_F(RecordFile, RejectsDecreasingOrIrregularTimes) {
   EXPECT_THAT(refusal(rows(-3.0)), HasSubstr("r.csv:12: found the time 6e-09 s after 9e-09 s"));
   EXPECT_THAT(refusal(rows(0.0)), HasSubstr("expected times that rise"));
   EXPECT_THAT(refusal(rows(50.0)), HasSubstr("found a gap of 5e-08 s"));
   EXPECT_THAT(refusal("1.5\n2.5\n"), HasSubstr("found 2 values; expected at least 16"));
 }
 
-TEST_F(RecordFile, AsksForTheColumnAndTheStepItNeeds) {
+TEST_F(RecordFile, ReportsTheMissingColumnOrStep) {
   std::string three = "t_s,ch1,ch2\n", one;
   for (int i = 0; i < 20; ++i) {
     three += fmt::format("{},{}.5,{}\n", 1e-3 * i, i, i);
@@ -143,7 +143,7 @@ TEST_F(RecordFile, AsksForTheColumnAndTheStepItNeeds) {
   EXPECT_EQ(read_response_record(write(one), {.time_step_s = 2e-12}).time_step_s, 2e-12);
 }
 
-TEST_F(RecordFile, TakesWholeNumbersForCounts) {
+TEST_F(RecordFile, InterpretsIntegersAsCounts) {
   std::vector<std::int32_t> counts(32, 4);
   counts[7] = 90;
   write_npy(directory_ / "h.npy", NpyArray::of<std::int32_t>({32}, counts),

@@ -24,7 +24,7 @@ Camera bench_camera() {
   return camera;
 }
 
-/// Frames of a square target before black through a lens that scatters.
+/// Frames of a square target on black through a lens with stray light.
 struct Bench {
   int size = 32, half_target = 2, frames = 4;
   double exponent = 2.0, share = 0.04, light_e = 3e4;
@@ -64,7 +64,7 @@ struct Bench {
         }
     return raw;
   }
-  /// Of all light, what is scattered not farther than that.
+  /// Returns the fraction of all light that is scattered within this radius.
   double share_within(double radius_px) const {
     const Image<float> k = kernel();
     const int reach = k.width / 2;
@@ -79,11 +79,11 @@ struct Bench {
   }
 };
 
-TEST(StrayLightCalibration, IntervalsHoldTheTruthIn200Cameras) {
+TEST(StrayLightCalibration, IntervalsContainTheTruthIn200Cameras) {
   int totals = 0, shares = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     RandomStream random(seed, 5, 0);
-    // A square law is one of what is fitted.
+    // An inverse square law is one of the fitted laws.
     const Bench bench{.size = 28,
                       .share = 0.01 + 0.07 * random.uniform(),
                       .light_e = 1e4 * (1.0 + 3.0 * random.uniform()),
@@ -105,13 +105,13 @@ TEST(StrayLightCalibration, IntervalsHoldTheTruthIn200Cameras) {
   RecordProperty("all", all);
 }
 
-TEST(StrayLightCalibration, OtherLawsAreFollowedClosely) {
+TEST(StrayLightCalibration, ApproximatesOtherLaws) {
   for (const double exponent : {1.5, 2.5, 3.0}) {
     const Bench bench{.size = 48, .frames = 16, .exponent = exponent};
     const CalibratedStrayLight found = bench.calibrate();
     EXPECT_NEAR(found.total.value, bench.share_within(found.radius_px.back()), 0.1 * bench.share)
         << exponent;
-    // What is left of the stray light once it is taken off.
+    // Stray light that remains after correction.
     StrayLight truth(bench.kernel()), measured(found.kernel);
     Image<float> light(48, 48);
     light(20, 20) = 1e6F;
@@ -127,7 +127,7 @@ TEST(StrayLightCalibration, OtherLawsAreFollowedClosely) {
   }
 }
 
-TEST(StrayLightCalibration, WhatIsThereWithoutTheTargetIsTakenOff) {
+TEST(StrayLightCalibration, SubtractsLightWithoutTheTarget) {
   const Bench bench;
   RawFrames lit = bench.capture(), dark = bench.capture(true);
   for (RawFrames* raw : {&lit, &dark})
@@ -137,12 +137,12 @@ TEST(StrayLightCalibration, WhatIsThereWithoutTheTargetIsTakenOff) {
   EXPECT_NEAR(found.total.value, bench.share_within(found.radius_px.back()), 0.1 * bench.share);
 }
 
-TEST(StrayLightCalibration, SaysSoWhereNothingIsScattered) {
+TEST(StrayLightCalibration, ReportsAbsenceOfStrayLight) {
   EXPECT_THAT(Bench{.share = 0.0}.calibrate().notes,
               Contains(HasSubstr("no stray light stands out")));
 }
 
-TEST(StrayLightCalibration, RefusesWhatIsNoTarget) {
+TEST(StrayLightCalibration, RejectsFramesWithoutATarget) {
   const auto refuses = [](const Bench& bench, const char* why) {
     EXPECT_THAT([&] { bench.calibrate(); }, ThrowsMessage<std::invalid_argument>(HasSubstr(why)));
   };

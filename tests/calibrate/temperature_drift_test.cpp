@@ -28,7 +28,7 @@ Camera phase_camera() {
   return camera;
 }
 
-/// A still scene seen by a camera that warms up.
+/// A static scene seen by a camera that warms up.
 struct Warming {
   double offset_m_per_c = 0.8e-3, signal_per_c = -4e-3, offset_m_per_c2 = 0.0;
   int frames = 10, size = 6;
@@ -66,7 +66,7 @@ struct Warming {
   }
 };
 
-TEST(TemperatureDrift, IntervalsHoldTheTruthIn200Cameras) {
+TEST(TemperatureDrift, IntervalsContainTheTruthIn200Cameras) {
   int offsets = 0, signals = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     RandomStream random(seed, 8, 0);
@@ -87,14 +87,14 @@ TEST(TemperatureDrift, IntervalsHoldTheTruthIn200Cameras) {
   RecordProperty("signals", signals);
 }
 
-TEST(TemperatureDrift, KelvinAreTold) {
+TEST(TemperatureDrift, ReportsTemperaturesInKelvin) {
   std::vector<double> kelvin = Warming{}.temperature_c();
   EXPECT_THAT(Warming{}.calibrate(kelvin).notes, Not(Contains(HasSubstr("kelvin"))));
   for (double& t : kelvin) t += 273.15;
   EXPECT_THAT(Warming{}.calibrate(kelvin).notes, Contains(HasSubstr("kelvin")));
 }
 
-TEST(TemperatureDrift, ACameraThatKnowsItReadsDepthAsAtTheReference) {
+TEST(TemperatureDrift, ACalibratedCameraMeasuresDepthAsAtTheReference) {
   const Warming bench{.offset_m_per_c = 2e-3, .signal_per_c = -5e-3};
   const CodeSet code = build_family("sinusoid-k4", phase_camera());
   Camera camera = with_temperature(phase_camera(), bench.calibrate(), 20.0);
@@ -105,7 +105,7 @@ TEST(TemperatureDrift, ACameraThatKnowsItReadsDepthAsAtTheReference) {
   const DepthImage cold = decoded(of_code());
   camera.temperature->now_c = bench.temperature_c().back();
   const DepthImage warm = decoded(of_code());
-  // A measured table of the reference gives the same.
+  // A table measured at the reference temperature gives the same.
   camera.temperature->now_c.reset();
   MeasuredTable measured;
   measured.correlation = of_code().correlation;
@@ -125,7 +125,7 @@ TEST(TemperatureDrift, ACameraThatKnowsItReadsDepthAsAtTheReference) {
   }
 }
 
-TEST(TemperatureDrift, RefusesFactorsBeyondReason) {
+TEST(TemperatureDrift, RejectsImplausibleFactors) {
   Camera camera = phase_camera();
   camera.temperature = Temperature{.signal_per_c = 1.0, .now_c = 60.0};
   EXPECT_THAT([&] { camera.validate(); },
@@ -135,17 +135,17 @@ TEST(TemperatureDrift, RefusesFactorsBeyondReason) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("temperature.now_c")));
 }
 
-TEST(TemperatureDrift, SaysWhereALineIsNotEnough) {
+TEST(TemperatureDrift, ReportsNonlinearDrift) {
   EXPECT_THAT(Warming{}.calibrate().notes, IsEmpty());
   EXPECT_THAT(Warming{.offset_m_per_c2 = 5e-4}.calibrate().notes,
               Contains(HasSubstr("offset bends")));
 }
 
-TEST(TemperatureDrift, SaysWhereTemperaturesHardlyVary) {
+TEST(TemperatureDrift, ReportsAlmostConstantTemperatures) {
   EXPECT_THAT(Warming{.step_c = 0.1}.calibrate().notes, Contains(HasSubstr("degrees only")));
 }
 
-TEST(TemperatureDrift, RefusesTemperaturesThatDoNotFit) {
+TEST(TemperatureDrift, RejectsTemperaturesThatDoNotFit) {
   const Warming bench;
   const auto refuses = [&](const std::vector<double>& temperature_c, const char* why) {
     EXPECT_THAT([&] { bench.calibrate(temperature_c); },
@@ -160,7 +160,7 @@ TEST(TemperatureDrift, RefusesTemperaturesThatDoNotFit) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("at least 5")));
 }
 
-TEST(TemperatureDrift, RefusesFramesWithoutLight) {
+TEST(TemperatureDrift, RejectsFramesWithoutLight) {
   const Warming bench;
   RawFrames dark = bench.capture();
   std::ranges::fill(dark.values, NAN);
