@@ -32,14 +32,14 @@ TEST(ArmOutput, KeepsTheMean) {
     }
 }
 
-TEST(ArmOutput, WithoutResponseIsTheCellAverages) {
+TEST(ArmOutput, WithoutResponseEqualsTheCellAverages) {
   const Waveform waveform = rectangular_pulse(0.3, 0.9);
   EXPECT_EQ(arm_output(waveform, {}, frequency_hz, 64), waveform.cell_averages(64));
 }
 
 TEST(ArmOutput, IsTheConvolutionWithTheWindow) {
-  // A Hann window of width W around zero, integrated over the stretch of it that sees the pulse:
-  // its integral from -W/2 to x is 1/2 + x/W + sin(2 pi x / W) / (2 pi).
+  // Integral of a Hann window of width W, centred on zero, over the part that overlaps the pulse.
+  // From -W/2 to x it is 1/2 + x/W + sin(2 pi x / W) / (2 pi).
   const double width = 1.444010597686313 / 10;  // periods
   const auto integral = [&](double x) {
     if (x <= -width / 2) return 0.0;
@@ -56,8 +56,8 @@ TEST(ArmOutput, IsTheConvolutionWithTheWindow) {
   }
 }
 
-TEST(ArmOutput, OfALowPassLagsBehind) {
-  // x(t) = 1 - exp(-2 pi f_c t) after a long pause, less what the pause left over: nothing.
+TEST(ArmOutput, OfALowPassIsDelayed) {
+  // x(t) = 1 - exp(-2 pi f_c t); the response to the previous pulse has decayed by then.
   const double rate = 2 * std::numbers::pi * 10;
   const Eigen::VectorXd actual =
       arm_output(Waveform::binary({{0.25, 0.75}}), response_of(ImpulseResponse::Kind::lowpass),

@@ -36,7 +36,7 @@ double value_at(const Waveform& waveform, double t) {
   return 0.0;
 }
 
-/// The definition, by the midpoint rule.
+/// The defining integral, by the midpoint rule.
 double integrated(const Waveform& d, const Waveform& m, double u) {
   constexpr int points = 40000;
   double sum = 0.0;
@@ -47,7 +47,7 @@ double integrated(const Waveform& d, const Waveform& m, double u) {
   return sum / points;
 }
 
-TEST(CorrelationFunction, IsTheIntegralForWaveformsOfAnyKindAtAnyDepth) {
+TEST(CorrelationFunction, EqualsTheIntegralForAllKindsOfWaveformsAtAnyDepth) {
   for (std::uint32_t i = 0; i < 40; ++i) {
     RandomStream random(11, i);
     const Waveform d = random_waveform(random), m = random_waveform(random);
@@ -58,7 +58,7 @@ TEST(CorrelationFunction, IsTheIntegralForWaveformsOfAnyKindAtAnyDepth) {
   }
 }
 
-TEST(CorrelationFunction, HarmonicsOfAnOpenCameraGiveTheSame) {
+TEST(CorrelationFunction, HarmonicsOfAnUnlimitedCameraGiveTheSame) {
   for (std::uint32_t i = 0; i < 10; ++i) {
     RandomStream random(12, i);
     const Waveform d = random_waveform(random), m = random_waveform(random);
@@ -72,8 +72,8 @@ TEST(CorrelationFunction, HarmonicsOfAnOpenCameraGiveTheSame) {
   }
 }
 
-// 2^18 pairs of breakpoints would cost seconds, and 65536 samples 34 GB.
-TEST(CorrelationFunction, OfManySamplesIsThatOfTheirSharedGrid) {
+// 2^18 pairs of breakpoints would take seconds, and 65536 samples 34 GB.
+TEST(CorrelationFunction, OfManySamplesUsesTheirSharedGrid) {
   RandomStream random(7, 0);
   const auto sampled = [&](int size) {
     Eigen::VectorXd samples(size);
@@ -81,7 +81,7 @@ TEST(CorrelationFunction, OfManySamplesIsThatOfTheirSharedGrid) {
     return Waveform::sampled(samples);
   };
   const Waveform d = sampled(600), m = sampled(600);
-  // Chips of the same grid: few intervals are compared with each other, as pairs of breakpoints.
+  // Few intervals on the same grid are evaluated by pairs of breakpoints.
   const Waveform chips = Waveform::binary({{0.1, 0.25}, {0.5, 0.505}}, 2.0);
   const CorrelationFunction grid(d, m), pairs(d, chips);
   for (const double u : {0.0, 1.0 / 600, 0.37, 0.9999}) {
@@ -98,7 +98,7 @@ TEST(CorrelationFunction, OfManySamplesIsThatOfTheirSharedGrid) {
   EXPECT_NEAR(CorrelationFunction(huge, huge)(0.0), huge.samples().squaredNorm() / 65536, 1e-9);
 }
 
-TEST(CorrelationFunction, HarmonicsThatAreLeftOutAreRounding) {
+TEST(CorrelationFunction, OmittedHarmonicsAreBelowRoundingError) {
   const Camera camera = built_in_camera("paper-10f0");
   constexpr int highest = 4096;
   const Eigen::VectorXcd transfer = camera.transfer(highest);
@@ -117,14 +117,14 @@ TEST(CorrelationFunction, HarmonicsThatAreLeftOutAreRounding) {
   }
 }
 
-TEST(CorrelationFunction, RefusesSwitchingTimesThatWouldTakeGigabytes) {
+TEST(CorrelationFunction, RejectsTooManySwitchingTimes) {
   std::vector<OnInterval> on;
   for (int i = 0; i < 8000; ++i) on.push_back({(i + 0.3 + 1e-5 * i) / 8000.1, (i + 0.7) / 8000.1});
   const Waveform many = Waveform::binary(on, 1.0);
   EXPECT_THROW(CorrelationFunction(many, many.delayed(0.1234567)), std::invalid_argument);
 }
 
-TEST(CodeSet, RotationMovesTheOriginOfEveryCorrelationFunction) {
+TEST(CodeSet, RotationShiftsTheOriginOfEveryCorrelationFunction) {
   for (const char* name : {"paper-30x", "paper-5f0"}) {
     const Camera camera = built_in_camera(name);
     const CodeSet code = build_family("hamiltonian-k4", camera);

@@ -16,11 +16,11 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 const std::vector<double> weights = {0.0, 3.0, 0.0, 1.0, 4.0, 0.0, 0.0};
 
-/// Of the whole range, and of a part of it.
+/// Priors over the whole range and over a part of it.
 const std::vector<DepthPrior> priors = {DepthPrior(weights), DepthPrior(weights, 0.13, 0.58),
                                         DepthPrior({}, 0.3, 1.0), DepthPrior({2.0, 1.0}, 0.0, 0.2)};
 
-TEST(DepthPrior, WeightsThatAreAllTheSameChangeNothing) {
+TEST(DepthPrior, EqualWeightsChangeNothing) {
   for (const std::vector<double>& same : {std::vector<double>{}, {7.0}, {0.1, 0.1, 0.1}}) {
     const DepthPrior prior(same);
     EXPECT_TRUE(prior.is_uniform());
@@ -32,7 +32,7 @@ TEST(DepthPrior, WeightsThatAreAllTheSameChangeNothing) {
   }
 }
 
-TEST(DepthPrior, QuantilesUndoSharesBelowAndLieWhereDepthsOccur) {
+TEST(DepthPrior, QuantilesInvertTheDistributionAndLieInItsSupport) {
   for (const DepthPrior& prior : priors) {
     double before = 0.0;
     for (int i = 0; i < 1000; ++i) {
@@ -50,7 +50,7 @@ TEST(DepthPrior, QuantilesUndoSharesBelowAndLieWhereDepthsOccur) {
   EXPECT_LT(priors[2].quantile(1.0 - 1e-16), 1.0);
 }
 
-TEST(DepthPrior, DensitiesAreSlopesOfSharesBelowAndMassesTheirSteps) {
+TEST(DepthPrior, DensitiesAreDerivativesOfTheDistributionAndMassesItsSteps) {
   constexpr int parts = 1000;
   for (const DepthPrior& prior : priors) {
     const Eigen::VectorXd masses = prior.masses(parts);
@@ -66,7 +66,7 @@ TEST(DepthPrior, DensitiesAreSlopesOfSharesBelowAndMassesTheirSteps) {
   }
 }
 
-TEST(DepthPrior, MeansWeighWhatEachPartHolds) {
+TEST(DepthPrior, MeansAreWeightedByMass) {
   const DepthPrior& prior = priors[0];
   Eigen::VectorXd values(7);
   values << infinite, 1.0, infinite, 10.0, 100.0, infinite, infinite;
@@ -75,7 +75,7 @@ TEST(DepthPrior, MeansWeighWhatEachPartHolds) {
   EXPECT_NEAR(prior.max_density(), 7 * 4.0 / 8, 1e-12);
 }
 
-TEST(DepthPrior, NoWeightsOverAPartAreWeightsOfOneThere) {
+TEST(DepthPrior, NoWeightsOnAnIntervalEqualWeightsOfOneThere) {
   const DepthPrior interval({}, 0.25, 0.75), parts({0.0, 3.0, 3.0, 0.0});
   for (const double x : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999}) {
     EXPECT_NEAR(interval.quantile(x), parts.quantile(x), 1e-12);
@@ -87,7 +87,7 @@ TEST(DepthPrior, LargestNumbersDoNotOverflow) {
   EXPECT_NEAR(DepthPrior({1e308, 0.0, 1e308}).below(0.5), 0.5, 1e-12);
 }
 
-TEST(DepthPrior, OfACameraIsOfItsRange) {
+TEST(DepthPrior, OfACameraCoversItsRange) {
   Camera camera = built_in_camera("paper-10f0");
   EXPECT_TRUE(DepthPrior(camera).is_uniform());
   camera.operating.working_distance_m = {0.0, camera.range_m()};
@@ -100,7 +100,7 @@ TEST(DepthPrior, OfACameraIsOfItsRange) {
   EXPECT_EQ(prior.below(0.75), 1.0);
 }
 
-/// What a camera with such depths is refused with.
+/// Returns the error message of a camera with these depths.
 std::string refusal(const std::optional<std::vector<double>>& depths,
                     const std::optional<std::array<double, 2>>& working_distance_m = {}) {
   Camera camera = built_in_camera("paper-10f0");
@@ -114,7 +114,7 @@ std::string refusal(const std::optional<std::vector<double>>& depths,
   return "";
 }
 
-TEST(DepthPrior, IsRefusedByCamerasWhereNoDepthCouldBeDrawn) {
+TEST(DepthPrior, IsRejectedIfNoDepthCanBeDrawn) {
   using List = std::vector<double>;
   const double no_number = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal(List{0.0, 1.0}), "");

@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-/// Equation (3) on a fine grid, by plain sums: the reference for every correlation function.
+/// Reference: Equation (3) on a fine grid, by plain sums.
 Eigen::VectorXd correlation_by_sums(const Waveform& d, const Waveform& m, int points) {
   return circular_correlation(d.cell_averages(points), m.cell_averages(points)) / points;
 }
@@ -29,18 +29,18 @@ TEST(CorrelationFunction, IsExactBetweenBins) {
   }
 }
 
-TEST(CorrelationFunction, IdealHamiltonianCodeWalksFromVertexToVertex) {
+TEST(CorrelationFunction, IdealHamiltonianCodeMovesFromVertexToVertex) {
   const auto walk = hamiltonian_walk(3);
   const Camera camera = built_in_camera("paper-30x");
   const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
-  // Peak 30 shortens nothing: the ideal pulse of K = 3 needs a peak of 6 only.
+  // Peak 30 does not shorten the pulse: the ideal pulse of K = 3 needs a peak of 6 only.
   for (int n = 0; n < 6; ++n)
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(model.correlation(40.0 * n)[k], (walk[static_cast<std::size_t>(n)] >> k) & 1,
                   1e-9);
 }
 
-TEST(ForwardModel, TheTableHoldsTheFunctionAtItsBins) {
+TEST(ForwardModel, TheTableContainsTheFunctionAtItsBins) {
   for (const char* camera_name : {"paper-30x", "paper-10f0"}) {
     const Camera camera = built_in_camera(camera_name);
     const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
@@ -51,7 +51,7 @@ TEST(ForwardModel, TheTableHoldsTheFunctionAtItsBins) {
   }
 }
 
-TEST(ForwardModel, OutputsKeepTheBoundsOfTheInputs) {
+TEST(ForwardModel, OutputsRespectTheBoundsOfTheInputs) {
   const Camera camera = built_in_camera("paper-5f0");
   for (const char* name : {"hamiltonian-k5", "square-k4", "sinusoid-k3"}) {
     const Eigen::MatrixXd table =
@@ -61,7 +61,7 @@ TEST(ForwardModel, OutputsKeepTheBoundsOfTheInputs) {
   }
 }
 
-TEST(ForwardModel, ReturnsAdd) {
+TEST(ForwardModel, ReturnsAreAdditive) {
   const Camera camera = built_in_camera("paper-10f0");
   const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
   const Return first{1e4, 33.3}, second{3e3, 80.0};
@@ -94,7 +94,7 @@ TEST(ForwardModel, DifferenceCancelsTheAmbientMeanButNotItsNoise) {
   EXPECT_NEAR(model.variance_e2({}, 1e5)[0], 1e5 * 0.3 / 4 + 2 * 400.0, 1e-6);
 }
 
-TEST(ForwardModel, ContrastPullsTapsTogether) {
+TEST(ForwardModel, ContrastMixesTaps) {
   Camera camera = built_in_camera("paper-30x");
   camera.sensor.taps = 2;
   camera.sensor.modulation_contrast = 0.6;
@@ -128,7 +128,7 @@ TEST(ForwardModel, ContrastMayDifferPerExposureOrPerFrequency) {
   }
 }
 
-/// Message that `check` throws; none if it does not throw.
+/// Returns the message that `check` throws, or nothing.
 template <typename Check>
 std::optional<std::string> refusal(Check&& check) {
   try {
@@ -186,7 +186,7 @@ TEST(ForwardModel, WithoutADrainEveryElectronGoesToATap) {
   EXPECT_NO_THROW(require_fits(leaky, camera));
 }
 
-TEST(WhyNotPlayable, SaysWhatTheCheckThrows) {
+TEST(WhyNotPlayable, ReturnsTheMessageOfTheCheck) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet fits = build_family("hamiltonian-k3", camera);
   Camera two_taps = camera, coarse = camera, gentle = camera, listed = camera, slow = camera;
@@ -204,7 +204,7 @@ TEST(WhyNotPlayable, SaysWhatTheCheckThrows) {
   }
 }
 
-TEST(WhyNoFamily, SaysWhatBuildingThrows) {
+TEST(WhyNoFamily, ReturnsTheMessageOfBuilding) {
   Camera camera = built_in_camera("paper-10f0");
   for (const char* name : {"hamiltonian-k4", "hamiltonian-k5", "hamiltonian-k11", "hamiltonean-k3",
                            "gray-k3", "gray-k9", "square-k7", "sinusoid-k1", "multifrequency-k5",
@@ -222,7 +222,7 @@ TEST(ImpulseResponse, HannAttenuatesByFiveAtItsLimit) {
   EXPECT_NEAR(hann.transfer(0).real(), 1.0, 1e-12);
 }
 
-TEST(ImpulseResponse, CutoffIsMinusThreeDecibel) {
+TEST(ImpulseResponse, CutoffIsMinusThreeDecibels) {
   for (const auto kind : {ImpulseResponse::Kind::gaussian, ImpulseResponse::Kind::lowpass}) {
     const ImpulseResponse response{.kind = kind, .cutoff_hz = 80e6};
     EXPECT_NEAR(std::norm(response.transfer(80e6)), 0.5, 1e-12);
@@ -241,7 +241,7 @@ TEST(ImpulseResponse, MeasuredExponentialIsALowPass) {
 }
 
 TEST(ImpulseResponse, MeasuredSamplesPassNothingAboveHalfTheirRate) {
-  // A triangle of 10 ns, in steps as coarse as oscilloscopes give them.
+  // A triangle of 10 ns, sampled as coarsely as by an oscilloscope.
   ImpulseResponse measured{.kind = ImpulseResponse::Kind::file, .time_step_s = 1e-9};
   for (int i = 0; i <= 10; ++i) measured.samples.push_back(i <= 5 ? i : 10 - i);
   for (const double f : {0.51e9, 1e9, 2e9, 10e9})

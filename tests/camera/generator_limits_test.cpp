@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A generator's table and edge grid.
+// Table size and edge grid of a generator.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double frequency_hz = 5e6;
 
-TEST(GeneratorTable, IsPlayedPointByPointWhereTheRateAllows) {
+TEST(GeneratorTable, IsOutputPointByPointIfTheRateAllows) {
   Generator generator{.sample_rate_hz = 500e6};
   EXPECT_EQ(generator.points_in_table(frequency_hz), 100);
   generator.table_points = 48;
@@ -26,7 +26,7 @@ TEST(GeneratorTable, IsPlayedPointByPointWhereTheRateAllows) {
             generated(nominal, {.sample_rate_hz = 48 * frequency_hz}, frequency_hz));
 }
 
-TEST(GeneratorTable, OfMorePointsThanTheRateAllowsIsSkippedThrough) {
+TEST(GeneratorTable, WithMorePointsThanTheRateAllowsIsSubsampled) {
   const Generator generator{.sample_rate_hz = 500e6, .table_points = 16384};
   EXPECT_EQ(generator.points_per_period(frequency_hz), 100);
   EXPECT_EQ(generator.points_in_table(frequency_hz), 16384);
@@ -50,7 +50,7 @@ TEST(GeneratorTable, OfMorePointsThanTheRateAllowsIsSkippedThrough) {
 }
 
 TEST(EdgeGrid, MovesEverySwitchingTimeToTheNearestMultiple) {
-  // Steps of 10 ns, points of 2 ns.
+  // Grid of 10 ns, points of 2 ns.
   const Generator generator{.sample_rate_hz = 500e6, .edge_grid_s = 10e-9};
   for (std::uint32_t i = 0; i < 50; ++i) {
     RandomStream random(31, i);
@@ -63,7 +63,7 @@ TEST(EdgeGrid, MovesEverySwitchingTimeToTheNearestMultiple) {
   }
 }
 
-TEST(EdgeGrid, IsInTheReport) {
+TEST(EdgeGrid, IsReported) {
   Camera camera = built_in_camera("prototype");
   camera.light.generator->edge_grid_s = camera.sensor.generator->edge_grid_s = 20e-9;
   const CodeSet code = CodeSet::create("x", camera.samples, 2, {rectangular_pulse(0.3, 0.02)},
@@ -74,7 +74,7 @@ TEST(EdgeGrid, IsInTheReport) {
   EXPECT_NEAR(reports[0].duty_actual, 0.3, 1e-12);
 }
 
-TEST(Generator, RefusesTablesAndGridsThatCannotBe) {
+TEST(Generator, RejectsInvalidTablesAndGrids) {
   const auto problem = [](const Generator& generator) -> std::string {
     try {
       generator.validate("g", frequency_hz);

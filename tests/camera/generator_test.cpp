@@ -31,7 +31,8 @@ double value_at(const Waveform& waveform, double t) {
   return 0.0;
 }
 
-/// Anything from no pulse to always on, pulses that touch, and one across the end of the period.
+/// Returns any binary waveform, from never to always on, with touching pulses and one across the
+/// end.
 Waveform random_binary(RandomStream& random) {
   std::vector<double> times(2 * (random() % 12));
   for (double& time : times) time = random.uniform();
@@ -42,7 +43,7 @@ Waveform random_binary(RandomStream& random) {
   return random() % 2 == 0 ? waveform : waveform.delayed(random.uniform());
 }
 
-TEST(Generator, PlaysTheValueAtTheMiddleOfEveryPoint) {
+TEST(Generator, OutputsTheValueAtTheMiddleOfEveryPoint) {
   for (std::uint32_t i = 0; i < 300; ++i) {
     RandomStream random(21, i);
     const Waveform nominal = random_binary(random);
@@ -68,7 +69,7 @@ TEST(Generator, ABinaryWaveformOnItsPointsDoesNotChange) {
   }
 }
 
-TEST(Generator, MovesSwitchingTimesByAtMostHalfAPointAndTiesAlike) {
+TEST(Generator, MovesSwitchingTimesByAtMostHalfAPointWithConsistentTies) {
   const Waveform nominal = Waveform::binary({{0.125, 0.375}, {0.625, 0.875}});
   const Waveform actual = generated(nominal, generator_of(100), frequency_hz);
   ASSERT_EQ(actual.on_intervals().size(), 2u);
@@ -98,13 +99,13 @@ TEST(Generator, RoundsAmplitudesByAtMostHalfAStep) {
   }
 }
 
-TEST(Generator, TakesAsManyWholePointsAsTheRateAllows) {
+TEST(Generator, UsesAsManyWholePointsAsTheRateAllows) {
   EXPECT_EQ(Generator{}.points_per_period(5e6), 100);
   EXPECT_EQ(Generator{}.points_per_period(15e6), 33);
   for (const int n : {3, 7, 33, 49, 100, 999}) EXPECT_EQ(generator_of(n).points_per_period(5e6), n);
 }
 
-TEST(Generator, RefusesWhatItCannotPlay) {
+TEST(Generator, RejectsUnsupportedWaveforms) {
   const Waveform pulse = rectangular_pulse(0.5);
   EXPECT_THROW(generated(pulse, {9e6, 14}, 5e6), std::invalid_argument);
   EXPECT_THROW(generated(pulse, {500e6, 0}, 5e6), std::invalid_argument);
@@ -143,7 +144,7 @@ TEST(ActualCode, KeepsTheAveragePowerThePeakAndTheComplement) {
   }
 }
 
-TEST(ActualCode, IsWhatTheForwardModelCorrelates) {
+TEST(ActualCode, IsUsedByTheForwardModel) {
   const Camera camera = built_in_camera("prototype");
   for (const char* name : {"hamiltonian-k4", "sinusoid-k3"}) {
     const CodeSet code = build_family(name, camera);
@@ -160,7 +161,7 @@ TEST(ActualCode, IsWhatTheForwardModelCorrelates) {
   }
 }
 
-TEST(GeneratorReport, SaysWhatTheLimitsChange) {
+TEST(GeneratorReport, DescribesTheEffectOfTheLimits) {
   const Camera camera = built_in_camera("prototype");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const std::vector<GeneratorReport> reports = generator_report(code, camera);
@@ -193,7 +194,7 @@ TEST(Prototype, IsABipolarMixer) {
   const ActualCode actual = actual_code(code, camera);
   const Eigen::VectorXcd transfer = camera.transfer(2400);
   for (int i = 0; i < 4; ++i) {
-    // (2 d - 1) behind both arms: 2 chi - mean m.
+    // (2 d - 1) after both arms: 2 chi - mean m.
     const auto tap = static_cast<std::size_t>(2 * i), exposure = static_cast<std::size_t>(i);
     const CorrelationFunction chi(actual.demodulation[tap], actual.modulation[exposure], transfer);
     EXPECT_NEAR(model.correlation(77.7)[i],
@@ -202,8 +203,8 @@ TEST(Prototype, IsABipolarMixer) {
   }
 }
 
-TEST(Prototype, AmbientThatHardlyLeaksIsNoUnknown) {
-  // Rounded amplitudes leave duties off 1/2 by 1e-6; a square on odd points would by 1e-2.
+TEST(Prototype, NegligibleAmbientLeakageIsNotAnUnknown) {
+  // Rounded amplitudes cause duty errors of 1e-6; a square wave with odd points would cause 1e-2.
   Camera camera = built_in_camera("prototype");
   const CodeSet sinusoid = build_family("sinusoid-k3", camera);
   EXPECT_TRUE(unknown_ambient_gain(ForwardModel(sinusoid, camera), camera).isZero(0.0));
@@ -215,7 +216,7 @@ TEST(Prototype, AmbientThatHardlyLeaksIsNoUnknown) {
   EXPECT_FALSE(unequal.ambient_gain().isZero(0.0));
 }
 
-TEST(Prototype, FiltersSpanThePapersSignals) {
+TEST(Prototype, SignalsSpanThoseOfThePaper) {
   const Camera camera = built_in_camera("prototype");
   const std::vector<double> expected = {1e3, 1e4, 1e5, 1e6};
   ASSERT_EQ(camera.operating.signal_e_per_s.size(), expected.size());

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Edge jitter and taps of different sensitivity.
+// Edge jitter, and taps of different sensitivity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Camera camera_with_jitter(double light_s, double sensor_s) {
   return camera;
 }
 
-TEST(EdgeJitter, BlursEveryHarmonicInClosedForm) {
+TEST(EdgeJitter, AttenuatesEveryHarmonicInClosedForm) {
   for (const char* name : {"paper-30x", "paper-10f0"}) {
     Camera camera = built_in_camera(name);
     const Eigen::VectorXcd plain = camera.transfer(40);
@@ -38,8 +38,8 @@ TEST(EdgeJitter, BlursEveryHarmonicInClosedForm) {
   }
 }
 
-TEST(EdgeJitter, IsTheMeanOverDisplacedEdges) {
-  // Correlation of a pulse with a gate whose edges move on their own, period by period.
+TEST(EdgeJitter, EqualsTheMeanOverDisplacedEdges) {
+  // Correlates a pulse with a gate whose edges are displaced independently in each period.
   const Camera camera = camera_with_jitter(1e-9, 0.5e-9);
   const double f0 = camera.fundamental_frequency_hz;
   const CodeSet code =
@@ -67,7 +67,7 @@ TEST(EdgeJitter, IsTheMeanOverDisplacedEdges) {
   EXPECT_GT(std::abs(model.correlation(6.0)[0] - still.correlation(6.0)[0]), 1e-4);
 }
 
-TEST(EdgeJitter, OfNothingChangesNothing) {
+TEST(EdgeJitter, OfZeroChangesNothing) {
   Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const Eigen::MatrixXd table = ForwardModel(code, camera).correlation_table(100);
@@ -100,7 +100,7 @@ TEST(TapMismatch, ScalesSignalAndAmbientOfNeighbours) {
   }
 }
 
-TEST(ImperfectArms, RefuseNonsense) {
+TEST(ImperfectArms, RejectInvalidValues) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.edge_jitter_s = -1e-12;
   EXPECT_THROW(camera.validate(), std::invalid_argument);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Watts and lux as electrons.
+// Conversion of watts and lux to electrons.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,11 +28,11 @@ Optics plain_optics() {
           .filter_width_m = 30e-9};
 }
 
-/// Photons counted the long way: every source photon that the field's rectangle gets, the share of
-/// them that the pixel's patch sends into the lens, summed over a fine aperture.
+/// Reference: counts the source photons in the field of view, and the fraction that the patch of a
+/// pixel reflects into the lens, summed over a fine aperture.
 double signal_by_photons(const Optics& o, double distance_m, double albedo) {
   constexpr double h = 6.62607015e-34, c = 299792458.0, pi = std::numbers::pi;
-  const double focal_m = 4e-3;  // any: patch and aperture change together
+  const double focal_m = 4e-3;  // any value: patch and aperture scale together
   const double width_m = 2 * distance_m * std::tan(o.field_of_view_deg[0] / 2 * pi / 180);
   const double height_m = 2 * distance_m * std::tan(o.field_of_view_deg[1] / 2 * pi / 180);
   const double patch_m = o.pixel_pitch_m * distance_m / focal_m;
@@ -50,7 +50,7 @@ double signal_by_photons(const Optics& o, double distance_m, double albedo) {
   return power_w * o.quantum_efficiency * o.wavelength_m / (h * c);
 }
 
-TEST(Optics, SignalIsThatOfCountedPhotons) {
+TEST(Optics, SignalEqualsCountedPhotons) {
   const Optics optics = plain_optics();
   for (const double distance_m : {0.5, 2.0, 7.0})
     for (const double albedo : {0.1, 1.0})
@@ -59,7 +59,7 @@ TEST(Optics, SignalIsThatOfCountedPhotons) {
                   1.0, 1e-4);
 }
 
-TEST(Optics, AmbientLightDoesNotDependOnDistanceAndSignalDoes) {
+TEST(Optics, AmbientLightDoesNotDependOnDistanceButSignalDoes) {
   Optics optics = plain_optics();
   optics.sunlight_klux = 50.0;
   const OperatingPoint near = optics.light_at(1.0), far = optics.light_at(3.0, 0.5);
@@ -67,7 +67,7 @@ TEST(Optics, AmbientLightDoesNotDependOnDistanceAndSignalDoes) {
   EXPECT_NEAR(near.ambient_e_per_s / far.ambient_e_per_s, 2.0, 1e-9);
 }
 
-TEST(Optics, SunlightIsThatOfTheStandardSpectrum) {
+TEST(Optics, SunlightFollowsTheStandardSpectrum) {
   Optics optics = plain_optics();
   EXPECT_EQ(optics.sunlight_w_per_m2(), 0.0);
   optics.sunlight_klux = 109.9;
@@ -76,7 +76,7 @@ TEST(Optics, SunlightIsThatOfTheStandardSpectrum) {
     optics.wavelength_m = nm * 1e-9;
     return optics.sunlight_w_per_m2() / 10.0;
   };
-  EXPECT_NEAR(around(855.0), 0.95, 0.01);  // ASTM G173-03, global, mean of 850 .. 859 nm
+  EXPECT_NEAR(around(855.0), 0.95, 0.01);  // ASTM G173-03, global, mean of 850 to 859 nm
   EXPECT_NEAR(around(935.0), 0.27, 0.01);  // water vapour
   EXPECT_NEAR(around(850.0), 0.5 * (around(845.0) + around(855.0)), 1e-9);
   const double by_klux_w_per_m2 = optics.sunlight_w_per_m2();
@@ -85,14 +85,14 @@ TEST(Optics, SunlightIsThatOfTheStandardSpectrum) {
   EXPECT_NEAR(optics.sunlight_w_per_m2(), by_klux_w_per_m2, 1e-12);
 }
 
-TEST(Optics, GoesBackFromElectrons) {
+TEST(Optics, ConvertsBackFromElectrons) {
   const Optics optics = plain_optics();
   const OperatingPoint light = optics.light_at(3.7, 0.4);
   EXPECT_NEAR(optics.distance_m(light.signal_e_per_s, 0.4), 3.7, 1e-9);
   EXPECT_NEAR(optics.source_power_for_w(2 * light.signal_e_per_s, 3.7, 0.4), 1.0, 1e-9);
 }
 
-TEST(Optics, ACameraIsJudgedAtDistances) {
+TEST(Optics, ACameraCanBeEvaluatedAtDistances) {
   Camera camera = built_in_camera("paper-10f0");
   camera.optics = plain_optics();
   const Camera judged = at_distances(camera, {4.0, 1.0}, 0.3, 20.0);
@@ -103,7 +103,7 @@ TEST(Optics, ACameraIsJudgedAtDistances) {
   EXPECT_THAT(judged.operating.ambient_e_per_s, ElementsAre(near.ambient_e_per_s));
 }
 
-TEST(Optics, CapturesTakeTheirLightFromIt) {
+TEST(Optics, CapturesUseItsLight) {
   Camera camera = built_in_camera("paper-10f0");
   EXPECT_EQ(capture_light(camera, 2.0), camera.operating.middle());
   camera.optics = plain_optics();
@@ -113,7 +113,7 @@ TEST(Optics, CapturesTakeTheirLightFromIt) {
   EXPECT_EQ(capture_light(camera, 2.0).ambient_e_per_s, 0.0);
 }
 
-TEST(Optics, RefusesWhatNoCameraHas) {
+TEST(Optics, RejectsImpossibleValues) {
   const auto refusal = [](auto&& change) {
     Optics optics = plain_optics();
     change(optics);

@@ -10,7 +10,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(RowsModel, BinsTogetherHoldAllLight) {
+TEST(RowsModel, BinsTogetherContainAllLight) {
   for (const auto kind : {ImpulseResponse::Kind::none, ImpulseResponse::Kind::gaussian}) {
     Camera camera = rows_camera();
     camera.light.impulse_response.kind = kind;
@@ -50,7 +50,7 @@ TEST(RowsModel, MeasurementsAreWeightedSumsOfTheBins) {
       EXPECT_LT((model.expected_electrons({&seen, 1}, 300.0) - mean).norm(), 1e-6 * mean.norm());
       EXPECT_LT((model.covariance_e2({&seen, 1}, 300.0) - covariance).norm(), 1e-9);
       EXPECT_LT((model.variance_e2({&seen, 1}, 300.0) - covariance.diagonal()).norm(), 1e-9);
-      // The correlation of rows comes by harmonics, and so do the bins.
+      // Correlations of rows and bins are both computed from harmonics.
       EXPECT_LT((900.0 * model.correlation(depth_bin) + 300.0 * model.ambient_gain() +
                  model.dark_electrons() - mean)
                     .norm(),
@@ -59,7 +59,7 @@ TEST(RowsModel, MeasurementsAreWeightedSumsOfTheBins) {
   }
 }
 
-TEST(RowsModel, GatesThatShareAllLightMeasureWhatExclusiveTapsDo) {
+TEST(RowsModel, ComplementaryGatesMeasureLikeExclusiveTaps) {
   Camera camera = rows_camera();
   camera.light.impulse_response = {.kind = ImpulseResponse::Kind::lowpass, .cutoff_hz = 20e6};
   camera.sensor.read_noise_e = 3.0;
@@ -91,7 +91,7 @@ TEST(RowsModel, TheCovarianceTableIsTheCovarianceAtItsPoints) {
   }
 }
 
-TEST(RowsModel, ADelayedDetectionIsSeenAsFartherAway) {
+TEST(RowsModel, ADelayedDetectionAppearsFartherAway) {
   Camera camera = rows_camera();
   camera.sensor.impulse_response = {.kind = ImpulseResponse::Kind::lowpass, .cutoff_hz = 10e6};
   const CodeSet code = build_family("fourier-k4", camera);
@@ -102,7 +102,7 @@ TEST(RowsModel, ADelayedDetectionIsSeenAsFartherAway) {
   EXPECT_GT(bins.dot(slow), bins.dot(fast) + 1.0);
 }
 
-TEST(RowsModel, RowsAndTapsKeepApart) {
+TEST(RowsModel, RowsAndTapsAreNotInterchangeable) {
   const Camera rows = rows_camera(), taps = built_in_camera("paper-10f0");
   const CodeSet code = build_family("fourier-k4", rows);
   EXPECT_EQ(why_not_playable(code.resampled(240), taps),
@@ -111,10 +111,10 @@ TEST(RowsModel, RowsAndTapsKeepApart) {
   EXPECT_TRUE(why_no_family("fourier-k4", taps));
   EXPECT_TRUE(why_not_playable(make_family("hamiltonian-k4", {.samples = 60}), rows));
   EXPECT_FALSE(why_no_family("hamiltonian-k4", rows));
-  EXPECT_TRUE(why_no_family("multifrequency-k5", rows));  // its light differs
+  EXPECT_TRUE(why_no_family("multifrequency-k5", rows));  // its light differs between exposures
 }
 
-TEST(RowsModel, WhyNoFamilyCanBeBuiltIsAnswered) {
+TEST(RowsModel, ReportsWhyNoFamilyCanBeBuilt) {
   Camera camera = rows_camera();
   camera.exposure_s.each_s = {0.1, 0.1};
   EXPECT_EQ(why_no_family("hamiltonian-k4", camera),
@@ -126,7 +126,7 @@ struct BadCamera {
   const char* field;
 };
 
-TEST(RowsModel, WhatRowsCannotHaveIsRefusedByName) {
+TEST(RowsModel, UnsupportedSettingsAreRejectedByName) {
   for (const BadCamera& bad :
        {BadCamera{[](Camera& c) { c.sensor.taps = 2; }, "sensor.taps"},
         BadCamera{[](Camera& c) { c.sensor.tap_mismatch = 0.1; }, "sensor.tap_mismatch"},

@@ -34,11 +34,11 @@ TEST_P(TwoBuckets, ExposuresShareTheTimeAndGiveTwoValuesEach) {
   EXPECT_EQ(model.measurements(), 2 * GetParam().exposures);
   for (const double exposure_s : model.exposure_s())
     EXPECT_DOUBLE_EQ(exposure_s, camera.exposure_s.total_s / GetParam().exposures);
-  // Every readout brings its own read noise.
+  // Every readout has its own read noise.
   for (const double variance : model.constant_variance_e2()) EXPECT_DOUBLE_EQ(variance, 400.0);
 }
 
-TEST_P(TwoBuckets, ABucketAndItsComplementHoldAllLight) {
+TEST_P(TwoBuckets, ABucketAndItsComplementContainAllLight) {
   for (const char* name : {"paper-30x", "paper-10f0", "paper-5f0"})
     for (const double contrast : {1.0, 0.6})
       for (const double dark : {0.0, 3e3}) {
@@ -61,7 +61,7 @@ TEST_P(TwoBuckets, ABucketAndItsComplementHoldAllLight) {
       }
 }
 
-TEST_P(TwoBuckets, TheSecondBucketIsOneLessTheFirst) {
+TEST_P(TwoBuckets, TheSecondBucketIsOneMinusTheFirst) {
   const Camera camera = this->camera("paper-5f0");
   Camera one_tap = camera;
   one_tap.sensor.taps = 1;
