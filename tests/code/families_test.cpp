@@ -23,7 +23,7 @@ TEST_P(HamiltonianOrder, WalkIsClosedAndStepsAlongEdges) {
     EXPECT_EQ(std::popcount(walk[i] ^ walk[(i + 1) % walk.size()]), 1) << "step " << i;
 }
 
-TEST_P(HamiltonianOrder, WalkVisitsNoVertexTwiceAndIsAsLongAsItCanBe) {
+TEST_P(HamiltonianOrder, WalkVisitsNoVertexTwiceAndHasMaximumLength) {
   const int k = GetParam();
   const auto walk = hamiltonian_walk(k);
   const std::set<std::uint32_t> vertices(walk.begin(), walk.end());
@@ -43,7 +43,7 @@ TEST_P(HamiltonianOrder, EveryDutyIsOneHalfAndMeanPowerIsOne) {
   EXPECT_NEAR(code.peak(), length, 1e-9);
 }
 
-TEST_P(HamiltonianOrder, GridHoldsTheCodeExactly) {
+TEST_P(HamiltonianOrder, GridRepresentsTheCodeExactly) {
   const CodeSet code =
       hamiltonian_code(GetParam(), {.samples = 2 * hamiltonian_length(GetParam())});
   const Eigen::MatrixXd d = code.demodulation_samples();
@@ -58,7 +58,7 @@ TEST(Hamiltonian, PulseRespectsThePeak) {
   EXPECT_NEAR(code.modulation(0).mean(), 1.0, 1e-12);
 }
 
-TEST(Hamiltonian, KeepsItsSwitchingTimesAtAnyNumberOfSamples) {
+TEST(Hamiltonian, KeepsItsSwitchingTimesForAnyNumberOfSamples) {
   const CodeSet exact = hamiltonian_code(5, {.samples = 990});
   const CodeSet other = hamiltonian_code(5, {.samples = 1000});
   for (int i = 0; i < exact.measurements(); ++i)
@@ -67,7 +67,7 @@ TEST(Hamiltonian, KeepsItsSwitchingTimesAtAnyNumberOfSamples) {
 
 class Family : public testing::TestWithParam<const char*> {};
 
-TEST_P(Family, StaysWithinAnyPeakAndUsesTheWholePower) {
+TEST_P(Family, RespectsAnyPeakAndUsesTheWholePower) {
   for (const double peak : {1.2, 2.0, 5.0, 15.0, 30.0}) {
     const CodeSet code = make_family(GetParam(), {.samples = 240, .peak_factor = peak});
     EXPECT_LE(code.peak(), peak * (1 + 1e-12));

@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// Disjoint intervals at random, sorted; the last one may run past the end of the period.
+/// Returns random disjoint sorted intervals; the last one may wrap around the end of the period.
 std::vector<OnInterval> random_intervals(RandomStream& random) {
   const int count = 1 + static_cast<int>(6 * random.uniform());
   std::vector<double> edges(static_cast<std::size_t>(2 * count));
@@ -34,14 +34,14 @@ bool covers(const std::vector<OnInterval>& on, double t) {
   return false;
 }
 
-TEST(OnIntervals, RisesJustBelowZeroAreAtZero) {
+TEST(OnIntervals, RisesJustBelowZeroBecomeZero) {
   EXPECT_EQ(within_period({{-1e-17, 0.2}}), (std::vector<OnInterval>{{0.0, 0.2}}));
   EXPECT_EQ(within_period({{1.0, 1.2}}), (std::vector<OnInterval>{{0.0, 1.2 - 1.0}}));
   EXPECT_EQ(within_period({{0.9, 1.1}, {0.3, 0.4}}),
             (std::vector<OnInterval>{{0.3, 0.4}, {0.9, 1.1}}));
 }
 
-TEST(OnIntervals, StretchedOnesAreAWaveformThatCoversEachLongerInterval) {
+TEST(OnIntervals, StretchedIntervalsFormAWaveformThatCoversThem) {
   for (std::uint64_t i = 0; i < 2000; ++i) {
     RandomStream random(1, i);
     const std::vector<OnInterval> on = random_intervals(random);
@@ -61,7 +61,7 @@ TEST(OnIntervals, StretchedOnesAreAWaveformThatCoversEachLongerInterval) {
   }
 }
 
-TEST(OnIntervals, StretchedOnesThatFillThePeriodAreAlwaysOn) {
+TEST(OnIntervals, StretchedIntervalsThatFillThePeriodAreAlwaysOn) {
   EXPECT_EQ(stretched({{0.1, 0.4}, {0.5, 0.9}}, 2.0), (std::vector<OnInterval>{{0.0, 1.0}}));
 }
 

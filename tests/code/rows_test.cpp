@@ -17,7 +17,7 @@ std::string refused_field(const Eigen::VectorXd& light, const Eigen::MatrixXd& r
   }
 }
 
-TEST(Rows, WeightsMayBeOfAnySignAndScale) {
+TEST(Rows, WeightsMayHaveAnySignAndScale) {
   const Eigen::MatrixXd weights = 1e3 * Eigen::MatrixXd::Random(12, 5);
   const CodeSet code =
       CodeSet::create_rows("rows", Waveform::sampled(Eigen::VectorXd::Ones(12)), weights);
@@ -28,7 +28,7 @@ TEST(Rows, WeightsMayBeOfAnySignAndScale) {
   EXPECT_EQ(code.resampled(24).demodulation_samples().row(3), weights.row(1));
 }
 
-TEST(Rows, ArraysOfAnyScaleAndEitherWayRoundAreTheSameRows) {
+TEST(Rows, ArraysOfAnyScaleAndOrientationGiveTheSameRows) {
   const Eigen::MatrixXd weights = Eigen::MatrixXd::Random(12, 5);
   const Eigen::VectorXd light = Eigen::VectorXd::LinSpaced(12, 0, 11);
   const CodeSet code = CodeSet::create_rows("rows", light, weights);
@@ -39,7 +39,7 @@ TEST(Rows, ArraysOfAnyScaleAndEitherWayRoundAreTheSameRows) {
   EXPECT_THROW(CodeSet::create_rows("rows", Eigen::VectorXd(-light), weights), InvalidArgument);
 }
 
-TEST(Rows, WhatIsNoLightAndNoRowIsRefused) {
+TEST(Rows, RejectsInvalidLightAndRows) {
   const Eigen::VectorXd light = Eigen::VectorXd::Ones(12);
   const Eigen::MatrixXd rows = Eigen::MatrixXd::Identity(12, 4);
   EXPECT_EQ(refused_field(light, rows), "");
@@ -53,7 +53,7 @@ TEST(Rows, WhatIsNoLightAndNoRowIsRefused) {
             "number of rows");
 }
 
-TEST(Rows, FourierRowsAreOrthogonalAndSeeNoConstantLight) {
+TEST(Rows, FourierRowsAreOrthogonalAndCancelConstantLight) {
   const CodeSet code = make_family("fourier-k7", {.samples = 60, .peak_factor = 15});
   const Eigen::MatrixXd rows = code.demodulation_samples();
   EXPECT_LT((rows.transpose() * rows - 30 * Eigen::MatrixXd::Identity(7, 7)).norm(), 1e-9);
@@ -61,7 +61,7 @@ TEST(Rows, FourierRowsAreOrthogonalAndSeeNoConstantLight) {
   EXPECT_NEAR(code.peak(), 15.0, 1e-12);
 }
 
-TEST(Rows, GatesOfAHistogramShareAllBins) {
+TEST(Rows, GatesOfAHistogramCoverAllBins) {
   const Eigen::MatrixXd rows = make_family("histogram-k5", {.samples = 60}).demodulation_samples();
   EXPECT_LT((rows.rowwise().sum() - Eigen::VectorXd::Ones(60)).norm(), 1e-9);
   EXPECT_TRUE(why_no_family("histogram-k7", {.samples = 60}));

@@ -18,7 +18,7 @@ Waveform random_binary(std::uint64_t item) {
   std::vector<double> times;
   for (int i = 0; i < 6; ++i) times.push_back(random.uniform());
   std::sort(times.begin(), times.end());
-  // The last interval runs past the end of the period.
+  // The last interval wraps around the end of the period.
   return Waveform::binary({{times[1], times[2]}, {times[3], times[4]}, {times[5], times[0] + 1.0}},
                           0.5 + random.uniform());
 }
@@ -31,7 +31,7 @@ TEST(Waveform, CellAveragesKeepTheMean) {
   }
 }
 
-TEST(Waveform, CosinesHaveTheMeansValuesAndHarmonicsOfTheirFormula) {
+TEST(Waveform, CosinesMatchMeanValuesAndHarmonicsOfTheirFormula) {
   const Waveform w = Waveform::cosine(7, 0.5, 0.3, 0.4);
   EXPECT_DOUBLE_EQ(w.mean(), 0.5);
   EXPECT_DOUBLE_EQ(w.peak(), 0.8);
@@ -65,7 +65,7 @@ TEST(Waveform, HarmonicsAgreeWithFineSamples) {
 TEST(Waveform, HarmonicsAreIntegralsUpToThousands) {
   const Waveform switching = random_binary(4);
   const Waveform sampled = Waveform::sampled(switching.cell_averages(60));
-  std::vector<OnInterval> cells;  // of the sampled one: its values for a cell each
+  std::vector<OnInterval> cells;  // cells of the sampled waveform
   for (int k = 0; k < 60; ++k) cells.push_back({k / 60.0, (k + 1) / 60.0});
   const Eigen::VectorXcd of_switching = switching.harmonics(2100),
                          of_sampled = sampled.harmonics(2100);
@@ -97,7 +97,7 @@ TEST(Waveform, ComplementAddsToOneEverywhere) {
   EXPECT_EQ(Waveform::constant(0.0).complement(), Waveform::constant(1.0));
 }
 
-TEST(Waveform, DelayTurnsHarmonicsOnly) {
+TEST(Waveform, DelayRotatesHarmonicsOnly) {
   const Waveform w = random_binary(5);
   const Eigen::VectorXcd before = w.harmonics(4), after = w.delayed(0.37).harmonics(4);
   for (int n = 0; n <= 4; ++n)
@@ -113,7 +113,7 @@ TEST(Waveform, SamplesAndSwitchingTimesAgree) {
   EXPECT_EQ(w.edges(), 4);
 }
 
-TEST(Waveform, RefusesUnsortedSwitchingTimes) {
+TEST(Waveform, RejectsUnsortedSwitchingTimes) {
   EXPECT_THROW(Waveform::binary({{0.5, 0.7}, {0.1, 0.2}}), std::invalid_argument);
   EXPECT_THROW(Waveform::binary({{0.1, 0.4}, {0.3, 0.6}}), std::invalid_argument);
   EXPECT_THROW(Waveform::binary({{-0.1, 0.4}}), std::invalid_argument);
@@ -121,7 +121,7 @@ TEST(Waveform, RefusesUnsortedSwitchingTimes) {
   EXPECT_THROW(Waveform::binary({{0.8, 1.3}, {0.9, 1.0}}), std::invalid_argument);
 }
 
-TEST(CodeSet, RefusesWhatNoCameraCanPlay) {
+TEST(CodeSet, RejectsInvalidCodes) {
   const Waveform half = square_wave(1, 0.0);
   const auto create = [&](Waveform m, Waveform d) {
     return CodeSet::create("x", 60, 1, {std::move(m)}, {std::move(d)});
