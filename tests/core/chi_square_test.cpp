@@ -7,7 +7,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(ChiSquare, HasTheQuantilesOfTables) {
+TEST(ChiSquare, MatchesPublishedQuantiles) {
   EXPECT_NEAR(chi_square_quantile_of_tail(1e-3, 1), 10.828, 1e-3);
   EXPECT_NEAR(chi_square_quantile_of_tail(1e-3, 2), 13.816, 1e-3);
   EXPECT_NEAR(chi_square_quantile_of_tail(0.05, 3), 7.815, 1e-3);

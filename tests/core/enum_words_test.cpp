@@ -18,7 +18,7 @@ TEST(EnumWords, EveryValueIsReadBackFromItsWord) {
   EXPECT_EQ(fruit_words.of(Fruit::pear), "pear");
 }
 
-TEST(EnumWords, OtherWordsAndValuesAreRefusedWithThoseThereAre) {
+TEST(EnumWords, UnknownWordsAndValuesAreRejectedWithTheKnownOnes) {
   const auto message_of = [](const auto& call) -> std::string {
     try {
       call();

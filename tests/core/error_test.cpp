@@ -14,14 +14,14 @@ namespace {
 
 using testing::StrEq;
 
-TEST(Require, NamesFieldValueAndRule) {
+TEST(Require, ReportsFieldValueAndRule) {
   EXPECT_NO_THROW(require(true, "field", 3, "rule"));
   EXPECT_THAT(
       [] { require(false, "DesignOptions::trials", -3, "must be >= 1000"); },
       testing::ThrowsMessage<std::invalid_argument>("DesignOptions::trials = -3; must be >= 1000"));
 }
 
-TEST(InvalidArgument, KeepsFieldValueAndRule) {
+TEST(InvalidArgument, StoresFieldValueAndRule) {
   try {
     require(false, "sensor.taps", 17, "must be in [1, 16]");
     FAIL();
@@ -33,7 +33,7 @@ TEST(InvalidArgument, KeepsFieldValueAndRule) {
   }
 }
 
-TEST(BrokenRule, IsWhatACheckThrows) {
+TEST(BrokenRule, IsThrownByAFailedCheck) {
   const std::optional<BrokenRule> none, taps = broken("taps", 17, "must be in [1, 16]");
   EXPECT_NO_THROW(require(none));
   EXPECT_EQ(text_of(none), std::nullopt);
@@ -41,7 +41,7 @@ TEST(BrokenRule, IsWhatACheckThrows) {
   EXPECT_THROW(require(taps), InvalidArgument);
 }
 
-TEST(IoError, KeepsPlaceAndProblem) {
+TEST(IoError, StoresPlaceAndProblem) {
   const IoError error("camera.toml:3:1", "found 17: expected 1 .. 16");
   EXPECT_EQ(error.place(), "camera.toml:3:1");
   EXPECT_EQ(error.problem(), "found 17: expected 1 .. 16");
@@ -52,7 +52,7 @@ TEST(IoError, StartsWithThePlace) {
               StrEq("camera.toml:3:1: found a; expected b"));
 }
 
-TEST(EditDistance, CountsEditsAndSwapsOfNeighbours) {
+TEST(EditDistance, CountsEditsAndTranspositions) {
   EXPECT_EQ(edit_distance("", ""), 0);
   EXPECT_EQ(edit_distance("", "abc"), 3);
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
@@ -67,7 +67,7 @@ std::string random_word(RandomStream& random) {
   return word;
 }
 
-TEST(EditDistance, IsSymmetricZeroForEqualsAndAtMostTheLongerWord) {
+TEST(EditDistance, IsSymmetricZeroForEqualWordsAndAtMostTheLongerLength) {
   for (std::uint32_t i = 0; i < 300; ++i) {
     RandomStream random(5, i);
     const std::string a = random_word(random), b = random_word(random);
@@ -80,7 +80,7 @@ TEST(EditDistance, IsSymmetricZeroForEqualsAndAtMostTheLongerWord) {
   }
 }
 
-TEST(NearestWord, FindsMisspellingsAndNothingElse) {
+TEST(NearestWord, FindsMisspellingsOnly) {
   const std::array<std::string_view, 3> known{"peak_factor", "read_noise_e", "taps"};
   EXPECT_EQ(nearest_word("peak_facto", known), "peak_factor");
   EXPECT_EQ(nearest_word("tpas", known), "taps");

@@ -37,7 +37,7 @@ auto fields_of(ConstOrNot<Whole> auto& w) {
 }
 static_assert(lists_every_field<Inner> && lists_every_field<Whole>);
 
-// Whatever is forgotten, a field of any kind at any place, is found when it compiles.
+// An omitted field of any kind, at any position, is detected at compile time.
 struct ForgetsTheLast {
   int starts = 1;
   std::optional<Inner> second;
@@ -90,7 +90,7 @@ TEST(Fields, AreVisitedByNameInOrder) {
   EXPECT_THAT(names, ElementsAre("starts", "delays_m", "longest_m", "name", "inner", "second"));
 }
 
-TEST(Fields, RefusalsNameOwnerFieldValueAndRule) {
+TEST(Fields, MessagesContainOwnerFieldValueAndRule) {
   EXPECT_EQ(refusal({}), "");
   EXPECT_EQ(refusal({.starts = 1}), "Whole::starts = 1; must be in [2, 4000000000]");
   EXPECT_EQ(refusal({.delays_m = {1.0, infinity}}),
@@ -98,7 +98,7 @@ TEST(Fields, RefusalsNameOwnerFieldValueAndRule) {
   EXPECT_EQ(refusal({.longest_m = 0.0}), "Whole::longest_m = 0; must be > 0");
 }
 
-TEST(Fields, EffortScalesMarkedCountsAndNothingElse) {
+TEST(Fields, EffortScalesMarkedCountsOnly) {
   Whole whole;
   scale_by_effort(whole, 0.25);
   EXPECT_EQ(whole.starts, 5);

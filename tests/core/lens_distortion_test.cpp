@@ -16,12 +16,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Lenses as calibrations find them, from mild to strong.
+/// Returns typical calibrated lenses, from mild to strong distortion.
 std::vector<LensDistortion> lenses() {
   using enum DistortionModel;
   return {{opencv, {-0.28, 0.07, 1e-3, -5e-4}},
           {opencv, {0.12, -0.2, -1e-3, 2e-3, 0.05}},
-          {opencv, {0.42, -2.6, 6e-4, -2e-4, 1.5, 0.31, -2.4, 1.42}},  // of a depth camera
+          {opencv, {0.42, -2.6, 6e-4, -2e-4, 1.5, 0.31, -2.4, 1.42}},  // a depth camera
           {opencv, {-0.1, 0.02, 0, 0, 0, 0.2, 0.01, 0, 3e-3, -1e-3, -2e-3, 5e-4}},
           {opencv, {-0.1, 0.02, 0, 0, 0, 0.2, 0.01, 0, 3e-3, -1e-3, -2e-3, 5e-4, 0, 0}},
           {rational_6kt, {0.92, 0.5, 6e-4, -2e-4, 0.03, 1.26, 0.75, 0.14}},
@@ -29,13 +29,13 @@ std::vector<LensDistortion> lenses() {
           {fisheye, {-0.03, 0.01, -0.008, 0.001}}};
 }
 
-TEST(LensDistortion, UndistortingGivesTheRayWhoseImageItIs) {
+TEST(LensDistortion, UndistortingInvertsProjection) {
   for (const LensDistortion& lens : lenses())
     for (double x = -0.75; x <= 0.75; x += 0.125)
       for (double y = -0.5; y <= 0.5; y += 0.125) {
         const auto ideal = lens.undistort({x, y});
         ASSERT_TRUE(ideal) << lens.coefficients[0] << " at " << x << ", " << y;
-        // Of a focal length of 1000 pixels: a millionth of a pixel.
+        // A millionth of a pixel for a focal length of 1000 pixels.
         EXPECT_LE((lens.distort(*ideal) - Vector2d(x, y)).norm(), 1e-9);
       }
 }
@@ -51,14 +51,14 @@ TEST(LensDistortion, DistortingAndUndistortingIsTheIdentityOnTheFirstFold) {
 }
 
 TEST(LensDistortion, EndsWhereItFoldsBack) {
-  // r' = r - 0.4 r^3 grows up to r = sqrt(1 / 1.2), where r' is 2/3 of that.
+  // r' = r - 0.4 r^3 increases up to r = sqrt(1 / 1.2), where r' = 2/3 r.
   const LensDistortion barrel{DistortionModel::opencv, {-0.4, 0.0, 0.0, 0.0}};
   const double edge = 2.0 / 3.0 / std::sqrt(1.2);
   EXPECT_TRUE(barrel.undistort({0.999 * edge, 0.0}));
   EXPECT_FALSE(barrel.undistort({1.001 * edge, 0.0}));
   EXPECT_NEAR(barrel.reach(Vector2d(0.6, 0.8) * 2.0 * edge), 0.5, 1e-4);
   EXPECT_EQ(barrel.reach({0.9 * edge, 0.0}), 1.0);
-  // Higher terms turn it outwards once more: what lies out there is on another fold.
+  // Higher terms make r' increase again; points there are on another fold.
   const LensDistortion wave{DistortionModel::opencv, {-0.4, 0.0, 0.0, 0.0, 0.02}};
   EXPECT_FALSE(wave.undistort({1.2, 0.0}));
 }
@@ -82,7 +82,7 @@ TEST(LensDistortion, HasTheTangentialTermOfItsModel) {
   }
 }
 
-TEST(LensDistortion, SeesNothingBeyondItsRadiusAndFoldsOnlyWithinIt) {
+TEST(LensDistortion, EndsAtItsRadiusAndFoldsOnlyWithinIt) {
   LensDistortion barrel{DistortionModel::opencv, {-0.4, 0.0, 0.0, 0.0}, 0.5};  // folds at 0.913
   const double edge = 0.5 * (1.0 - 0.4 * 0.25);
   EXPECT_TRUE(barrel.undistort({0.999 * edge, 0.0}));
@@ -92,7 +92,7 @@ TEST(LensDistortion, SeesNothingBeyondItsRadiusAndFoldsOnlyWithinIt) {
   EXPECT_LT(barrel.reach({2.0, 0.0}), 1.0);
 }
 
-TEST(LensDistortion, NamesTheFieldItsValueAndTheRule) {
+TEST(LensDistortion, ReportsTheFieldItsValueAndTheRule) {
   const auto message = [](LensDistortion lens) -> std::string {
     try {
       lens.validate("lens.distortion");

@@ -16,7 +16,7 @@ Image<float> random_image(int height, int width, std::uint64_t seed) {
   return image;
 }
 
-TEST(PaddedConvolution, IsTheSumOverNeighbours) {
+TEST(PaddedConvolution, EqualsTheSumOverNeighbours) {
   for (const auto& [height, width, up, left] :
        {std::array{7, 9, 2, 3}, {5, 4, 6, 9}, {1, 6, 1, 2}, {1, 1, 3, 0}, {12, 3, 0, 2}}) {
     const Image<float> image = random_image(height, width, 1);
@@ -35,7 +35,7 @@ TEST(PaddedConvolution, IsTheSumOverNeighbours) {
   }
 }
 
-TEST(PaddedConvolution, RefusesKernelsWithoutAMiddle) {
+TEST(PaddedConvolution, RejectsKernelsOfEvenSize) {
   EXPECT_THROW(PaddedConvolution(Image<float>(2, 3), 4, 4), std::invalid_argument);
 }
 

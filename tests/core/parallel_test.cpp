@@ -14,14 +14,14 @@
 namespace tofsmith {
 namespace {
 
-// As a training set does: the disk is full for one scene while another is captured.
-TEST(ParallelFor, InnerWorkIsWholeThoughOuterWorkBesideItFails) {
+// As in a training set: the disk is full for one scene while another is captured.
+TEST(ParallelFor, InnerWorkIsCompleteAlthoughAnotherTaskFails) {
   constexpr std::int64_t inner = 1000;
   using namespace std::chrono_literals;
   std::atomic<int> begun{0};
   std::atomic<std::int64_t> done{-1};
   const auto work = [&](std::int64_t) {
-    if (begun++ == 0) {  // the first fails once the second has begun, if it does
+    if (begun++ == 0) {  // the first task fails once the second has begun
       for (int i = 0; i < 1000 && begun < 2; ++i) std::this_thread::sleep_for(1ms);
       throw std::runtime_error("disk full");
     }
@@ -31,10 +31,10 @@ TEST(ParallelFor, InnerWorkIsWholeThoughOuterWorkBesideItFails) {
     done = count.load();
   };
   EXPECT_THROW(parallel_for(2, work), std::runtime_error);
-  EXPECT_TRUE(done == -1 || done == inner) << done;  // one thread alone never begins the second
+  EXPECT_TRUE(done == -1 || done == inner) << done;  // a single thread never begins the second task
 }
 
-TEST(ThreadLimit, IsWhatMemoryIsCountedFor) {
+TEST(ThreadLimit, LimitsTheNumberOfWorkingThreads) {
   const int all = working_threads();
   {
     const ThreadLimit one(1);

@@ -48,7 +48,7 @@ TEST_P(PeriodicLength, CorrelationIsTheAdjointOfConvolution) {
 INSTANTIATE_TEST_SUITE_P(EvenOddPrimeAndTiny, PeriodicLength,
                          testing::Values(1, 2, 3, 60, 97, 240));
 
-TEST(Periodic, OneTransformServesManyThreadsAtOnce) {
+TEST(Periodic, OneTransformIsUsableByManyThreads) {
   const PeriodicTransform transform(240);
   const Eigen::VectorXd x = Eigen::VectorXd::Random(240);
   Eigen::VectorXcd expected;
@@ -80,7 +80,7 @@ TEST(Periodic, TotalVariationClosesTheCircle) {
   EXPECT_DOUBLE_EQ(circular_total_variation(x), 2.0);
 }
 
-TEST(Periodic, RefusesSignalsOfDifferentLength) {
+TEST(Periodic, RejectsSignalsOfDifferentLength) {
   EXPECT_THROW(circular_convolution(Eigen::VectorXd::Zero(3), Eigen::VectorXd::Zero(4)),
                std::invalid_argument);
 }

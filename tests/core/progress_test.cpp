@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// Keeps what is reported to it.
+/// Records the reports.
 struct Listener {
   std::vector<double> seen;
   Progress progress = [this](double fraction, std::string_view step) {
@@ -36,7 +36,7 @@ TEST(Progress, PartsOfPartsCoverTheWhole) {
   EXPECT_EQ(whole.seen, (std::vector<double>{0.5, 0.875, 1.0}));
 }
 
-TEST(Progress, PartsTakeTheSharesOfTheirWeights) {
+TEST(Progress, PartsAreProportionalToTheirWeights) {
   Listener whole;
   const ProgressParts parts(whole.progress, {3.0, 0.0, 1.0});
   for (std::size_t i = 0; i < 3; ++i)
@@ -44,7 +44,7 @@ TEST(Progress, PartsTakeTheSharesOfTheirWeights) {
   EXPECT_EQ(whole.seen, (std::vector<double>{0.0, 0.75, 0.75, 0.75, 0.75, 1.0}));
 }
 
-TEST(Progress, OfManyUnevenPartsNeverFallsAndEndsAtOne) {
+TEST(Progress, OfManyUnevenPartsIsMonotonicAndEndsAtOne) {
   Listener whole;
   std::vector<double> weights;
   for (int i = 0; i < 97; ++i) weights.push_back(0.1 + i * i % 7);
@@ -59,14 +59,14 @@ TEST(Progress, OfManyUnevenPartsNeverFallsAndEndsAtOne) {
   EXPECT_EQ(whole.seen.back(), 1.0);
 }
 
-TEST(Progress, StopsWorkWhenItSaysSo) {
+TEST(Progress, StopsWorkOnRequest) {
   const Progress stop = [](double, std::string_view) { return false; };
   EXPECT_THROW(report(stop, 0.0, "x"), Interrupted);
   EXPECT_THROW(report(ProgressParts(stop, 2)[0], 0.0, "x"), Interrupted);
   EXPECT_THROW(SharedProgress(stop, 1.0, "x"), Interrupted);
 }
 
-TEST(Progress, IsCalledByTheThreadThatAsksAndStopsEveryThreadBetweenPieces) {
+TEST(Progress, IsCalledByTheCallingThreadAndStopsAllThreads) {
   const std::thread::id caller = std::this_thread::get_id();
   double last = 0.0;
   const Progress stop_early = [&](double fraction, std::string_view step) {
@@ -92,7 +92,7 @@ TEST(Progress, IsCalledByTheThreadThatAsksAndStopsEveryThreadBetweenPieces) {
   EXPECT_LT(done, items * pieces);
 }
 
-TEST(Progress, NoneIsAskedForNothing) {
+TEST(Progress, IsOptional) {
   SharedProgress({}, 1.0, "x").add();
   EXPECT_NO_THROW(report({}, 0.0, "x"));
   EXPECT_FALSE(ProgressParts({}, 2)[0]);

@@ -29,7 +29,7 @@ TEST(RandomStream, DependsOnSeedItemAndTrialOnly) {
 }
 
 TEST(RandomStream, MatchesThePublishedPhiloxVector) {
-  // Random123's kat_vectors: philox4x32-10, zero counter and key.
+  // From Random123's kat_vectors: philox4x32-10, zero counter and key.
   RandomStream stream(0, 0, 0);
   EXPECT_EQ(stream(), 0x6627e8d5u);
   EXPECT_EQ(stream(), 0xe169c58du);
@@ -68,13 +68,13 @@ TEST_P(PoissonMean, MeanEqualsVariance) {
 
 INSTANTIATE_TEST_SUITE_P(SmallToHuge, PoissonMean, testing::Values(0.3, 5.0, 40.0, 3e4, 9e8, 5e9));
 
-TEST(RandomStream, NothingArrivesInTheDark) {
+TEST(RandomStream, PoissonOfMeanZeroIsZero) {
   RandomStream stream(2, 0);
   EXPECT_EQ(stream.poisson(0.0), 0.0);
   EXPECT_EQ(stream.poisson(-3.0), 0.0);
 }
 
-TEST(Parallel, BlocksCoverEveryIndexOnceOnAnyThreadCount) {
+TEST(Parallel, BlocksCoverEveryIndexOnceForAnyThreadCount) {
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     std::vector<int> seen(1003, 0);
@@ -86,7 +86,7 @@ TEST(Parallel, BlocksCoverEveryIndexOnceOnAnyThreadCount) {
   }
 }
 
-TEST(Parallel, UsesMoreThreadsThanCoresIfAskedTo) {
+TEST(Parallel, UsesMoreThreadsThanCoresOnRequest) {
   const std::vector<std::string> features = build_info().features;
   if (std::ranges::find(features, "TBB") == features.end())
     GTEST_SKIP() << "all work is done in one thread";
@@ -95,7 +95,8 @@ TEST(Parallel, UsesMoreThreadsThanCoresIfAskedTo) {
   std::mutex mutex;
   std::condition_variable all_there;
   int there = 0;
-  parallel_for(threads, [&](std::int64_t) {  // each waits for all: one thread takes one only
+  parallel_for(threads, [&](std::int64_t) {  // each task waits for all others, so that each thread
+                                             // gets one
     std::unique_lock lock(mutex);
     if (++there == threads) all_there.notify_all();
     all_there.wait_for(lock, std::chrono::seconds(20), [&] { return there == threads; });
@@ -110,7 +111,7 @@ TEST(Statistics, GeometricMeanPropagatesRelativeErrors) {
   EXPECT_NEAR(mean.standard_error, 10.0 * std::sqrt(0.02) / 2, 1e-12);
 }
 
-TEST(Statistics, GeometricMeanOfWhatIsNoNumberIsNone) {
+TEST(Statistics, GeometricMeanOfNaNIsNaN) {
   const Estimate estimates[] = {{1.0, 0.1}, {std::nan(""), 0.0}};
   EXPECT_TRUE(std::isnan(geometric_mean_of(estimates).value));
   const Estimate with_zero[] = {{1.0, 0.1}, {0.0, 0.0}};

@@ -22,7 +22,7 @@ struct Words {
   alignas(64) std::uint32_t at[4 * trials_per_tile];
 };
 
-TEST(RandomTile, WordsAreThoseOfRandom123) {
+TEST(RandomTile, WordsMatchRandom123) {
   const TrialStreams streams[] = {
       {0, 0, 0}, {0x0123456789abcdefull, 0xfedcba9876543210ull, 0xffffff00u}, {~0ull, ~0ull, 77}};
   for_each_target([&] {
@@ -47,7 +47,7 @@ TEST(RandomTile, WordsAreThoseOfRandom123) {
   });
 }
 
-TEST(RandomTile, WordsAreThoseOfAStream) {
+TEST(RandomTile, WordsMatchThoseOfAStream) {
   Words words;
   draw_words({7, 3, 40}, 0, 16, words.at);
   RandomStream stream(7, 3, 45);
@@ -82,7 +82,7 @@ TEST(RandomTile, NormalsAreNormalAndIndependent) {
     EXPECT_NEAR(square.mean(), 1.0, 4 * square.standard_error());
     EXPECT_NEAR(fourth.mean(), 3.0, 4 * fourth.standard_error());
     EXPECT_NEAR(product.mean(), 0.0, 4 * product.standard_error());
-    // Kolmogorov and Smirnov: beyond 1.95 / sqrt(n) one time in a thousand.
+    // Kolmogorov-Smirnov test: exceeds 1.95 / sqrt(n) with probability 0.001.
     std::sort(values.begin(), values.end());
     const auto count = static_cast<double>(values.size());
     double distance = 0.0;
@@ -93,7 +93,7 @@ TEST(RandomTile, NormalsAreNormalAndIndependent) {
   });
 }
 
-TEST(RandomTile, NormalsReachFarAndAgreeWithTheFormula) {
+TEST(RandomTile, NormalsHaveLongTailsAndMatchTheFormula) {
   Words words{};
   const std::array<std::uint32_t, 6> radius = {0u, 2u, 0x7fffffffu, 0xffffffffu, 1u << 20, 12345u};
   for (std::size_t i = 0; i < radius.size(); ++i) {
@@ -113,8 +113,9 @@ TEST(RandomTile, NormalsReachFarAndAgreeWithTheFormula) {
   });
 }
 
-/// Chi-square of counts beside the Poisson distribution, classes of at least ten expected counts.
-/// @returns how many standard deviations above its mean it lies (Wilson and Hilferty)
+/// Compares counts with the Poisson distribution by chi-square, in classes of at least ten expected
+/// counts.
+/// @returns the deviation from its mean in standard deviations (Wilson-Hilferty)
 double chi_square_deviation(const std::vector<double>& counts, double mean) {
   const auto total = static_cast<double>(counts.size());
   const double sigma = std::sqrt(mean);
@@ -171,8 +172,8 @@ TEST_P(PoissonTile, HasThePoissonDistribution) {
   EXPECT_LT(chi_square_deviation(counts, mean), 4.0);
 }
 
-// Scalar, with the same law.
-TEST_P(PoissonTile, CountsOfAStreamHaveItToo) {
+// The scalar generator has the same distribution.
+TEST_P(PoissonTile, CountsOfAStreamHaveTheSameDistribution) {
   RandomStream stream(11, 2);
   std::vector<double> counts(std::size_t{200} * trials_per_tile);
   for (double& count : counts) count = stream.poisson(GetParam());
@@ -183,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(FromRareToPlenty, PoissonTile,
                          testing::Values(0.1, 1.0, 4.0, 9.99, 10.0, 12.5, 30.0, 100.0, 1e3, 3e4,
                                          1e6, 1e7));
 
-TEST(PoissonTile, DependsOnTheTrialAlone) {
+TEST(PoissonTile, DependsOnTheTrialOnly) {
   std::vector<double> mean(trials_per_tile), whole(trials_per_tile), part(trials_per_tile);
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = 0.5 * static_cast<double>(i);
   draw_poisson({4, 9, 1000}, 5, trials_per_tile, mean.data(), whole.data());

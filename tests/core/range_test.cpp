@@ -14,7 +14,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Range, ContainsTheNumbersThatItsTextNames) {
+TEST(Range, ContainsTheNumbersOfItsText) {
   struct Case {
     Range range;
     std::string text;

@@ -9,7 +9,7 @@
 namespace tofsmith {
 namespace {
 
-/// Looks at the work ten times a second until `end_s`.
+/// Reports progress ten times per second until `end_s`.
 RemainingTime watched(const std::function<double(double)>& fraction_at, double end_s) {
   RemainingTime time;
   for (int i = 0; i <= 10 * end_s; ++i) time.add(0.1 * i, fraction_at(0.1 * i));
@@ -22,15 +22,15 @@ TEST(RemainingTime, OfSteadyWorkIsExact) {
     EXPECT_NEAR(watched(steady, s).seconds().value(), 50.0 - s, 0.5) << s;
 }
 
-TEST(RemainingTime, IsNotGuessedFromTheBeginning) {
+TEST(RemainingTime, IsUnknownAtTheBeginning) {
   EXPECT_FALSE(RemainingTime().seconds());
   EXPECT_FALSE(watched([](double s) { return s / 10.0; }, 2.0).seconds());
   EXPECT_FALSE(watched([](double s) { return s / 3600.0; }, 20.0).seconds());
   EXPECT_NEAR(watched([](double s) { return s / 3600.0; }, 60.0).seconds().value(), 3540.0, 5.0);
 }
 
-TEST(RemainingTime, IsNotToldWhileTheSpeedChanges) {
-  // A tenth is done in a second, the rest takes a hundred.
+TEST(RemainingTime, IsUnknownWhileTheSpeedChanges) {
+  // The first 10 % take one second, the rest a hundred.
   const auto fast_first = [](double s) {
     return s < 1.0 ? 0.1 * s : 0.1 + 0.9 * (s - 1.0) / 100.0;
   };
@@ -38,12 +38,12 @@ TEST(RemainingTime, IsNotToldWhileTheSpeedChanges) {
   EXPECT_NEAR(watched(fast_first, 40.0).seconds().value(), 61.0, 1.0);
 }
 
-TEST(RemainingTime, OfWorkThatStandsStillIsUnknown) {
+TEST(RemainingTime, OfStalledWorkIsUnknown) {
   EXPECT_FALSE(watched([](double) { return 0.0; }, 100.0).seconds());
   EXPECT_FALSE(watched([](double s) { return s < 10.0 ? 0.05 * s : 0.5; }, 60.0).seconds());
 }
 
-TEST(RemainingTime, FallsSmoothlyWhereStepsDifferALittle) {
+TEST(RemainingTime, DecreasesSmoothlyIfStepsDifferSlightly) {
   // Steps take 0.8 s and 1.2 s in turn.
   const auto uneven = [](double s) {
     const double in_pair = s - 2.0 * static_cast<int>(s / 2.0);

@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(TextNumbers, AreAllOfTheTextOrNone) {
+TEST(TextNumbers, RequireTheWholeText) {
   EXPECT_EQ(number_in("0.00123"), 0.00123);
   EXPECT_EQ(number_in("-1.5e3"), -1500.0);
   EXPECT_EQ(number_in("+2"), 2.0);
@@ -24,7 +24,7 @@ TEST(TextNumbers, AreAllOfTheTextOrNone) {
   EXPECT_EQ(text, "/4");
 }
 
-TEST(TextNumbers, HaveAPointInEveryLocale) {
+TEST(TextNumbers, UseADecimalPointInEveryLocale) {
   const GermanLocale locale;
   char text[16];
   std::snprintf(text, sizeof(text), "%.1f", 1.5);
@@ -39,7 +39,7 @@ TEST(TextNumbers, MessagesAreTheSameInEveryLocale) {
   EXPECT_EQ(broken("exposure_s", 0.25, "must be less").text(), "exposure_s = 0.25; must be less");
 }
 
-TEST(TextNumbers, LettersAreThoseOfAscii) {
+TEST(TextNumbers, LettersAreAsciiLetters) {
   EXPECT_EQ(lower_case('I'), 'i');
   EXPECT_EQ(upper_case('i'), 'I');
   EXPECT_TRUE(is_letter('z') && is_digit('9') && is_letter_or_digit('A'));

@@ -11,11 +11,11 @@
 namespace tofsmith {
 namespace {
 
-TEST(Units, RangeIsHalfTheWayOfLightInOnePeriod) {
+TEST(Units, RangeIsHalfTheDistanceThatLightTravelsInOnePeriod) {
   EXPECT_NEAR(unambiguous_range_m(15e6), 9.99308193, 1e-8);
 }
 
-TEST(Wrap, LandsInThePeriodAndMovesByWholePeriods) {
+TEST(Wrap, ReturnsAValueInThePeriodShiftedByWholePeriods) {
   for (std::uint32_t i = 0; i < 500; ++i) {
     RandomStream random(2, i);
     const double period = 0.1 + 10 * random.uniform();
@@ -30,7 +30,7 @@ TEST(Wrap, LandsInThePeriodAndMovesByWholePeriods) {
   EXPECT_EQ(wrap(-1e-300, 1.0), 0.0) << "rounding must not give the end point";
 }
 
-TEST(CircularDifference, IsTheSignedShortestWay) {
+TEST(CircularDifference, IsTheSignedShortestDifference) {
   EXPECT_NEAR(circular_difference(0.1, 9.9, 10.0), 0.2, 1e-12);
   EXPECT_NEAR(circular_difference(9.9, 0.1, 10.0), -0.2, 1e-12);
   EXPECT_NEAR(circular_difference(7.0, 2.0, 10.0), -5.0, 1e-12);
