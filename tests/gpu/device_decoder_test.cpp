@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What a device decodes against what the Decoder does.
+// Device decoding, compared with the Decoder.
 #include <cmath>
 #include <limits>
 
@@ -21,7 +21,7 @@ Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 25
   return outputs;
 }
 
-/// @param left  how many pixels the device left to the decoder
+/// @param left  receives the number of pixels that the device left to the decoder
 Outputs decoded(const DeviceDecoder& decoder, const RawView& raw, std::int64_t& left,
                 unsigned planes = 255) {
   Outputs outputs(static_cast<std::size_t>(raw.pixels()));
@@ -29,8 +29,8 @@ Outputs decoded(const DeviceDecoder& decoder, const RawView& raw, std::int64_t& 
   return outputs;
 }
 
-/// Adds pixels that are no measurement of any depth: without light, flat, saturated, not numbers,
-/// and with the largest and smallest numbers there are.
+/// Appends pixels without a valid depth: dark, constant, saturated, NaN, and the largest and
+/// smallest values.
 void append_odd_pixels(const DecodingTable& table, std::vector<float>& raw) {
   using Limits = std::numeric_limits<float>;
   for (const float value : {0.0f, 1000.0f, 65535.0f, -65535.0f, -5.0f, Limits::quiet_NaN(),
@@ -38,7 +38,7 @@ void append_odd_pixels(const DecodingTable& table, std::vector<float>& raw) {
     for (int odd = -1; odd < table.measurements(); ++odd)
       for (int k = 0; k < table.measurements(); ++k)
         raw.push_back(odd < 0 || k == odd ? value : 700.0f + 10.0f * static_cast<float>(k));
-  // What ambient light explains, but for rounding.
+  // Ambient light only, up to rounding.
   for (int i = 0; i < 20; ++i)
     for (int k = 0; k < table.measurements(); ++k)
       raw.push_back(static_cast<float>(
@@ -52,10 +52,10 @@ RawView row_of(const std::vector<float>& raw, int measurements) {
                               measurements);
 }
 
-/// Planes that need no confidence: neither that nor the status.
+/// Planes that do not require the confidence: all but confidence and status.
 constexpr unsigned without_confidence = 0b0101111;
 
-/// All planes, and bins alone.
+/// Compares all planes, and bins only.
 void expect_what_the_decoder_gives(const Device& device, const DecodingTable& table,
                                    std::vector<float> raw, const DeviceOptions& options = {},
                                    const DecodeOptions& thresholds = {},
@@ -72,7 +72,7 @@ void expect_what_the_decoder_gives(const Device& device, const DecodingTable& ta
   std::int64_t left = 0;
   const Outputs all = decoded(on_device, view, left);
   expect_alike(device.info(), options.use_doubles, all, expected, brightest);
-  // The processor finds the confidence of most pixels in dim light, and the lobe of all pixels of a
+  // The CPU computes the confidence of most pixels in dim light, and the lobe of all pixels of a
   // table with close lobes.
   decoded(on_device, view, left, without_confidence);
   if (!parts_of(decoder).matcher.has_close_lobes()) {
@@ -84,12 +84,12 @@ void expect_what_the_decoder_gives(const Device& device, const DecodingTable& ta
   expect_only(bins, expected, 1);
 }
 
-// By angle, by cells of both ranks, by arcs; with few bins, which turn far from one to the next,
-// and with many.
+// For each search method (by angle, by cells of both ranks, by arcs): few bins with large angles
+// between them, and many bins.
 constexpr RandomCode codes[] = {{3, 8, 2}, {3, 1500, 2}, {4, 64, 3},  {4, 700, 3},
                                 {5, 9, 4}, {5, 5000, 4}, {8, 400, 7}, {16, 2000, 6}};
 
-TEST_F(DeviceDecoding, GivesBinsAndPlanesOfTheDecoderOfRandomCodes) {
+TEST_F(DeviceDecoding, EqualsTheDecoderForRandomCodes) {
   RandomStream random(41, 0);
   for (const RandomCode& code : codes) {
     SCOPED_TRACE(testing::Message() << "K = " << code.measurements << ", N = " << code.samples);
@@ -113,7 +113,7 @@ constexpr Case cases[] = {{"hamiltonian-k3", "paper-10f0"},
                           {"hamiltonian-k4", "paper-10f0", 2},
                           {"hamiltonian-k5", "paper-10f0", 2, Readout::difference}};
 
-TEST_F(DeviceDecoding, GivesBinsAndPlanesOfTheDecoderAtAllLightLevels) {
+TEST_F(DeviceDecoding, EqualsTheDecoderAtAllLightLevels) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.code);
     const DecodeSetup setup(c.code, camera_with(c.camera, c.taps, c.readout));
@@ -122,16 +122,16 @@ TEST_F(DeviceDecoding, GivesBinsAndPlanesOfTheDecoderAtAllLightLevels) {
   }
 }
 
-TEST_F(DeviceDecoding, GivesBinsAndPlanesOfTheDecoderOfRows) {
+TEST_F(DeviceDecoding, EqualsTheDecoderForRows) {
   const DecodeSetup setup("hamiltonian-k4", rows_camera());
   const DecodingTable& table = setup.decoder.table();
-  // Whitened vectors are short beside the numbers that they are of: single precision proves no bin,
-  // here as there, and all pixels are left twice, for bins and for chords.
+  // Whitened vectors are short compared with the raw values, so that single precision proves no
+  // bin: all pixels are left to the CPU twice, for bins and for chords.
   expect_what_the_decoder_gives(device(), table, noisy_pixels(table, 1e5, 1e3, 500, 4), {}, {},
                                 2.1);
 }
 
-TEST_F(DeviceDecoding, KeepsTheThresholdsOfStatuses) {
+TEST_F(DeviceDecoding, UsesTheThresholdsOfTheDecoder) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   for (const DecodeOptions& thresholds :
@@ -149,7 +149,7 @@ TEST_F(DeviceDecoding, DecodesMeasuredTables) {
         device(), make_decoding_table(setup.model.correlation_table(samples), 10.0), raw);
 }
 
-TEST_F(DeviceDecoding, ProvesNearlyAllPixelsItself) {
+TEST_F(DeviceDecoding, ProvesAlmostAllPixels) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 20000, 3);
   const DeviceDecoder on_device(device(), setup.decoder);
@@ -160,7 +160,7 @@ TEST_F(DeviceDecoding, ProvesNearlyAllPixelsItself) {
   EXPECT_LT(left, 20000 / 500);
 }
 
-TEST_F(DeviceDecoding, WithoutDoublesErrsInTheLastBitsOfAmbientLightAlone) {
+TEST_F(DeviceDecoding, WithoutDoublesOnlyAmbientLightIsRoundedDifferently) {
   Camera camera = camera_with("paper-10f0");
   camera.sensor.dark_current_e_per_s = 3e3;
   const DecodeSetup setup("hamiltonian-k4", camera);
@@ -169,7 +169,7 @@ TEST_F(DeviceDecoding, WithoutDoublesErrsInTheLastBitsOfAmbientLightAlone) {
                                 {.use_doubles = false});
 }
 
-/// Numbers that bytes hold, as another type in one of the layouts of frames in memory.
+/// Values that fit into a byte, as another type in one of the supported layouts.
 template <typename Number>
 void expect_same_of(const DeviceDecoder& on_device, const Decoder& decoder, int height, int width,
                     const std::vector<float>& raw) {
@@ -192,7 +192,7 @@ void expect_same_of(const DeviceDecoder& on_device, const Decoder& decoder, int 
   }
 }
 
-TEST_F(DeviceDecoding, ReadsNumbersOfEveryTypeAndLayout) {
+TEST_F(DeviceDecoding, ReadsAllTypesAndLayouts) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   constexpr int height = 17, width = 41;
   std::vector<float> raw = noisy_pixels(setup.decoder.table(), 600.0, 300.0, height * width, 12);
@@ -204,9 +204,9 @@ TEST_F(DeviceDecoding, ReadsNumbersOfEveryTypeAndLayout) {
   expect_same_of<double>(on_device, setup.decoder, height, width, raw);
 }
 
-TEST_F(DeviceDecoding, DecidesBinsOfDoublesByTheDoubles) {
+TEST_F(DeviceDecoding, UsesAllDigitsOfDoubles) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  // In so much ambient light floats are whole numbers, and the signal is what they leave out.
+  // In this ambient light, floats are integers and cannot represent the signal.
   RandomStream random(5, 0);
   std::vector<double> raw;
   for (const float value : noisy_pixels(setup.decoder.table(), 1e4, 1e8, 4000, 8))
@@ -219,7 +219,7 @@ TEST_F(DeviceDecoding, DecidesBinsOfDoublesByTheDoubles) {
                1e6);
 }
 
-TEST_F(DeviceDecoding, KnowsTheNoiseOfMeans) {
+TEST_F(DeviceDecoding, AccountsForTheNoiseOfMeans) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 2e3, 1e4, 3000, 8);
   std::vector<float> averaged;
@@ -232,7 +232,7 @@ TEST_F(DeviceDecoding, KnowsTheNoiseOfMeans) {
                1e6);
 }
 
-TEST_F(DeviceDecoding, EachPlaneIsTheSameWhicheverOthersAreWanted) {
+TEST_F(DeviceDecoding, EachPlaneIsIndependentOfTheOtherRequestedPlanes) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, 1000, 9);
   const DeviceDecoder on_device(device(), setup.decoder);
@@ -242,7 +242,7 @@ TEST_F(DeviceDecoding, EachPlaneIsTheSameWhicheverOthersAreWanted) {
     expect_only(decoded(on_device, row_of(raw, 4), left, planes), all, planes);
 }
 
-TEST_F(DeviceDecoding, LargeFramesGoInPartsAndSmallOnesWhole) {
+TEST_F(DeviceDecoding, LargeFramesAreDecodedInParts) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, 5000, 9);
   const DeviceDecoder in_parts(device(), setup.decoder, {.memory_mb = 0.001});
@@ -254,7 +254,7 @@ TEST_F(DeviceDecoding, LargeFramesGoInPartsAndSmallOnesWhole) {
   }
 }
 
-TEST_F(DeviceDecoding, CopiesBesideKernelsChangeNothing) {
+TEST_F(DeviceDecoding, OverlappedCopiesChangeNothing) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   constexpr int height = 370, width = 601;  // in four parts
   std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e4, 1e4, height * width, 9);
@@ -274,7 +274,7 @@ TEST_F(DeviceDecoding, CopiesBesideKernelsChangeNothing) {
   expect_only(decoded(on_device, view, left, 1), expected, 1);
 }
 
-TEST_F(DeviceDecoding, RefusesWhatIsNoFrameOfTheCode) {
+TEST_F(DeviceDecoding, RejectsInvalidFrames) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DeviceDecoder on_device(device(), setup.decoder);
   const std::vector<float> raw(15);
@@ -284,7 +284,7 @@ TEST_F(DeviceDecoding, RefusesWhatIsNoFrameOfTheCode) {
   EXPECT_THROW(DeviceDecoder(device(), setup.decoder, {.memory_mb = 0.0}), InvalidArgument);
 }
 
-TEST_F(DeviceDecoding, StopsWhereProgressSaysSo) {
+TEST_F(DeviceDecoding, StopsOnRequest) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<float> raw(4 * 5000);
   Outputs outputs(5000);

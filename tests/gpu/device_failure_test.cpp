@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Devices that fail half-way: one injected failure per stage.
+// Devices that fail half-way, with one injected failure per stage.
 #if __has_include(<CL/cl.h>)
 #include <functional>
 
@@ -34,7 +34,7 @@ class FailingDevice : public OnDevice {
     work(outputs);
     return outputs;
   }
-  /// Expects an error that names the device.
+  /// Expects an error with the name of the device.
   void expect_failure(const Work& work) const {
     try {
       outputs_of(work);
@@ -43,8 +43,8 @@ class FailingDevice : public OnDevice {
       EXPECT_NE(std::string(error.what()).find(device().info().name), std::string::npos);
     }
   }
-  /// Expects an error if the device fails in the middle of the work, and the same planes as before
-  /// once it is back.
+  /// Expects an error if the device fails in the middle of the work, and correct planes after it
+  /// has recovered.
   void expect_error_then_recovery(const Work& work) const {
     failure = {};
     const Outputs expected = outputs_of(work);
@@ -54,8 +54,8 @@ class FailingDevice : public OnDevice {
     failure = {};
     expect_same(outputs_of(work), expected);
   }
-  /// Expects the same planes where the device lacks memory for one allocation in the middle, and
-  /// an error where it lacks memory for all.
+  /// Expects correct planes if one allocation in the middle of the work fails, and an error if all
+  /// allocations fail.
   void expect_parts_if_memory_is_short(const Work& work) const {
     failure = {};
     const Outputs expected = outputs_of(work);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What a device filters against what the Filter does.
+// Device filtering, compared with the Filter.
 #include <cmath>
 #include <limits>
 
@@ -14,7 +14,7 @@ namespace {
 
 using DeviceFiltering = OnDevice;
 
-/// Surfaces that slant, an edge, a dark part, and one where depth begins anew; dim and bright.
+/// Returns slanted surfaces, an edge, a dark part and a wrap of depth; dim and bright.
 RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
                             std::uint64_t seed = 1) {
   const double samples = table.bin_count();
@@ -30,7 +30,7 @@ RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
       });
 }
 
-/// Pixels that are saturated or no numbers, alone and side by side.
+/// Makes pixels saturated or NaN, isolated and in groups.
 void spoil(RawFrames& raw, float saturated) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < raw.values.size(); ++i)
@@ -39,8 +39,8 @@ void spoil(RawFrames& raw, float saturated) {
     raw.values[i] = std::numeric_limits<float>::infinity();
 }
 
-/// Of numbers and of how many measurements they are the mean: the share that differs by more than
-/// `most` of what they are.
+/// Returns the fraction of values, including those of `averaged`, with a relative difference above
+/// `most`.
 double share_beyond(const FilteredFrame& a, const FilteredFrame& b, double most) {
   const RawFrames values = a.values(), expected = b.values();
   std::size_t count = 0;
@@ -57,19 +57,19 @@ double share_beyond(const FilteredFrame& a, const FilteredFrame& b, double most)
          static_cast<double>(values.values.size() + b.averaged().size());
 }
 
-/// What is seen of devices that round otherwise; a frame of few pixels may have more.
+/// Tolerance for devices with other rounding; small frames may exceed it.
 void expect_near(const FilteredFrame& a, const FilteredFrame& b) {
   EXPECT_LT(share_beyond(a, b, 1e-4), 0.06);
   EXPECT_LT(share_beyond(a, b, 1e-3), 0.002);
 }
 
-/// The same bits where the device divides as the processor does.
+/// Expects equal bits if the device divides like the CPU.
 void expect_alike(const Device& device, const FilteredFrame& a, const FilteredFrame& b) {
   if (!device.info().divides_as_processor || !device.info().has_doubles) return expect_near(a, b);
   EXPECT_EQ(share_beyond(a, b, 0.0), 0.0);
 }
 
-/// Filtered, and filtered and decoded in one.
+/// Compares filtering, and filtering with decoding in one call.
 void expect_what_the_filter_gives(const Device& device, const DecodingTable& table,
                                   const FilterOptions& options, const RawView& raw,
                                   const DeviceOptions& on_device_options = {},
@@ -108,7 +108,7 @@ std::vector<Case> cases() {
           {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}};
 }
 
-TEST_F(DeviceFiltering, GivesTheNumbersOfTheFilter) {
+TEST_F(DeviceFiltering, EqualsTheFilter) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.code);
     const DecodeSetup setup(c.code, c.camera);
@@ -125,7 +125,7 @@ TEST_F(DeviceFiltering, GivesTheNumbersOfTheFilter) {
   }
 }
 
-TEST_F(DeviceFiltering, RoundsAsTheProcessorsInstructionsDo) {
+TEST_F(DeviceFiltering, RoundsLikeEveryInstructionSet) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 40, 50);
   for_each_target([&] {
@@ -133,9 +133,8 @@ TEST_F(DeviceFiltering, RoundsAsTheProcessorsInstructionsDo) {
   });
 }
 
-// As a device does that rounds otherwise: this one adds products in two steps, the processor in
-// one.
-TEST_F(DeviceFiltering, OtherRoundingMovesFewNumbersByMoreThanRounding) {
+// Simulates a device with other rounding: products are added in two steps instead of one.
+TEST_F(DeviceFiltering, OtherRoundingChangesFewValuesByMoreThanRoundingError) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 120, 160);
   for (const FilterStrength strength : all_filter_strengths) {
@@ -149,7 +148,7 @@ TEST_F(DeviceFiltering, OtherRoundingMovesFewNumbersByMoreThanRounding) {
   }
 }
 
-TEST_F(DeviceFiltering, TakesFramesSmallerThanItsWindows) {
+TEST_F(DeviceFiltering, AcceptsFramesSmallerThanItsWindows) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const Filter filter(setup.decoder.table());
   const DeviceFilter on_device(device(), filter);
@@ -161,7 +160,7 @@ TEST_F(DeviceFiltering, TakesFramesSmallerThanItsWindows) {
   }
 }
 
-TEST_F(DeviceFiltering, TakesAnyCodeAndOptions) {
+TEST_F(DeviceFiltering, SupportsAnyCodeAndOptions) {
   RandomStream random(4, 0);
   for (const RandomCode& code : {RandomCode{4, 64, 3}, {5, 1000, 4}, {16, 200, 6}}) {
     SCOPED_TRACE(code.measurements);
@@ -176,7 +175,7 @@ TEST_F(DeviceFiltering, TakesAnyCodeAndOptions) {
   }
 }
 
-TEST_F(DeviceFiltering, KnowsMeansAndWhatIsLeftOut) {
+TEST_F(DeviceFiltering, SupportsMeansAndExcludedPixels) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     const DecodeSetup setup("square-k4", camera_with("paper-10f0", 2, readout));
     const DecodingTable& table = setup.decoder.table();
@@ -192,7 +191,7 @@ TEST_F(DeviceFiltering, KnowsMeansAndWhatIsLeftOut) {
   }
 }
 
-TEST_F(DeviceFiltering, ReadsNumbersOfEveryTypeAndLayout) {
+TEST_F(DeviceFiltering, ReadsAllTypesAndLayouts) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   RawFrames raw = frame_of_surfaces(table, 30, 44);
@@ -204,7 +203,7 @@ TEST_F(DeviceFiltering, ReadsNumbersOfEveryTypeAndLayout) {
   expect_what_the_filter_gives(device(), table, {}, RawView::planar(doubles.data(), 30, 44, 4));
 }
 
-TEST_F(DeviceFiltering, FramesThatDoNotFitGoInBandsOfRows) {
+TEST_F(DeviceFiltering, LargeFramesAreFilteredInBands) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   RawFrames raw = frame_of_surfaces(table, 230, 24);
@@ -217,7 +216,7 @@ TEST_F(DeviceFiltering, FramesThatDoNotFitGoInBandsOfRows) {
                                    view_of_frame(raw, 0), {.memory_mb = memory_mb}, left_out);
 }
 
-TEST_F(DeviceFiltering, RefusesWhatIsNoFrameOfTheFilter) {
+TEST_F(DeviceFiltering, RejectsInvalidFrames) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const Filter filter(setup.decoder.table());
   const DeviceFilter on_device(device(), filter);
@@ -235,7 +234,7 @@ TEST_F(DeviceFiltering, RefusesWhatIsNoFrameOfTheFilter) {
   EXPECT_THROW(on_device.decode(view, elsewhere, outputs.view()), InvalidArgument);
 }
 
-TEST_F(DeviceFiltering, StopsWhereProgressSaysSoAndGoesOnAfterwards) {
+TEST_F(DeviceFiltering, StopsOnRequestAndContinuesAfterwards) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const Filter filter(setup.decoder.table());
   const DeviceFilter on_device(device(), filter);

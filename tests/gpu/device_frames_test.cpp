@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What a device makes of several frames against what this computer makes of them.
+// Filtering of frame sequences on a device, compared with the CPU.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using ::testing::ThrowsMessage;
 
 constexpr float float_infinity = std::numeric_limits<float>::infinity();
 
-/// Frame f of a scene in which an edge moves, one part drifts slowly, and one gets brighter.
+/// Returns frame f of a scene with a moving edge, a slowly drifting part and a part that brightens.
 RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int f) {
   const double samples = table.bin_count();
   return frame_by_pixel(
@@ -32,7 +32,7 @@ RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int
       });
 }
 
-/// Pixels that are saturated or no numbers, others in every frame.
+/// Makes pixels saturated or NaN, different ones in every frame.
 void spoil(RawFrames& raw, float saturated, int f) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto frame = static_cast<std::size_t>(f);
@@ -46,7 +46,7 @@ void spoil(RawFrames& raw, float saturated, int f) {
 
 class DeviceFramesOf : public OnDevice {
  protected:
-  /// The same bits where the device divides as the processor does.
+  /// Expects equal bits if the device divides like the CPU.
   void expect_same_numbers(const RawView& a, const RawView& b, bool has_thresholds) const {
     std::vector<float> x(static_cast<std::size_t>(a.pixels() * a.measurements)), y(x.size());
     copy_pixels(a, 0, a.pixels(), x.data());
@@ -59,7 +59,7 @@ class DeviceFramesOf : public OnDevice {
         ASSERT_EQ(x[i], y[i]) << "number " << i;
       }
   }
-  /// Frames one after another, with what comes of each and of its planes.
+  /// Compares the result of each frame, and its planes.
   void expect_what_the_time_filter_gives(const DecodingTable& table,
                                          const TimeFilterOptions& options,
                                          const std::vector<RawView>& frames) const {
@@ -105,7 +105,7 @@ std::vector<RawFrames> frames_of_motion(const DecodingTable& table, int height, 
   return frames;
 }
 
-TEST_F(DeviceFramesOf, AreAddedUpAsTheTimeFilterDoes) {
+TEST_F(DeviceFramesOf, AreAveragedLikeByTheTimeFilter) {
   Camera counts = camera_with("paper-10f0");
   counts.sensor.adc_bits = 12;
   counts.sensor.gain_e_per_dn = 2.0;
@@ -130,7 +130,7 @@ TEST_F(DeviceFramesOf, AreAddedUpAsTheTimeFilterDoes) {
   }
 }
 
-TEST_F(DeviceFramesOf, AreAddedUpAsByEveryInstructionSet) {
+TEST_F(DeviceFramesOf, AreAveragedLikeByEveryInstructionSet) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<RawFrames> frames = frames_of_motion(setup.decoder.table(), 30, 41, 4);
   for_each_target([&] {
@@ -164,7 +164,7 @@ TEST_F(DeviceFramesOf, MayBeMeansOfAnyTypeAndLayout) {
     expect_what_the_time_filter_gives(table, {.before_filter = before_filter}, views);
 }
 
-TEST_F(DeviceFramesOf, ThatAreAddedUpStayForTheFilterAndTheDecoder) {
+TEST_F(DeviceFramesOf, AveragedFramesStayOnTheDeviceForFilterAndDecoder) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   if (!device().info().divides_as_processor) GTEST_SKIP() << "it rounds otherwise";
@@ -194,7 +194,7 @@ TEST_F(DeviceFramesOf, ThatAreAddedUpStayForTheFilterAndTheDecoder) {
   }
 }
 
-TEST_F(DeviceFramesOf, ForgetWhatWasWhenTheyAreTold) {
+TEST_F(DeviceFramesOf, AreForgottenOnRequest) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const std::vector<RawFrames> frames = frames_of_motion(table, 20, 30, 2);
@@ -211,7 +211,7 @@ TEST_F(DeviceFramesOf, ForgetWhatWasWhenTheyAreTold) {
   EXPECT_EQ(there.numbers().height, 9);
 }
 
-TEST_F(DeviceFramesOf, HaveMeansWithoutRounding) {
+TEST_F(DeviceFramesOf, HaveExactMeans) {
   if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   DecodingTable table = setup.decoder.table();
@@ -258,7 +258,7 @@ TEST_F(DeviceFramesOf, HaveMeansWithoutRounding) {
   }
 }
 
-TEST_F(DeviceFramesOf, AreMeansThatAreAddedUp) {
+TEST_F(DeviceFramesOf, MeansAreAveragedOverTime) {
   if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
@@ -279,7 +279,7 @@ TEST_F(DeviceFramesOf, AreMeansThatAreAddedUp) {
   }
 }
 
-TEST_F(DeviceFramesOf, AreRefusedWhereTheyDoNotFit) {
+TEST_F(DeviceFramesOf, InvalidFramesAreRejected) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
   const DecodeSetup other("hamiltonian-k3", camera_with("paper-10f0"));

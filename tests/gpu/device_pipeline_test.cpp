@@ -24,7 +24,7 @@ class DevicePipelines : public OnDevice {
     return frame_backend(device_name, make_decoder(method, setup_.decoder.table()));
   }
 
-  /// Planes of all frames that come out, filtered again without mixed pixels.
+  /// Returns the planes of all output frames, filtered again without mixed pixels.
   static std::vector<Outputs> decoded(const FrameBackend& backend, const FrameSteps& steps,
                                       const PlaneCorrections& corrections,
                                       const std::vector<std::vector<float>>& raw) {
@@ -50,7 +50,7 @@ class DevicePipelines : public OnDevice {
   std::vector<std::vector<float>> raw_;
 };
 
-TEST_F(DevicePipelines, GiveThePlanesOfTheCpu) {
+TEST_F(DevicePipelines, EqualTheCpu) {
   const Filter light(setup_.decoder.table(), FilterOptions::of(FilterStrength::light));
   const TimeFilterOptions in_time{.max_frames = 3}, ahead{.max_frames = 3, .look_ahead = 2};
   const std::vector<FrameSteps> all_steps = {{},
@@ -102,7 +102,7 @@ TEST_F(DevicePipelines, FilterWithoutDecoding) {
   }
 }
 
-TEST_F(DevicePipelines, NeedNoHostMemoryForWhatTheDeviceKeeps) {
+TEST_F(DevicePipelines, NeedNoHostMemoryForDataOnTheDevice) {
   const FrameSteps steps{.time_filter = TimeFilterOptions{}};
   const auto whole = [&](const char* name) {
     return backend(name)->prepare(steps, height, width)->memory(frames).whole;

@@ -22,19 +22,19 @@ std::string refusal_of(std::string_view name) {
 
 using DeviceNames = OnDevice;
 
-TEST_F(DeviceNames, AreNumbersAndPartsOfNamesInAnyLetters) {
+TEST_F(DeviceNames, AcceptNumbersAndPartsOfNamesInAnyCase) {
   EXPECT_EQ(Device::named("0").info().name, device().info().name);
   std::string part = device().info().platform;
   for (char& letter : part) letter = static_cast<char>(std::toupper(letter));
   EXPECT_EQ(Device::named(part).info().platform, device().info().platform);
 }
 
-TEST_F(DeviceNames, OfNoDeviceAreRefusedWithThoseThatAre) {
+TEST_F(DeviceNames, UnknownNamesAreRejectedWithTheKnownOnes) {
   for (const char* name : {"7000", "no such device", "", "-1"})
     EXPECT_THAT(refusal_of(name), HasSubstr("0 " + device().info().name)) << name;
 }
 
-TEST(DeviceNamesWithoutDriver, AreRefusedWithWhatIsMissing) {
+TEST(DeviceNamesWithoutDriver, AreRejectedWithTheMissingComponent) {
   if (!device_of_tests()) {
     EXPECT_THAT(refusal_of("gpu"), HasSubstr("OpenCL"));
   }
@@ -42,7 +42,7 @@ TEST(DeviceNamesWithoutDriver, AreRefusedWithWhatIsMissing) {
 
 using DeviceQueues = OnDevice;
 
-TEST_F(DeviceQueues, SayWhatTheCompilerSaysOfAKernel) {
+TEST_F(DeviceQueues, ReportCompilerErrors) {
   const DeviceQueue queue(device());
   try {
     queue.kernel("kernel void broken(global int* a) { a[0] = no_such_name; }", "", "broken");
@@ -53,12 +53,12 @@ TEST_F(DeviceQueues, SayWhatTheCompilerSaysOfAKernel) {
   }
 }
 
-TEST_F(DeviceQueues, TellTooLittleMemoryApart) {
+TEST_F(DeviceQueues, DistinguishInsufficientMemory) {
   const DeviceQueue queue(device());
   EXPECT_THROW(queue.allocate(std::size_t{1} << 60), OutOfDeviceMemory);
 }
 
-TEST_F(DeviceQueues, BringBackWhatTheyTook) {
+TEST_F(DeviceQueues, DownloadWhatWasUploaded) {
   const DeviceQueue queue(device());
   const std::vector<std::int32_t> sent = {3, 1, 4, 1, 5};
   const DeviceMemory a = queue.allocate(20), b = queue.allocate(20);
@@ -69,7 +69,7 @@ TEST_F(DeviceQueues, BringBackWhatTheyTook) {
   EXPECT_EQ(back, sent);
 }
 
-TEST_F(DeviceQueues, FollowOneAnotherWhereTheyAreTold) {
+TEST_F(DeviceQueues, WaitForOneAnotherOnRequest) {
   const DeviceQueue first(device()), second(device());
   const DeviceKernel count =
       first.kernel("kernel void count(global int* a) { a[get_global_id(0)] += 1; }", "", "count");
@@ -82,7 +82,7 @@ TEST_F(DeviceQueues, FollowOneAnotherWhereTheyAreTold) {
     for (int i = 0; i < times; ++i) first.run(count, items, &a);
     second.follow(first.mark());
     second.copy(a, 0, b, 0, bytes);
-    first.follow(second.mark());  // what is copied changes after that
+    first.follow(second.mark());  // the copied memory changes afterwards
     for (int i = 0; i < times; ++i) first.run(count, items, &a);
     second.download(b, bytes, back.data());
     EXPECT_EQ(back, std::vector<std::int32_t>(items, (2 * round - 1) * times));

@@ -9,15 +9,15 @@
 
 namespace tofsmith {
 
-/// Calls of OpenCL that work on a device. Functions stand in front of the loader's own, and give an
-/// error where a test says so.
+/// OpenCL calls that work on a device. Replacements of the loader's functions return an error on
+/// request of a test.
 struct Failure {
-  int first = std::numeric_limits<int>::max();  ///< of those that fail
+  int first = std::numeric_limits<int>::max();  ///< first failing call
   int last = std::numeric_limits<int>::max();
   cl_int error = CL_SUCCESS;
   int calls = 0;
 
-  /// The error of the next call.
+  /// Returns the error of the next call.
   cl_int next() {
     const int call = calls++;
     return call >= first && call <= last ? error : CL_SUCCESS;
