@@ -12,14 +12,14 @@ namespace {
 
 std::pair<std::string, Dash> look(const LineStyle& style) { return {style.colour, style.dash}; }
 
-TEST(ColourAssignment, GivesANameTheSameLookWheneverItIsAsked) {
+TEST(ColourAssignment, GivesANameTheSameStyleEveryTime) {
   ColourAssignment colours;
   const auto first = look(colours.style("hamiltonian-k4"));
   for (int i = 0; i < 20; ++i) colours.style("other " + std::to_string(i));
   EXPECT_EQ(look(colours.style("hamiltonian-k4")), first);
 }
 
-TEST(ColourAssignment, DependsOnTheOrderOfFirstUseAlone) {
+TEST(ColourAssignment, DependsOnTheOrderOfFirstUseOnly) {
   ColourAssignment a, b;
   for (const char* name : {"one", "two", "one", "three"}) a.style(name);
   for (const char* name : {"one", "two", "three"}) b.style(name);
@@ -27,7 +27,7 @@ TEST(ColourAssignment, DependsOnTheOrderOfFirstUseAlone) {
     EXPECT_EQ(look(a.style(name)), look(b.style(name)));
 }
 
-TEST(ColourAssignment, TellsTwentyEightNamesApart) {
+TEST(ColourAssignment, DistinguishesTwentyEightNames) {
   ColourAssignment colours;
   std::set<std::pair<std::string, Dash>> looks;
   for (int i = 0; i < 28; ++i) looks.insert(look(colours.style(std::to_string(i))));

@@ -30,7 +30,7 @@ std::vector<const Figure*> figures_of(const Page& page) {
   return figures;
 }
 
-/// The page renders, the ids of its figures are unique, and names are text only.
+/// Expects that the page renders, figure ids are unique, and names are escaped.
 void expect_sound(const Page& page, std::size_t min_figures) {
   std::set<std::string> ids;
   for (const Figure* figure : figures_of(page)) {
@@ -62,7 +62,7 @@ DesignResult design_with_odd_names(const Camera& camera) {
   return result;
 }
 
-TEST(DesignReport, ShowsADesignWithItsSceneWhateverTheNames) {
+TEST(DesignReport, ShowsADesignWithItsSceneForAnyNames) {
   const Camera camera = small_camera("paper-5f0");
   const DesignResult result = design_with_odd_names(camera);
   std::vector<CodeSet> codes;
@@ -77,7 +77,7 @@ TEST(DesignReport, ShowsADesignWithItsSceneWhateverTheNames) {
   EXPECT_THAT(text, HasSubstr("Averaged measurements"));
 }
 
-TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsTheRest) {
+TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsOtherSections) {
   const Camera camera = small_camera("paper-5f0");
   const DesignResult result = design(camera, small_options());
   const Page page = design_report(camera, result, std::nullopt, "", {"camera.toml", "raw.npy"});
@@ -96,7 +96,7 @@ TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsTheRest) {
     EXPECT_EQ(page.sections[i].layout, SectionLayout::folded) << page.sections[i].title;
 }
 
-TEST(DesignReport, ShowsEachCurveOnceAndNoneThroughFewSteps) {
+TEST(DesignReport, ShowsEachCurveOnceAndOmitsShortOnes) {
   const Camera camera = small_camera("paper-5f0");
   DesignResult result = design(camera, small_options());
   for (std::size_t i = 0; i < result.candidates.size(); ++i)
@@ -133,7 +133,7 @@ TEST(DesignReport, ShowsCamerasOfManyKinds) {
     expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 4);
 }
 
-TEST(DesignReport, ShowsErrorsOfOperatingMultipathEvenWhereNoCodeCanSeparateTwo) {
+TEST(DesignReport, ShowsMultipathErrorsEvenIfNoCodeSeparatesTwoReturns) {
   Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
   camera.operating.multipath = OperatingMultipath{{0.25, 0.5}, {1.0, 2.0}};
   const Page page = design_report(camera, design(camera, small_options()), std::nullopt, "");
@@ -144,7 +144,7 @@ TEST(DesignReport, ShowsErrorsOfOperatingMultipathEvenWhereNoCodeCanSeparateTwo)
     EXPECT_THAT(html, HasSubstr(words));
 }
 
-TEST(DesignReport, BearsBoundsWithoutLimit) {
+TEST(DesignReport, SupportsInfiniteBounds) {
   const Camera camera = small_camera("paper-5f0");
   DesignResult result = design(camera, small_options());
   for (Candidate& c : result.candidates)
@@ -154,8 +154,9 @@ TEST(DesignReport, BearsBoundsWithoutLimit) {
   expect_sound(design_report(camera, result, std::nullopt, ""), 5);
 }
 
-TEST(DesignReport, DrawsTheTargetOfARotatedCodeWhereTheCodeIs) {
-  // The residual between the drawn correlation function and the drawn target is what is reported.
+TEST(DesignReport, ShiftsTheTargetOfARotatedCode) {
+  // The difference between the drawn correlation function and target must equal the reported
+  // residual.
   const Camera camera = small_camera("paper-30x");
   DesignResult result = design(camera, small_options());
   for (Candidate& c : result.candidates) {
@@ -182,7 +183,7 @@ TEST(DesignReport, DrawsTheTargetOfARotatedCodeWhereTheCodeIs) {
   FAIL() << "no waveforms of the designed code";
 }
 
-TEST(EvaluationReport, ShowsCodesEvenOfTheSameName) {
+TEST(EvaluationReport, ShowsCodesOfEqualNames) {
   const Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera).renamed(odd_name);
   const DepthErrorReport error = evaluate(code, camera, {.trials = 1000});
@@ -190,7 +191,7 @@ TEST(EvaluationReport, ShowsCodesEvenOfTheSameName) {
   expect_sound(evaluation_report(camera, {code, code}, evaluated, "x"), 4);
 }
 
-TEST(EvaluationReport, DrawsHowOftenDepthsOccurWhereTheyAreNotAlike) {
+TEST(EvaluationReport, DrawsTheDistributionOfDepthsUnlessUniform) {
   Camera camera = small_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   const auto html_of = [&] {
@@ -210,7 +211,7 @@ TEST(EvaluationReport, DrawsHowOftenDepthsOccurWhereTheyAreNotAlike) {
   EXPECT_THAT(html, HasSubstr("true depths from 1 to 3 m, as often as 2 weights say;"));
 }
 
-TEST(SceneSection, OfASceneWithoutCapturesShowsTheScene) {
+TEST(SceneSection, WithoutCapturesShowsTheScene) {
   const Camera camera = small_camera("paper-5f0");
   SceneResult scene = small_scene(camera, {});
   for (const bool captured : {true, false}) {

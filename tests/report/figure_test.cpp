@@ -32,7 +32,7 @@ TEST(Figure, RejectsInvalidIds) {
   EXPECT_NO_THROW(Figure({"hamiltonian-K4", "Title"}, "lines", "{}"));
 }
 
-TEST(LineFigure, HasNullWhereAValueIsNotFinite) {
+TEST(LineFigure, NonFiniteValuesAreNull) {
   const Figure figure = line_figure(
       some_text, {{.name = "a", .x = {0, 1, 2, 3}, .y = {1.5, nan, infinity, -2}}}, {}, {});
   EXPECT_EQ(only_series(figure)["y"], json::parse("[1.5, null, null, -2.0]"));
@@ -52,7 +52,7 @@ TEST(LineFigure, ClosesThePeriodWithItsFirstValue) {
   EXPECT_EQ(series["y"], json::parse("[5.0, 6.0, 7.0, 5.0]"));
 }
 
-TEST(LineFigure, SaysHowSeriesAndAxesAreDrawn) {
+TEST(LineFigure, DescribesTheStyleOfSeriesAndAxes) {
   const Series steps{.name = "<a>", .x = {0, 1}, .y = {0, 1}, .mark = Mark::steps};
   const Figure figure = line_figure(some_text, {steps}, some_axis, {.logarithmic = true});
   EXPECT_EQ(figure.kind(), "lines");
@@ -64,7 +64,7 @@ TEST(LineFigure, SaysHowSeriesAndAxesAreDrawn) {
   EXPECT_EQ(column["y"]["log"], true);
 }
 
-TEST(LineFigure, RejectsSeriesWhoseLengthsDifferAndRangesThatDoNotSuit) {
+TEST(LineFigure, RejectsSeriesOfDifferentLengthsAndInvalidRanges) {
   const Series no_y{.name = "a", .x = {1, 2}, .y = {1}};
   const Series extra_error{.name = "a", .x = {1}, .y = {1}, .y_error = {1, 2}};
   const Series good{.name = "a", .x = {1}, .y = {1}};
@@ -97,7 +97,7 @@ TEST(HeatMap, HasRowsOfValues) {
   EXPECT_EQ(figure["colours"]["log"], true);
 }
 
-TEST(HeatMap, RejectsShapesAndScalesThatDoNotFit) {
+TEST(HeatMap, RejectsInvalidShapesAndScales) {
   const HeatMap map{"code", Eigen::MatrixXd::Ones(1, 2)};
   const CategoryAxis one{"one", "", {"1"}}, two{"two", "", {"1", "2"}};
   EXPECT_NO_THROW(heat_map_figure(some_text, {map}, two, one, {}));
@@ -130,7 +130,7 @@ TEST(ImageFigure, PacksPixelsToWithinHalfAStep) {
   }
 }
 
-TEST(ImageFigure, PacksPicturesOfOneValueOrNone) {
+TEST(ImageFigure, PacksConstantAndEmptyPictures) {
   for (const float value : {0.0f, 2.5f, -1e6f, static_cast<float>(nan)})
     for (const bool logarithmic : {false, true}) {
       const Image<float> pixels(4, 4, value);
@@ -145,7 +145,7 @@ TEST(ImageFigure, PacksPicturesOfOneValueOrNone) {
     }
 }
 
-TEST(ImageFigure, ReportsThatItShowsEveryNthPixel) {
+TEST(ImageFigure, ReportsSubsampling) {
   const Image<float> pixels(50, 100, 1.0f);
   const Figure whole = image_figure(some_text, {{"", pixels}}, {}, {.max_side = 100});
   EXPECT_EQ(whole.text().caption, "");
@@ -156,7 +156,7 @@ TEST(ImageFigure, ReportsThatItShowsEveryNthPixel) {
   EXPECT_EQ(unpacked(json_of(thinned)["panels"][0]["values"]).size(), 17u * 34u);
 }
 
-TEST(ImageFigure, HasPicturesBeforeOfTheSameSize) {
+TEST(ImageFigure, SupportsPicturesBeforeProcessingOfTheSameSize) {
   const Image<float> before(2, 3, 1.0F), after(2, 3, 2.0F);
   const json figure = json_of(image_figure(some_text, {{"a", after, before}, {"b", after}}, {},
                                            {.before_name = "raw", .after_name = "better"}));
@@ -180,7 +180,7 @@ TEST(ImageFigure, HasTheReferenceOfItsDifferences) {
       std::invalid_argument);
 }
 
-TEST(LineFigure, HasEndsAndNumberOfPlacesAtEqualDistances) {
+TEST(LineFigure, StoresEquidistantPositionsByEndsAndCount) {
   Series series{.name = "a", .period = 64.0};
   for (int i = 0; i < 64; ++i) {
     series.x.push_back(i);
@@ -218,7 +218,7 @@ TEST(PointCloud, KeepsExactlyTheStatedNumberOfFinitePoints) {
   EXPECT_EQ(cloud(9).json(), cloud(9).json());
 }
 
-TEST(PointCloud, RejectsValuesThatDoNotFitThePoints) {
+TEST(PointCloud, RejectsValuesThatDoNotMatchThePoints) {
   const ColouredPoints one{"one", Eigen::MatrixX3f::Random(10, 3), Eigen::VectorXf::Zero(10)};
   EXPECT_EQ(json_of(point_cloud_figure(some_text, {one, one}, {}))["panels"].size(), 2u);
   EXPECT_THROW(point_cloud_figure(some_text, std::vector<ColouredPoints>(), {}),

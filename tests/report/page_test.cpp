@@ -38,7 +38,7 @@ int count(const std::string& text, const std::string& word) {
   return found;
 }
 
-/// The document in a rendered page.
+/// Returns the document embedded in a rendered page.
 json embedded_document(const std::string& html) {
   const std::string mark = "id=\"document\">";
   const std::size_t begin = html.find(mark) + mark.size();
@@ -49,7 +49,7 @@ TEST(Page, HasTheSameBytesEveryTime) {
   EXPECT_TRUE(render(sample_page()) == render(sample_page()));
 }
 
-TEST(Page, IsTheViewerAndTheDocument) {
+TEST(Page, ContainsTheViewerAndTheDocument) {
   const Page page = sample_page();
   const std::string html = render(page);
   EXPECT_EQ(embedded_document(html), json::parse(page_document(page)));
@@ -57,7 +57,7 @@ TEST(Page, IsTheViewerAndTheDocument) {
   EXPECT_LT(viewer_page().size(), 150'000u);
 }
 
-TEST(Page, KeepsElementsWholeWhateverTheNames) {
+TEST(Page, EscapesNamesInElements) {
   const std::string evil = "</script><script>alert('&')//<!--";
   Page page = page_of({Paragraph{evil}, CodeBlock{evil}, KeyValueList{{{evil, evil}}},
                        Table{.caption = evil, .columns = {{evil}}, .rows = {{evil}}},
@@ -70,7 +70,7 @@ TEST(Page, KeepsElementsWholeWhateverTheNames) {
   EXPECT_EQ(embedded_document(html)["title"], evil);
 }
 
-TEST(Page, NamesNoPlaceOnTheNetwork) {
+TEST(Page, ReferencesNothingOnTheNetwork) {
   std::string html = render(sample_page());
   for (const char* space : {"http://www.w3.org/2000/svg"})  // a name, not an address
     for (auto at = html.find(space); at != std::string::npos; at = html.find(space))
@@ -100,7 +100,7 @@ TEST(Page, HasBlocksOfEveryKind) {
   EXPECT_EQ(blocks[5]["title"], "Title of first");
 }
 
-TEST(Page, HasSectionsThatAreOpenFoldedOrFirst) {
+TEST(Page, SupportsOpenFoldedAndFrontSections) {
   const json sections =
       json::parse(page_document({.title = "t",
                                  .sections = {{"a", {}, SectionLayout::front},
@@ -111,7 +111,7 @@ TEST(Page, HasSectionsThatAreOpenFoldedOrFirst) {
   EXPECT_EQ(sections[2]["layout"], "folded");
 }
 
-TEST(Page, RejectsRepeatedIdsAndRowsThatDoNotFit) {
+TEST(Page, RejectsRepeatedIdsAndRowsOfOtherLengths) {
   EXPECT_THROW(blocks_of({some_figure("a"), some_figure("a")}), std::invalid_argument);
   EXPECT_THROW(blocks_of({some_figure("a"), Table{.id = "a"}}), std::invalid_argument);
   EXPECT_THROW(blocks_of({Table{.columns = {{"a"}, {"b"}}, .rows = {{"1", "2"}, {"1"}}}}),

@@ -22,7 +22,7 @@ const std::vector<std::string> codes = {
 
 double triangle(double phase) { return 4 * std::abs(phase - std::floor(phase + 0.5)) - 1; }
 
-/// f sampled at n points of [0, span).
+/// Samples f at n points of [0, span).
 template <typename Function>
 Series sampled(const std::string& name, LineStyle style, double span, int n, Function f) {
   Series series{.name = name, .period = span, .style = style};

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# The sample page in a browser, wide and light, narrow and dark. Included from tests/CMakeLists.txt.
+# Renders the sample page in a browser, wide and light, narrow and dark. Included from
+# tests/CMakeLists.txt.
 
 add_executable(write_sample_page report/browser/write_sample_page.cpp report/sample_page.cpp)
 target_link_libraries(write_sample_page PRIVATE tofsmith tofsmith_build_options fmt::fmt)
@@ -19,7 +20,7 @@ set_tests_properties(Report.DrawsEveryFigureInABrowser Report.DrawsEveryFigureOn
   PROPERTIES FIXTURES_REQUIRED sample_page SKIP_RETURN_CODE 77 TIMEOUT 300)
 
 if(TOFSMITH_BUILD_APPS)
-  # The report of the program that scripts/demo.sh builds.
+  # The report of the program built by scripts/demo.sh.
   set(demo_directory "${CMAKE_CURRENT_BINARY_DIR}/demo")
   add_test(NAME Report.DemoRuns
     COMMAND tofsmith_demo demo -o "${demo_directory}" --trials 2000 --force)

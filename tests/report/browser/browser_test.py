@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a report in headless Chromium and checks that it shows what it holds.
+"""Opens a report in headless Chromium and checks that it shows its content.
 
-Every figure has drawn something of non-zero size and no label is cut off; it can be saved as SVG, PNG
-and CSV; sliders move pictures; folded sections open; the console has no error, and nothing came over
-the network. Exit status 0 passed, 1 failed, 2 wrong usage, 77 no browser here.
+Every figure is drawn with non-zero size and without cut-off labels, and can be saved as SVG, PNG
+and CSV. Sliders change pictures, folded sections open, the console has no errors, and nothing is loaded
+from the network. Exit status: 0 passed, 1 failed, 2 wrong usage, 77 no browser.
 """
 
 import argparse
@@ -36,7 +36,7 @@ FLAGS = [
     "--hide-scrollbars",
 ]
 
-# The area of the largest picture of each figure, and labels that its edges cut off.
+# Returns the area of the largest picture of each figure, and its cut-off labels.
 DRAWN = """
 return Array.from(document.querySelectorAll('[data-figure]'), figure => {
   const box = node => node.getBoundingClientRect();
@@ -53,7 +53,7 @@ return Array.from(document.querySelectorAll('[data-figure]'), figure => {
 });
 """
 
-# Moves every slider and returns the figures whose pictures do not follow.
+# Moves every slider and returns the figures whose pictures do not change.
 SLIDE = """
 const stuck = [];
 for (const input of document.querySelectorAll('.slider input')) {
@@ -121,7 +121,7 @@ const cutTexts = (text) => {
 
 @contextlib.contextmanager
 def browser(width, height, dark):
-    """A headless Chromium with a profile of its own."""
+    """A headless Chromium with a temporary profile."""
     with tempfile.TemporaryDirectory(prefix="tofsmith-browser-") as profile:
         options = webdriver.ChromeOptions()
         options.binary_location = CHROMIUM
@@ -144,7 +144,7 @@ def browser(width, height, dark):
 
 
 def first_screen_problems(driver, page, height):
-    """What of the first screen of a report a window does not show, as sentences."""
+    """Returns messages if the first screen of a report does not fit into the window."""
     driver.get(page.resolve().as_uri())
     time.sleep(1)
     bottom = driver.execute_script(
@@ -153,7 +153,7 @@ def first_screen_problems(driver, page, height):
 
 
 def problems_of(driver, page):
-    """What is wrong with the page, as sentences."""
+    """Returns messages about the problems of the page."""
     driver.get(page.resolve().as_uri())
     driver.execute_async_script(
         "const done = arguments[0]; window.tofsmithRenderAll().then(() => done(), () => done());"
@@ -190,7 +190,7 @@ def problems_of(driver, page):
 
 
 def save_screenshot(driver, file):
-    """The whole page, from top to bottom."""
+    """Saves the whole page, from top to bottom."""
     import base64
 
     size = driver.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
