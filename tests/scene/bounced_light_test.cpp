@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// All multipath light of a pixel over its direct light, and its mean delay.
+/// Multipath light of a pixel relative to its direct light, and its mean delay.
 struct Sum {
   double ratio = 0.0;
   double delay_m = 0.0;
@@ -32,7 +32,7 @@ Sum sum_of(const MultipathReturns& light, int row, int column, double direct_m) 
   return sum;
 }
 
-/// A camera of one pixel that looks from one point at another.
+/// Returns a scene with a camera of one pixel at `from` that looks at `at`.
 StagedScene looking(std::vector<Shape> shapes, const Vector3d& from, const Vector3d& at) {
   StagedScene scene{.shapes = std::move(shapes), .view = {1.0, 1.0, 0.0, 0.0, 1, 1}};
   scene.camera_to_world.linear() =
@@ -45,7 +45,7 @@ Shape wall(const Vector3d& normal, double albedo) {
   return Plane{.normal = normal, .texture = {.albedo = albedo}};
 }
 
-/// The same as a mesh of two triangles, 400 m wide, from its edge at x = y = 0 on.
+/// Returns a wall as a mesh of two triangles, 400 m wide, that begins at x = y = 0.
 Shape mesh_wall(const Vector3d& along, double albedo) {
   const Vector3d z(0, 0, 200);
   Mesh mesh;
@@ -55,8 +55,8 @@ Shape mesh_wall(const Vector3d& along, double albedo) {
   return mesh;
 }
 
-/// Light of a point at (0, height, 0) of the wall x = 0 by way of the wall y = 0, by the midpoint
-/// rule over that wall's area in polar coordinates about the edge's nearest point.
+/// Light at the point (0, height, 0) of the wall x = 0 by way of the wall y = 0, integrated over
+/// that wall by the midpoint rule in polar coordinates about the nearest point of the edge.
 Sum by_quadrature(const Vector3d& light, double height_m, double albedo) {
   const Vector3d seen(0, height_m, 0), to_light = light - seen;
   const double d1 = to_light.norm(), cos1 = to_light.x() / d1;
@@ -80,15 +80,15 @@ Sum by_quadrature(const Vector3d& light, double height_m, double albedo) {
   return sum;
 }
 
-TEST(BouncedLight, OfAFarSourceBetweenPerpendicularWallsIsHalfTheAlbedo) {
-  // The other wall fills half of the hemisphere's cosine-weighted area and is lit as this one.
+TEST(BouncedLight, OfADistantSourceBetweenPerpendicularWallsIsHalfTheAlbedo) {
+  // The other wall fills half of the cosine-weighted hemisphere and is lit equally.
   const auto scene = looking({wall(Vector3d::UnitX(), 0.3), wall(Vector3d::UnitY(), 0.8)},
                              {2e4, 2e4, 0}, {0, 1, 0});
   const MultipathReturns light = bounced_light(scene, {.rays = 8192});
   EXPECT_NEAR(sum_of(light, 0, 0, 0.0).ratio, 0.5 * 0.8, 0.002);
 }
 
-TEST(BouncedLight, BetweenPerpendicularWallsIsThatOfAQuadratureOverTheWall) {
+TEST(BouncedLight, BetweenPerpendicularWallsMatchesQuadrature) {
   const Vector3d from(1.5, 2.0, 0.0);
   for (const double height_m : {0.2, 1.0, 1.9}) {
     const Sum expected = by_quadrature(from, height_m, 0.8);
@@ -104,7 +104,7 @@ TEST(BouncedLight, BetweenPerpendicularWallsIsThatOfAQuadratureOverTheWall) {
   }
 }
 
-TEST(BouncedLight, WithinASphereIsTheAlbedoAndTwoThirdsOfTheRadiusLate) {
+TEST(BouncedLight, WithinASphereIsTheAlbedoDelayedByTwoThirdsOfTheRadius) {
   const auto scene = looking({Sphere{.radius_m = 1.5, .texture = {.albedo = 0.6}}},
                              Vector3d::Zero(), {0.3, -0.4, 1.2});
   const Sum sum = sum_of(bounced_light(scene, {.rays = 4096}), 0, 0, 1.5);
@@ -112,7 +112,7 @@ TEST(BouncedLight, WithinASphereIsTheAlbedoAndTwoThirdsOfTheRadiusLate) {
   EXPECT_NEAR(sum.delay_m, 1.0, 1e-3);
 }
 
-TEST(BouncedLight, IsTheSameLightAndDelayInBinsOfAnyWidthAndWrapsAtTheRange) {
+TEST(BouncedLight, IsIndependentOfTheBinWidthAndWrapsAtTheRange) {
   const StagedScene scene = built_in_scene("corner", 3, 2);
   const MultipathReturns fine = bounced_light(scene, {.rays = 64, .bin_m = 1e-6});
   const MultipathReturns coarse = bounced_light(scene, {.rays = 64, .bin_m = 0.2});
@@ -127,7 +127,7 @@ TEST(BouncedLight, IsTheSameLightAndDelayInBinsOfAnyWidthAndWrapsAtTheRange) {
   EXPECT_NEAR(sum_of(wrapped, 0, 0, direct_m).ratio, a.ratio, 1e-6);
 }
 
-TEST(BouncedLight, IsGatheredWithLessThanAPerCentOfNoiseAndConverges) {
+TEST(BouncedLight, HasLessThanOnePercentNoiseAndConverges) {
   const StagedScene scene = built_in_scene("corner", 24, 1);
   const auto ratios = [&](int rays, std::uint64_t seed) {
     Eigen::ArrayXd all(24);
@@ -149,8 +149,7 @@ TEST(BouncedLight, IsGatheredWithLessThanAPerCentOfNoiseAndConverges) {
 }
 
 TEST(BouncedLight, ComesFromLitSurfacesOnly) {
-  // A black screen between the light and the second wall: nothing comes from there but what passes
-  // its ends, far away.
+  // A black screen shadows the second wall, except for light that passes its distant ends.
   const Vector3d from(2, 2, 0);
   std::vector<Shape> shapes = {wall(Vector3d::UnitX(), 0.5), wall(Vector3d::UnitY(), 0.5)};
   const double open = sum_of(bounced_light(looking(shapes, from, {0, 1.8, 0})), 0, 0, 0.0).ratio;
@@ -162,7 +161,7 @@ TEST(BouncedLight, ComesFromLitSurfacesOnly) {
   EXPECT_TRUE(bounced_light(built_in_scene("wall", 4, 3)).empty()) << "a wall alone";
 }
 
-TEST(BouncedLight, RefusesWhatCannotBe) {
+TEST(BouncedLight, RejectsInvalidOptions) {
   const StagedScene scene = built_in_scene("corner", 2, 2);
   EXPECT_THAT([&] { bounced_light(scene, {.rays = 8}); },
               testing::ThrowsMessage<std::invalid_argument>(

@@ -25,7 +25,7 @@ Seen see(std::string_view name) {
   return {std::move(staged), std::move(scene)};
 }
 
-/// Calls `look(row, column)` for every pixel that sees the shape; returns their number.
+/// Calls `look(row, column)` for every pixel that sees the shape; returns the number of pixels.
 template <typename Look>
 int pixels_of(const Seen& seen, std::int32_t shape, Look&& look) {
   int count = 0;
@@ -35,7 +35,7 @@ int pixels_of(const Seen& seen, std::int32_t shape, Look&& look) {
   return count;
 }
 
-TEST(BuiltInScenes, AreSeenWithoutComplaint) {
+TEST(BuiltInScenes, AreValid) {
   for (const std::string& name : built_in_scene_names()) {
     const Seen seen = see(name);
     EXPECT_EQ(seen.scene.image.width(), 161) << name;
@@ -44,7 +44,7 @@ TEST(BuiltInScenes, AreSeenWithoutComplaint) {
   }
 }
 
-TEST(BuiltInScenes, UnknownNamesMeetTheNearestKnownOne) {
+TEST(BuiltInScenes, UnknownNamesSuggestTheNearest) {
   try {
     built_in_scene("bokos", 8, 8);
     FAIL() << "accepted";
@@ -57,7 +57,7 @@ TEST(BuiltInScenes, UnknownNamesMeetTheNearestKnownOne) {
   EXPECT_THROW(built_in_scene("wall", 0, 8), std::invalid_argument);
 }
 
-TEST(BuiltInScenes, BooksStand20CmApartAndTheWall2MetresBehindTheFirst) {
+TEST(BuiltInScenes, BooksAre20CmApartAndTheWallIs2MetresBehindTheFirst) {
   const Seen seen = see("books");
   const auto depth = z_from_radial(seen.scene.image.depth_m, seen.staged.view);
   double last_column = -1.0;
@@ -134,7 +134,7 @@ TEST(BuiltInScenes, HandHasFiveFingersAboutHalfAMetreAway) {
   EXPECT_LT(returns, 161 * 121 / 2) << "no background";
 }
 
-TEST(BuiltInScenes, TableTopIsTheDemos) {
+TEST(BuiltInScenes, TableTopIsTheDemoScene) {
   const Seen seen = see("table-top");
   const SceneImage demo = table_top_image(161, 121);
   EXPECT_EQ(seen.scene.image.albedo.pixels, demo.albedo.pixels);

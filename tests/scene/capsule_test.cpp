@@ -27,13 +27,13 @@ double distance_to_segment(const Capsule& capsule, const Eigen::Vector3d& point)
   return (point - capsule.start - share * span).norm();
 }
 
-TEST(Capsule, HitsStandARadiusFromTheSegmentAndNothingStandsBefore) {
+TEST(Capsule, HitsAreOneRadiusFromTheSegmentAndNearest) {
   int outside_hits = 0, inside_hits = 0;
   for (std::uint64_t i = 0; i < 1500; ++i) {
     const Ray ray = random_ray(i);
     const auto hit = intersect(oblique, ray);
     const bool inside = distance_to_segment(oblique, ray.origin) < oblique.radius_m;
-    // The distance along the ray changes sign where the surface is: search in small steps.
+    // The signed distance to the surface changes sign at a hit: search in small steps.
     const double end_m = hit ? hit->distance_m : 12.0;
     for (double t = 0.0; t < end_m - 1e-6; t += 0.02)
       ASSERT_EQ(distance_to_segment(oblique, ray.origin + t * ray.direction) < oblique.radius_m,
@@ -50,7 +50,7 @@ TEST(Capsule, HitsStandARadiusFromTheSegmentAndNothingStandsBefore) {
   EXPECT_GT(inside_hits, 5);
 }
 
-TEST(Capsule, WithoutLengthIsASphere) {
+TEST(Capsule, OfZeroLengthIsASphere) {
   const Capsule point{.start = {0.3, 0.1, -0.2}, .end = {0.3, 0.1, -0.2}, .radius_m = 1.2};
   const Sphere sphere{.centre = point.start, .radius_m = point.radius_m};
   int hits = 0;
@@ -77,7 +77,7 @@ TEST(Capsule, DepthOnTheAxisIsTheNearEndMinusTheRadius) {
   EXPECT_DOUBLE_EQ(across->distance_m, 1.5);
 }
 
-TEST(Capsule, RefusesARadiusOfNothing) {
+TEST(Capsule, RejectsARadiusOfZero) {
   EXPECT_THROW(validate(Capsule{.radius_m = 0.0}), std::invalid_argument);
   EXPECT_THROW(validate(Capsule{.end = {0, NAN, 0}}), std::invalid_argument);
 }

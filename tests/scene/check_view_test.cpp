@@ -31,7 +31,7 @@ Mesh mesh_of(TriangleMesh triangles) {
   return mesh;
 }
 
-TEST(CheckView, NamesTheSolidThatHoldsTheCamera) {
+TEST(CheckView, ReportsTheSolidThatContainsTheCamera) {
   const Shape wall = Plane{.point = {0, 0, 4}};
   const std::string rule = "camera position = 0 0 0; must not be inside shape ";
   const std::string advice = ": move it out (walls around it are planes)";
@@ -52,10 +52,10 @@ TEST(CheckView, RefusesAnEmptyView) {
   EXPECT_NE(refusal(scene_of({})), "accepted");
 }
 
-TEST(CheckView, InsideOfAMeshIsInsideOfTheSolidItBounds) {
+TEST(CheckView, TheInsideOfAMeshIsThatOfItsSolid) {
   const Mesh cube = mesh_of(unit_cube());
   const Shape box = Box{};
-  // Neighbours with vertices of their own, as many readers give them, bound the same solid.
+  // Adjacent triangles without shared vertices, as from many readers, bound the same solid.
   Mesh apart;
   for (const auto& corner : cube.triangles.triangles)
     for (const std::uint32_t index : corner)

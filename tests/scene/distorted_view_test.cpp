@@ -29,7 +29,7 @@ std::vector<PinholeView> views() {
           distorted({DistortionModel::fisheye, {0.05, -0.01, 0.004, -0.001}})};
 }
 
-TEST(DistortedView, SeesAPointWhereItsPixelSeesIt) {
+TEST(DistortedView, ProjectsAPointToThePixelThatSeesIt) {
   for (const PinholeView& view : views())
     for (int row = 0; row < view.height; row += 7)
       for (int column = 0; column < view.width; column += 7) {
@@ -41,7 +41,7 @@ TEST(DistortedView, SeesAPointWhereItsPixelSeesIt) {
   EXPECT_FALSE(views()[0].pixel_of({0, 0, -1}));
 }
 
-TEST(DistortedView, KeepsTheRaysItWouldFindAgain) {
+TEST(DistortedView, CachedRaysEqualThoseOfTheView) {
   for (const PinholeView& view : views()) {
     const PixelRays rays(view);
     for (int row = 0; row < view.height; row += 5)
@@ -54,7 +54,7 @@ TEST(DistortedView, KeepsTheRaysItWouldFindAgain) {
   }
 }
 
-TEST(DistortedView, APlaneSeenThroughItIsAPlaneOfPoints) {
+TEST(DistortedView, APlaneGivesCoplanarPoints) {
   const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.1, -1.0).normalized();
   const Eigen::Vector3d point_m(0.0, 0.0, 2.0);
   for (const PinholeView& view : views()) {
@@ -65,14 +65,14 @@ TEST(DistortedView, APlaneSeenThroughItIsAPlaneOfPoints) {
             view.ray(row, column) * static_cast<double>(seen.depth_m(row, column));
         EXPECT_NEAR(normal.dot(at_m - point_m), 0.0, 1e-6);
       }
-    // Depth along the axis of a plane across it is the same everywhere.
+    // The depth of a plane perpendicular to the axis is constant.
     const SceneImage across =
         ray_cast(std::vector<Shape>{Plane{point_m, -Eigen::Vector3d::UnitZ(), {}}}, view);
     for (const float z_m : z_from_radial(across.depth_m, view).pixels) EXPECT_NEAR(z_m, 2.0, 1e-6);
   }
 }
 
-TEST(DistortedView, IsInvalidWhereItFoldsBackInsideTheImage) {
+TEST(DistortedView, IsInvalidIfItFoldsBackInsideTheImage) {
   PinholeView view = distorted({DistortionModel::opencv, {-0.6, 0.0, 0.0, 0.0}});
   try {
     view.validate();
@@ -82,14 +82,14 @@ TEST(DistortedView, IsInvalidWhereItFoldsBackInsideTheImage) {
               "lens.distortion = [-0.6, 0, 0, 0]; must not fold back inside the image: it does "
               "30.18 px from the axis, towards pixel (row 0, column 0), which is 49.51 px from it");
   }
-  view.fx_px = view.fy_px = 120.0;  // a narrower view ends before
+  view.fx_px = view.fy_px = 120.0;  // a narrower view ends before the fold
   EXPECT_NO_THROW(view.validate());
   view = distorted({DistortionModel::fisheye, {0, 0, 0, 0}});
   view.fx_px = view.fy_px = 25.0;
   EXPECT_THROW(view.validate(), std::invalid_argument);
 }
 
-TEST(DistortedView, PartsOfPixelsLieAboutTheirCentres) {
+TEST(DistortedView, PartsOfPixelsAreCentredOnThem) {
   for (const PinholeView& view : views()) {
     const PinholeView parts = view.divided(3);
     EXPECT_LE((parts.ray(3 * 20 + 1, 3 * 70 + 1) - view.ray(20, 70)).norm(), 1e-12);

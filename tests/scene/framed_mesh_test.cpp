@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-/// A tetrahedron far from its origin, `size` across.
+/// Returns a tetrahedron of size `size`, far from the origin.
 TriangleMesh tetrahedron(double size) {
   TriangleMesh mesh;
   for (const auto& corner : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(2, 0, 0),
@@ -48,7 +48,7 @@ TEST(FramedMesh, ShowsTheMeshUprightFromItsFront) {
   EXPECT_LT(place(3).z(), place(0).z()) << "the mesh's z axis comes towards the camera";
 }
 
-TEST(FramedMesh, RefusesWhatHasNoExtent) {
+TEST(FramedMesh, RejectsMeshesWithoutExtent) {
   TriangleMesh point;
   point.vertices = {{1, 2, 3}};
   point.triangles = {{0, 0, 0}};

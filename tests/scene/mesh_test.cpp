@@ -25,7 +25,7 @@ std::string refusal(Change&& change) {
   return "accepted";
 }
 
-TEST(Mesh, NamesTheFieldTheValueAndTheRule) {
+TEST(Mesh, ReportsTheFieldTheValueAndTheRule) {
   EXPECT_EQ(refusal([](Mesh&) {}), "accepted");
   EXPECT_EQ(refusal([](Mesh& m) { m.triangles.triangles.clear(); }),
             "mesh.triangles = 0; must be at least one");
@@ -49,7 +49,7 @@ TEST(Mesh, NamesTheFieldTheValueAndTheRule) {
             "texture.albedo = -0.1; must be in [0, 1]");
 }
 
-TEST(Mesh, ScaleTurnAndShiftPlaceItInTheWorld) {
+TEST(Mesh, ScaleRotationAndTranslationPlaceItInTheWorld) {
   Mesh mesh;
   mesh.triangles = unit_cube();
   mesh.scale_m = 0.2;
@@ -60,14 +60,14 @@ TEST(Mesh, ScaleTurnAndShiftPlaceItInTheWorld) {
   EXPECT_NEAR(hit->distance_m, 3.0 - 0.1 * std::sqrt(2.0), 1e-12);
 }
 
-/// A picture of 2 x 2 pixels: 0.1 0.2 above 0.3 0.4.
+/// Returns a texture of 2 x 2 pixels: 0.1 0.2 above 0.3 0.4.
 Texture four_fields() {
   Texture texture{.pattern = Texture::Pattern::image, .albedo = 1.0, .image = Image<float>(2, 2)};
   texture.image.pixels = {0.1f, 0.2f, 0.3f, 0.4f};
   return texture;
 }
 
-TEST(Texture, ImageStandsUprightUToTheRightVUp) {
+TEST(Texture, ImageIsUprightWithUToTheRightAndVUp) {
   const Texture texture = four_fields();
   EXPECT_FLOAT_EQ(static_cast<float>(texture.image_at(0.25, 0.75)), 0.1f);
   EXPECT_FLOAT_EQ(static_cast<float>(texture.image_at(0.75, 0.75)), 0.2f);
@@ -76,7 +76,7 @@ TEST(Texture, ImageStandsUprightUToTheRightVUp) {
   EXPECT_FLOAT_EQ(static_cast<float>(texture.image_at(1.25, -0.25)), 0.1f) << "repeats";
 }
 
-TEST(Texture, PlacesBeyondAnyNumberReadSomePixel) {
+TEST(Texture, ExtremeCoordinatesReadAValidPixel) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double place : {infinity, -infinity, std::nan(""), 1e308, -1e308}) {
     const double albedo = four_fields().image_at(place, place);
@@ -84,8 +84,8 @@ TEST(Texture, PlacesBeyondAnyNumberReadSomePixel) {
   }
 }
 
-TEST(Mesh, LaysTheTextureOverItsCoordinates) {
-  // A quad before the camera, its texture upright: v runs up, that is against y.
+TEST(Mesh, MapsTheTextureByItsCoordinates) {
+  // A quad in front of the camera with an upright texture: v increases upwards, opposite to y.
   Mesh quad;
   quad.triangles.vertices = {{-1, 1, 2}, {1, 1, 2}, {1, -1, 2}, {-1, -1, 2}};
   quad.triangles.triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -46,7 +46,7 @@ TEST(Plane, BehindOrParallelReturnsNothing) {
   EXPECT_FALSE(intersect(plane, {{0, 0, 0}, {1, 0, 0}}));
 }
 
-TEST(Sphere, HitsLieOnTheSurfaceAndAreNearest) {
+TEST(Sphere, HitsAreOnTheSurfaceAndNearest) {
   const Sphere sphere{.centre = {0.3, -0.2, 0.5}, .radius_m = 1.7};
   int hits = 0;
   for (std::uint64_t i = 0; i < 400; ++i) {
@@ -72,7 +72,7 @@ TEST(Sphere, DepthOnTheAxisIsCentreMinusRadius) {
   EXPECT_DOUBLE_EQ(hit->distance_m, 3.5);
 }
 
-/// The nearest of six faces, each a plane cut to a rectangle.
+/// Reference: the nearest of six rectangular faces.
 double box_distance_by_faces(const Box& box, const Ray& ray) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,7 +92,7 @@ double box_distance_by_faces(const Box& box, const Ray& ray) {
   return nearest;
 }
 
-TEST(Box, IsTheNearestOfItsSixFaces) {
+TEST(Box, EqualsTheNearestOfItsSixFaces) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
   for (const Eigen::Matrix3d& rotation : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), turn}) {
@@ -142,7 +142,7 @@ TEST(Texture, CheckerAlternatesAlongBothAxesAndStripesAlongOne) {
   EXPECT_EQ(stripes.at(0.6, 0.6), 0.8);
 }
 
-TEST(Shapes, NameTheFieldTheValueAndTheRule) {
+TEST(Shapes, ReportTheFieldTheValueAndTheRule) {
   const auto message = [](const Shape& shape) -> std::string {
     try {
       validate(shape);
@@ -157,7 +157,7 @@ TEST(Shapes, NameTheFieldTheValueAndTheRule) {
   EXPECT_EQ(message(Box{}), "accepted");
 }
 
-TEST(TableTop, StandsWithinTheCamerasRange) {
+TEST(TableTop, IsWithinTheCamerasRange) {
   const SceneImage scene = table_top_image(80, 60);
   scene.validate();
   float nearest = 100.0f, farthest = 0.0f, darkest = 1.0f, brightest = 0.0f;

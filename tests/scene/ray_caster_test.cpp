@@ -14,7 +14,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(RayCaster, TriesEveryTriangleOfAMeshUnlessToldHowToSearch) {
+TEST(RayCaster, TestsEveryTriangleOfAMeshByDefault) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
                                      placed_mesh(tessellated_sphere(1), {0, 0, 2}, 1.0)};
   const RayCaster caster(shapes);
@@ -28,7 +28,7 @@ TEST(RayCaster, TriesEveryTriangleOfAMeshUnlessToldHowToSearch) {
   }
 }
 
-/// Meets everything at 1 m.
+/// A search that reports a hit at 1 m for every ray.
 struct NearSearch final : MeshSearch {
   void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
              std::int32_t shape) const override {
@@ -37,7 +37,7 @@ struct NearSearch final : MeshSearch {
   }
 };
 
-TEST(RayCaster, SearchesMeshesAsItIsTold) {
+TEST(RayCaster, UsesTheGivenMeshSearch) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
                                      placed_mesh(unit_cube(), {0, 0, 900}, 1.0)};
   const auto searched = [](const Mesh& mesh) -> std::unique_ptr<const MeshSearch> {
@@ -49,7 +49,7 @@ TEST(RayCaster, SearchesMeshesAsItIsTold) {
   EXPECT_EQ(seen.image.depth_m(3, 3), 1.0f);
 }
 
-TEST(RayCaster, NamesTheShapeThatIsSeen) {
+TEST(RayCaster, ReportsTheVisibleShape) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
                                      placed_mesh(unit_cube(), {0, 0, 3}, 0.5),
                                      Sphere{.centre = {0.6, 0, 3}, .radius_m = 0.2}};
@@ -71,7 +71,7 @@ TEST(RayCaster, NamesTheShapeThatIsSeen) {
   EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 20);
 }
 
-TEST(RayCaster, RefusesInvalidShapesAndPoses) {
+TEST(RayCaster, RejectsInvalidShapesAndPoses) {
   Mesh broken = placed_mesh(unit_cube(), {0, 0, 2}, 1.0);
   broken.triangles.vertices[0].x() = NAN;
   EXPECT_THROW(RayCaster(std::vector<Shape>{broken}), std::invalid_argument);
@@ -85,7 +85,7 @@ TEST(RayCaster, RefusesInvalidShapesAndPoses) {
   EXPECT_THROW(nothing.see(PinholeView{}), std::invalid_argument);
 }
 
-TEST(RayCaster, APlaneBeyondEveryFloatReturnsNothing) {
+TEST(RayCaster, APlaneBeyondTheRangeOfFloatsReturnsNothing) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 1e60}}};
   const SeenScene seen = RayCaster(shapes).see(PinholeView::centred(4, 4, 1.0));
   seen.image.validate();

@@ -10,7 +10,7 @@
 namespace tofsmith {
 namespace {
 
-TEST(SceneImage, NamesThePixelTheValueAndTheRule) {
+TEST(SceneImage, ReportsThePixelTheValueAndTheRule) {
   const auto message = [](auto change) -> std::string {
     SceneImage scene(3, 4);
     change(scene);
@@ -47,7 +47,7 @@ TEST(PinholeView, EdgesOfTheImageSpanTheAngle) {
   EXPECT_NEAR(view.ray(100, 7).norm(), 1.0, 1e-15);
 }
 
-TEST(PinholeView, RadialDistanceAndZDepthInvertEachOther) {
+TEST(PinholeView, RadialDistanceAndZDepthAreInverse) {
   const PinholeView view = PinholeView::centred(17, 13, 1.4);
   Image<float> z(13, 17, 2.0f);
   z(3, 4) = NAN;
