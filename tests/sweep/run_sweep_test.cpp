@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(RunSweep, FindsWhatEvaluateFinds) {
+TEST(RunSweep, EqualsEvaluate) {
   const TemporaryDirectory directory;
   const WorkList list = small_list();
   swept(directory / "s.sqlite", list);
@@ -36,7 +36,7 @@ TEST(RunSweep, FindsWhatEvaluateFinds) {
   EXPECT_EQ(found.cramer_rao_mae_m, is.cramer_rao_mae_m);
 }
 
-TEST(RunSweep, DesignsCodesAndKeepsThem) {
+TEST(RunSweep, StoresDesignedCodes) {
   const TemporaryDirectory directory;
   const WorkList list(parse_sweep_toml(
       "set = [\"samples=24\"]\ncode = \"optimized-k{exposures}\"\neffort = 0.01\ntrials = 1000\n"
@@ -64,7 +64,7 @@ TEST(RunSweep, DesignsCodesAndKeepsThem) {
   EXPECT_EQ(computed, 0);
 }
 
-TEST(RunSweep, NeverComputesAFinishedItemAgain) {
+TEST(RunSweep, NeverRecomputesAFinishedItem) {
   const TemporaryDirectory directory;
   const auto path = directory / "s.sqlite";
   std::int64_t computed = 0;
@@ -86,7 +86,7 @@ TEST(RunSweep, ComputesEqualItemsOnce) {
   EXPECT_EQ(computed, 12);
 }
 
-TEST(RunSweep, TwoAtOnceShareTheWorkAndFindTheSame) {
+TEST(RunSweep, TwoProcessesShareTheWorkWithEqualResults) {
   const TemporaryDirectory directory;
   const WorkList list = small_list("10, 11, 12, 13, 14, 15");
   std::int64_t first = 0, second = 0;
@@ -96,7 +96,7 @@ TEST(RunSweep, TwoAtOnceShareTheWorkAndFindTheSame) {
   std::thread other([&] { run(&first); });
   run(&second);
   other.join();
-  // An item that one of them still computes at the end can be computed by both.
+  // Items in progress at the end may be computed by both.
   EXPECT_GE(first + second, 36);
   EXPECT_LT(first + second, 2 * 36);
   const std::string both = swept(directory / "s.sqlite", list, &first);
@@ -104,7 +104,7 @@ TEST(RunSweep, TwoAtOnceShareTheWorkAndFindTheSame) {
   EXPECT_EQ(swept(directory / "alone.sqlite", list), both);
 }
 
-TEST(SweepQueue, EndsWithItemsThatAnotherProcessWasEndedWith) {
+TEST(SweepQueue, ReclaimsItemsOfAnotherProcessLast) {
   const TemporaryDirectory directory;
   const WorkList list = small_list();
   const std::vector<std::string> keys = list.keys();
@@ -125,9 +125,10 @@ TEST(SweepQueue, EndsWithItemsThatAnotherProcessWasEndedWith) {
   EXPECT_EQ(store.count(keys).pending, 12) << "the destructor gives back unfinished items";
 }
 
-TEST(ComputeItems, FindsWhatRunSweepStores) {
+TEST(ComputeItems, EqualsTheResultsOfRunSweep) {
   const TemporaryDirectory directory;
-  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // no Hamiltonian code can
+  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // not supported by Hamiltonian
+                                                                    // codes
   const std::vector<std::string> keys = list.keys();
   SweepStore store = SweepStore::open(directory / "s.sqlite");
   run_sweep(list, keys, store);
@@ -145,7 +146,7 @@ TEST(ComputeItems, FindsWhatRunSweepStores) {
   EXPECT_THAT(outcomes.back().message, HasSubstr("has changed since it started"));
 }
 
-TEST(RunSweep, AnInterruptKeepsWhatIsFinished) {
+TEST(RunSweep, AnInterruptedRunKeepsFinishedItems) {
   const TemporaryDirectory directory;
   const auto path = directory / "s.sqlite";
   const WorkList list = small_list("10, 11, 12, 13, 14, 15");
@@ -183,9 +184,10 @@ TEST(RunSweep, ShardsMergeToTheWhole) {
   EXPECT_EQ(swept(directory / "new.sqlite", list), merged);
 }
 
-TEST(RunSweep, AnItemThatFailsDoesNotKeepOthersFromFinishing) {
+TEST(RunSweep, AFailedItemDoesNotAffectOthers) {
   const TemporaryDirectory directory;
-  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // no Hamiltonian code can
+  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // not supported by Hamiltonian
+                                                                    // codes
   const std::vector<std::string> keys = list.keys();
   SweepStore store = SweepStore::open(directory / "s.sqlite");
   const SweepRun run = run_sweep(list, keys, store);
@@ -193,10 +195,10 @@ TEST(RunSweep, AnItemThatFailsDoesNotKeepOthersFromFinishing) {
   ASSERT_EQ(run.failures.size(), 3u);
   EXPECT_EQ(store.count(keys).failed, 3);
   EXPECT_EQ(store.find(keys.back())->message, run.failures.back());
-  EXPECT_EQ(run_sweep(list, keys, store).failures.size(), 3u);  // tried again
+  EXPECT_EQ(run_sweep(list, keys, store).failures.size(), 3u);  // failed items are retried
 }
 
-TEST(SweepResults, SayTheSameInEveryFormat) {
+TEST(SweepResults, AreEqualInEveryFormat) {
   const TemporaryDirectory directory;
   const WorkList list = small_list();
   swept(directory / "s.sqlite", list);

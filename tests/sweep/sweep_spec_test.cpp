@@ -34,7 +34,7 @@ std::vector<std::string> texts(const SweepAxis& axis) {
   return list;
 }
 
-TEST(SweepSpec, ReadsValuesAsTheyAreWritten) {
+TEST(SweepSpec, ReadsValuesAsWritten) {
   const SweepSpec spec = with_axis("key = \"samples\"\nvalues = [120, 24, 60]\n");
   EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("120", "24", "60"));
   EXPECT_EQ(spec.axes[0].values[1].number, 24.0);
@@ -50,7 +50,7 @@ TEST(SweepSpec, ReadsValuesAsTheyAreWritten) {
             "{ \"kind\" = \"none\" }");
 }
 
-TEST(SweepSpec, RangesGiveTheValuesThatAListWouldSay) {
+TEST(SweepSpec, RangesEqualListsOfTheirValues) {
   EXPECT_THAT(texts(with_axis("key = \"exposure_s\"\nfrom = 0.1\nto = 0.5\nstep = 0.1\n").axes[0]),
               ElementsAre("0.1", "0.2", "0.3", "0.4", "0.5"));
   EXPECT_THAT(texts(with_axis("key = \"samples\"\nfrom = 60\nto = 30\nstep = -12\n").axes[0]),
@@ -66,7 +66,7 @@ TEST(SweepSpec, RangesGiveTheSameValuesInEveryLocale) {
               ElementsAre("0.1", "0.2", "0.3"));
 }
 
-TEST(SweepSpec, AFileHoldsAValueALine) {
+TEST(SweepSpec, AFileHasOneValuePerLine) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "peaks.txt") << "# peaks\n 5\n\n7.5 \r\n";
   std::ofstream(directory / "s.toml")
@@ -76,7 +76,7 @@ TEST(SweepSpec, AFileHoldsAValueALine) {
   EXPECT_EQ(spec.axes[0].values[1].place, (directory / "peaks.txt").string() + ":4:1");
 }
 
-TEST(SweepSpec, AFileOfNumbersHasTheSameValuesInEveryDialect) {
+TEST(SweepSpec, AFileOfNumbersIsIndependentOfTheDialect) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "s.toml")
       << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"peaks.txt\"\n";
@@ -94,7 +94,7 @@ TEST(SweepSpec, AFileOfNumbersHasTheSameValuesInEveryDialect) {
               testing::HasSubstr("peaks.txt:2:1: found 9.91E+37"));
 }
 
-TEST(SweepSpec, AFileThatIsNoneOfValuesIsNotShown) {
+TEST(SweepSpec, ErrorsDoNotQuoteOtherFiles) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "passwd") << "root:x:0:0:root:/root:/bin/bash\n";
   std::ofstream(directory / "s.toml")
@@ -119,7 +119,7 @@ TEST(SweepSpec, AProductHasEveryPairAndItsLastAxisIsFastest) {
   EXPECT_THAT(zip.value_indices(4), ElementsAre(2, 0, 0));
 }
 
-TEST(SweepSpec, KeysOfOneAxisTakeTheirValuesTogether) {
+TEST(SweepSpec, KeysOfOneAxisVaryTogether) {
   const SweepSpec spec = parse_sweep_toml(head + R"(
 [[axis]]
 keys = ["light.impulse_response.f_max_hz", "sensor.impulse_response.f_max_hz"]
@@ -142,7 +142,7 @@ const std::string four_axes =
     "[[axis]]\nkey = \"trials\"\nvalues = [10, 20]\ngroup = \"b\"\n"
     "[[axis]]\nkey = \"seed\"\nvalues = [1, 2, 3]\ngroup = \"b\"\n";
 
-TEST(SweepSpec, AGroupIsCombinedFirstAndGroupsAreThenCombined) {
+TEST(SweepSpec, GroupsAreCombinedInternallyFirst) {
   const std::string product_b = "[[group]]\nname = \"b\"\ncombine = \"product\"\n";
   const SweepSpec product = parse_sweep_toml(head + four_axes + product_b);
   EXPECT_EQ(product.items(), 3 * 6);
@@ -158,7 +158,7 @@ TEST(SweepSpec, AGroupIsCombinedFirstAndGroupsAreThenCombined) {
 
 TEST(SweepSpec, WithoutAxesThereIsOneItem) { EXPECT_EQ(parse_sweep_toml(head).items(), 1); }
 
-TEST(SweepSpec, CountsNoFurtherThanItCan) {
+TEST(SweepSpec, TheNumberOfItemsSaturates) {
   std::string text = head;
   for (const char* key : {"seed", "samples", "light.peak_factor", "exposure_s", "trials",
                           "signal_e_per_s", "ambient_e_per_s"})
@@ -181,7 +181,7 @@ struct Refusal {
   const char* message;
 };
 
-TEST(SweepSpec, RefusesWhatItDoesNotUnderstandAndSaysWhere) {
+TEST(SweepSpec, RejectsUnknownInputWithItsPlace) {
   const auto axis = [](const std::string& lines) { return head + "[[axis]]\n" + lines; };
   for (const Refusal& refusal : {
            Refusal{"trials = 100\n", "s.toml: found no code; expected"},

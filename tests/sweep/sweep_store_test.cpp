@@ -39,7 +39,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST(SweepStore, KeepsWhatWasStored) {
+TEST(SweepStore, KeepsStoredResults) {
   const TemporaryDirectory directory;
   const auto path = directory / "s.sqlite";
   {
@@ -47,7 +47,7 @@ TEST(SweepStore, KeepsWhatWasStored) {
     store.claim(keys, 2);
     store.finish(std::vector<ItemOutcome>{{"aa", "{}", "", 1.5}, {"bb", "", "no such code", 0.5}});
   }
-  EXPECT_EQ(directory.files(), 1);  // no journal stays behind
+  EXPECT_EQ(directory.files(), 1);  // no journal remains
   SweepStore store = SweepStore::read(path);
   EXPECT_EQ(store.find("aa")->result, "{}");
   EXPECT_EQ(store.find("aa")->settings, "{\"i\":0}");
@@ -61,7 +61,7 @@ TEST(SweepStore, KeepsWhatWasStored) {
   EXPECT_EQ(counts.seconds, 1.5);
 }
 
-TEST(SweepStore, ItemsThatRunElsewhereAreClaimedOnlyOnRequest) {
+TEST(SweepStore, ItemsRunningElsewhereAreClaimedOnRequestOnly) {
   const TemporaryDirectory directory;
   SweepStore first = with_items(directory / "s.sqlite");
   SweepStore second = with_items(directory / "s.sqlite");
@@ -77,7 +77,7 @@ TEST(SweepStore, ItemsThatRunElsewhereAreClaimedOnlyOnRequest) {
               ElementsAre(ClaimAnswer::finished, ClaimAnswer::ours, ClaimAnswer::running));
 }
 
-TEST(SweepStore, AFinishedItemStaysAsItIs) {
+TEST(SweepStore, AFinishedItemIsNotChanged) {
   const TemporaryDirectory directory;
   SweepStore store = with_items(directory / "s.sqlite");
   store.finish(std::vector<ItemOutcome>{{"aa", "{}", "", 1.0}});
@@ -108,7 +108,7 @@ TEST(SweepStore, ContinuesAndMergesAStoreOfVersion1) {
   EXPECT_EQ(SweepStore::read(directory / "new.sqlite").find("aa")->result, "{}");
 }
 
-TEST(SweepStore, RefusesWhatIsNoStoreAndLeavesItAlone) {
+TEST(SweepStore, RejectsOtherFilesWithoutChangingThem) {
   const TemporaryDirectory directory;
   const auto text = directory / "notes.txt", other = directory / "other.sqlite";
   std::ofstream(text) << "camera = \"paper-10f0\"\n";
@@ -130,7 +130,7 @@ TEST(SweepStore, RefusesWhatIsNoStoreAndLeavesItAlone) {
               ThrowsMessage<IoError>(HasSubstr("is no regular file")));
 }
 
-TEST(SweepStore, RefusesOtherVersionsAndOtherInstructionSets) {
+TEST(SweepStore, RejectsOtherVersionsAndOtherInstructionSets) {
   const TemporaryDirectory directory;
   const auto path = directory / "s.sqlite";
   const auto refuse = [&](const std::string& change, const char* problem) {
@@ -142,10 +142,10 @@ TEST(SweepStore, RefusesOtherVersionsAndOtherInstructionSets) {
   refuse("PRAGMA user_version = 99", "store version 99");
   refuse("UPDATE meta SET value = '99' WHERE name = 'results'", "results 99");
   refuse("UPDATE meta SET value = 'ABACUS' WHERE name = 'target'", "was computed on ABACUS");
-  EXPECT_NO_THROW(SweepStore::read(path));  // but its results can be seen
+  EXPECT_NO_THROW(SweepStore::read(path));  // but its results can be read
 }
 
-TEST(SweepStore, RefusesADamagedStore) {
+TEST(SweepStore, RejectsADamagedStore) {
   const TemporaryDirectory directory;
   const auto path = directory / "s.sqlite";
   {
@@ -163,7 +163,7 @@ TEST(SweepStore, RefusesADamagedStore) {
   write(changed);
   EXPECT_THAT([&] { SweepStore::open(path).find("aa"); },
               ThrowsMessage<IoError>(HasSubstr("checksum")));
-  for (std::size_t at = 0; at < whole.size(); at += 509) {  // whatever happens, nothing crashes
+  for (std::size_t at = 0; at < whole.size(); at += 509) {  // must not crash
     changed = whole;
     changed[at] = static_cast<char>(~changed[at]);
     write(changed);
@@ -176,7 +176,7 @@ TEST(SweepStore, RefusesADamagedStore) {
   }
 }
 
-TEST(SweepStore, RefusesAResultThatIsNoObject) {
+TEST(SweepStore, RejectsResultsThatAreNotObjects) {
   for (const char* const damaged : {"1", "[]", "\"a\"", "null"})
     EXPECT_THAT([&] { parse_item_result(damaged, "code", "item aa"); },
                 ThrowsMessage<IoError>(
@@ -195,7 +195,7 @@ TEST(SweepStore, AFullDiskLosesNothing) {
   EXPECT_EQ(SweepStore::open(path).count(keys).pending, 3);
 }
 
-TEST(SweepStore, UsesARollbackJournalOnANetworkFileSystemAndRefusesAWalStoreThere) {
+TEST(SweepStore, UsesARollbackJournalOnNetworkFileSystemsAndRejectsWalStoresThere) {
   const TemporaryDirectory directory;
   const auto here = directory / "here.sqlite", there = directory / "there.sqlite";
   { const SweepStore store = with_items(here); }
@@ -210,7 +210,7 @@ TEST(SweepStore, UsesARollbackJournalOnANetworkFileSystemAndRefusesAWalStoreTher
   EXPECT_EQ(network_file_system(0xef53), "");  // ext4
 }
 
-TEST(SweepStore, MergingTakesWhatIsFinishedAnywhereInAnyOrder) {
+TEST(SweepStore, MergingCombinesFinishedItemsInAnyOrder) {
   const TemporaryDirectory directory;
   const auto a = directory / "a.sqlite", b = directory / "b.sqlite";
   with_items(a).finish(std::vector<ItemOutcome>{{"aa", "{}", "", 1.0}, {"bb", "[1]", "", 2.0}});

@@ -26,7 +26,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// A wall of a few pixels; its distance is in its name: "2.5".
+/// Returns a wall of a few pixels at the distance given by its name: "2.5".
 LoadedTrainingScene wall(const TrainingScene& scene) {
   if (scene.name == "bad") throw IoError(scene.name, "is no scene");
   LoadedTrainingScene loaded{SceneImage(3, 4), PinholeView::centred(4, 3, 1.0)};
@@ -50,7 +50,7 @@ TrainingSetRun write(const fs::path& directory, const std::vector<std::string>& 
                             wall, options);
 }
 
-/// Every file's content by its path.
+/// Returns the content of every file by its path.
 std::map<std::string, std::string> content_of(const fs::path& directory) {
   std::map<std::string, std::string> content;
   for (const auto& entry : fs::recursive_directory_iterator(directory))
@@ -59,7 +59,7 @@ std::map<std::string, std::string> content_of(const fs::path& directory) {
   return content;
 }
 
-TEST(TrainingSet, HasTheSameBytesWhateverTheOrderTheShardsAndTheThreads) {
+TEST(TrainingSet, IsIndependentOfOrderShardsAndThreads) {
   const TemporaryDirectory one, other, shards;
   EXPECT_EQ(write(one.path(), {"1", "2", "3", "4"}).written, 4);
   {
@@ -83,13 +83,13 @@ TEST(TrainingSet, HasTheSameBytesWhateverTheOrderTheShardsAndTheThreads) {
   EXPECT_EQ(parts, content_of(one.path()));
 }
 
-TEST(TrainingSet, RedoesWhatIsNotWhole) {
+TEST(TrainingSet, RepeatsIncompleteItems) {
   const TemporaryDirectory directory;
   write(directory.path(), {"1", "2"});
   const auto whole = content_of(directory.path());
   for (const auto& [name, content] : whole)
     if (name.ends_with(".json") && name.find('/') != std::string::npos) {
-      fs::remove(directory / name);  // it was killed between the two files
+      fs::remove(directory / name);  // as if the process was killed between both files
       break;
     }
   const TrainingSetRun run = write(directory.path(), {"1", "2"});
@@ -97,7 +97,7 @@ TEST(TrainingSet, RedoesWhatIsNotWhole) {
   EXPECT_EQ(content_of(directory.path()), whole);
 }
 
-TEST(TrainingSet, HoldsTheTruthAndADepthNearIt) {
+TEST(TrainingSet, ContainsTheTrueDepthAndASimilarDecodedDepth) {
   const TemporaryDirectory directory;
   TrainingSetOptions bright = dim;
   bright.signal = {1e9, 1e9};
@@ -112,7 +112,7 @@ TEST(TrainingSet, HoldsTheTruthAndADepthNearIt) {
   }
 }
 
-TEST(TrainingSet, AnotherSettingIsAnotherFile) {
+TEST(TrainingSet, OtherSettingsGiveOtherFiles) {
   const TemporaryDirectory directory;
   write(directory.path(), {"1"});
   std::vector<TrainingSetOptions> others(5, dim);
@@ -126,7 +126,7 @@ TEST(TrainingSet, AnotherSettingIsAnotherFile) {
   EXPECT_EQ(write(directory.path(), {"1"}).kept, 1);
 }
 
-TEST(TrainingSet, ABadSceneLeavesTheOthers) {
+TEST(TrainingSet, AnInvalidSceneDoesNotAffectOthers) {
   const TemporaryDirectory directory;
   const TrainingSetRun run = write(directory.path(), {"1", "bad", "2"});
   EXPECT_EQ(run.written, 2);
@@ -134,7 +134,7 @@ TEST(TrainingSet, ABadSceneLeavesTheOthers) {
   EXPECT_EQ(run.failures[0], "bad: bad: is no scene");
 }
 
-TEST(TrainingSet, RefusesRangesThatAreNone) {
+TEST(TrainingSet, RejectsInvalidRanges) {
   const TemporaryDirectory directory;
   TrainingSetOptions bad = dim;
   bad.signal = {2.0, 1.0};
@@ -145,7 +145,7 @@ TEST(TrainingSet, RefusesRangesThatAreNone) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("must be > 0")));
 }
 
-TEST(TrainingScenes, AreThoseOfFoldersAndListsByTheirNamesThere) {
+TEST(TrainingScenes, AreReadFromFoldersAndLists) {
   const TemporaryDirectory directory;
   fs::create_directories(directory / "f/g");
   for (const char* name : {"f/b.npy", "f/g/a.png", "f/notes.md"}) std::ofstream(directory / name);

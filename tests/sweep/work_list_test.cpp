@@ -28,7 +28,7 @@ std::string axis(const std::string& key, const std::string& value) {
   return "[[axis]]\nkey = \"" + key + "\"\nvalues = [" + value + "]\n";
 }
 
-TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
+TEST(WorkList, AKeyDependsOnEverythingThatAffectsTheResult) {
   const std::vector<std::string> texts = {
       "",
       axis("seed", "2"),
@@ -59,7 +59,7 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
   EXPECT_EQ(keys.size(), texts.size());
 }
 
-TEST(WorkList, ACodeToBeDesignedCountsByAllThatItIsDesignedFor) {
+TEST(WorkList, TheKeyOfADesignedCodeDependsOnAllDesignSettings) {
   const std::string designed = "set = [\"samples=24\"]\ntrials = 1000\n";
   const std::vector<std::string> texts = {
       "code = \"optimized-k3\"\n",
@@ -81,16 +81,16 @@ TEST(WorkList, ACodeToBeDesignedCountsByAllThatItIsDesignedFor) {
   EXPECT_EQ(keys.size(), texts.size());
 }
 
-TEST(WorkList, AKeyDependsOnNothingElse) {
+TEST(WorkList, AKeyIgnoresSettingsWithoutEffect) {
   EXPECT_EQ(key_of(""), key_of("camera = \"paper-10f0\"\nseed = 1\n"));
   EXPECT_EQ(key_of(""), key_of(axis("name", "\"other\"")));
-  EXPECT_EQ(key_of(""), key_of("max_trials = 1000\n"));  // without a target
+  EXPECT_EQ(key_of(""), key_of("max_trials = 1000\n"));  // only used with a target
   EXPECT_EQ(key_of(""), key_of(axis("unwrap_weights", "\"frequency\"")));
-  EXPECT_EQ(key_of(""), key_of(axis("operating.depths", "[2, 2]")));  // all depths alike
+  EXPECT_EQ(key_of(""), key_of(axis("operating.depths", "[2, 2]")));  // uniform depths
   EXPECT_EQ(key_of(axis("signal_e_per_s", "5e3")), key_of(axis("signal_e_per_s", "5000, 1")));
 }
 
-TEST(WorkList, ACodeCountsByItsWaveformsAndNotByItsName) {
+TEST(WorkList, AKeyDependsOnWaveformsButNotOnTheCodesName) {
   const TemporaryDirectory directory;
   const WorkList family(parse_sweep_toml(base + "code = \"square-k4\"\n"));
   const CodeSet code = *family.item(0).code;
@@ -105,7 +105,7 @@ TEST(WorkList, ACodeCountsByItsWaveformsAndNotByItsName) {
   EXPECT_NE(key_of_file(code.rotated(1)), family.item(0).key);
 }
 
-TEST(WorkList, AMeasuredResponseCountsByItsSamples) {
+TEST(WorkList, AKeyDependsOnTheSamplesOfAMeasuredResponse) {
   const TemporaryDirectory directory;
   const auto key_with = [&](const std::string& file, const std::string& samples) {
     std::ofstream(directory / file) << samples;
@@ -125,7 +125,7 @@ TEST(WorkList, AddingValuesKeepsTheKeysOfTheOthers) {
   for (const std::string& key : few) EXPECT_TRUE(kept.contains(key));
 }
 
-TEST(WorkList, KeysOfAllAreTheKeysOfEach) {
+TEST(WorkList, KeysOfTheListEqualThoseOfItsItems) {
   const std::string codes = "codes = [\"square-k4\", \"sinusoid-k4\"]\n";
   for (const std::string& text :
        {codes + axis("seed", "1, 2") + axis("light.peak_factor", "12, 15") +
@@ -142,7 +142,7 @@ TEST(WorkList, KeysOfAllAreTheKeysOfEach) {
   }
 }
 
-TEST(WorkList, LinkedKeysGiveTheItemsThatEachSetAloneGives) {
+TEST(WorkList, LinkedKeysGiveTheItemsOfEachSeparateSet) {
   const std::string band =
       "[[axis]]\nkeys = [\"light.impulse_response.f_max_hz\", "
       "\"sensor.impulse_response.f_max_hz\"]\nvalues = [[1e8, 2e8]]\n";
@@ -153,7 +153,7 @@ TEST(WorkList, LinkedKeysGiveTheItemsThatEachSetAloneGives) {
             R"("sensor.impulse_response.f_max_hz":200000000})");
 }
 
-TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
+TEST(WorkList, ExposuresAreInsertedIntoTheNameOfAFamily) {
   const WorkList list(
       parse_sweep_toml(base + "code = \"hamiltonian-k{exposures}\"\n" + axis("exposures", "4, 3")));
   EXPECT_EQ(list.code_name(1), "hamiltonian-k3");
@@ -161,7 +161,7 @@ TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
   EXPECT_EQ(list.settings_json(0), R"({"code":"hamiltonian-k4","exposures":4})");
 }
 
-TEST(WorkList, RefusesImpossibleItemsAndSaysWhichValueIsToBlame) {
+TEST(WorkList, RejectsImpossibleItemsWithTheOffendingValue) {
   const auto refuse = [](const std::string& text, const char* place, const char* problem) {
     EXPECT_THAT([&] { WorkList(parse_sweep_toml(text, "s.toml")).keys(); },
                 ThrowsMessage<IoError>(AllOf(testing::StartsWith(place), HasSubstr(problem))));
