@@ -38,7 +38,7 @@ PatternMemory memory_of(int word_bits, std::vector<std::uint64_t> words) {
   return memory;
 }
 
-TEST(PatternMemory, IsWrittenAsTheGoldenFiles) {
+TEST(PatternMemory, MatchesTheGoldenFiles) {
   PatternMemory memory = memory_of(4, {0b1011, 0b1001, 0b0100, 0b1101, 0b1010, 0b0001});
   memory.points_per_exposure = 3;
   memory.fields = {{"light", 0, 1}, {"tap_1", 1, 1}, {"tap_2", 2, 1}, {"trigger", 3, 1}};
@@ -48,7 +48,7 @@ TEST(PatternMemory, IsWrittenAsTheGoldenFiles) {
         << language.file;
 }
 
-TEST(PatternMemory, NothingInANameEndsAComment) {
+TEST(PatternMemory, NamesCannotEndAComment) {
   PatternMemory memory = memory_of(4, {1, 2, 3});
   memory.comment = "a name\rend package;\x1b";
   for (const Language& language : languages) {
@@ -74,7 +74,7 @@ TEST(PatternMemory, ReadsBackExactlyAtEveryWidth) {
   }
 }
 
-TEST(PatternMemory, HoldsEveryOutputOfEveryExposure) {
+TEST(PatternMemory, ContainsEveryOutputOfEveryExposure) {
   std::vector<QuantizedWaveform> waveforms;
   for (int i = 0; i < 6; ++i) {  // 2 exposures, 2 taps
     RandomStream random(18, static_cast<std::uint64_t>(i));
@@ -98,7 +98,7 @@ TEST(PatternMemory, HoldsEveryOutputOfEveryExposure) {
     EXPECT_EQ(codes_of(memory, memory.fields[3])[j], period[j % 5]) << j;
 }
 
-TEST(PatternMemory, RefusesWhatDoesNotFitInWords) {
+TEST(PatternMemory, RejectsContentThatDoesNotFitIntoWords) {
   QuantizedWaveform w{.name = "w", .levels = 2, .codes = {0, 1}, .sample_rate_hz = 1e6};
   EXPECT_THROW(pattern_memory(std::vector{w}, 1, ""), std::invalid_argument);  // no sensor
   EXPECT_THROW(pattern_memory(std::vector{w, w, w, w, w}, 2, ""), std::invalid_argument);
@@ -115,7 +115,7 @@ TEST(PatternMemory, RefusesWhatDoesNotFitInWords) {
                std::invalid_argument);
 }
 
-TEST(PatternParser, ReadsFilesOfOthers) {
+TEST(PatternParser, ReadsFilesOfOtherTools) {
   const auto words = [](std::string_view text, PatternSyntax syntax) {
     return parse_pattern(text, syntax, "f").words;
   };
@@ -132,7 +132,7 @@ TEST(PatternParser, ReadsFilesOfOthers) {
   EXPECT_EQ(words("/* a\nb */ 0f 1_0 // c\nFF", PatternSyntax::mem), (Words{15, 16, 255}));
 }
 
-TEST(PatternParser, SaysWhatIsWrong) {
+TEST(PatternParser, ReportsErrors) {
   const auto error = [](std::string_view text, PatternSyntax syntax) {
     return io_error_of([&] { parse_pattern(text, syntax, "f"); });
   };
@@ -149,7 +149,7 @@ TEST(PatternParser, SaysWhatIsWrong) {
   EXPECT_THAT(error("", PatternSyntax::mem), HasSubstr("found no word"));
 }
 
-TEST(PatternParser, ReadsOrRefusesDamagedFiles) {
+TEST(PatternParser, ReadsOrRejectsDamagedFiles) {
   for (const Language& language : languages) {
     const FileBytes whole =
         read_binary_file(TOFSMITH_SOURCE_DIR "/tests/io/golden/" + language.file);

@@ -32,7 +32,8 @@ QuantizedWaveform random_waveform(const GeneratorModel& model, Arm arm, int inde
   return waveform;
 }
 
-/// Light on channel 1 and sensor on channel 2, two exposures in memory, the second selected.
+/// Returns a request for light on channel 1 and sensor on channel 2, two exposures in memory, the
+/// second selected.
 UploadRequest example_request(const GeneratorModel& model) {
   UploadRequest request;
   for (const Arm arm : {Arm::light, Arm::sensor})
@@ -42,7 +43,7 @@ UploadRequest example_request(const GeneratorModel& model) {
   return request;
 }
 
-TEST(UploadScript, RefusesWhatDoesNotFitTheModel) {
+TEST(UploadScript, RejectsRequestsThatDoNotSuitTheModel) {
   const auto problem = [](const char* model, auto change) -> std::string {
     UploadRequest request = example_request(generator_model(model));
     change(request);
@@ -93,7 +94,7 @@ TEST(UploadScript, TextShowsEveryMessage) {
   EXPECT_EQ(text.find("OUTP1 ON"), std::string::npos);
 }
 
-TEST(GeneratorModel, IsFoundByTheModelNameThatAnInstrumentReports) {
+TEST(GeneratorModel, IsFoundByTheReportedModelName) {
   const auto name = [](const char* reported) { return generator_model(reported).name; };
   EXPECT_EQ(name("SDG2042X"), "SDG2042X");
   EXPECT_EQ(name("33521A"), "33521");
@@ -111,7 +112,7 @@ ExportedScripts scripts_of(const ExportOptions& options) {
   return export_scripts(export_waveforms(code, exporting_camera(code, camera, options), options));
 }
 
-TEST(ExportScripts, EveryExposureHasOneForAllModelsThatTakeTheSameMessages) {
+TEST(ExportScripts, ModelsWithEqualMessagesShareAScriptPerExposure) {
   const ExportedScripts siglent =
       scripts_of({.format = "siglent-wvdt16", .samples = 16, .periods = 4});
   std::vector<std::string> names;
@@ -126,7 +127,7 @@ TEST(ExportScripts, EveryExposureHasOneForAllModelsThatTakeTheSameMessages) {
   EXPECT_THAT(tektronix.files[2].text, HasSubstr("# load demodulation_3\n"));
 }
 
-TEST(ExportScripts, AreThoseOfAnUpload) {
+TEST(ExportScripts, EqualThoseOfAnUpload) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   const ExportOptions options{.format = "keysight-arb", .samples = 16};
@@ -139,7 +140,7 @@ TEST(ExportScripts, AreThoseOfAnUpload) {
   EXPECT_EQ(text.substr(text.find('\n')), uploaded.substr(uploaded.find('\n')));
 }
 
-TEST(ExportScripts, NameTheRuleWhereNoModelPlaysTheTables) {
+TEST(ExportScripts, ReportTheRuleIfNoModelSupportsTheTables) {
   const ExportedScripts none = scripts_of({.format = "keysight-arb", .samples = 100});
   EXPECT_TRUE(none.files.empty());
   EXPECT_THAT(none.problem, HasSubstr("sample_rate_hz = 1.5e+09; must be at most 1e+09"));

@@ -36,7 +36,7 @@ std::string problem_of(const CodeSet& code, const Camera& camera, const ExportOp
   return "";
 }
 
-/// Values of a waveform, point by point, that a reader gets out of its file.
+/// Returns the values of a waveform at each point, read back from its file.
 std::vector<double> values_read_back(const ExportedFile& file, const QuantizedWaveform& w,
                                      const WaveformExport& exported) {
   const std::string& format = exported.format.name;
@@ -61,9 +61,9 @@ std::vector<double> values_read_back(const ExportedFile& file, const QuantizedWa
   return values;
 }
 
-// What evaluation sees and what stands in the files are the same to half a step of the format, for
-// binary and analog waveforms, with fewer bits than the format has too.
-TEST(WaveformExport, FilesHoldWhatIsPlayedWithinHalfAStep) {
+// Evaluation and files agree to half a step of the format, for binary and analog waveforms, also
+// with fewer bits than the format has.
+TEST(WaveformExport, FilesMatchTheActualWaveformsWithinHalfAStep) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.binary = camera.sensor.binary = false;
   for (const char* family : {"sinusoid-k4", "hamiltonian-k5"}) {
@@ -98,7 +98,7 @@ TEST(WaveformExport, FilesHoldWhatIsPlayedWithinHalfAStep) {
   }
 }
 
-TEST(WaveformExport, WordsAndColumnsHoldAllWaveforms) {
+TEST(WaveformExport, WordsAndColumnsContainAllWaveforms) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k5", camera);
   for (const WaveformFormat& format : waveform_formats()) {
@@ -131,12 +131,12 @@ TEST(WaveformExport, WordsAndColumnsHoldAllWaveforms) {
   }
 }
 
-TEST(WaveformExport, TapsThatShareAGeneratorAreExportedOnce) {
+TEST(WaveformExport, TapsOfTheSameGeneratorAreExportedOnce) {
   const Camera camera = built_in_camera("prototype");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const ExportOptions options{.format = "keysight-arb"};
   const Camera actual = exporting_camera(code, camera, options);
-  EXPECT_EQ(actual.light.generator->points_per_period(5e6), 100);  // its own generator's
+  EXPECT_EQ(actual.light.generator->points_per_period(5e6), 100);  // of this generator
   const WaveformExport exported = export_waveforms(code, actual, options);
   EXPECT_TRUE(exported.shared_taps);
   ASSERT_EQ(exported.waveforms.size(), 8u);
@@ -145,7 +145,7 @@ TEST(WaveformExport, TapsThatShareAGeneratorAreExportedOnce) {
   EXPECT_EQ(json["second_tap"], "1 - the first tap");
 }
 
-TEST(WaveformExport, FillsTablesWithAsManyPeriodsAsTheFormatNeeds) {
+TEST(WaveformExport, RepeatsPeriodsAsRequiredByTheFormat) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   ExportOptions options{.format = "tek-wfm", .samples = 75};
@@ -172,7 +172,7 @@ TEST(WaveformExport, OutputVoltagesFollowPower) {
   EXPECT_EQ(exported.waveforms[1].low_v, -1.0);
 }
 
-TEST(Manifest, SaysWhatEachFileIs) {
+TEST(Manifest, DescribesEachFile) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   const ExportOptions options{.format = "tek-wfm", .samples = 120};
@@ -192,7 +192,7 @@ TEST(Manifest, SaysWhatEachFileIs) {
   EXPECT_EQ(last["waveforms"][0]["periods"], 3);
 }
 
-TEST(WaveformExport, RefusesWhatTheHardwareCannot) {
+TEST(WaveformExport, RejectsUnsupportedHardwareSettings) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet code = build_family("hamiltonian-k3", camera);
   const auto problem = [&](const ExportOptions& options) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Writers of waveform formats against their readers, and against files that were written from the
-// layouts of docs/formats.md without them (golden/make_golden.py).
+// Writers of waveform formats, compared with their readers and with golden files that
+// golden/make_golden.py writes from the layouts in docs/formats.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// As make_golden.py has it.
+/// The waveform of make_golden.py.
 QuantizedWaveform golden_waveform(std::int32_t levels, int periods = 1) {
   const std::int32_t top = levels - 1;
   QuantizedWaveform waveform{.name = "modulation_1", .levels = levels, .periods = periods};
@@ -42,7 +42,7 @@ QuantizedWaveform golden_waveform(std::int32_t levels, int periods = 1) {
   return waveform;
 }
 
-/// Any codes, ends of the range among them.
+/// Returns random values that include the ends of the range.
 QuantizedWaveform random_waveform(std::uint32_t item, std::int32_t levels, int points) {
   RandomStream random(91, item);
   QuantizedWaveform waveform{.name = "demodulation_3", .levels = levels};
@@ -56,7 +56,7 @@ QuantizedWaveform random_waveform(std::uint32_t item, std::int32_t levels, int p
   return waveform;
 }
 
-TEST(Golden, EveryWriterMakesItsBytes) {
+TEST(Golden, EveryWriterMatches) {
   const QuantizedWaveform w14 = golden_waveform(1 << 14), w16 = golden_waveform(1 << 16),
                           kilobyte = golden_waveform(1 << 14, 64);
   const auto wvdt = [](const QuantizedWaveform& w, WvdtPoints points) {
@@ -105,7 +105,7 @@ TEST(Wvdt, ReadsBackExactly) {
   }
 }
 
-TEST(Wvdt, ReadsWhatGeneratorsAnswer) {
+TEST(Wvdt, ReadsAnswersOfGenerators) {
   const std::string answer = "WVDT POS, user/a.bin, WVNM, a_1, LENGTH, 6B, TYPE, 5, WAVEDATA,";
   EXPECT_THAT(io_error_of([&] {
                 parse_wvdt(bytes_of(answer + "abcdef"), WvdtPoints::bits16_little_endian, "USER");
@@ -148,7 +148,7 @@ TEST(Tektronix, ReadsBackWithinHalfAStep) {
   }
 }
 
-TEST(Ieee488Block, ReadsBackAndRefusesTheRest) {
+TEST(Ieee488Block, ReadsBackAndRejectsInvalidBlocks) {
   for (const std::size_t size : {0U, 1U, 9U, 10U, 12345U}) {
     FileBytes data(size, std::byte{7});
     FileBytes block = ieee488_block(data);
@@ -167,7 +167,7 @@ TEST(Ieee488Block, ReadsBackAndRefusesTheRest) {
               HasSubstr("expected 1 more bytes of the block's data"));
 }
 
-TEST(WaveformReaders, RefuseCutAndDamagedFiles) {
+TEST(WaveformReaders, RejectTruncatedAndDamagedFiles) {
   const std::pair<std::string, FileParser> readers[] = {
       {"siglent_easywave.csv", [](auto b) { parse_easywave_csv(text_of(b), "f"); }},
       {"siglent_16.wvdt", [](auto b) { parse_wvdt(b, WvdtPoints::bits16_little_endian, "f"); }},
@@ -186,7 +186,7 @@ TEST(WaveformReaders, RefuseCutAndDamagedFiles) {
   }
 }
 
-TEST(WaveformReaders, SayWhereAndWhatIsWrong) {
+TEST(WaveformReaders, ReportThePlaceAndTheProblem) {
   const std::string csv = easywave_csv(golden_waveform(1 << 14));
   const auto csv_error = [&](const std::string& from, const std::string& to) {
     std::string changed = csv;
@@ -204,21 +204,21 @@ TEST(WaveformReaders, SayWhereAndWhatIsWrong) {
                                    "a.arb");
               }),
               HasSubstr("a.arb:5: found '40000'; expected a whole number in [-32767, 32767]"));
-  // Little-endian points with set high bits are no big-endian ones.
+  // Little-endian points with set high bits are invalid as big-endian ones.
   EXPECT_THAT(io_error_of([] {
                 parse_wvdt(golden("siglent_14_little.wvdt"), WvdtPoints::bits14_big_endian, "w");
               }),
               HasSubstr("expected 14 bits (is the byte order right?)"));
 }
 
-TEST(WaveformWriters, RefuseWaveformsThatAreNot) {
+TEST(WaveformWriters, RejectInvalidWaveforms) {
   QuantizedWaveform w = golden_waveform(1 << 14);
   EXPECT_THROW(keysight_arb_text(w), std::invalid_argument);
   EXPECT_THROW(wvdt_command(w, WvdtPoints::bits16_little_endian), std::invalid_argument);
   EXPECT_THROW(tektronix_tfw(golden_waveform(1 << 16)), std::invalid_argument);
   EXPECT_THROW(wvdt_bytes(wvdt_command(w, WvdtPoints::bits14_little_endian),
                           WvdtPoints::bits14_little_endian),
-               std::invalid_argument);  // 8 points are no whole kilobyte
+               std::invalid_argument);  // 8 points are less than a kilobyte
   w.codes[2] = 1 << 14;
   EXPECT_THROW(easywave_csv(w), std::invalid_argument);
   w = golden_waveform(1 << 14);
