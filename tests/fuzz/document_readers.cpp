@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Documents that are read back, and files that readers take by their names: images of scenes and
-// tables of calibrations.
+// Stored documents, and readers that open files by name: images of scenes and calibration tables.
 #include <array>
 #include <cmath>
 
@@ -35,7 +34,7 @@ Camera small_camera() {
   return camera;
 }
 
-/// A design of one family's code and of one that claims to be designed.
+/// Returns a design with a code of a family and one marked as designed.
 DesignResult small_design(const Camera& camera, const DesignOptions& options) {
   DesignResult result;
   for (const char* name : {"hamiltonian-k3", "sinusoid-k3"}) {
@@ -51,7 +50,7 @@ DesignResult small_design(const Camera& camera, const DesignOptions& options) {
   return result;
 }
 
-/// Made once: a directory of a design, whose documents the inputs replace.
+/// Returns a design directory, created once, whose documents are replaced by the inputs.
 const fs::path& design_directory() {
   static const fs::path directory = [] {
     const fs::path path = scratch_file("design");
@@ -64,7 +63,7 @@ const fs::path& design_directory() {
   return directory;
 }
 
-/// design.json up to a zero byte, and details.json.
+/// Input: design.json up to a zero byte, then details.json.
 void read_design(Input bytes) {
   const fs::path& directory = design_directory();
   write_bytes(directory / "design.json", take_up_to_zero(bytes));
@@ -106,7 +105,7 @@ void read_scene(Input bytes) {
 
 constexpr std::array image_names = {"i.npy", "i.npz", "i.png", "i.exr", "i.pfm"};
 
-/// The first byte says which kind of file, the second what is wanted of it.
+/// The first byte selects the kind of file, the second the requested data.
 void read_scene_image(Input bytes) {
   const std::string name = image_names[take_choice(bytes, image_names.size())];
   const std::size_t wanted = take_choice(bytes, 6);
@@ -135,7 +134,7 @@ std::vector<Bytes> scene_image_seeds() {
     for (std::size_t wanted = 0; wanted < 4; ++wanted)
       all.push_back(with_choice(kind, with_choice(wanted, files[kind])));
   all.push_back(with_choice(0, with_choice(5, serialize_npy(histograms))));
-  // One return more in the first of six pixels.
+  // One more return in the first of six pixels.
   const std::vector<double> first = {0, 1, 1, 1, 1, 1, 1}, one = {0.5};
   all.push_back(
       with_choice(1, with_choice(4, serialize_npz({{"first", NpyArray::of<double>({7}, first)},
@@ -146,7 +145,7 @@ std::vector<Bytes> scene_image_seeds() {
 
 constexpr std::array table_names = {"t.npz", "t.npy", "t.csv"};
 
-/// The first byte says which kind of file, the second what is wanted of it.
+/// The first byte selects the kind of file, the second the requested data.
 void read_table(Input bytes) {
   const std::string name = table_names[take_choice(bytes, table_names.size())];
   const std::size_t wanted = take_choice(bytes, 4);

@@ -41,7 +41,7 @@ std::vector<Bytes> built_in(std::vector<std::string> (*names)(),
   return all;
 }
 
-/// All numbers of a dump, if they are not too many to wait for.
+/// Reads all values of a raw file, unless they are too many.
 void read_all(Input dump, const RawFormat& format) {
   const RawDumpReader reader(dump, format);
   if (static_cast<double>(format.height) * format.width * format.measurements > 1e6) return;
@@ -51,13 +51,14 @@ void read_all(Input dump, const RawFormat& format) {
   reader.read_rows(0, 0, format.output_height(), numbers.data());
 }
 
-/// A description of a dump up to a zero byte, and the dump.
+/// Input: a raw-format description up to a zero byte, then the raw file.
 void read_described_dump(Input bytes) {
   const Input text = take_up_to_zero(bytes);
   read_all(bytes, parse_raw_format(text_of(text)));
 }
 
-/// Fourteen bytes that say how a dump is packed, and the dump, cut or filled to what they announce.
+/// Input: fourteen bytes that define the packing, then the raw file, truncated or padded to its
+/// size.
 void read_packed_dump(Input bytes) {
   std::size_t at = 0;
   const auto next = [&](int values) {

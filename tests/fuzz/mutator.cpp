@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Lengths and checksums that follow what was changed. Without, nearly all changes of a PNG end at
-// the checksum of a chunk, and those of an .npz at that of an entry.
+// Updates lengths and checksums after mutations. Otherwise almost all mutations of a PNG would be
+// rejected by the checksum of a chunk, and those of an .npz by that of an entry.
 #include <zlib.h>
 
 #include <cstring>
@@ -34,7 +34,7 @@ std::uint32_t checksum(const std::uint8_t* data, std::size_t size) {
   return static_cast<std::uint32_t>(crc32(0, data, static_cast<uInt>(size)));
 }
 
-/// What zlib makes of it: of at most 1 MB, or none.
+/// Returns the uncompressed data if it is at most 1 MB.
 std::optional<Octets> inflated(const std::uint8_t* data, std::size_t size, int window_bits) {
   z_stream stream{};
   if (inflateInit2(&stream, window_bits) != Z_OK) return std::nullopt;
@@ -64,7 +64,7 @@ Octets deflated(const Octets& data, int window_bits) {
   return out;
 }
 
-/// The header of an .npy is as long as it says: up to its line end.
+/// Sets the length field of an .npy header to the position of its line end.
 void repair_npy(std::uint8_t* data, std::size_t size) {
   if (size < 12 || std::memcmp(data, "\x93NUMPY", 6) != 0) return;
   const std::size_t begin = data[6] >= 2 ? 12 : 10;
@@ -76,7 +76,7 @@ void repair_npy(std::uint8_t* data, std::size_t size) {
     data[i] = static_cast<std::uint8_t>(length >> 8 * (i - 8));
 }
 
-/// Calls `work(name of the chunk, data, size)` for all that are whole.
+/// Calls `work(name, data, size)` for every complete chunk.
 template <typename Work>
 void for_chunks(std::uint8_t* data, std::size_t size, const Work& work) {
   for (std::size_t at = 8; at + 12 <= size;) {
@@ -93,7 +93,7 @@ void repair_png(std::uint8_t* data, std::size_t size) {
   });
 }
 
-/// Changes rows of a PNG in place, if it is of one IDAT that is as long afterwards or shorter.
+/// Mutates the rows of a PNG in place if it has one IDAT chunk whose new content fits.
 bool mutate_png_rows(std::uint8_t* data, std::size_t size, const Mutate& mutate) {
   bool done = false;
   for_chunks(data, size, [&](std::uint8_t* name, std::uint8_t* content, std::size_t length) {
@@ -103,7 +103,8 @@ bool mutate_png_rows(std::uint8_t* data, std::size_t size, const Mutate& mutate)
     rows->resize(mutate(rows->data(), rows->size(), rows->size()));
     const Octets packed = deflated(*rows, 15);
     if (packed.size() > length) return;
-    std::copy(packed.begin(), packed.end(), content);  // what is behind its end is left over
+    std::copy(packed.begin(), packed.end(), content);  // bytes after the end of the stream are
+                                                       // ignored
     done = true;
   });
   return done;
@@ -114,7 +115,7 @@ struct Entry {
   bool deflated = false;
 };
 
-/// The entries of an archive, read from their own headers one behind another; none if it is broken.
+/// Returns the entries of an archive, read from their local headers; none if it is broken.
 std::vector<Entry> entries_of(const std::uint8_t* data, std::size_t size) {
   std::vector<Entry> entries;
   std::size_t at = 0;
@@ -176,7 +177,7 @@ Octets archive_of(const std::vector<Entry>& entries) {
   return archive;
 }
 
-/// Changes name or content of one entry and packs all again; 0 if that cannot be done.
+/// Mutates the name or content of one entry and packs the archive again; returns 0 on failure.
 std::size_t mutate_entry(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed,
                          const Mutate& mutate) {
   std::vector<Entry> entries = entries_of(data, size);
@@ -198,9 +199,9 @@ std::size_t mutate_entry(std::uint8_t* data, std::size_t size, std::size_t max_s
 
 std::size_t mutate_within(Repair repair, std::uint8_t* data, std::size_t size, std::size_t max_size,
                           unsigned seed, const Mutate& mutate) {
-  const bool as_it_is = seed % 4 == 0;  // broken checksums and lengths are inputs, too
+  const bool as_it_is = seed % 4 == 0;  // also test broken checksums and lengths
   seed /= 4;
-  // Inputs of readers that choose have their choices ahead.
+  // Inputs with a choice have up to three leading choice bytes.
   std::size_t ahead = 0;
   const auto starts = [&](std::string_view magic) {
     while (ahead < 3 && ahead + magic.size() <= size) {

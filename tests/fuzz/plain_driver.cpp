@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Replacement for libFuzzer's main function: reads the seeds of each reader and random changes of
-// them. Unlike libFuzzer it is not guided by coverage, but needs no compiler other than GCC.
+// Replacement for libFuzzer's main function: reads the seeds of each reader and random mutations of
+// them. Unlike libFuzzer it is not guided by coverage, but it only requires GCC.
 //   readers --reader=NAME|all [--runs=N]     N changed inputs per reader (1000)
-// Sanitizers report an input that fails; the same command repeats it.
+// Sanitizers report an input that fails; the same command reproduces it.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -36,8 +36,7 @@ void read(std::span<const std::uint8_t> input) {
   LLVMFuzzerTestOneInput(input.data(), input.size());
 }
 
-/// Reads the seeds of the chosen reader, then `runs` inputs that differ from them by 1 to 8
-/// changes.
+/// Reads the seeds of the chosen reader, then `runs` inputs with 1 to 8 mutations.
 void run(const Reader& reader, int runs) {
   random_numbers().seed(std::mt19937::default_seed);
   const std::vector<Bytes> seeds = reader.seeds();
@@ -54,7 +53,7 @@ void run(const Reader& reader, int runs) {
     for (std::size_t change = 0, changes = 1 + random_below(8); change < changes; ++change)
       size = LLVMFuzzerCustomMutator(input.data(), size, max_input_bytes,
                                      static_cast<unsigned>(random_numbers()()));
-    // Sanitizers find reads beyond the end of a vector of the exact size.
+    // With a vector of the exact size, sanitizers detect reads beyond its end.
     read(std::vector<std::uint8_t>(input.begin(),
                                    input.begin() + static_cast<std::ptrdiff_t>(size)));
   }
@@ -63,7 +62,7 @@ void run(const Reader& reader, int runs) {
 }  // namespace
 }  // namespace tofsmith::fuzz
 
-/// One random change: a byte, a bit, a repeated or deleted piece, or a piece from elsewhere.
+/// Applies one random mutation: a byte, a bit, a repeated or deleted piece, or a copied piece.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size) {
   using tofsmith::fuzz::random_below;

@@ -18,15 +18,15 @@ namespace tofsmith::fuzz {
 using Bytes = std::vector<std::byte>;
 using Input = std::span<const std::byte>;
 
-/// What lengths and checksums of a format are put right after bytes have changed, so that changes
-/// reach what stands behind them.
+/// Format whose lengths and checksums are updated after mutations, so that mutations reach the code
+/// that follows the checks.
 enum class Repair { none, npy, png, zip };
 
-/// A reader of files, and what it reads.
+/// A reader of files with its seeds.
 struct Reader {
   std::string name;
   std::function<void(Input)> read;
-  /// Made when they are asked for: some take a design.
+  /// Computed on demand, because some seeds require a design.
   std::function<std::vector<Bytes>()> seeds;
   Repair repair = Repair::none;
 };
@@ -55,12 +55,12 @@ inline void write_bytes(const std::filesystem::path& path, Input bytes) {
              static_cast<std::streamsize>(bytes.size()));
 }
 
-/// A file of this name in a directory of the process, for readers of files alone.
+/// Returns the path of a scratch file, for readers that open files by name.
 inline std::filesystem::path scratch_file(std::string_view name) {
   return std::filesystem::temp_directory_path() / name;
 }
 
-/// For inputs whose first byte says how the others are read: which of `count`.
+/// Removes the first byte and returns it modulo `count`: a choice of the reader's options.
 inline std::size_t take_choice(Input& bytes, std::size_t count) {
   if (bytes.empty()) return 0;
   const auto choice = static_cast<std::size_t>(bytes.front()) % count;
@@ -72,7 +72,7 @@ inline Bytes with_choice(std::size_t choice, Bytes bytes) {
   return bytes;
 }
 
-/// The input up to a zero byte; the rest stays.
+/// Removes and returns the input up to a zero byte.
 inline Input take_up_to_zero(Input& bytes) {
   const auto text =
       static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), std::byte{0}) - bytes.begin());
@@ -81,7 +81,7 @@ inline Input take_up_to_zero(Input& bytes) {
   return head;
 }
 
-/// What the floors contribute.
+/// Readers of each folder.
 std::vector<Reader> text_readers();
 std::vector<Reader> array_readers();
 std::vector<Reader> image_readers();
@@ -90,15 +90,15 @@ std::vector<Reader> document_readers();
 std::vector<Reader> bench_readers();
 std::vector<Reader> sweep_readers();
 
-/// Readers that the command line names.
+/// Returns the readers selected on the command line.
 std::span<const Reader> chosen_readers();
 /// Selects the reader of the next inputs.
 void choose(const Reader& reader);
 
-/// Puts right what `repair` says in the first `size` bytes, which have room for `max_size`; gives
-/// how many there are then. `data` may stay as it is where its form is broken.
+/// Mutates the first `size` bytes of a buffer of `max` bytes and returns the new size.
 using Mutate = std::function<std::size_t(std::uint8_t* data, std::size_t size, std::size_t max)>;
-/// Changes an input by `mutate`, of which some within its compressed parts, and puts it right.
+/// Mutates an input, in some cases within its compressed parts, and updates lengths and checksums
+/// according to `repair`. A malformed input may stay unrepaired. Returns the new size.
 std::size_t mutate_within(Repair repair, std::uint8_t* data, std::size_t size, std::size_t max_size,
                           unsigned seed, const Mutate& mutate);
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Every reader of files under libFuzzer: bytes are read or refused, nothing else happens.
+// Every reader of files under libFuzzer: input is either read or rejected with an exception.
 //   readers --reader=NAME [flags of libFuzzer] CORPUS     --reader=list names them
-//   readers --reader=NAME --seeds=DIRECTORY               writes what the library itself makes
+//   readers --reader=NAME --seeds=DIRECTORY               writes the seeds
 // scripts/fuzz.sh builds and runs it.
 #include <fmt/format.h>
 

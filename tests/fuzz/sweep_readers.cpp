@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> keys = {"aa", "bb", "cc"};
 
-/// What an earlier input left beside the store, too.
+/// Also removes files that an earlier input left next to the store.
 fs::path fresh_store() {
   const fs::path path = scratch_file("s.sqlite");
   for (const char* const end : {"", "-wal", "-shm", "-journal"}) fs::remove(path.string() + end);
