@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Folders are floors: a folder includes only what stands on a floor below it. Floors have rooms,
-// with no circle between them; a private header is its floor's own unless it stands in shared/; and
-// floors make components.
+// Folders are layers: a folder includes only folders of lower layers. Subfolders of a layer (rooms)
+// must not depend on each other cyclically. A private header may only be included within its layer,
+// unless it is in shared/. Layers form components.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -25,8 +25,8 @@ const Folders data_types = {"core", "code", "scene", "camera", "decode", "simula
 const Folders products =
     data_types + Folders{"gpu", "io", "report", "waveforms", "sweep", "calibrate"};
 
-/// The house: which other folders each folder may include. simulate never includes design: the
-/// judge does not know the candidate's maker.
+/// Other folders that each folder may include. simulate never includes design, because the
+/// evaluation must not depend on the origin of a candidate.
 const std::map<std::string, Folders> may_include = {
     {"core", {}},
     {"code", {"core"}},
@@ -44,7 +44,8 @@ const std::map<std::string, Folders> may_include = {
     {"apps", products},
 };
 
-/// What is installed together, and the component it stands on, as cmake/TofsmithComponents.cmake.
+/// A component with its folders and the component that it depends on, as in
+/// cmake/TofsmithComponents.cmake.
 struct Component {
   Folders folders;
   std::string below;
@@ -59,8 +60,8 @@ const std::map<std::string, Component> components = {
     {"sweep", {{"sweep"}, "io"}},
 };
 
-/// The folder a file lives in: "include/tofsmith/core/x.hpp", "src/core/x.cpp", "apps/x.cpp". A
-/// file directly in include/tofsmith/ gathers others for the user and stands where apps stand.
+/// Returns the folder of a file: "include/tofsmith/core/x.hpp", "src/core/x.cpp", "apps/x.cpp".
+/// Files directly in include/tofsmith/ are umbrella headers and belong to the layer of apps.
 std::string folder_of(const std::string& path) {
   std::smatch match;
   if (std::regex_match(path, match, std::regex("(?:include/tofsmith|src)/([^/]+)/.*")))
@@ -68,7 +69,7 @@ std::string folder_of(const std::string& path) {
   return "apps";
 }
 
-/// The folder an include line asks for; "" when the line is no include of ours. Ours are
+/// Returns the folder that an include line refers to, or "" for other lines. Considered are
 /// "tofsmith/<folder>/x.hpp" and the private "<folder>/x.hpp".
 std::string included_folder(const std::string& line) {
   static const std::regex include("\\s*#\\s*include\\s*[\"<](tofsmith/)?([^/\">]+)/[^\">]*[\">].*");
@@ -106,7 +107,7 @@ TEST(Floors, NoTwoFoldersMayIncludeEachOther) {
       EXPECT_FALSE(may_include.at(other).contains(folder)) << folder << " and " << other;
 }
 
-TEST(Floors, AComponentIncludesItselfAndWhatItStandsOn) {
+TEST(Floors, AComponentIncludesOnlyItselfAndItsDependencies) {
   for (const auto& [name, component] : components) {
     Folders within = component.folders;
     for (std::string below = component.below; !below.empty(); below = components.at(below).below)
@@ -117,8 +118,8 @@ TEST(Floors, AComponentIncludesItselfAndWhatItStandsOn) {
   }
 }
 
-/// Where a private header of the library stands: "src/decode/search/shared/x.hpp" is floor
-/// "decode", room "search", shared. The ground of a floor is room "".
+/// Location of a private header: "src/decode/search/shared/x.hpp" is in layer "decode", room
+/// "search", shared. Files directly in a layer are in room "".
 struct Place {
   std::string floor, room;
   bool is_shared = false;
@@ -134,7 +135,7 @@ Place place_of(const std::string& private_path) {
   return place;
 }
 
-/// The path below src/ of the private header that a line includes; "" if it is none.
+/// Returns the path below src/ of the private header that a line includes, or "".
 std::string private_include(const std::string& line) {
   static const std::regex include("\\s*#\\s*include\\s*\"([^\"]+)\".*");
   std::smatch match;
@@ -162,12 +163,12 @@ std::vector<std::string> borrowed_headers(const SourceFile& file) {
   return found;
 }
 
-TEST(Rooms, APrivateHeaderIsUsedWithinItsFloorUnlessItIsShared) {
+TEST(Rooms, APrivateHeaderIsUsedWithinItsLayerUnlessItIsShared) {
   const auto files = read_sources({"include", "src", "apps", "python", "examples"});
   EXPECT_EQ(violations_in(files, borrowed_headers), "");
 }
 
-TEST(Rooms, WhatIsSharedIsUsedFromAnotherFloor) {
+TEST(Rooms, SharedHeadersAreUsedByAnotherLayer) {
   const std::vector<SourceFile> files = read_sources({"src"});
   Folders borrowed;
   for (const SourceFile& file : files)
@@ -182,7 +183,7 @@ TEST(Rooms, WhatIsSharedIsUsedFromAnotherFloor) {
     }
 }
 
-TEST(Rooms, NoCircleRunsBetweenTheRoomsOfAFloor) {
+TEST(Rooms, SubfoldersHaveNoCyclicDependencies) {
   std::map<std::string, Folders> includes;  // by "floor/room"
   std::string from_ground;
   for (const SourceFile& file : read_sources({"src"})) {
@@ -193,13 +194,13 @@ TEST(Rooms, NoCircleRunsBetweenTheRoomsOfAFloor) {
       if (header.empty() || there.floor != here.floor || there.room == here.room) continue;
       if (!here.room.empty() && !there.room.empty())
         includes[here.floor + "/" + here.room].insert(there.floor + "/" + there.room);
-      // The rooms stand on the headers of the ground; its sources put the rooms together.
+      // Rooms may depend on headers of room ""; its sources may depend on all rooms.
       if (here.room.empty() && file.path.ends_with(".hpp"))
         from_ground += violation(file, i, "the ground includes a room: " + header) + '\n';
     }
   }
   EXPECT_EQ(from_ground, "");
-  // Rooms that include only rooms already taken away can be taken away; a circle stays.
+  // Repeatedly removes rooms that include only removed ones; a cycle remains.
   for (bool any = true; any;) {
     any = false;
     for (auto it = includes.begin(); it != includes.end();) {
@@ -214,7 +215,7 @@ TEST(Rooms, NoCircleRunsBetweenTheRoomsOfAFloor) {
   EXPECT_EQ(circle, "");
 }
 
-TEST(PublicHeaders, EachUmbrellaHasThoseOfItsComponent) {
+TEST(PublicHeaders, EachUmbrellaHeaderIncludesThoseOfItsComponent) {
   std::map<std::string, Folders> of_folder;
   std::map<std::string, std::string> umbrellas;
   for (const SourceFile& file : read_sources({"include"})) {
@@ -270,7 +271,7 @@ const Example examples[] = {
     {"src/cellar/x.cpp", "#include <vector>", false},
 };
 
-TEST(Floors, ExamplesAreJudgedAsTheHouseSays) {
+TEST(Floors, DetectsViolationsInExamples) {
   for (const Example& example : examples) {
     SCOPED_TRACE(std::string(example.path) + " says " + example.line);
     const auto found = upward_includes({example.path, {"// first line", example.line}});
@@ -278,7 +279,7 @@ TEST(Floors, ExamplesAreJudgedAsTheHouseSays) {
   }
 }
 
-TEST(Rooms, ExamplesAreJudgedAsTheHouseSays) {
+TEST(Rooms, DetectsViolationsInExamples) {
   const auto borrows = [](const char* path, const char* line) {
     return !borrowed_headers({path, {line}}).empty();
   };
@@ -292,7 +293,7 @@ TEST(Rooms, ExamplesAreJudgedAsTheHouseSays) {
   EXPECT_TRUE(borrows("include/tofsmith/core/x.hpp", "#include \"core/shared/x.hpp\""));
 }
 
-TEST(Floors, AViolationNamesFileLineAndRule) {
+TEST(Floors, AViolationReportsFileLineAndRule) {
   const SourceFile file{"src/code/x.cpp", {"", "#include \"tofsmith/io/x.hpp\""}};
   EXPECT_EQ(violations_in({file}, upward_includes),
             "src/code/x.cpp:2: code/ includes io/; it may include only core\n");

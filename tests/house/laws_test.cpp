@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// What every C++ file of the house keeps to.
+// Rules for every C++ file of the repository.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace tofsmith::house {
 namespace {
 
-constexpr std::size_t usual_file_lines = 350;  // beyond, a file may be one large concept: a warning
+constexpr std::size_t usual_file_lines = 350;  // longer files cause a warning
 constexpr std::size_t max_file_lines = 500;
 const std::vector<std::string> everywhere = {"include", "src",      "apps",      "python",
                                              "tests",   "examples", "benchmarks"};
@@ -43,7 +43,7 @@ std::vector<std::string> too_long(const SourceFile& file) {
 }
 
 std::vector<std::string> printing_and_exiting(const SourceFile& file) {
-  // The assertion on our own bugs has no caller to report to.
+  // A failed assertion has no caller that could handle it.
   if (file.path == "src/core/error.cpp") return {};
   static const std::regex forbidden(
       "std::(cout|cerr|clog)\\b|\\b(printf|fprintf|vprintf|puts|putchar)\\s*\\(|"
@@ -57,8 +57,8 @@ std::vector<std::string> printing_and_exiting(const SourceFile& file) {
   return found;
 }
 
-/// Kernels of one name are in many files, compiled with options of their own: what stands in
-/// HWY_NAMESPACE stands in an anonymous namespace there.
+/// Kernels of equal names exist in several files, compiled with different options: everything in
+/// HWY_NAMESPACE must be in an anonymous namespace.
 std::vector<std::string> shared_kernels(const SourceFile& file) {
   const auto& lines = file.lines;
   const auto is_aside = [](const std::string& line) {
@@ -79,7 +79,7 @@ std::vector<std::string> shared_kernels(const SourceFile& file) {
   return found;
 }
 
-/// Types of named namespaces that a file defines, such as `tofsmith Camera`.
+/// Returns the types defined in named namespaces of a file, such as `tofsmith Camera`.
 std::set<std::string> types_defined_in(const SourceFile& file) {
   static const std::regex definition(
       R"((?:struct|class|union|enum(?: class)?) ([\w:]+)(?: final)?(?: : .*)? \{.*)");
@@ -129,11 +129,11 @@ TEST(House, CoreAndDesignCompileWithDebiansEmscripten) {
             "");
 }
 
-TEST(House, EveryFileNamesItsLicence) {
+TEST(House, EveryFileHasALicence) {
   EXPECT_EQ(violations_in(read_sources(everywhere), missing_licence), "");
 }
 
-TEST(House, NoFileIsTwoConceptsLong) {
+TEST(House, NoFileIsTooLong) {
   const std::vector<SourceFile> files = read_sources(everywhere);
   EXPECT_EQ(violations_in(files, too_long), "");
   const std::string warnings = violations_in(files, long_files);
@@ -144,7 +144,7 @@ TEST(House, TheLibraryNeverPrintsAndNeverExits) {
   EXPECT_EQ(violations_in(read_sources({"include", "src"}), printing_and_exiting), "");
 }
 
-TEST(House, KernelsAreOfTheirFileAlone) {
+TEST(House, KernelsAreLocalToTheirFile) {
   EXPECT_EQ(violations_in(read_sources({"src"}), shared_kernels), "");
 }
 
@@ -153,7 +153,7 @@ TEST(House, EveryTypeHasOneDefinition) {
   EXPECT_THAT(types_defined_twice(files), testing::IsEmpty());
 }
 
-TEST(House, FindsASecondDefinition) {
+TEST(House, DetectsASecondDefinition) {
   const SourceFile first{"src/a.hpp", {"namespace tofsmith {", "struct Match {", "};"}};
   const SourceFile second{"src/b.hpp", {"namespace tofsmith {", "class Match : Base {", "};"}};
   const SourceFile hidden{"src/c.cpp", {"namespace tofsmith {", "namespace {", "struct Match {}"}};
@@ -163,7 +163,7 @@ TEST(House, FindsASecondDefinition) {
   EXPECT_EQ(types_defined_twice({first, hidden, declared, elsewhere}).size(), 0u);
 }
 
-TEST(House, LawsFindWhatBreaksThem) {
+TEST(House, DetectsViolations) {
   const auto breaks = [](auto law, std::vector<std::string> lines) {
     return !law(SourceFile{"src/core/x.cpp", std::move(lines)}).empty();
   };

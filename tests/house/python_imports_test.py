@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Modules of the Python package import downwards: public modules import private ones, no private
 module imports a public one, no module imports the package itself, and imports form no cycle. Imports
-inside functions and under TYPE_CHECKING count, too. Above all of them are the paper's figures, which
-use the package as its users do, and modules that a command runs.
+inside functions and under TYPE_CHECKING count, too. The topmost modules are the paper's figures,
+which use the package like a user, and modules run by commands.
 
     python_imports_test.py
 """
@@ -20,7 +20,7 @@ USERS = (f"{PACKAGE}.paper", f"{PACKAGE}._upload_command")
 
 
 def package_sources():
-    """Text of each module of the package by its name, such as "tofsmith._camera"."""
+    """Returns the source of each module of the package by name, such as "tofsmith._camera"."""
     sources = {}
     for path in sorted((ROOT / "python" / PACKAGE).rglob("*.py")):
         parts = path.relative_to(ROOT / "python").with_suffix("").parts
@@ -29,7 +29,8 @@ def package_sources():
 
 
 def imported_modules(module, source, modules):
-    """Modules of the package that `module` imports, each with the line of the import."""
+    """Returns the modules of the package that `module` imports, each with the line of the import.
+    """
     is_package = any(other.startswith(module + ".") for other in modules)
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -53,7 +54,7 @@ def is_private(module):
 
 
 def upward_imports(sources):
-    """Descriptions of imports that run upwards."""
+    """Returns descriptions of upward imports."""
     found = []
     for module, source in sources.items():
         if module.startswith(USERS):
@@ -69,11 +70,10 @@ def upward_imports(sources):
 
 
 def cycle(sources):
-    """Modules that import one another in a circle, and the modules that import them; empty if there
-    is no circle."""
+    """Returns modules with cyclic imports, and the modules that import them."""
     imports = {module: {m for m, _ in imported_modules(module, source, sources)} & set(sources)
                for module, source in sources.items()}
-    while True:  # a module that imports only removed ones can be removed; a circle stays
+    while True:  # repeatedly remove modules that import only removed ones; a cycle remains
         free = {module for module, others in imports.items() if not others & set(imports)}
         if not free:
             return sorted(imports)
@@ -89,7 +89,7 @@ class PythonImports(unittest.TestCase):
     def test_imports_form_no_cycle(self):
         self.assertEqual(cycle(package_sources()), [])
 
-    def test_finds_what_breaks_the_rules(self):
+    def test_detects_violations(self):
         for text in ("from . import plot", "from .plot import waveforms", "import tofsmith.plot",
                      "def f():\n    from . import plot", "from . import Camera", "import tofsmith",
                      "if TYPE_CHECKING:\n    from tofsmith import plot"):

@@ -19,8 +19,8 @@ std::string read(const std::string& path) {
   return text.str();
 }
 
-// The consumer project builds and runs this program, so the README's example works as it stands.
-TEST(Readme, ShowsTheProgramThatTheConsumerProjectRuns) {
+// The consumer project builds and runs this program, so that the README's example works.
+TEST(Readme, ContainsTheProgramOfTheConsumerProject) {
   std::string program = read("tests/consumer/main.cpp");
   ASSERT_FALSE(program.empty());
   for (int licence_line = 0; licence_line < 2; ++licence_line)
@@ -28,13 +28,13 @@ TEST(Readme, ShowsTheProgramThatTheConsumerProjectRuns) {
   EXPECT_NE(read("README.md").find("```cpp\n" + program + "```"), std::string::npos);
 }
 
-// What a page of so many lines does not say stands in docs/.
-TEST(Readme, IsReadInOneSitting) {
+// Further details belong in docs/.
+TEST(Readme, HasLimitedLength) {
   const std::string readme = read("README.md");
   EXPECT_LE(std::count(readme.begin(), readme.end(), '\n'), 150);
 }
 
-/// The first TOML example of a page, or of what follows a heading.
+/// Returns the first TOML example of a page, or after a heading.
 std::string toml_of(const std::string& path, const std::string& heading = "") {
   const std::string page = read(path);
   const std::size_t fence = page.find("```toml\n", page.find(heading));
@@ -43,17 +43,17 @@ std::string toml_of(const std::string& path, const std::string& heading = "") {
   return page.substr(begin, page.find("```", begin) - begin);
 }
 
-TEST(Pages, ShowACameraThatCanBeRead) {
+TEST(Pages, ContainAValidCamera) {
   const std::string path = "docs/cameras.md";
   EXPECT_DOUBLE_EQ(tofsmith::parse_camera_toml(toml_of(path), path).light.peak_factor, 15.0);
 }
 
-TEST(Pages, ShowASceneThatCanBeRead) {
+TEST(Pages, ContainAValidScene) {
   const std::string path = "docs/scenes.md";
   EXPECT_EQ(tofsmith::parse_scene_toml(toml_of(path), path).shapes.size(), 4u);
 }
 
-TEST(Pages, ShowASceneThatMovesAsItSays) {
+TEST(Pages, ContainAMovingSceneAsDescribed) {
   const std::string path = "docs/scenes.md";
   const auto scene = tofsmith::parse_scene_toml(toml_of(path, "## In motion"), path);
   ASSERT_EQ(scene.shape_motions.size(), 3u);

@@ -7,19 +7,19 @@
 
 namespace tofsmith::house {
 
-/// A C++ file of this repository, its path relative to the root with forward slashes.
+/// A C++ file of this repository; the path is relative to the root with forward slashes.
 struct SourceFile {
   std::string path;
   std::vector<std::string> lines;
 };
 
-/// Every .hpp and .cpp under `folders` of the repository, sorted by path.
+/// Returns every .hpp and .cpp file under `folders` of the repository, sorted by path.
 std::vector<SourceFile> read_sources(const std::vector<std::string>& folders);
 
-/// One broken rule, as an editor finds it: "path:line: rule".
+/// Formats a violation for editors: "path:line: rule".
 std::string violation(const SourceFile& file, std::size_t line_index, const std::string& rule);
 
-/// What `check` finds in all of `files`, one violation a line.
+/// Applies `check` to all `files`; returns one violation per line.
 template <typename Check>
 std::string violations_in(const std::vector<SourceFile>& files, const Check& check) {
   std::string all;
