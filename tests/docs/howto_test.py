@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every command of the how-to page runs as it stands there, with the files it names, and leaves
-what it says it writes. Only long work is made shorter.
+"""Runs every command of the how-to page, with the files it names, and checks that the stated output
+files are written. Only long computations are shortened.
 
     howto_test.py TOFSMITH DOCS
 """
@@ -46,7 +46,7 @@ layout = "interleaved"
 
 
 def commands_of(page):
-    """The commands of the tables, in order."""
+    """Returns the commands of the tables, in order."""
     rows = re.findall(r"^\|[^|]*\|([^|]*)\|", (DOCS / page).read_text(), re.M)
     return [command for row in rows for command in re.findall(r"`([^`]+)`", row)]
 
@@ -58,7 +58,7 @@ def shortened(command):
 
 
 class HowTo(BenchRecordsTest):
-    """A file is made for the commands that name it, `name.ext` by make_name_ext."""
+    """Creates a file for each command that uses it: `name.ext` by make_name_ext."""
 
     def shell(self, command):
         environment = dict(os.environ, PATH=f"{os.path.dirname(TOOL)}:/usr/bin:/bin")
@@ -68,7 +68,7 @@ class HowTo(BenchRecordsTest):
         self.assertNotIn("warning", done.stderr, command)
 
     def make_raw_npy(self, command):
-        """Measured with the code that the command decodes; a table is hamiltonian-k4's."""
+        """Captures with the code that the command decodes; for a table, with hamiltonian-k4."""
         code = re.search(r"--code (\S+)", command)[1]
         code = "hamiltonian-k4" if "." in code else code
         settings = " ".join(re.findall(r"--(?:camera|set) \S+", command))
@@ -76,7 +76,7 @@ class HowTo(BenchRecordsTest):
                    "--ambient 1e5 -o raw.npy --truth reference.npy --force")
 
     def make_reference_npy(self, _):
-        pass  # beside raw.npy
+        pass  # created with raw.npy
 
     def make_p0_npy(self, command):
         self.make_raw_npy(command)
@@ -104,7 +104,7 @@ class HowTo(BenchRecordsTest):
         self.write("sensor.raw.toml", DUMP)
 
     def make_table_csv(self, _):
-        """Sawtooths, a third of a period apart."""
+        """Sawtooth functions, a third of a period apart."""
         n = np.arange(60)[:, None] / 60 + np.arange(3) / 3
         np.savetxt(self.path("table.csv"), n % 1, fmt="%.6f", delimiter=",")
 
@@ -147,7 +147,7 @@ class HowTo(BenchRecordsTest):
                        f"{signal} --ambient 0 --frames 2 -o {name}.npy")
 
     def make_quads1_npy(self, _):
-        pass  # beside quads.npy
+        pass  # created with quads.npy
 
     make_quads2_npy = make_quads1_npy
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pages on theory open with commands that a reader can run at once: they run, and print what stands
-below them. Numbers may differ by a quarter and 0.3, since other processors round differently.
+"""Theory pages begin with commands that run and print the output shown below them. Numbers may
+differ by 25 % plus 0.3, since processors round differently.
 
     theory_test.py TOFSMITH DOCS
 """
@@ -22,13 +22,13 @@ NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
 def blocks_of(page):
-    """(commands, what they print), in order."""
+    """Returns pairs of commands and their shown output, in order."""
     text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
     return re.findall(r"^```bash\n(.*?)^```\n+```text\n(.*?)^```$", text, re.M | re.S)
 
 
 def same(shown, printed):
-    """Whether a line is printed as shown: the same words, about the same numbers."""
+    """Returns whether a line is printed as shown: the same words, and similar numbers."""
     if shown.endswith(".."):
         shown = shown[:-2].rstrip()
         printed = printed[:len(shown)]
@@ -39,7 +39,7 @@ def same(shown, printed):
 
 
 def first_not_printed(shown, printed):
-    """The first line shown that is not printed, or None. `..` alone stands for any lines."""
+    """Returns the first shown line that is not printed, or None. `..` alone matches any lines."""
     lines, at, any_line = printed.splitlines(), 0, False
     for line in shown.splitlines():
         if line == "..":
@@ -54,12 +54,12 @@ def first_not_printed(shown, printed):
 
 
 class Theory(unittest.TestCase):
-    def test_pages_open_with_commands(self):
+    def test_pages_begin_with_commands(self):
         for page in PAGES:
             head = (DOCS / f"{page}.md").read_text(encoding="utf-8").split("\n## ")[0]
             self.assertIn("```bash\n", head, page)
 
-    def test_commands_print_what_is_shown(self):
+    def test_commands_print_the_shown_output(self):
         environment = dict(os.environ, PATH=f"{os.path.dirname(TOOL)}:/usr/bin:/bin")
         for page in PAGES:
             with tempfile.TemporaryDirectory(prefix="tofsmith-theory-") as directory:
@@ -70,7 +70,7 @@ class Theory(unittest.TestCase):
                     self.assertIsNone(first_not_printed(shown, done.stdout),
                                       f"{page}: {commands} prints\n{done.stdout}")
 
-    def test_other_output_is_noticed(self):
+    def test_other_output_is_detected(self):
         self.assertIsNone(first_not_printed("a 1.0\n..\nd 4 ..\n", "a  1.1\nb\nc\nd 4 and more\n"))
         self.assertEqual(first_not_printed("a 1.0\n", "a 2.0\n"), "a 1.0")
         self.assertEqual(first_not_printed("a\nc\n", "a\nb\nc\n"), "c")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the tutorial and the pages that take cameras from raw frames to depth: writes their files
-and executes their commands, in order, in an empty directory. PYTHONPATH has the Python package.
+"""Runs the tutorial and the pages from raw frames to depth: writes their files and executes their
+commands in order, in an empty directory. PYTHONPATH must contain the Python package.
 
     tutorial_test.py TOFSMITH DOCS
 """
@@ -26,15 +26,15 @@ def text_of(page):
 
 
 def blocks_of(page):
-    """(language, text) of every fenced block, without the results in `console`; `sh` is for the
-    reader alone."""
+    """Returns (language, text) of every fenced block, with the commands alone of `console` blocks;
+    `sh` blocks are not executed."""
     blocks = re.findall(r"^```(bash|console|toml|python)\n(.*?)^```$", text_of(page), re.M | re.S)
     return [("bash", "".join(re.findall(r"^\$ ((?:.*\\\n)*.*\n)", text, re.M)))
             if language == "console" else (language, text) for language, text in blocks]
 
 
 def errors_mm(text):
-    """{file: (median error in mm, percent of the pixels within 50 mm)} of lines of compare.py."""
+    """Returns {file: (median error in mm, percentage of pixels within 50 mm)} from compare.py."""
     lines = re.findall(r"^(\S+): median error ([\d.]+) mm, (\d+) %", text, re.M)
     return {name: (float(median), float(share)) for name, median, share in lines}
 
@@ -48,7 +48,7 @@ class Tutorial(unittest.TestCase):
         return done.stdout
 
     def run_page(self, page, made):
-        """Everything that a page prints, its files written and its blocks run, in order."""
+        """Writes the files and runs the blocks of a page in order; returns the printed text."""
         blocks = blocks_of(page)
         self.assertGreater(len(blocks), 4)
         printed = ""
@@ -71,7 +71,7 @@ class Tutorial(unittest.TestCase):
         self.assertEqual(len(errors), 2)
         self.assertLess(2 * errors[0], errors[1], "the designed code is not twice as good")
 
-    def test_a_camera_is_calibrated_as_its_page_says(self):
+    def test_camera_calibration_gives_the_stated_results(self):
         printed = self.run_page("your_camera.md", ("first.png", "table.npz", "reference.html", "depth.npz",
                                                    "cloud.ply", "errors.png", "cloud.png"))
         off_m, rms_mm = re.search(r"depth is ([+-][\d.]+) m off in the mean, ([\d.]+) mm", printed).groups()
@@ -79,7 +79,7 @@ class Tutorial(unittest.TestCase):
         error_mm = float(re.search(r"median error ([\d.]+) mm", printed)[1])
         self.assertLess(3 * error_mm, float(rms_mm))
 
-    def test_three_cameras_have_the_errors_that_their_page_states(self):
+    def test_three_cameras_have_the_stated_errors(self):
         printed = self.run_page("real_cameras.md",
                                 [camera + "-table.npz" for camera in ("kinect", "azure", "ti")])
         stated = text_of("real_cameras.md")
@@ -93,7 +93,7 @@ class Tutorial(unittest.TestCase):
                                    for name in ("first", "depth", "exact"))
             self.assertLess(20 * depth, first)
             self.assertLess(depth, 1.5 * exact)
-        # (offset [mm], its error, contrast) of each frequency, found and simulated
+        # (offset [mm], its standard error, contrast) of each frequency, estimated and simulated
         found = [[float(number) for number in row] for row in OFFSET.findall(printed)]
         self.assertEqual(len(found), 8)
         for row, said in zip(found, OFFSET.findall(stated), strict=True):
