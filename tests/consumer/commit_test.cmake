@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Which commit is named: the one given, git's, the archive's, or none; and that a file which already
-# names it is left alone, so that nothing is compiled again.
+# The commit is the given one, git's, the archive's, or none. A file that already contains it is not
+# modified, so that nothing is recompiled.
 #   cmake -D script=build_commit.cmake -D work=DIR -P commit_test.cmake
 
 set(source ${work}/source)
@@ -40,7 +40,7 @@ endif()
 
 find_program(git_found git)
 if(git_found)
-  # Commits of a project around this one are not ours.
+  # Commits of an enclosing project must be ignored.
   execute_process(COMMAND git init -q ${work} COMMAND_ERROR_IS_FATAL ANY)
   expect(0123456789ab)
   git(init -q .)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Installs a build into an empty prefix, then builds and runs the consumer against it alone: by the
-# CMake package, and by pkg-config.
+# Installs a build into an empty prefix, then builds and runs the consumer with this installation
+# only, by the CMake package and by pkg-config.
 #   cmake -D build=DIR -D work=DIR -D compiler=CXX -D flags=FLAGS -D type=TYPE
 #         -D "components=core;design;.." -D harden=ON|OFF -P install_and_use.cmake
 
@@ -17,7 +17,7 @@ set(configure ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -G Ninja
 
 file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${work}/prefix)
-# Moved, so that a path of the build or of the first prefix left in the package shows.
+# Moves the installation, so that absolute paths of the build or the first prefix cause errors.
 file(RENAME ${work}/prefix ${work}/moved)
 
 run(${configure} -B ${work}/core -D components=core)
@@ -31,7 +31,7 @@ if("design" IN_LIST components)
   run(${CMAKE_COMMAND} --build ${work}/consumer)
   run(${work}/consumer/consumer)
 endif()
-run(${configure} -B ${work}/all)  # whatever is installed
+run(${configure} -B ${work}/all)  # all installed components
 if(harden AND type STREQUAL "Release" AND NOT flags MATCHES "-fsanitize")
   file(GLOB_RECURSE elf_files ${work}/moved/*.so ${work}/moved/bin/*)
   if(elf_files)
@@ -62,7 +62,7 @@ if("design" IN_LIST components)
   use_by_pkg_config(tofsmith main.cpp)
 endif()
 
-# What is not installed is refused, and the message says what to install.
+# A missing component is rejected with a message that lists what to install.
 function(refuse asked expected)
   execute_process(COMMAND ${configure} -B ${work}/refused -D "components=${asked}"
                   RESULT_VARIABLE failed ERROR_VARIABLE message OUTPUT_QUIET)

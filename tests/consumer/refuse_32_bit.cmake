@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# A compiler for 32 bits is refused, and the message says so.
+# A compiler for 32 bits is rejected with a message.
 #   cmake -D source=DIR -D work=DIR -D compiler=CXX -P refuse_32_bit.cmake
 
 file(REMOVE_RECURSE ${work})
-# What the compiler is for is told instead of found out: few machines have libraries of 32 bits.
+# Sets the pointer size instead of detecting it, because few machines have 32-bit libraries.
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${work} -G Ninja
                         -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_WORKS=TRUE
                         -D CMAKE_CXX_ABI_COMPILED=TRUE -D CMAKE_SIZEOF_VOID_P=4

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# A compiler older than the minimum is refused with its version and the minimum.
+# A compiler older than the minimum is rejected with its version and the minimum.
 #   cmake -D source=DIR -D work=DIR -P refuse_old_compilers.cmake
 
 foreach(old IN ITEMS "GNU;11.4.0;g\\+\\+ 12" "Clang;13.0.1;clang 14")
@@ -8,7 +8,7 @@ foreach(old IN ITEMS "GNU;11.4.0;g\\+\\+ 12" "Clang;13.0.1;clang 14")
   list(GET old 1 version)
   list(GET old 2 minimum)
   file(REMOVE_RECURSE ${work})
-  # The version is set instead of detected: no old compiler is installed.
+  # Sets the version instead of detecting it, because no old compiler is installed.
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${work} -G Ninja -D CMAKE_CXX_COMPILER_FORCED=TRUE
                           -D CMAKE_CXX_COMPILER_ID_RUN=TRUE -D CMAKE_CXX_COMPILER_ID=${id}
                           -D CMAKE_CXX_COMPILER_VERSION=${version}

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The bill of materials names what is compiled in and linked, with versions and licences, and is the
-same bytes every time.
+"""The bill of materials lists everything compiled in or linked, with versions and licences, and is
+reproducible.
 
     sbom_test.py BUILD PROGRAM
 """
@@ -34,7 +34,7 @@ class BillOfMaterials(unittest.TestCase):
         return {by_id[r["relatedSpdxElement"]]["name"]: by_id[r["relatedSpdxElement"]]
                 for r in document["relationships"] if r["relationshipType"] == relation}
 
-    def test_names_all_that_is_compiled_in_with_version_and_licence(self):
+    def test_lists_everything_compiled_in_with_version_and_licence(self):
         text = self.make("tool", PROGRAM)
         self.assertEqual(text, self.make("tool", PROGRAM))
         compiled_in = self.related(text, "CONTAINS")
@@ -46,9 +46,9 @@ class BillOfMaterials(unittest.TestCase):
             for reference in item.get("externalRefs", []):
                 self.assertIn(f"?distro={RELEASE}&", reference["referenceLocator"])
 
-    def test_knows_the_licence_of_every_header_of_every_component(self):
+    def test_the_licence_of_every_header_is_known(self):
         for component in ("core", "gpu", "design", "io", "report", "lab", "sweep"):
-            self.make(component)  # fails for one it does not know
+            self.make(component)  # raises an error for an unknown header
 
 
 unittest.main()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/wheel/bundle.py makes a small wheel portable, and scripts/wheel/check.py finds what is wrong
-with one that is not."""
+"""scripts/wheel/bundle.py makes a small wheel portable, and scripts/wheel/check.py detects wheels
+that are not."""
 
 import os
 import pathlib
@@ -39,7 +39,7 @@ extern "C" const char* answer() {
   return text.c_str();
 }
 """
-# Loads both libraries in the order given and prints what they answer.
+# Loads the libraries in the given order and prints their answers.
 LOAD = """
 import ctypes, sys
 for name in sys.argv[1:]:
@@ -119,38 +119,38 @@ class Wheel(unittest.TestCase):
         self.assertEqual(self.answers(self.extension, self.plain), [own, other])
         self.assertEqual(self.answers(self.plain, self.extension), [other, own])
 
-    def test_needs_nothing_outside_but_the_c_library_and_is_the_same_bytes_every_time(self):
+    def test_requires_only_the_c_library_and_is_reproducible(self):
         self.assertRegex(self.tag, r"^cp311-cp311-manylinux_2_\d+_x86_64$")
         with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
             wheels = [self.packed(first, self.tag), self.packed(second, self.tag)]
             self.assertEqual(wheels[0].read_bytes(), wheels[1].read_bytes())
             self.assertEqual(list(check.problems(wheels[0], [str(self.directory)])), [])
 
-    def test_is_refused_if_a_library_is_missing(self):
+    def test_is_rejected_if_a_library_is_missing(self):
         def remove(tree):
             next(tree.glob("tofsmith/_prefix/lib/libstdc++-*")).unlink()
         self.assertRegex(self.problems(remove), r"needs libstdc\+\+-\w+\.so\.6, which is not")
 
-    def test_is_refused_with_a_path_of_the_build_or_an_absolute_search_path(self):
+    def test_is_rejected_with_a_build_path_or_an_absolute_search_path(self):
         def restore(tree):
             shutil.copy(self.plain, tree / self.extension.relative_to(self.tree))
         problems = self.problems(restore)
         self.assertIn(f"contains the path {self.directory} of this build", problems)
         self.assertIn("expected a path relative to $ORIGIN", problems)
 
-    def test_is_refused_with_a_tag_of_an_older_c_library(self):
+    def test_is_rejected_with_a_tag_of_an_older_c_library(self):
         with tempfile.TemporaryDirectory() as directory:
             wheel = self.packed(directory, "cp311-cp311-manylinux_2_31_x86_64")
             problems = "\n".join(check.problems_of_tag(wheel, (2, 34)))
         self.assertIn("claims to need GLIBC_2.31, but needs GLIBC_2.34", problems)
         self.assertIn("is accepted by pip for glibc 2.31", problems)
 
-    def test_is_refused_without_licences(self):
+    def test_is_rejected_without_licences(self):
         def remove(tree):
             next(tree.glob("*.dist-info/licenses/*")).unlink()
         self.assertIn("has no licences", self.problems(remove))
 
-    def test_is_refused_with_unique_symbols(self):
+    def test_is_rejected_with_unique_symbols(self):
         def restore(tree):
             copy = next(tree.glob("tofsmith/_prefix/lib/libstdc++-*"))
             shutil.copy(bundle.make_sbom.installed_libraries()["libstdc++.so.6"], copy)
