@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""tofsmith atlas, and designs that search nothing."""
+"""tofsmith atlas, and designs without a search."""
 
 import csv
 import io
@@ -35,7 +35,7 @@ class Atlas(CommandLineTest):
         self.assertIn("bandwidth^-a peak^-b", text)
         self.assertIn("What bandwidth buys", self.bytes_of("a.html").decode())
 
-    def test_refuses_other_versions_damage_and_bad_words(self):
+    def test_rejects_other_versions_damage_and_unknown_words(self):
         self.write("one.txt", ONE)
         self.assertEqual(len(self.do_json("atlas", "--file", "one.txt")["codes"]), 1)
         self.write("new.txt", ONE.replace("atlas 1", "atlas 2"))
@@ -52,7 +52,7 @@ class Atlas(CommandLineTest):
             self.assertIn(problem, done[2])
         self.assertEqual(self.files(), ["cut.txt", "new.txt", "one.txt"])
 
-    def test_without_effort_nothing_is_searched(self):
+    def test_zero_effort_searches_nothing(self):
         few = ("--set", "operating.signal_e_per_s=[1e4]", "--set", "operating.ambient_e_per_s=[1e4]",
                "--trials", "2000", "--effort", "0")
         document = self.do_json("design", "paper-10f0", *few)

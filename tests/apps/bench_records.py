@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a bench records of a camera, simulated, for tests of calibrations."""
+"""Simulated calibration recordings of a camera."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ RANGE_M = 299792458 / 2 / 15e6
 
 class BenchRecordsTest(CommandLineTest):
     def record(self, sigma_ns=1.5):
-        """A Gaussian pulse as a scope with German settings writes it."""
+        """Writes a Gaussian pulse like an oscilloscope with German settings."""
         t = np.arange(400) * 0.1
         rng = np.random.default_rng(1)
         v = np.exp(-((t - 20) / sigma_ns) ** 2 / 2) + 0.01 * rng.standard_normal(t.size)
@@ -20,7 +20,7 @@ class BenchRecordsTest(CommandLineTest):
         return self.write("scope.csv", "Scope;4711\nTime (ns);Volt\n" + rows)
 
     def sweep(self):
-        """A flat target at 61 delays, seen by 6 x 6 pixels."""
+        """Writes a flat target at 61 delays, seen by 6 x 6 pixels."""
         self.write("camera.toml", CAMERA)
         frames = []
         for i in range(61):
@@ -36,7 +36,8 @@ class BenchRecordsTest(CommandLineTest):
         np.savetxt(self.path("shifts.txt"), np.arange(61))
 
     def flat_frames(self):
-        """0.npy .. 3.npy: pairs of frames of a flat target, dark, and by more and more light."""
+        """Writes 0.npy to 3.npy: pairs of frames of a flat target, dark and with increasing light.
+        """
         self.write("camera.toml", CAMERA)
         np.save(self.path("scene.npy"), np.full((32, 32), 2.0, np.float32))
         for i, ambient in enumerate(("0", "4e6", "1e7", "2e7")):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Calibrations from files to a camera, a table and maps that other commands take."""
+"""Calibrations from files to a camera, a table and maps for other commands."""
 
 import unittest
 
@@ -11,7 +11,7 @@ from bench_records import CAMERA, BenchRecordsTest
 
 class Calibrate(BenchRecordsTest):
 
-    def test_bad_records_are_refused(self):
+    def test_invalid_records_are_rejected(self):
         command = ["calibrate", "impulse-response"]
         self.write("a.csv", "4,5\n1,7\n" * 20)
         self.refuse([*command, "a.csv"], "a.csv:1", "--decimal")
@@ -26,7 +26,8 @@ class Calibrate(BenchRecordsTest):
         self.refuse(["calibrate", "noise", "--darkk", "x"], "did you mean --dark?", code=2)
 
     def swept(self, *, taps, difference=False, order=(0, 1, 2, 3), sign=1):
-        """A camera.toml of four phases, its sweep with wiggle, and a frame of 64 delays."""
+        """Writes the camera.toml of a four-phase camera, a delay sweep with harmonic errors, and a
+        frame of 64 delays."""
         self.write("camera.toml", "fundamental_frequency_hz = 60e6\nsamples = 60\n[sensor]\n"
                    f"taps = {taps}\ndrain = {'true' if taps == 1 else 'false'}\n"
                    + ('readout = "difference"\n' if difference else ""))
@@ -50,7 +51,7 @@ class Calibrate(BenchRecordsTest):
         range_m = 299792458 / 120e6
         return np.abs((np.load(self.path(depth))[0] - truth + range_m / 2) % range_m - range_m / 2)
 
-    def test_the_next_command_decodes_tables_of_any_taps_and_readout(self):
+    def test_tables_of_any_taps_and_readout_are_decoded(self):
         for taps, difference in ((1, False), (2, False), (2, True)):
             truth = self.swept(taps=taps, difference=difference)
             text = self.do("calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt",
@@ -61,7 +62,7 @@ class Calibrate(BenchRecordsTest):
             self.do(*command, "--force")
             self.assertLess(self.errors_m("depth.npy", truth).max(), 5e-3, (taps, difference))
 
-    def test_direction_and_order_are_kept_by_the_camera_and_can_be_said(self):
+    def test_direction_and_order_are_stored_in_the_camera_or_given_as_options(self):
         truth = self.swept(taps=2, difference=True, order=(0, 1, 3, 2), sign=-1)
         self.do("calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt", "--shift-unit",
                 "bin", "--camera", "camera.toml", "--code", "sinusoid-k4", "-o", "fitted.toml")
@@ -79,7 +80,7 @@ class Calibrate(BenchRecordsTest):
         self.refuse([*said, "--order", "0,1,1,2"], "order", "once")
         self.refuse([*said, "--order", "0,1,2"], "order")
 
-    def test_reference_depth_takes_frames_in_every_form(self):
+    def test_reference_depth_accepts_frames_in_every_format(self):
         self.write("camera.toml", "fundamental_frequency_hz = 60e6\n[sensor]\ntaps = 2\n"
                    'drain = false\nreadout = "difference"\n')
         nominal_m = np.linspace(0.1, 2.3, 4 * 48 * 64).reshape(4, 48, 64)
@@ -108,7 +109,7 @@ class Calibrate(BenchRecordsTest):
         self.refuse(["decode", "small.npy", "--code", "t.npz", "--camera", "mine.toml", "-o",
                      "e.npy"], "48 x 64")
 
-    def test_what_does_not_go_together_is_refused(self):
+    def test_rejects_incompatible_options(self):
         self.write("camera.toml", CAMERA)
         np.save(self.path("raw.npy"), np.full((3, 20, 20, 4), 300.0, np.float32))
         np.save(self.path("even.npy"), np.zeros((2, 2), np.float32))
@@ -130,7 +131,7 @@ class Calibrate(BenchRecordsTest):
         self.refuse(["calibrate", "temperature", "raw.npy", "--code", "sinusoid-k4",
                      "--temperatures", "few.txt"], "one for each of the 3 frames")
 
-    def test_perturbations_are_told_alone_and_together(self):
+    def test_perturbations_are_reported_separately_and_combined(self):
         arguments = ["evaluate", "hamiltonian-k3", "--trials", "200"]
         report = self.do_json(*arguments, "--perturb", "jitter=50ps,clock=5ns,droop=3%")
         names = [p["name"] for p in report["codes"][0]["robustness"]["perturbations"]]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the command line share: run the tool as a user does, in an empty directory."""
+"""Base of command-line tests: runs the tool as a user does, in an empty directory."""
 
 import json
 import os
@@ -13,7 +13,7 @@ TOOL = os.path.abspath(sys.argv.pop(1))
 
 
 class CommandLineTest(unittest.TestCase):
-    """Every test has a directory of its own; relative names are in it."""
+    """Every test has its own directory, to which file names are relative."""
 
     def setUp(self):
         directory = tempfile.TemporaryDirectory(prefix="tofsmith-test-")
@@ -24,7 +24,7 @@ class CommandLineTest(unittest.TestCase):
         return os.path.join(self.directory, name)
 
     def files(self):
-        """Every file and directory, hidden ones too."""
+        """Returns all files and directories, including hidden ones."""
         return sorted(
             os.path.relpath(os.path.join(folder, name), self.directory)
             for folder, folders, files in os.walk(self.directory)
@@ -40,29 +40,29 @@ class CommandLineTest(unittest.TestCase):
             return file.read()
 
     def start(self, *arguments, **options):
-        """Without progress, which a slow machine would tell."""
+        """Starts the tool without progress lines, which depend on the speed of the machine."""
         return subprocess.Popen([TOOL, "--quiet", *arguments], cwd=self.directory,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
     def run_tool(self, *arguments, **options):
-        """Exit code, standard output, standard error."""
+        """Returns exit code, standard output and standard error."""
         process = self.start(*arguments, **options)
         out, error = process.communicate(timeout=60)
         return process.returncode, out, error.decode(errors="replace")
 
     def do(self, *arguments, **options):
-        """Runs what must succeed and be silent on standard error; gives standard output."""
+        """Runs a command that must succeed without standard error; returns standard output."""
         code, out, error = self.run_tool(*arguments, **options)
         self.assertEqual((code, error), (0, ""), arguments)
         return out.decode()
 
     def do_json(self, *arguments):
-        """The same with --json: exactly one JSON document."""
+        """Runs a command with --json; it must print exactly one JSON document."""
         return json.loads(self.do(*arguments, "--json"))
 
     def refuse(self, arguments, *words, code=1):
-        """Runs what must fail: nothing on standard output, every word in the message, no file
-        appears, none changes."""
+        """Runs a command that must fail: standard output is empty, the message contains all words,
+        and no file is created or changed."""
         def content():
             return [(f, self.bytes_of(f) if os.path.isfile(self.path(f)) else None)
                     for f in self.files()]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every subcommand does what it says: documents, files, round trips, same seed same bytes."""
+"""Every subcommand: documents, files, round trips, and reproducibility for equal seeds."""
 
 import os
 import pty
@@ -18,7 +18,7 @@ SMALL = "scene.npy"
 
 class Commands(CommandLineTest):
     def small_scene(self):
-        """A ramp of distances [m], 12 x 16 pixels."""
+        """Writes a ramp of distances [m], 12 x 16 pixels."""
         truth = np.linspace(1.0, 4.0, 12 * 16).reshape(12, 16).astype(np.float32)
         np.save(self.path(SMALL), truth)
         return truth
@@ -30,7 +30,7 @@ class Commands(CommandLineTest):
     def decode(self, *more, code="hamiltonian-k3", raw="raw.npy", output="depth.npy"):
         return self.do_json("decode", raw, "--code", code, "-o", output, *more)
 
-    def test_cameras_lists_them(self):
+    def test_cameras_are_listed(self):
         cameras = {camera["name"]: camera for camera in self.do_json("cameras")}
         self.assertAlmostEqual(cameras["kinect-v2"]["range_m"], 18.737, places=3)
         text = self.do("cameras")
@@ -38,7 +38,7 @@ class Commands(CommandLineTest):
             self.assertIn(name, text)
             self.assertIn(camera["description"], text)
 
-    def test_cameras_prints_the_start_of_ones_own(self):
+    def test_cameras_prints_a_template(self):
         self.write("mine.toml", self.do("cameras", "mlx75027"))
         code = self.do_json("cameras", "mlx75027")["code"]
         mine, built_in = (self.do_json("evaluate", code, *FAST, "--camera", camera)
@@ -47,7 +47,7 @@ class Commands(CommandLineTest):
                          built_in["results"] if "results" in built_in else built_in)
         self.refuse(["cameras", "kinect-v1"], "kinect-v1", "did you mean kinect-v2?")
 
-    def test_cameras_prints_how_raw_frames_run(self):
+    def test_cameras_prints_the_raw_format(self):
         self.write("sensor.raw.toml", self.do("cameras", "arducam-tof", "--raw-format"))
         with open(self.path("dump.bin"), "wb") as dump:
             dump.write(bytes(2 * 4 * 240 * 180))
@@ -57,7 +57,7 @@ class Commands(CommandLineTest):
         self.refuse(["cameras", "kinect-v2", "--raw-format"], "interleaved", "arducam-tof")
         self.refuse(["cameras", "--raw-format"], "needs the NAME", code=2)
 
-    def test_the_keys_of_a_camera_are_listed_with_unit_range_and_default(self):
+    def test_camera_keys_are_listed_with_unit_range_and_default(self):
         keys = {key["key"]: key for key in self.do_json("cameras", "--keys")}
         peak = keys["light.peak_factor"]
         self.assertEqual((peak["range"], peak["default"]), ("finite and >= 1", 15.0))
@@ -76,7 +76,7 @@ class Commands(CommandLineTest):
         self.assertEqual(keys["frame_trailer_bytes"]["range"], "in [0, 1073741823]")
         self.assertIn("frame_trailer_bytes", self.do("cameras", "--raw-format", "--keys"))
 
-    def test_a_simulated_frame_has_its_camera_beside_it(self):
+    def test_a_simulated_frame_is_stored_with_its_camera(self):
         truth = self.small_scene()
         far = ("--set", "fundamental_frequency_hz=7.5e6")
         self.simulate(*far)
@@ -88,12 +88,12 @@ class Commands(CommandLineTest):
         self.assertEqual(self.bytes_of("depth.npy"), self.bytes_of("same.npy"))
         self.assertEqual(self.decode("--camera", "paper-10f0", output="near.npy")["camera_source"],
                          "paper-10f0")
-        # What the frames were seen through comes along.
+        # The lens of the rendered scene is included.
         self.do("simulate", "ball", "--width", "32", "--height", "24", "--code", "hamiltonian-k3",
                 "--signal", "1e7", "-o", "ball.npy", "--truth", "ball-z.npy")
         self.decode("--kind", "z", raw="ball.npy", output="z.npy")
         self.assertIn("fx_px", self.bytes_of("ball.camera.toml").decode())
-        # Our own is replaced, that of others never.
+        # Our own camera file is replaced, but not a foreign one.
         os.remove(self.path("raw.npy"))
         self.simulate()
         self.assertIn("15000000", self.bytes_of("raw.camera.toml").decode())
@@ -115,7 +115,7 @@ class Commands(CommandLineTest):
         self.assertEqual(len(document["per_measurement"]), 4)
         self.assertIn("|###", self.do("codes", "square-k4"))
 
-    def test_codes_counts_the_measurements_that_the_sensor_reads_out(self):
+    def test_codes_counts_the_measurements_read_out(self):
         pairs = ["hamiltonian-k4", "--set", "sensor.taps=2", "--set", "sensor.readout=difference"]
         document = self.do_json("codes", *pairs)
         self.assertEqual((document["taps"], document["measurements"]), (2, 4))
@@ -124,7 +124,7 @@ class Commands(CommandLineTest):
                       self.do("codes", *pairs))
         self.assertEqual(self.do_json("codes", *pairs[:3])["measurements"], 8)
 
-    def test_codes_read_back_from_a_table_of_waveforms(self):
+    def test_codes_are_read_back_from_a_table_of_waveforms(self):
         for code, settings in (("hamiltonian-k4", []), ("sinusoid-k4", []),
                                ("hamiltonian-k4", ["--set", "sensor.taps=2"])):
             self.do("codes", code, *settings, "-o", "w.csv", "--force")
@@ -133,7 +133,7 @@ class Commands(CommandLineTest):
                 self.assertEqual(figures[0][key], figures[1][key], (code, key))
             self.assertAlmostEqual(figures[0]["coding_curve_length"],
                                    figures[1]["coding_curve_length"],
-                                   3 if code == "sinusoid-k4" else 6)  # in steps in the file
+                                   3 if code == "sinusoid-k4" else 6)  # sampled in the file
         self.write("odd.csv", "modulation_1,modulation_2,demodulation_1\n1,1,1\n1,1,0\n")
         self.refuse(["evaluate", "odd.csv"], "odd.csv", "found 2 columns modulation_1 .. and 1 demod")
         self.write("odd.csv", "modulation_1,light\n1,1\n1,1\n")
@@ -147,7 +147,7 @@ class Commands(CommandLineTest):
         self.assertIn("table-top", self.do("scene").split())
         self.assertIn("table-top", self.do_json("scene")["scenes"])
 
-    def test_a_scene_file_gives_every_picture(self):
+    def test_a_scene_file_gives_every_image(self):
         self.write("s.toml", "[view]\nwidth_px = 41\nheight_px = 31\n[[sphere]]\n"
                    "centre_m = [0, 0, 20]\nradius_m = 8\nalbedo = 0.25\n")
         document = self.do_json("scene", "s.toml", "-o", "out", "--camera", "paper-10f0")
@@ -176,7 +176,7 @@ class Commands(CommandLineTest):
         depth = np.load(self.path("depth.npy"))
         self.assertEqual(np.isfinite(depth).sum(axis=1).max(), 32)  # 80 % of the width
 
-    def test_ambient_light_of_each_pixel(self):
+    def test_ambient_light_per_pixel(self):
         np.save(self.path("dark.npy"), np.full((8, 8), np.nan, np.float32))
         scale = np.ones((8, 8), np.float32)
         scale[:, 4:] = 3
@@ -186,7 +186,7 @@ class Commands(CommandLineTest):
         raw = np.load(self.path("raw.npy"))
         self.assertAlmostEqual(raw[:, 4:].mean() / raw[:, :4].mean(), 3, 1)
 
-    def test_albedo_above_all_light_is_told(self):
+    def test_albedo_above_one_is_reported(self):
         np.save(self.path("flat.npy"), np.full((4, 5), 2.0, np.float32))
         picture = np.full((4, 5), 0.5, np.float32)
         np.save(self.path("picture.npy"), picture)
@@ -198,7 +198,7 @@ class Commands(CommandLineTest):
         self.assertIn(told, self.do(*look))
         self.assertIn(told, self.do("simulate", *look[1:], "--code", "sinusoid-k4", "-o", "r.npy"))
 
-    def test_decode_tells_when_no_pixel_has_a_depth(self):
+    def test_decode_reports_frames_without_any_depth(self):
         adc = ("--set", "sensor.adc_bits=12", "--set", "sensor.gain_e_per_dn=1")
         for value, more, words in ((np.nan, (), ("20 invalid", "NaN")),
                                    (0, (), ("20 no_return", "--layout")),
@@ -241,7 +241,7 @@ class Commands(CommandLineTest):
         self.assertEqual((code, out), (2, b""))
         self.assertIn("Usage", error)
 
-    def test_a_closed_pipe_is_no_crash(self):
+    def test_a_closed_pipe_is_handled(self):
         process = self.start("codes")
         process.stdout.close()
         self.assertIn(process.wait(timeout=60), (0, 1, -13))
@@ -263,7 +263,7 @@ class Commands(CommandLineTest):
         try:
             while block := os.read(controller, 65536):
                 drawn += block
-        except OSError:  # the terminal is gone
+        except OSError:  # the terminal is closed
             pass
         out, _ = process.communicate(timeout=60)
         os.close(controller)

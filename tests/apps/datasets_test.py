@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""tofsmith simulate of many scenes: the same files whatever the order, shards and interruptions."""
+"""tofsmith simulate with many scenes: the files do not depend on order, shards or interruptions."""
 
 import json
 import os
@@ -29,7 +29,7 @@ class Datasets(CommandLineTest):
         return {os.path.relpath(name, folder): self.bytes_of(name) for name in self.files()
                 if name.startswith(folder + "/") and os.path.isfile(self.path(name))}
 
-    def test_a_bad_file_is_told_and_leaves_the_others(self):
+    def test_an_invalid_file_is_reported_without_affecting_others(self):
         self.make_scenes(3)
         self.write("scenes/broken.npy", "no array")
         code, _, error = self.run_tool("simulate", "scenes", *CODE, "-o", "set")
@@ -40,7 +40,7 @@ class Datasets(CommandLineTest):
         self.assertEqual(len(index["scenes"]), 3)
         self.assertEqual(index["failures"][0]["name"], "broken.npy")
 
-    def test_an_interrupt_keeps_what_is_finished(self):
+    def test_an_interrupted_run_keeps_finished_frames(self):
         self.make_scenes(200, height=800)
         process = self.start("simulate", "scenes", *CODE, "-o", "set")
         while not any(name.endswith(".json") for name in self.files()):
@@ -56,7 +56,7 @@ class Datasets(CommandLineTest):
         document = self.simulate("set")
         self.assertEqual((document["written"], document["kept"]), (200 - kept, kept))
 
-    def test_refuses_what_does_not_go_together(self):
+    def test_rejects_incompatible_options(self):
         self.make_scenes(2)
         np.save(self.path("one.npy"), np.ones((4, 4), np.float32))
         for arguments, words in (

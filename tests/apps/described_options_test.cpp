@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-// Outside the unnamed namespace, as options are: fields_of() is found by its argument.
+// Not in the unnamed namespace, like options: fields_of() is found by its argument.
 enum class Heat { top, bottom, both };
 constexpr std::array<std::string_view, 3> words_of(Heat /*any*/) {
   return {"top", "bottom", "both"};
@@ -64,7 +64,7 @@ class OvenCommand {
     });
   }
 
-  /// The message of the error, or "".
+  /// Returns the error message, or "".
   std::string parse(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);
     try {
@@ -105,7 +105,7 @@ TEST(DescribedOptions, KeepDefaultsUnlessGiven) {
   EXPECT_EQ(fields_json(command.oven), fields_json(Oven{}));
 }
 
-TEST(DescribedOptions, RefuseWhatTheirDescriptionExcludes) {
+TEST(DescribedOptions, RejectValuesOutsideTheirDescription) {
   const auto refused = [](std::vector<std::string> arguments) {
     return OvenCommand().parse(std::move(arguments));
   };

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Designs are documents, directories and reports; they resume; the demo does it all."""
+"""Designs give documents, directories and reports, and can be resumed; the demo runs."""
 
 import json
 import os

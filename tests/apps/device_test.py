@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""`decode --device`: the same files from an OpenCL device; drivers are loaded only on request."""
+"""`decode --device` writes the same files; drivers are loaded on request only."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from command_line import CommandLineTest
 
 
 def devices():
-    """What OpenCL finds; nothing where tofsmith was built without it."""
+    """Returns the OpenCL devices; an empty list if tofsmith was built without OpenCL."""
     listed = subprocess.run([command_line.TOOL, "decode", "--device", "list", "--json"],
                             capture_output=True, text=True)
     return json.loads(listed.stdout)["devices"] if listed.returncode == 0 else []
@@ -45,12 +45,12 @@ class Device(CommandLineTest):
         return error
 
     @needs_device
-    def test_a_device_writes_the_files_that_the_processor_writes(self):
-        # The steps and their combinations: tests/gpu/device_pipeline_test.cpp.
+    def test_a_device_writes_the_same_files_as_the_cpu(self):
+        # See tests/gpu/device_pipeline_test.cpp for further combinations.
         for more in ((), ("--average", "2", "--averaged", "3", "--memory-mb", "4"),
                      ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin"),
                      ("--average", "2", "--time-filter", "9", "--mixed", "label"),
-                     # Time filters that look ahead run on the CPU.
+                     # Time filters with look-ahead run on the CPU.
                      ("--time-filter", "9", "--look-ahead", "8", "--filter", "light")):
             for device in ("cpu", "auto", "0"):
                 code, _, error = self.decode(device, *more, "-o", device + ".npz", "--force")
@@ -63,7 +63,7 @@ class Device(CommandLineTest):
                     self.assertEqual(self.bytes_of(f"0{frame}.npz"), expected, more)
 
     @needs_device
-    def test_says_which_device_decoded(self):
+    def test_reports_the_device_used(self):
         code, out, _ = self.decode("0", "-o", "d.npz")
         self.assertEqual(code, 0)
         self.assertIn("device " + DEVICES[0]["name"], out.decode())
@@ -71,11 +71,11 @@ class Device(CommandLineTest):
         self.assertEqual(json.loads(out)["device"], DEVICES[0]["name"])
 
     @needs_device
-    def test_lists_devices_without_any_recording(self):
+    def test_lists_devices_without_a_recording(self):
         self.assertIn("0  " + DEVICES[0]["name"], self.do("decode", "--device", "list"))
 
     @needs_device
-    def test_drivers_are_loaded_when_a_device_is_asked_for_alone(self):
+    def test_drivers_are_loaded_only_if_a_device_is_requested(self):
         def loaded(device):
             error = self.decode(device, "-o", "d.npz", "--force",
                                 env=dict(os.environ, LD_DEBUG="files"))[2]
@@ -87,27 +87,27 @@ class Device(CommandLineTest):
             self.assertTrue(loaded("0"))
 
     @needs_device
-    def test_a_device_that_is_not_there_is_refused_with_those_that_are(self):
+    def test_unknown_devices_are_rejected_with_the_known_ones(self):
         for name in ("7000", "no such"):
             self.assertIn("0 " + DEVICES[0]["name"], self.refusal(name))
 
     @needs_device
-    def test_other_methods_are_refused_on_a_device_and_decoded_by_auto(self):
+    def test_other_methods_are_rejected_on_a_device_and_decoded_by_auto(self):
         self.assertIn("zncc", self.refusal("0", "--method", "ml", code=2))
         self.assertEqual(self.decode("auto", "--method", "ml", "-o", "d.npz")[0], 0)
 
     @needs_device
-    def test_a_driver_that_cannot_keep_kernels_is_refused(self):
+    def test_a_driver_without_a_kernel_cache_is_rejected(self):
         if not is_pocl():
             self.skipTest("the driver keeps kernels elsewhere")
         self.write("file", "")
-        for folder in (self.path("file/folder"), "/proc/none"):  # also for root
+        for folder in (self.path("file/folder"), "/proc/none"):  # invalid also for root
             environment = dict(os.environ, POCL_CACHE_DIR=folder)
             self.assertIn("POCL_CACHE_DIR", self.refusal("0", env=environment))
 
     @needs_device
-    def test_kernels_that_are_damaged_never_make_other_numbers(self):
-        """pocl gives an error for some, and for others ends the program."""
+    def test_damaged_cached_kernels_never_give_wrong_results(self):
+        """For some damage pocl returns an error, for other damage it ends the program."""
         if not is_pocl():
             self.skipTest("the driver keeps kernels elsewhere")
         os.mkdir(self.path("kernels"))
@@ -139,7 +139,7 @@ class Device(CommandLineTest):
             if DEVICES[0]["doubles"]:
                 self.assertEqual(self.bytes_of(f"{i}.npz"), self.bytes_of("cpu.npz"))
 
-    def test_without_drivers_devices_are_refused_and_auto_is_the_processor(self):
+    def test_without_drivers_devices_are_rejected_and_auto_uses_the_cpu(self):
         os.mkdir(self.path("none"))
         environment = dict(os.environ, OCL_ICD_VENDORS=self.path("none"))
         self.assertIn("OpenCL", self.refusal("gpu", env=environment))

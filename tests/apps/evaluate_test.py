@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `evaluate` prints and writes: fields, targets, methods, settings."""
+"""Output of `evaluate`: fields, targets, methods, settings."""
 
 import json
 import unittest
@@ -12,7 +12,7 @@ FAST = ("--trials", "1000")
 
 class Evaluate(CommandLineTest):
 
-    def test_evaluate_prints_the_mean_first_and_every_level_if_asked(self):
+    def test_prints_the_mean_first_and_every_level_on_request(self):
         codes = ("sinusoid-k4", "hamiltonian-k4")
         points = {code["name"]: [point["linear_mde_m"] for point in code["points"]]
                   for code in self.do_json("evaluate", *codes, *FAST)["codes"]}
@@ -24,12 +24,12 @@ class Evaluate(CommandLineTest):
                 self.assertAlmostEqual(float(lines[line].split()[5]) / error_m, 1e3, delta=1)
         self.assertIn("all 25 light levels of the camera (S = 1e+03 .. 1e+05, A = 100 .. 1e+05 e/s): --every-level", "\n".join(lines))
         full = [lines[i] for i in (0, 2, 3, 5, 6)]  # without means, which have no bounds
-        self.assertEqual(len({len(line) for line in full}), 1)  # columns stand below each other
+        self.assertEqual(len({len(line) for line in full}), 1)  # columns are aligned
         lines = self.do("evaluate", *codes, *FAST, "--every-level").splitlines()
         self.assertEqual(sum(line.startswith("hamiltonian-k4") for line in lines), 26)
         self.assertNotIn("--every-level", lines[-1])
 
-    def test_evaluate_writes_every_format(self):
+    def test_writes_every_format(self):
         document = self.do_json("evaluate", "sinusoid-k4", *FAST, "-o", "e.json")
         self.assertEqual(document, json.loads(self.bytes_of("e.json")))
         self.do("evaluate", "sinusoid-k4", *FAST, "-o", "e.csv")
@@ -37,7 +37,7 @@ class Evaluate(CommandLineTest):
         self.do("evaluate", "sinusoid-k4", *FAST, "-o", "e.html")
         self.assertIn(b"sinusoid-k4", self.bytes_of("e.html"))
 
-    def test_a_bound_that_is_none_is_an_empty_field(self):
+    def test_a_missing_bound_is_an_empty_field(self):
         self.do("evaluate", "sinusoid-k3", *FAST, "--set", 'light.impulse_response={kind="none"}',
                 "--set", 'sensor.impulse_response={kind="none"}', "-o", "none.csv")
         names, row, *_ = self.bytes_of("none.csv").decode().splitlines()
@@ -46,13 +46,13 @@ class Evaluate(CommandLineTest):
         self.assertEqual(fields["direct_tof_bound_mae_m"], "")
         self.assertGreater(float(fields["cramer_rao_mae_m"]), 0)
 
-    def test_levels_short_of_the_target_are_told(self):
+    def test_levels_that_miss_the_target_are_reported(self):
         text = self.do("evaluate", "sinusoid-k4", *FAST, "--target-standard-error", "0.1%",
                        "--max-trials", "3000")
         self.assertIn("25 of 25 operating points stay short of a standard error of 0.1 %", text)
         self.assertIn("3000 trials", text)
 
-    def test_the_method_is_told(self):
+    def test_the_method_is_reported(self):
         document = self.do_json("evaluate", "multifrequency-k5", *FAST, "--method", "unwrap",
                                 "--unwrap-weights", "frequency")
         self.assertEqual((document["method"], document["unwrap_weights"]), ("unwrap", "frequency"))
@@ -64,7 +64,7 @@ class Evaluate(CommandLineTest):
                                 "operating.signal_e_per_s=[1e-200]")
         self.assertIsNone(document["codes"][0]["points"][0]["cramer_rao_mae_m"])
 
-    def test_the_depths_that_are_judged_are_told(self):
+    def test_the_distribution_of_depths_is_reported(self):
         text = self.do("evaluate", "sinusoid-k4", *FAST)
         self.assertIn("true depths anywhere in the range, decoded", text)
         near = ("--set", "operating.working_distance_m=[1, 3]")
@@ -73,7 +73,7 @@ class Evaluate(CommandLineTest):
         text = self.do("evaluate", "sinusoid-k4", *FAST, *near, "--set", "operating.depths=[1, 2]")
         self.assertIn("true depths from 1 to 3 m, as often as 2 weights say, decoded", text)
 
-    def test_maximum_likelihood_stands_beside_zncc(self):
+    def test_maximum_likelihood_is_compared_with_zncc(self):
         ml = ("evaluate", "hamiltonian-k5", *FAST, "--set", "operating.signal_e_per_s=[1e5]", "--set",
               "operating.ambient_e_per_s=[1e2]", "--method", "ml")
         ratio = self.do_json(*ml)["codes"][0]["zncc"]["circular_ratio"]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Export of waveforms, and decoding of dumps that a file describes, as a user meets them."""
+"""Export of waveforms, and decoding of raw files with a description."""
 
 import unittest
 
@@ -12,7 +12,7 @@ QUICK = ("--trials", "200")
 
 
 class Export(CommandLineTest):
-    def test_scripts_of_generators_are_those_of_an_upload(self):
+    def test_exported_scripts_equal_those_of_an_upload(self):
         text = self.do("export", "hamiltonian-k3", "--format", "tek-tfw", "--samples", "16",
                        "--periods", "4", "-o", "d", *QUICK)
         self.assertIn("wrote 6 files of tek-tfw, 3 SCPI scripts, manifest.json and report.html", text)
@@ -22,7 +22,7 @@ class Export(CommandLineTest):
                          "16", "--periods", "4", "--exposure", "2")
         self.assertEqual(script.splitlines()[1:], upload.splitlines()[1:])
 
-    def test_limits_that_hurt_are_reported(self):
+    def test_harmful_limits_are_reported(self):
         text = self.do("export", "hamiltonian-k5", "--format", "csv", "--rate", "360e6",
                        "--edge-grid", "2.777777777777778e-9", "-o", "w.csv", *QUICK)
         self.assertIn("edge move (ns)", text)
@@ -31,7 +31,7 @@ class Export(CommandLineTest):
         rows = np.genfromtxt(self.path("w.csv"), delimiter=",", names=True)
         self.assertEqual(len(rows), 24)
 
-    def test_a_rate_that_nothing_plays_is_reported(self):
+    def test_an_unsupported_sample_rate_is_reported(self):
         def notes(name, *more):
             return self.do_json("export", "hamiltonian-k3", "--format", name, "-o", "d", "--force",
                                 "--no-loss", *more)["notes"]
@@ -39,14 +39,15 @@ class Export(CommandLineTest):
         for words in ("3600 MHz", "2400 MHz", "--rate 2.4e+09"):
             self.assertIn(words, note)
         self.assertIn("1000 MHz", notes("keysight-arb")[0])
-        self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # whoever says so has one
+        self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # explicitly requested rates are not
+                                                               # questioned
         self.assertEqual(notes("csv", "--samples", "120"), [])
-        (duty,) = notes("csv", "--camera", "prototype")  # nothing of its rate
+        (duty,) = notes("csv", "--camera", "prototype")  # no note about its sample rate
         self.assertNotIn("sample rate", duty)
         self.assertIn("note: " + note, self.do("export", "hamiltonian-k3", "--format", "csv", "-o",
                                                "d", "--force", "--no-loss"))
 
-    def test_a_grid_that_changes_a_duty_is_reported_with_those_that_do_not(self):
+    def test_a_grid_that_changes_a_duty_is_reported_with_alternatives(self):
         def notes(*more):
             return self.do_json("export", "hamiltonian-k4", "--format", "keysight-arb", "-o", "d",
                                 "--force", "--no-loss", *more)["notes"]
@@ -56,7 +57,8 @@ class Export(CommandLineTest):
         self.refuse(["export", "hamiltonian-k4", "--format", "keysight-arb", "--rate", "100e6", "-o",
                      "e"], "points are 1/6 of a period; 12 points or more, 180 MHz, can")
         self.assertEqual(notes("--samples", "60"), [])
-        (note,) = notes("--samples", "72", "--rate", "1.08e9")  # keeps them, but is too fast
+        (note,) = notes("--samples", "72", "--rate", "1.08e9")  # preserves the duties, but exceeds
+                                                                # the sample rate
         self.assertIn("no SCPI script was written: modulation_1 sample_rate_hz = 1.08e+09; must be "
                       "at most 1e+09, what 33622 plays", note)
 
@@ -85,7 +87,7 @@ class Export(CommandLineTest):
 
 
 class RawFormats(CommandLineTest):
-    def test_a_description_goes_without_a_layout_and_with_its_code(self):
+    def test_a_description_excludes_a_layout_and_must_match_the_code(self):
         self.write("dump.bin", bytes(2 * 4 * 5 * 3))
         self.write("s.raw.toml", "width = 5\nheight = 4\nmeasurements = 3\nbits = 16\n")
         decode = ["decode", "dump.bin", "-o", "d.npy", "--raw-format", "s.raw.toml", "--code"]

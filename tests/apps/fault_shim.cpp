@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Loaded before all else (LD_PRELOAD), it makes calls to the system fail as a full or broken disk
-// and too little memory would, while main() runs. Set by the environment:
+// A library for LD_PRELOAD that makes system calls of main() fail, as with a full or broken disk or
+// too little memory. Environment variables:
 //
 //   TOFSMITH_FAULT_CALL    write, sync, rename, open (for writing), mkdir, mmap or malloc
-//   TOFSMITH_FAULT_AT      the call that fails, from 1; 0: none, they are counted
-//   TOFSMITH_FAULT_ERRNO   the number it fails with; 0: the process is killed instead
-//   TOFSMITH_FAULT_STAYS   1: all calls of that kind after it fail, too
-//   TOFSMITH_FAULT_CLOCK   seconds: the time of day is that much later and earlier in turn
-//   TOFSMITH_FAULT_COUNTS  a file that gets the count of each kind when main() is over
+//   TOFSMITH_FAULT_AT      number of the failing call, from 1; 0: calls are only counted
+//   TOFSMITH_FAULT_ERRNO   errno of the failure; 0: kills the process instead
+//   TOFSMITH_FAULT_STAYS   1: all later calls of this kind fail, too
+//   TOFSMITH_FAULT_CLOCK   seconds by which the time of day is alternately later and earlier
+//   TOFSMITH_FAULT_COUNTS  file for the number of calls of each kind, written after main()
 //
-// Files that are no regular ones (terminals, pipes) never fail.
+// Calls on terminals and pipes never fail.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -63,7 +63,7 @@ void read_settings() {
   clock_jump_s = number_of("TOFSMITH_FAULT_CLOCK");
 }
 
-/// Counts a call; whether it shall fail, with errno set.
+/// Counts a call; returns whether it must fail, after setting errno.
 bool fails(Kind kind) {
   if (!is_active.load(std::memory_order_relaxed)) return false;
   const long at = counts[kind].fetch_add(1) + 1;
@@ -77,7 +77,7 @@ bool fails(Kind kind) {
   return true;
 }
 
-/// What the clock is off now.
+/// Returns the present error of the clock.
 time_t clock_error_s() {
   static std::atomic<unsigned> asked{0};
   return is_active && clock_jump_s != 0 ? (asked++ % 2 == 0 ? clock_jump_s : -clock_jump_s) : 0;
@@ -123,7 +123,7 @@ int counted_main(int argc, char** argv, char** environment) {
 
 }  // namespace
 
-// Each name stands for the one of the C library; NEXT is that one.
+// Each function replaces that of the C library, which NEXT returns.
 #define NEXT(name) next<decltype(&::name)>(#name)
 
 extern "C" {

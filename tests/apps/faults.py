@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What every command that writes leaves behind when a call to the system fails, it is killed, gets
-a signal, meets another process at the same output, or the clock jumps.
+"""Checks every command that writes with failing system calls, kills, signals, concurrent processes
+with the same output, and jumps of the clock.
 
-    faults.py TOFSMITH SHIM [--seconds N] [--seed S] [NAME ..]    until then, with counts at the end
+    faults.py TOFSMITH SHIM [--seconds N] [--seed S] [NAME ...]    runs for N seconds, prints counts
 
-Promised after a failed call: exit code 1 and a message (that names the output, unless memory was
-short), or success where the call did not matter; no part of a file under its final name; what was
-there before as it was; no hidden file; and the same command, once more, gives the same bytes. After
-a kill, a signal or without memory the same but for hidden files, which the next run takes away."""
+Guarantees after a failed call: exit code 1 and a message (with the output, unless memory was
+insufficient), or success if the call was optional; no partial file under its final name; earlier
+files unchanged; no hidden file; and the same command, run again, gives the same bytes. After a
+kill, a signal or insufficient memory, hidden files may remain; the next run removes them."""
 
 import argparse
 import collections
@@ -41,7 +41,7 @@ OF_SQLITE = re.compile(r"-(wal|shm|journal|lock)$")
 
 
 class Broken(AssertionError):
-    """A promise that was not kept."""
+    """A violated guarantee."""
 
 
 def require(holds, *what):
@@ -50,7 +50,7 @@ def require(holds, *what):
 
 
 def is_whole(name, content):
-    """Of files that hold times, so that two runs differ."""
+    """Returns whether a file with times, which differs between runs, is complete."""
     if name.endswith(".html"):
         return content.rstrip().endswith(b"</html>")
     if name.endswith(".json"):
@@ -59,7 +59,7 @@ def is_whole(name, content):
 
 
 class Rig:
-    """Runs commands in directories of their own that hold copies of the inputs."""
+    """Runs commands in separate directories with copies of the inputs."""
 
     def __init__(self, tool, shim, work):
         self.tool, self.shim, self.work = tool, shim, work
@@ -72,7 +72,7 @@ class Rig:
 
     @staticmethod
     def snapshot(directory):
-        """Bytes of every file, by its path inside."""
+        """Returns the bytes of every file by its path within the directory."""
         found = {}
         for folder, _, files in os.walk(directory):
             for name in files:
@@ -91,10 +91,10 @@ class Rig:
                 file.write(content)
 
     def made(self):
-        """All files but the inputs, which must be as they were."""
+        """Returns all files except the inputs, which must be unchanged."""
         found = self.snapshot(self.directory)
         for name, content in self.there.items():
-            # Readers of a store leave their mark in it.
+            # Readers of a store may modify it.
             require(found.pop(name, None) == content or name.endswith(".sqlite"), name,
                     "is an input and was changed")
         return {name: content for name, content in found.items() if not OF_SQLITE.search(name)}
@@ -111,14 +111,14 @@ class Rig:
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def run(self, command, force=False, **settings):
-        """Exit code and message."""
+        """Returns exit code and message."""
         process = self.start(command, force, **settings)
         error = process.communicate(timeout=120)[1]
         return process.returncode, error.decode(errors="replace")
 
     def clean(self, command, force=False):
-        """What a run without faults makes, which of it differs from run to run, its calls, and how
-        long it takes. Pages hold the command line, so that --force matters."""
+        """Returns the files of a run without faults, which of them differ between runs, its calls,
+        and its duration. Reports contain the command line, so that --force matters."""
         if (command.name, force) not in self.cleans:
             counts = os.path.join(self.work, "counts")
             runs = []
@@ -138,7 +138,7 @@ class Rig:
         return self.cleans[command.name, force]
 
     def check_files(self, command, earlier, after_kill, force=False):
-        """No part of a file; what was there before, or what a whole run makes."""
+        """Checks that no file is partial: each is either an earlier file or complete."""
         whole, differ, _, _ = self.clean(command, force)
         for name, content in self.made().items():
             if HIDDEN.search(name):
@@ -147,20 +147,20 @@ class Rig:
                 pass
             elif name in whole:
                 if name.endswith(".sqlite"):
-                    continue  # a journal may belong to it
+                    continue  # it may be the journal of a store
                 require(is_whole(name, content) if name in differ else content == whole[name],
                         "a part of a file:", name, f"({len(content)} of {len(whole[name])} bytes)")
             else:
                 require(command.also and name.startswith(command.also), "an unknown file:", name)
 
     def check_rerun(self, command, force):
-        """The same command, once more."""
+        """Runs the same command once more."""
         whole, differ, _, _ = self.clean(command, force)
         before = self.made()
         code, error = self.run(command, force)
         found = self.made()
         if code == 1 and re.search("exists already|already exists", error):
-            # All was done: refused as after any run.
+            # Everything was completed: the command is rejected as after any complete run.
             require(whole.keys() <= before.keys(), "the same command does not go on:", error)
         else:
             require(code == 0, "the same command does not go on:", error)
@@ -181,24 +181,24 @@ class Rig:
                 if name in command.outputs and not name.endswith(".sqlite")}
 
     def fail(self, command, call, at, number, stays=False, over=False):
-        """One run in which a call fails. @return its exit code"""
+        """Runs with a failing call. @return its exit code"""
         earlier = self.earlier_files(command) if over else {}
         whole, differ, _, _ = self.clean(command, over)
         self.fresh(earlier)
         code, error = self.run(command, over, call=call, at=at, errno=number, stays=int(stays))
         if call == "malloc" and code == -signal.SIGABRT and "Fatal glibc error" in error:
-            # Where glibc cannot note a destructor of a thread, it ends the process itself.
+            # If glibc cannot register a thread's destructor, it ends the process itself.
             require("out of memory" in error, "no message:", error)
             self.check_files(command, earlier, after_kill=True, force=over)
             self.check_rerun(command, over)
             return code
         require(code in (0, 1), "exit code", code, error)
-        if "items failed" in error:  # exports hold what is finished
+        if "items failed" in error:  # exports contain finished items
             for name in self.made():
                 require(not HIDDEN.search(name), "a hidden file is left:", name)
             self.check_rerun(command, True)
             return code
-        # Where no destructor gets memory, the process ends as if killed.
+        # If no destructor can allocate memory, the process ends as if killed.
         self.check_files(command, earlier, after_kill=call not in DISK, force=over)
         if code == 0:
             found = self.made()
@@ -216,7 +216,7 @@ class Rig:
         return code
 
     def kill(self, command, call, at):
-        """Killed at a call."""
+        """Kills the process at a call."""
         self.fresh()
         code, _ = self.run(command, call=call, at=at, errno=0)
         self.check_files(command, {}, after_kill=True)
@@ -224,7 +224,7 @@ class Rig:
         return code
 
     def signal_after(self, command, number, seconds):
-        """A signal after so long. @return the exit code; None: it was done before"""
+        """Sends a signal after `seconds`. @return the exit code; None if the run had ended"""
         self.fresh()
         process = self.start(command)
         time.sleep(seconds)
@@ -237,7 +237,7 @@ class Rig:
         if number == signal.SIGKILL:
             require(code in (-number, 0), "exit code", code)
         else:
-            # Before main() has set its handler the system's holds.
+            # Before main() has installed its handler, the default one applies.
             require(code in (0, 130, -number), "exit code", code, error)
         self.check_files(command, {}, after_kill=code != 0)
         if code != 0:
@@ -245,7 +245,8 @@ class Rig:
         return code
 
     def two_at_once(self, command):
-        """Two processes on the same output: all of one, and the other done or refused."""
+        """Runs two processes with the same output: one completes, the other completes or is
+        rejected."""
         self.fresh()
         pair = [self.start(command) for _ in range(2)]
         errors = [process.communicate(timeout=120)[1].decode(errors="replace") for process in pair]
@@ -267,7 +268,7 @@ class Rig:
 
 
 def each_fault(rig, command, rng, most_per_kind):
-    """(call, at, errno, stays, over) of a command, at most so many of a kind of call."""
+    """Yields (call, at, errno, stays, over), at most `most_per_kind` for each kind of call."""
     calls = rig.clean(command)[2]
     for call, numbers in ERRORS.items():
         count = calls[call]
@@ -310,7 +311,7 @@ class Tally:
 
 
 def run_all(rig, commands, seconds, seed):
-    """Rounds over all commands until the time is over: more of each in every round."""
+    """Repeats rounds over all commands until the time is over, with more faults in every round."""
     rng = random.Random(seed)
     tally = Tally()
     end = time.monotonic() + seconds

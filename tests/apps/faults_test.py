@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A sample of faults.py over every command that writes: the same always. The whole takes long
-(scripts/faults.sh)."""
+"""A fixed sample of the faults in faults.py, for every command that writes. See scripts/faults.sh
+for the complete test, which takes long."""
 
 import os
 import random
@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 SHIM = os.path.abspath(sys.argv.pop(2))
-from command_line import TOOL  # noqa: E402  takes the other argument
+from command_line import TOOL  # noqa: E402  reads the other argument
 from faults import DISK, Rig, each_fault  # noqa: E402
 from writing_commands import COMMANDS  # noqa: E402
 
@@ -25,7 +25,7 @@ class Faults(unittest.TestCase):
         cls.addClassCleanup(work.cleanup)
         cls.rig = Rig(TOOL, SHIM, work.name)
 
-    def test_a_failed_call_leaves_nothing_half_done(self):
+    def test_a_failed_call_leaves_no_partial_files(self):
         for i, command in enumerate(QUICK):
             rng = random.Random(i)
             faults = list(each_fault(self.rig, command, rng, 40))
@@ -36,7 +36,7 @@ class Faults(unittest.TestCase):
                 with self.subTest(command=command.name, fault=fault):
                     self.rig.fail(command, *fault)
 
-    def test_a_kill_leaves_nothing_half_done(self):
+    def test_a_kill_leaves_no_partial_files(self):
         for i, command in enumerate(QUICK[::4]):
             rng = random.Random(i)
             call = rng.choice(("write", "sync", "rename"))
@@ -44,24 +44,24 @@ class Faults(unittest.TestCase):
             with self.subTest(command=command.name, call=call, at=at):
                 self.rig.kill(command, call, at)
 
-    def test_of_several_outputs_those_that_miss_are_made(self):
+    def test_missing_outputs_are_completed(self):
         for command in QUICK:
             renames = self.rig.clean(command)[2]["rename"]
             for at in range(2, min(renames, 5) + 1):
                 with self.subTest(command=command.name, at=at):
                     self.rig.kill(command, "rename", at)
 
-    def test_two_processes_write_one_output(self):
+    def test_two_processes_can_use_one_output(self):
         for command in QUICK[::8]:
             with self.subTest(command=command.name):
                 self.rig.two_at_once(command)
 
-    def test_a_clock_that_jumps_changes_nothing(self):
+    def test_a_jumping_clock_changes_nothing(self):
         for command in QUICK[3::10]:
             with self.subTest(command=command.name):
                 self.rig.jump_clock(command)
 
-    def test_signals_leave_nothing_half_done(self):
+    def test_signals_leave_no_partial_files(self):
         rng = random.Random(1)
         for command, number in zip(QUICK[::7], (signal.SIGTERM, signal.SIGINT, signal.SIGHUP,
                                                 signal.SIGKILL)):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C stops any work soon, leaves no part of a file and keeps what is finished."""
+"""Ctrl-C stops any command soon, leaves no partial files and keeps finished results."""
 
 import json
 import os
@@ -33,7 +33,7 @@ class Interrupts(CommandLineTest):
         self.fail(f"{name} did not appear")
 
     def wait_for_handler(self, process, number):
-        """Until the process, which may start slowly, handles the signal."""
+        """Waits until the process, which may start slowly, handles the signal."""
         for _ in range(600):
             with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
                 caught = next(line for line in status if line.startswith("SigCgt:"))
@@ -46,7 +46,7 @@ class Interrupts(CommandLineTest):
         return {name: self.bytes_of(name) for name in self.files()
                 if os.path.isfile(self.path(name))}
 
-    def test_while_input_is_waited_for(self):
+    def test_while_waiting_for_input(self):
         os.mkfifo(self.path("pipe.npy"))
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             process = self.start("decode", "pipe.npy", "--code", "sinusoid-k4", "-o", "d.npy")
@@ -58,14 +58,14 @@ class Interrupts(CommandLineTest):
             self.assertEqual(error, b"tofsmith: interrupted; nothing was written\n")
         self.assertEqual(self.files(), ["pipe.npy"])
 
-    def test_a_hang_up_stops_as_ctrl_c_does(self):
+    def test_a_hang_up_is_handled_like_ctrl_c(self):
         process = self.start("evaluate", "sinusoid-k4", *LONG)
         time.sleep(0.5)
         process.send_signal(signal.SIGHUP)
         self.assertEqual(process.communicate(timeout=60)[1],
                          b"tofsmith: interrupted; nothing was written\n")
 
-    def test_a_design_killed_while_it_writes_goes_on(self):
+    def test_a_design_killed_while_writing_can_be_continued(self):
         asked = ("design", "--method", "factorize", "--exposures", "3", "--trials", "1000", "-o",
                  "d")
         self.do(*asked)
@@ -79,7 +79,7 @@ class Interrupts(CommandLineTest):
         for name in ("d/camera.toml", "d/codes/hamiltonian-k3.code.json"):
             self.assertEqual(self.bytes_of(name), before[name])
 
-    def test_an_export_killed_while_it_writes_goes_on(self):
+    def test_an_export_killed_while_writing_can_be_continued(self):
         asked = ("export", "square-k4", "--format", "csv", "--samples", "60", "--no-loss", "-o", "e")
         self.do(*asked)
         before = self.contents()
@@ -114,7 +114,7 @@ class Interrupts(CommandLineTest):
 
         def once_finished():
             self.wait_for(kept)
-            time.sleep(0.5)  # it is being judged now
+            time.sleep(0.5)  # judging has begun
 
         self.interrupt("design", "--method", "factorize", "--exposures", "3", *LONG, "-o", "d", after=once_finished,
                        directory="d")

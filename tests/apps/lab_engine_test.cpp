@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The engine of the lab's page answers what the library and the command do.
+// The engine of the lab page gives the same answers as the library and the command line.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,7 +47,7 @@ Json field_of(const Answered& answered, std::string_view key) {
   return nullptr;
 }
 
-TEST(LabEngine, EvaluateGivesTheDocumentOfTheCommand) {
+TEST(LabEngine, EvaluateReturnsTheDocumentOfTheCommand) {
   const Camera camera = load_camera("paper-10f0", std::array{std::string("samples=120")});
   const Answered answered = ask({{"call", "evaluate"},
                                  {"camera", camera_to_toml(camera)},
@@ -67,7 +67,7 @@ TEST(LabEngine, EvaluateGivesTheDocumentOfTheCommand) {
     EXPECT_EQ(error_m[i], code.error.points[i].linear_mde_m.value);
 }
 
-TEST(LabEngine, ACameraReadsBackAndEveryKeyItHasIsExplained) {
+TEST(LabEngine, ACameraIsReadBackAndEveryKeyIsExplained) {
   for (const std::string& name : built_in_camera_names()) {
     const Answered answered = ask({{"call", "camera"}, {"built_in", name}});
     EXPECT_EQ(parse_camera_toml(answered.json["toml"].get<std::string>(), "x.toml"),
@@ -92,17 +92,18 @@ TEST(LabEngine, AFieldHasTypeUnitAndBounds) {
   EXPECT_TRUE(bits["value"].is_null());
   EXPECT_EQ(field_of(answered, "sensor.dark_current_e_per_s")["unit"], "e/s");
   EXPECT_EQ(field_of(answered, "operating.error")["choices"], Json({"linear", "circular"}));
-  EXPECT_TRUE(field_of(answered, "light.impulse_response.cutoff_hz").is_null());  // of kind hann
+  EXPECT_TRUE(field_of(answered, "light.impulse_response.cutoff_hz").is_null());  // only for kind
+                                                                                  // hann
 }
 
-TEST(LabEngine, SetDoesWhatTheCommandsOptionDoes) {
+TEST(LabEngine, SetEqualsTheCommandLineOption) {
   const Answered answered = ask(
       {{"call", "set"}, {"built_in", "paper-10f0"}, {"key", "light.peak_factor"}, {"value", "7"}});
   EXPECT_EQ(parse_camera_toml(answered.json["toml"].get<std::string>(), "x.toml"),
             load_camera("paper-10f0", std::array{std::string("light.peak_factor=7")}));
 }
 
-TEST(LabEngine, DepthsThatOccurAreListsAndStayWhereOtherFieldsChange) {
+TEST(LabEngine, DepthsAreListsAndAreKeptWhenOtherFieldsChange) {
   const std::array settings = {std::string("operating.working_distance_m=[1, 3]"),
                                std::string("operating.depths=[3, 1, 0.5]")};
   const Camera camera = load_camera("paper-10f0", settings);
@@ -124,7 +125,7 @@ TEST(LabEngine, DepthsThatOccurAreListsAndStayWhereOtherFieldsChange) {
   EXPECT_FALSE(distance["doc"].get<std::string>().empty());
 }
 
-TEST(LabEngine, AnotherKindOfResponseGetsItsNumberAndTheChangeSaysSo) {
+TEST(LabEngine, ChangingTheKindOfResponseSetsItsParameter) {
   for (const char* kind : {"none", "hann", "gaussian", "lowpass"}) {
     const Answered answered = ask({{"call", "set"},
                                    {"built_in", "paper-10f0"},
@@ -139,7 +140,7 @@ TEST(LabEngine, AnotherKindOfResponseGetsItsNumberAndTheChangeSaysSo) {
   }
 }
 
-TEST(LabEngine, AKeyWithoutValueIsNotSetAnyMore) {
+TEST(LabEngine, AKeyWithoutValueIsRemoved) {
   const Answered answered = ask({{"call", "camera"},
                                  {"built_in", "paper-10f0"},
                                  {"changes",
@@ -149,13 +150,13 @@ TEST(LabEngine, AKeyWithoutValueIsNotSetAnyMore) {
             built_in_camera("paper-10f0"));
 }
 
-TEST(LabEngine, AValueOfNothingIsRefusedAtItsKey) {
+TEST(LabEngine, AnEmptyValueIsRejectedAtItsKey) {
   EXPECT_EQ(error_of(R"({"call": "camera", "built_in": "paper-10f0",
                         "changes": [{"key": "light.peak_factor", "value": " "}]})")["field"],
             "light.peak_factor");
 }
 
-TEST(LabEngine, ACodeSavedIsTheCode) {
+TEST(LabEngine, ASavedCodeIsReadBack) {
   const Json camera = {{"built_in", "paper-10f0"}};
   Json request = {
       {"call", "save_code"}, {"built_in", "paper-10f0"}, {"code", {{"name", "hamiltonian-k5"}}}};
@@ -176,7 +177,7 @@ Json move_request(const char* arm, int edge, double position) {
           {"position", position}};
 }
 
-TEST(LabEngine, AnEdgeMovesAloneAndStopsAtItsNeighbour) {
+TEST(LabEngine, AMovedEdgeStopsAtItsNeighbour) {
   const Answered before =
       ask({{"call", "code"}, {"built_in", "paper-30x"}, {"code", {{"name", "square-k4"}}}});
   const std::vector<double> was = before.json["gate_edges"][1];
@@ -193,7 +194,7 @@ TEST(LabEngine, AnEdgeMovesAloneAndStopsAtItsNeighbour) {
   EXPECT_GT(std::fmod(shut[1] - shut[0] + 1.0, 1.0), 0.0);
 }
 
-TEST(LabEngine, AMovedEdgeOfLightKeepsPowerAndPeakWithinTheCameras) {
+TEST(LabEngine, AMovedEdgeOfLightKeepsThePowerAndThePeakLimit) {
   for (const double position : {0.01, 0.2, 0.9}) {
     const Answered moved = ask(move_request("light", 1, position));
     const CodeSet code = parse_code_json(moved.json["file"].get<std::string>());
@@ -202,7 +203,7 @@ TEST(LabEngine, AMovedEdgeOfLightKeepsPowerAndPeakWithinTheCameras) {
   }
 }
 
-TEST(LabEngine, TheComplementOfAGateStaysIt) {
+TEST(LabEngine, TheComplementOfAGateIsPreserved) {
   Json request = move_request("gate", 0, 0.13);
   request["changes"] = {{{"key", "sensor.taps"}, {"value", "2"}},
                         {{"key", "sensor.drain"}, {"value", "false"}}};
@@ -211,7 +212,7 @@ TEST(LabEngine, TheComplementOfAGateStaysIt) {
   EXPECT_NEAR(code.demodulation(0).mean() + code.demodulation(1).mean(), 1.0, 1e-12);
 }
 
-TEST(LabEngine, ASceneIsDecodedAndFilteringHelps) {
+TEST(LabEngine, ASceneIsDecodedAndFilteringReducesErrors) {
   Json request = {{"call", "scene"},
                   {"built_in", "paper-10f0"},
                   {"scene", "ball"},
@@ -238,7 +239,7 @@ TEST(LabEngine, CommandsCanBePastedIntoAShell) {
             "--set 'operating.signal_e_per_s=[1e3, 1e4]' --trials 1000");
 }
 
-TEST(LabEngine, CommandsLeaveOutTheKeysThatThePageDoes) {
+TEST(LabEngine, CommandsOmitKeysThatThePageOmits) {
   const Answered answered =
       ask({{"call", "command"},
            {"what", "camera"},
@@ -247,7 +248,7 @@ TEST(LabEngine, CommandsLeaveOutTheKeysThatThePageDoes) {
   EXPECT_EQ(answered.json["command"], "tofsmith cameras kinect-v2 --set sensor.full_well_e=");
 }
 
-TEST(LabEngine, ADesignIsACodeOfTheCameraAndTellsHowFarItIs) {
+TEST(LabEngine, ADesignReturnsACodeForTheCameraAndReportsProgress) {
   double told = 0.0;
   const Json request = {{"call", "design"},
                         {"built_in", "paper-10f0"},
@@ -270,7 +271,7 @@ TEST(LabEngine, ADesignIsACodeOfTheCameraAndTellsHowFarItIs) {
   EXPECT_GT(json["answer"]["error_m"], 0.0);
 }
 
-TEST(LabEngine, WhateverIsAskedThereIsAReply) {
+TEST(LabEngine, EveryRequestGetsAReply) {
   const std::string deep(100000, '[');
   std::string dotted = "a";
   for (int i = 0; i < 100000; ++i) dotted += ".a";
@@ -317,7 +318,7 @@ TEST(LabEngine, WhateverIsAskedThereIsAReply) {
   EXPECT_FALSE(error_of(std::string(std::size_t{33} << 20, ' ')).empty());
 }
 
-TEST(LabEngine, AnErrorNamesItsField) {
+TEST(LabEngine, AnErrorContainsItsField) {
   EXPECT_EQ(error_of(R"({"call": "evaluate", "trials": "many", "built_in": "paper-10f0",
                         "code": {"name": "sinusoid-k4"}})")["field"],
             "trials");

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that writes works with little memory, few files, a small stack, and without home,
-temporary folder and a writable root.
+"""Every command that writes works with little memory, few files, a small stack, and without home
+folder, temporary folder and a writable root.
 
-    limits_test.py TOFSMITH --figures     peaks of memory on inputs of usual size, under these limits
+    limits_test.py TOFSMITH --figures     peak memory on inputs of typical size, under these limits
 """
 
 import os
@@ -21,13 +21,13 @@ from writing_commands import COMMANDS, make_inputs
 
 MB = 2**20
 LIMITS = {
-    resource.RLIMIT_DATA: 300 * MB,  # what is taken, not addresses that are kept free
+    resource.RLIMIT_DATA: 300 * MB,  # allocated memory, not reserved addresses
     resource.RLIMIT_NOFILE: 32,
     resource.RLIMIT_STACK: 256 * 1024,
     resource.RLIMIT_CORE: 0,
 }
 BARE = {"PATH": "/usr/bin:/bin", "TMPDIR": "/nonexistent"}
-# On inputs as users have them; each may use the outputs of those before.
+# Inputs of typical size; each command may use the outputs of earlier ones.
 USUAL = """codes hamiltonian-k4 -o c.html
 evaluate hamiltonian-k4 sinusoid-k4 -o e.html
 scene table-top --width 640 --height 480 -o look
@@ -78,7 +78,7 @@ class Limits(unittest.TestCase):
                 for name in command.outputs:
                     self.assertTrue(os.path.exists(os.path.join(self.directory, name)), name)
 
-    def test_a_root_that_cannot_be_written(self):
+    def test_a_read_only_root(self):
         mounts = ["unshare", "--mount", "sh", "-c",
                   'mount --bind "$PWD" "$PWD" && mount -o remount,bind,ro / && cd "$PWD" && exec "$@"',
                   "sh"]
@@ -96,7 +96,7 @@ class Limits(unittest.TestCase):
         self.assertEqual(away.returncode, 1)
         self.assertRegex(away.stderr, r"^tofsmith: /c.npz: .*Read-only file system\n$")
 
-    def test_too_little_memory_is_told(self):
+    def test_insufficient_memory_is_reported(self):
         for megabytes in (16, 20, 24):
             done = self.run_bare(["simulate", "table-top", "--code", "sinusoid-k4", "--width",
                                   "1600", "--height", "1200", "-o", "raw.npy"],
@@ -104,7 +104,7 @@ class Limits(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr), (1, "tofsmith: out of memory\n"))
             self.assertFalse(os.path.exists(os.path.join(self.directory, "raw.npy")))
 
-    def test_a_file_that_may_not_grow_is_told(self):
+    def test_a_file_size_limit_is_reported(self):
         done = self.run_bare(["codes", "sinusoid-k4", "-o", "c.html"],
                              {resource.RLIMIT_FSIZE: 100_000})
         self.assertEqual(done.returncode, 1)

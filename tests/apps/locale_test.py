@@ -27,7 +27,7 @@ def without_times(text):
 
 
 def contents(path):
-    """Of a file, or of every file of a directory by its path within."""
+    """Returns the content of a file, or of every file of a directory by its path within."""
     if not os.path.isdir(path):
         with open(path, "rb") as file:
             return file.read()
@@ -54,7 +54,8 @@ class Locale(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         found = {name: contents(os.path.join(directory, name))
                  for name in command.outputs
-                 if name not in command.timed and not name.endswith(".sqlite")}  # stores contain times
+                 if name not in command.timed and not name.endswith(".sqlite")}  # stores contain
+                                                                                 # times
         shutil.rmtree(directory)
         return without_times(done.stdout), found
 

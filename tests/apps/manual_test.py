@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Manual pages and shell completion know every command and option.
+"""Manual pages and shell completions contain every command and option.
 
-manual_test.py TOOL MANUAL_DIRECTORY COMPLETION_DIRECTORY"""
+    manual_test.py TOOL MANUAL_DIRECTORY COMPLETION_DIRECTORY
+"""
 
 import os
 import re
@@ -16,7 +17,7 @@ from command_line import CommandLineTest
 MANUAL = os.path.abspath(sys.argv.pop(1))
 COMPLETION = os.path.abspath(sys.argv.pop(1))
 
-# What readline would have done before it calls the function, and what it does after.
+# Simulates what readline does before and after it calls the function.
 COMPLETE_LINES = r"""
 source "$1"
 while IFS= read -r line; do
@@ -34,7 +35,7 @@ class Manual(CommandLineTest):
     def commands(self):
         return self.do_json("--list-commands")["commands"]
 
-    def test_the_listing_is_what_help_says(self):
+    def test_the_listing_equals_help(self):
         for command in self.commands():
             text = self.do(*command["words"], "--help-all")
             for argument in command["options"] + command["positionals"]:
@@ -44,7 +45,7 @@ class Manual(CommandLineTest):
                 known = [name for o in command["options"] for name in o["names"]]
                 self.assertIn(option, known, command["words"])
 
-    def test_help_shows_few_options_and_says_that_there_are_more(self):
+    def test_help_shows_few_options_and_mentions_further_ones(self):
         for command in self.commands():
             text = self.do(*command["words"], "--help")
             shown = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE))
@@ -76,7 +77,7 @@ class Manual(CommandLineTest):
         self.assertEqual(pages, set(os.listdir(MANUAL)))
 
     @unittest.skipUnless(shutil.which("groff"), "groff is not installed")
-    def test_pages_are_set_without_warnings(self):
+    def test_pages_are_formatted_without_warnings(self):
         for name in sorted(os.listdir(MANUAL)):
             done = subprocess.run(["groff", "-Tutf8", "-ww", "-man", "-rLL=78n",
                                    os.path.join(MANUAL, name)], capture_output=True, check=True)
@@ -86,7 +87,7 @@ class Manual(CommandLineTest):
 @unittest.skipUnless(shutil.which("bash"), "bash is not installed")
 class Bash(CommandLineTest):
     def complete(self, *lines):
-        """What bash offers at the end of each line."""
+        """Returns the completions of bash at the end of each line."""
         done = subprocess.run(["bash", "-c", COMPLETE_LINES, "bash",
                                os.path.join(COMPLETION, "tofsmith")],
                               input="".join(line + "\n" for line in lines), cwd=self.directory,
@@ -104,7 +105,7 @@ class Bash(CommandLineTest):
             options = {name for option in command["options"] for name in option["names"]}
             self.assertEqual(found, options | general, command["words"])
 
-    def test_commands_of_commands(self):
+    def test_subcommands(self):
         self.assertEqual(self.complete("tofsmith cal", "tofsmith calibrate no",
                                        "tofsmith --threads 2 calibrate im"),
                          [{"calibrate"}, {"noise"}, {"impulse-response"}])
@@ -120,7 +121,7 @@ class Bash(CommandLineTest):
         self.assertIn("hamiltonian-k4", found[4])
         self.assertEqual(found[5:], [{"table-top"}, {"zncc"}])
 
-    def test_files_beside_names_and_where_no_name_fits(self):
+    def test_files_are_offered_with_names_and_if_no_name_matches(self):
         self.write("paper-mine.toml", "")
         self.write("data.npy", "")
         names, after = self.complete("tofsmith design --camera paper-",
@@ -130,7 +131,7 @@ class Bash(CommandLineTest):
         with open(os.path.join(COMPLETION, "tofsmith"), encoding="utf-8") as file:
             self.assertIn("complete -o bashdefault -o default", file.read())
 
-    def test_a_value_is_not_taken_for_a_command(self):
+    def test_a_value_is_not_mistaken_for_a_command(self):
         self.assertEqual(self.complete("tofsmith sweep --store merge --rep"), [{"--report"}])
 
 
@@ -142,10 +143,10 @@ class OtherShells(CommandLineTest):
                               text=True, check=True)
         self.assertEqual(done.stderr, "")
 
-    def test_zsh_reads_its_file(self):
+    def test_zsh_accepts_its_file(self):
         self.check("zsh", "_tofsmith")
 
-    def test_fish_reads_its_file(self):
+    def test_fish_accepts_its_file(self):
         self.check("fish", "tofsmith.fish")
 
 

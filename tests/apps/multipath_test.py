@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Light that comes back twice, as a user asks for it, and what is refused."""
+"""The multipath command, and its error messages."""
 
 import unittest
 
@@ -15,7 +15,7 @@ SIMULATE = ["simulate", "corner", *SMALL, *TWO_BUCKETS, "-o", "raw.npy"]
 
 class Multipath(CommandLineTest):
 
-    def test_a_scene_beside_the_maps(self):
+    def test_a_scene_is_included_with_the_maps(self):
         document = self.do_json(
             "multipath", "hamiltonian-k5", "--set", "sensor.taps=2", "--trials", "50",
             "--delays", "1", "--ratios", ".3", "--tails", ".5", "--signals", "1e5", "--scene",
@@ -23,7 +23,7 @@ class Multipath(CommandLineTest):
         self.assertEqual(document["scene"]["all"]["pixels"], 8 * 6)
         self.assertIn(b"seen from above", self.bytes_of("page.html"))
 
-    def test_refusals_of_words(self):
+    def test_rejected_words(self):
         for arguments, words in (
                 (["--bounces", "2"], ["--bounces", "2"]),
                 (["--bounces", "-1"], ["--bounces", "-1"]),
@@ -61,7 +61,7 @@ class Multipath(CommandLineTest):
         self.refuse(["design", "--multipath", "ratio=.3", "--robust"], "--robust: found beside",
                     code=2)
 
-    def test_refusals_of_values(self):
+    def test_rejected_values(self):
         self.refuse([*SIMULATE, "--multipath", "delta=1,ratio=-.3"], "ratio = -0.3",
                     "must be finite and >= 0")
         self.refuse([*SIMULATE, "--multipath", "delta=11,ratio=.3"], "unambiguous range")
@@ -70,7 +70,7 @@ class Multipath(CommandLineTest):
         self.refuse(["design", "--set", "operating.multipath.ratio=[0.5,0.1]"],
                     "operating.multipath.ratio = [0.5, 0.1]; must be")
 
-    def test_refusals_of_codes(self):
+    def test_rejected_codes(self):
         self.do(*SIMULATE)
         self.refuse(["decode", "raw.npy", "--code", "sinusoid-k5", "--set", "sensor.taps=2",
                      "--method", "two-return", "-o", "d.npz"], "independent means")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Long work says how far it is where no terminal is: in a log or a pipe, in plain lines."""
+"""Without a terminal, long commands report progress in plain lines."""
 
 import signal
 import subprocess
@@ -24,17 +24,17 @@ class ProgressLines(CommandLineTest):
         self.assertEqual((process.returncode, out), (130, b""))
         return error
 
-    def test_long_work_tells_plain_lines_unless_quiet(self):
+    def test_long_commands_print_plain_lines_unless_quiet(self):
         told = [self.start_watched(*LONG, *json) for json in ((), ("--json",))]
         quiet = [self.start_watched(*words) for words in (("--quiet", *LONG), (*LONG, "--quiet"))]
         for process in told:
             first = process.stderr.readline()
             self.assertRegex(first, rb"^tofsmith: evaluating \d+ %  \w[^\r\x1b]*\n$")
-        time.sleep(1)  # longer than work without progress
+        time.sleep(1)  # longer than the delay of the first line
         for process in (*told, *quiet):
             self.assertEqual(self.end(process), b"tofsmith: interrupted; nothing was written\n")
 
-    def test_short_work_tells_nothing(self):
+    def test_short_commands_print_no_progress(self):
         process = self.start_watched("evaluate", "sinusoid-k4", "--trials", "100", "--set",
                                   "samples=60", "--json")
         self.assertEqual(process.communicate(timeout=60)[1], b"")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever is wrong with what it is given, the tool says where, what it found and what it expected,
-and leaves no file behind."""
+"""Error messages contain the place, the invalid input and the expected input; no file is left
+behind."""
 
 import json
 import os
@@ -27,13 +27,13 @@ class Refusals(CommandLineTest):
     def refuse_setting(self, setting, *words, code="sinusoid-k4"):
         self.refuse(["evaluate", code, "--trials", "1000", "--set", setting], *words)
 
-    def test_messages_do_not_steer_a_terminal(self):
+    def test_messages_contain_no_terminal_escapes(self):
         for name, shown in ((b"\x1b[31mred", "\\x1b[31mred"), (b"a\xff\xc2\x9bb", "a\\xff\\xc2\\x9bb"),
                             ("Größe".encode(), "Größe")):
             process = self.start("evaluate", os.fsdecode(name))
             error = process.communicate()[1]
             self.assertEqual(process.returncode, 1)
-            self.assertIn(shown, error.decode())  # which is UTF-8
+            self.assertIn(shown, error.decode())  # in UTF-8
             self.assertNotIn(b"\x1b", error)
         self.write("c.toml", 'name = "\\u001b[31mred"\nfundamental_frequency_hz = 15e6\n')
         self.assertIn("sinusoid-k4 on \\x1b[31mred: ",
@@ -41,7 +41,7 @@ class Refusals(CommandLineTest):
         process = self.start("evaluate", "x" * 100_000)
         self.assertLess(len(process.communicate()[1]), 6000)
 
-    def test_no_option_has_an_empty_value(self):
+    def test_every_option_rejects_an_empty_value(self):
         for option, *words in (
                 ("-o", "codes", "sinusoid-k4", "-o", ""),
                 ("--output", "codes", "sinusoid-k4", "--output="),
@@ -143,7 +143,7 @@ class Refusals(CommandLineTest):
             self.refuse(["evaluate", code], "measurements = 2", ">= 3")
         self.do("codes", "sinusoid-k3", "-o", "c.code.json")
         code = json.loads(self.bytes_of("c.code.json"))
-        # Three equal measurements do not tell depth from signal.
+        # Three equal measurements do not separate depth from signal.
         same = code | {"modulation": code["modulation"][:1] * 3, "demodulation": code["demodulation"][:1] * 3}
         for content, words in ((same, ["rank", ">= 2"]), (code | {"version": 99}, ["c.code.json", "version"]),
                                (code | {"samples": -1}, ["c.code.json", "samples"])):
@@ -157,7 +157,7 @@ class Refusals(CommandLineTest):
     def test_codes_for_another_camera(self):
         self.do("codes", "hamiltonian-k3", "-o", "h.code.json")
         evaluate = ["evaluate", "h.code.json", "--set"]
-        self.assertIn("N = 480", self.do(*evaluate, "samples=480"))  # sampled anew
+        self.assertIn("N = 480", self.do(*evaluate, "samples=480"))  # resampled
         self.refuse([*evaluate, "light.peak_factor=2"], "peak = 6", "peak_factor = 2")
         self.refuse([*evaluate, "sensor.taps=2"], "taps = 1", "sensor.taps = 2")
 
@@ -234,7 +234,7 @@ class Refusals(CommandLineTest):
         self.refuse(["codes", "sinusoid-k4", "-o", "c.txt"], "c.txt", ".json")
         self.refuse(["design", "-o", "file"], "directory")
         self.refuse(["design", "-o", "file/d"], "file/d", "directory")
-        # before long work, not after it
+        # before the long computation, not after it
         self.write("e.csv", "old")
         self.refuse(["evaluate", "sinusoid-k4", "--trials", "100000000", "-o", "e.csv"], "e.csv",
                     "--force")
@@ -254,7 +254,7 @@ class Refusals(CommandLineTest):
         self.refuse(["simulate", "map.npy", "--code", "sinusoid-k4", "-o", "map.npy", "--force"],
                     "map.npy", "input")
 
-    def test_no_command_replaces_what_it_reads(self):
+    def test_no_command_replaces_its_input(self):
         np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))
         self.do("codes", "sinusoid-k4", "-o", "code.json")
         os.symlink("code.json", self.path("link.json"))
@@ -279,7 +279,7 @@ class Refusals(CommandLineTest):
                     code=2)
         self.refuse(["design", "--target", "hamiltonian-k3", "--normalize"], "--normalize", code=2)
 
-    def test_files_that_are_in_the_way_of_a_directory(self):
+    def test_files_in_the_way_of_a_directory(self):
         self.write("report.html", "mine")
         self.refuse(["design", "--method", "factorize", "--exposures", "3", "--trials", "1000", "-o",
                      "."], "report.html",

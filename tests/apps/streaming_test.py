@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Decoding recordings of any size: pipes, stacks, notes, bounded memory, interrupts."""
+"""Decoding of recordings of any size: pipes, stacks, notes, bounded memory, interrupts."""
 
 import os
 import pty
@@ -19,7 +19,7 @@ MEMORY_LIMIT_MB = 512
 
 class Streaming(CommandLineTest):
     def record(self, frames=3, dtype="u2"):
-        """Frames of a ramp of distances, 30 x 40 pixels, as (F, H, W, K)."""
+        """Writes frames of a ramp of distances, 30 x 40 pixels, as (F, H, W, K)."""
         np.save(self.path("scene.npy"),
                 np.linspace(1, 4, 30 * 40).reshape(30, 40).astype(np.float32))
         self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k3",
@@ -36,14 +36,14 @@ class Streaming(CommandLineTest):
         return [command_line.TOOL, "decode", "-", "--raw-format", "s.raw.toml", "--code",
                 "hamiltonian-k3", *more, "-o", "-"]
 
-    def test_frames_go_through_a_pipe_one_by_one(self):
+    def test_frames_pass_through_a_pipe_one_by_one(self):
         raw = self.record()
         self.decode("--stack", "--outputs", "depth,status")
         depth, status = np.load(self.path("d.npy")), np.load(self.path("d-status.npy"))
         process = subprocess.Popen(self.pipe("--outputs", "depth,status"), cwd=self.directory,
                                    stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
-        for frame in range(3):  # each comes out though no other has gone in
+        for frame in range(3):  # each is output before the next one is sent
             process.stdin.write(raw[frame].tobytes())
             process.stdin.flush()
             out = process.stdout.read(30 * 40 * 5)
@@ -65,7 +65,7 @@ class Streaming(CommandLineTest):
         self.assertEqual(process.wait(timeout=10), 130)
         self.assertIn("decoded 0 frames", process.communicate()[1].decode())
 
-    def test_a_pipe_is_not_mixed_with_files(self):
+    def test_a_pipe_excludes_files(self):
         self.record()
         self.write("s.raw.toml", "width = 40\nheight = 30\nmeasurements = 3\nbits = 16\n")
         code = ("--code", "hamiltonian-k3")
@@ -81,7 +81,7 @@ class Streaming(CommandLineTest):
         return self.do_json(*self.arguments(*more, **names))
 
     def sparse(self, name, shape, dtype, written=()):
-        """A large file that takes no room; `written` are (index, values) of its first axes."""
+        """Creates a large sparse file; `written` are (index, values) of its first axes."""
         np.lib.format.open_memmap(self.path(name), "w+", dtype, shape)
         array = np.load(self.path(name), mmap_mode="r+")
         for index, values in written:
@@ -90,7 +90,7 @@ class Streaming(CommandLineTest):
         return name
 
     def peak_mb(self, *arguments):
-        """Most memory that a command which succeeds had resident; at least what Python takes."""
+        """Returns the peak resident memory of a command that succeeds; at least that of Python."""
         process = self.start(*arguments)
         out, error = process.stdout.read(), process.stderr.read()
         process.stdout.close()
@@ -104,7 +104,7 @@ class Streaming(CommandLineTest):
         self.record()
         for extension in ("npy", "npz", "exr", "pfm", "png", "ply"):
             kind = () if extension == "ply" else ("--kind", "z")
-            # planes of a frame stand in memory as a whole, and bands of it are read
+            # The planes of a frame are kept in memory; the raw values are read in bands.
             few = ("--memory-mb", {"npy": "0.01", "npz": "0.012", "ply": "0.055"}.get(extension,
                                                                                        "0.017"))
             self.decode(*kind, "--outputs", "depth", output="whole." + extension)
@@ -113,7 +113,7 @@ class Streaming(CommandLineTest):
                 self.assertEqual(self.bytes_of(f"whole-{frame}.{extension}"),
                                  self.bytes_of(f"bands-{frame}.{extension}"), extension)
 
-    def test_what_filters_and_means_cannot_be_is_refused(self):
+    def test_rejects_invalid_filters_and_means(self):
         self.record(frames=5)
         ahead = ("--time-filter", "8")
         for more, words in ((("--filter", "light", "--filter-set", "windows=4"), ["windows", "found 4", "[1, 3]"]),
@@ -134,7 +134,7 @@ class Streaming(CommandLineTest):
         self.decode(*ahead, "--look-ahead", "4")
         self.assertEqual(self.bytes_of("set-2.npy"), self.bytes_of("d-2.npy"))
 
-    def test_filtering_keeps_to_the_memory_that_it_asks_for(self):
+    def test_filtering_respects_its_memory_limit(self):
         self.sparse("raw.npy", (1, 480, 640, 3), "u2")
         self.refuse(self.arguments("--filter", "strong", "--memory-mb", "20"), "to be filtered",
                     "--memory-mb allows more")
@@ -142,7 +142,7 @@ class Streaming(CommandLineTest):
         peak = self.peak_mb(*self.arguments("--filter", "strong", "--memory-mb", "60"))
         self.assertLess(peak, plain + 60)
 
-    def test_what_is_not_asked_for_is_not_there(self):
+    def test_only_requested_outputs_are_written(self):
         self.record()
         document = self.decode("--outputs", "signal", "--stack")
         self.assertNotIn("status", document)
@@ -152,7 +152,7 @@ class Streaming(CommandLineTest):
         self.assertNotIn("status", document["frames"][0])
         self.assertEqual(set(np.load(self.path("d-0.npz")).files), {"signal", "confidence"})
 
-    def test_the_document_counts_and_sums(self):
+    def test_the_document_contains_counts_and_sums(self):
         raw = self.record()
         raw[1, :15, :, 0] = 0
         raw[1, :15, :, 1:] = 0
@@ -173,7 +173,7 @@ class Streaming(CommandLineTest):
         self.assertGreater(shares[1], 45)
         self.assertAlmostEqual(share(document["status"]), sum(shares) / 3, 1)
 
-    def test_many_frames_are_told_in_few_lines(self):
+    def test_many_frames_are_summarized(self):
         raw = self.record(frames=2)
         self.assertEqual(len(self.do(*self.arguments()).splitlines()), 5)
         np.save(self.path("raw.npy"), np.repeat(raw, 15, axis=0))
@@ -183,9 +183,9 @@ class Streaming(CommandLineTest):
         self.assertIn("27 more, to m-29.npy", lines[3])
         self.assertRegex(lines[4], r"^30 frames of 30 x 40 in .* frames/s, .* Mpixel/s: ok ")
 
-    def test_memory_does_not_grow_with_the_file(self):
+    def test_memory_is_independent_of_the_file_size(self):
         raw = self.record(frames=1)
-        # 6 GB, one frame of which holds anything
+        # 6 GB, of which one frame contains data
         self.sparse("large.npy", (2000, 500, 1000, 3), "u2", [((1500, slice(30), slice(40)), raw[0])])
         peak = self.peak_mb(*self.arguments("--frame", "1500", raw="large.npy"))
         self.assertLess(peak, MEMORY_LIMIT_MB)
@@ -193,13 +193,13 @@ class Streaming(CommandLineTest):
         np.testing.assert_array_equal(np.load(self.path("d.npy"))[:30, :40],
                                       np.load(self.path("plain.npy")))
 
-    def test_memory_does_not_grow_with_the_frame(self):
+    def test_memory_is_independent_of_the_frame_size(self):
         self.sparse("large.npy", (3, 8000, 1000), "f8")
         peak = self.peak_mb(*self.arguments("--layout", "planar", raw="large.npy"))
         self.assertLess(peak, 150)  # the frame has 192 MB
         self.assertEqual(np.load(self.path("d.npy")).shape, (8000, 1000))
 
-    def test_what_cannot_be_bounded_is_refused(self):
+    def test_rejects_formats_that_need_unbounded_memory(self):
         raw = self.record()
         few = ("--memory-mb", "0.03")
         self.refuse(self.arguments(*few, output="d.npz"), "d.npz", "30 x 40", "0.03 MB",
@@ -215,7 +215,7 @@ class Streaming(CommandLineTest):
             self.refuse(self.arguments("--memory-mb", value), "--memory-mb",
                         f"found {value}; must be in (0, 1000000000]", code=2)
 
-    def test_the_small_bands_of_ml_make_whole_frames(self):
+    def test_small_bands_of_ml_give_whole_frames(self):
         raw = np.full((3, 300, 600, 3), 1000, "u2")
         raw[..., 0] = 4000
         np.save(self.path("raw.npy"), raw)
@@ -234,7 +234,7 @@ class Streaming(CommandLineTest):
 
 
 class Interrupts(CommandLineTest):
-    """A recording that is not finished soon: frames that are not there."""
+    """A long recording in a sparse file."""
 
     def start_long(self, *more):
         np.lib.format.open_memmap(self.path("raw.npy"), "w+", "u2", (3000, 600, 800, 3))
@@ -264,7 +264,7 @@ class Interrupts(CommandLineTest):
         for name in done:
             self.assertEqual(np.load(self.path(name)).shape, (600, 800))
 
-    def test_no_part_of_a_stack_is_left(self):
+    def test_no_partial_stack_is_left(self):
         process = self.start_long("--stack")
         while not [name for name in self.files() if ".tofsmith" in name]:
             time.sleep(0.05)
@@ -274,7 +274,7 @@ class Interrupts(CommandLineTest):
         self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         self.assertEqual(self.files(), ["raw.npy"])
 
-    def test_a_file_that_shrinks_ends_in_an_error(self):
+    def test_a_file_that_shrinks_causes_an_error(self):
         process = self.start_long()
         self.wait_for("d-0000.npy")
         os.truncate(self.path("raw.npy"), 600 * 800 * 3 * 2)
@@ -297,7 +297,7 @@ class Interrupts(CommandLineTest):
         try:
             while block := os.read(controller, 65536):
                 drawn += block
-        except OSError:  # the terminal is gone
+        except OSError:  # the terminal is closed
             pass
         process.communicate(timeout=60)
         os.close(controller)

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""tofsmith sweep keeps what is finished, whatever happens to it: kills, full disks, company.
+"""tofsmith sweep keeps finished items after kills, full disks and concurrent runs.
 
-sweep_test.py TOOL [--kills N] kills N times at random moments instead of a handful."""
+    sweep_test.py TOOL [--kills N]     kills N times at random moments instead of a few times
+"""
 
 import io
 import json
@@ -97,13 +98,13 @@ class Sweep(CommandLineTest):
                 process.kill()
                 process.communicate()
                 if process.returncode == 0:
-                    break  # it was done before
+                    break  # the run had already ended
                 kills += 1
                 if os.path.exists(self.path(store)) and os.path.getsize(self.path(store)) > 0:
                     self.check_integrity(store)
                     code, out, _ = self.run_tool("sweep", "s.toml", "--store", store, "--status",
                                                  "--json")
-                    if code == 0:  # killed while it was made, it is no store yet
+                    if code == 0:  # killed during its creation, it is not a store yet
                         now = json.loads(out)["finished"]
                         self.assertGreaterEqual(now, finished)
                         finished = now
@@ -113,7 +114,7 @@ class Sweep(CommandLineTest):
         if kills > 6:
             print(f"{kills} kills of {rounds} sweeps", file=sys.stderr)
 
-    def test_an_interrupt_keeps_what_is_finished(self):
+    def test_an_interrupted_run_keeps_finished_items(self):
         self.write("s.toml", sweep_text(100_000_000))
         process = self.start("sweep", "s.toml", "--store", "s.sqlite")
         while not os.path.exists(self.path("s.sqlite")):
@@ -128,7 +129,7 @@ class Sweep(CommandLineTest):
         self.assertEqual(self.sweep("s.sqlite", "--status")["running"], 0)
 
     def as_reader(self):
-        """Options of a process that may not write here."""
+        """Returns the options of a process without write access."""
         os.chmod(self.directory, 0o555)
         self.addCleanup(os.chmod, self.directory, 0o755)
         options = {"user": NOBODY, "group": NOBODY, "extra_groups": []} if os.getuid() == 0 else {}
@@ -141,7 +142,7 @@ class Sweep(CommandLineTest):
     def test_a_read_only_store_can_be_read(self):
         whole = self.export("s.sqlite")
         self.sweep("s.sqlite")
-        # A process that is killed leaves its log beside the store.
+        # A killed process leaves its log next to the store.
         writer = sqlite3.connect(self.path("log.sqlite"))
         self.sweep("log.sqlite")
         writer.execute("SELECT count(*) FROM items").fetchone()  # the log stays while it is open
@@ -164,7 +165,7 @@ class Sweep(CommandLineTest):
         self.write("s.toml", SWEEP)
         self.assertEqual(self.export("s.sqlite"), whole)
 
-    def test_refuses_what_it_cannot_do(self):
+    def test_rejects_invalid_requests(self):
         store = ["--store", "s.sqlite"]
         for arguments, words in (
                 ([], ["SWEEP is required"]),
@@ -192,7 +193,7 @@ class Sweep(CommandLineTest):
         self.write("bad.toml", SWEEP.replace("12, 15", "12, 0.5"))
         self.refuse(["sweep", "bad.toml", *store], "bad.toml:7:15", "light.peak_factor = 0.5")
 
-    def test_a_store_stays_with_its_instruction_set(self):
+    def test_a_store_requires_its_instruction_set(self):
         self.sweep("s.sqlite")
         environment = {**os.environ, "TOFSMITH_TARGET": "SCALAR"}
         code, _, error = self.run_tool("sweep", "s.toml", "--store", "s.sqlite", env=environment)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A sweep of 20 items that tests of sweeps share."""
+"""A sweep of 20 items, shared by tests of sweeps."""
 
 _TEXT = """set = ["samples=60"]
 codes = ["sinusoid-k4", "hamiltonian-k3"]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Decoding with measured tables and with maps of each pixel."""
+"""Decoding with measured tables and with per-pixel maps."""
 
 import os
 import unittest
@@ -21,13 +21,13 @@ class Tables(CommandLineTest):
         return np.load(self.path(raw))
 
     def sweep(self, *more):
-        """Measures correlation functions as one does: a target at every delay. (N, K)"""
+        """Simulates the measurement of correlation functions at every delay; returns (N, K)."""
         delays = RANGE_M * np.arange(SAMPLES) / SAMPLES
-        delays[0] = RANGE_M  # 0 would be no return
+        delays[0] = RANGE_M  # 0 means no return
         return self.simulate(delays[None, :], "sweep.npy", "--signal", "1e10", *more)[0]
 
     def frame(self, *more):
-        """A ramp of distances and its raw frame raw.npy."""
+        """Returns a ramp of distances and writes its raw frame raw.npy."""
         truth = np.linspace(1.0, 4.0, 12 * 16).reshape(12, 16)
         self.simulate(truth, "raw.npy", "--signal", "1e7", *more)
         return truth
@@ -37,7 +37,7 @@ class Tables(CommandLineTest):
                                 *more)
         return np.load(self.path(output)), document["notes"]
 
-    def test_the_range_and_where_it_comes_from_are_reported(self):
+    def test_the_range_and_its_source_are_reported(self):
         np.save(self.path("t.npy"), self.sweep())
         self.frame()
         os.remove(self.path("raw.camera.toml"))
@@ -62,7 +62,7 @@ class Tables(CommandLineTest):
                                                      "paper-10f0; --camera says otherwise)"])
         self.assertEqual(range_lines("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
 
-    def test_quirks_are_reported(self):
+    def test_peculiarities_are_reported(self):
         table = self.sweep()
         self.frame()
         np.save(self.path("t.npy"), table)
@@ -81,7 +81,7 @@ class Tables(CommandLineTest):
         kept, notes = self.decode("closed.npy", "--keep-end-point", "--table-axes", "kn")
         self.assertGreater(np.abs(kept - expected).max(), 0.005)
         self.assertEqual(len(notes), 1)
-        self.assertIn("1 of 121 bins", notes[0])  # the two ends look the same
+        self.assertIn("1 of 121 bins", notes[0])  # both ends are equal
 
     def test_pairs_of_taps(self):
         buckets = ("--set", "sensor.taps=2")
@@ -115,7 +115,7 @@ class Tables(CommandLineTest):
         text = self.do("evaluate", "multifrequency-2x3-4x3", "--trials", "100")
         self.assertIn("multifrequency-2x3-4x3: 120 of 240 bins look like a nearer one", text)
 
-    def test_tables_that_tell_no_depth_apart(self):
+    def test_rejects_tables_without_depth_information(self):
         self.frame()
 
         def refuse(table, *words, options=()):
@@ -137,7 +137,7 @@ class Tables(CommandLineTest):
             self.refuse(["decode", "raw.npy", "--code", "hamiltonian-k3", "-o", "d.npy", *option],
                         option[0], "measured table", code=2)
 
-    def test_ranges_that_no_table_has(self):
+    def test_rejects_impossible_ranges(self):
         np.save(self.path("t.npy"), self.sweep())
         self.frame()
         decode = ["decode", "raw.npy", "--code", "t.npy", "-o"]
@@ -147,9 +147,9 @@ class Tables(CommandLineTest):
             self.assertLess(len(error), 150)
         self.refuse([*decode, "d.png", "--range-m", "1e4"], "d.png", "found a depth of", "65.535 m",
                     ".npy")
-        self.do(*decode, "d.png", "--range-m", "65.6")  # every depth is nearer
+        self.do(*decode, "d.png", "--range-m", "65.6")  # every depth is smaller
 
-    def test_only_decode_takes_tables(self):
+    def test_only_decode_accepts_tables(self):
         np.save(self.path("t.npy"), self.sweep())
         np.savez(self.path("t.npz"), corrfs=np.load(self.path("t.npy")))
         np.savez(self.path("other.npz"), curves=np.load(self.path("t.npy")), made="today")
@@ -161,7 +161,7 @@ class Tables(CommandLineTest):
         self.refuse(["decode", "raw.npy", "--code", "other.npz", "-o", "d.npy"], "other.npz",
                     "curves, made", "modfs", "corrfs")
 
-    def test_maps_that_do_not_fit(self):
+    def test_rejects_maps_that_do_not_fit(self):
         self.frame()
 
         def refuse(array, *words, option="--gain-map"):

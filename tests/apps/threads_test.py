@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Commands that compute write and print the same bytes with 1, 3 and 8 threads, of which
-there may be more than cores."""
+"""Commands that compute write and print the same bytes with 1, 3 and 8 threads, also with fewer
+cores."""
 
 import os
 import re
@@ -20,7 +20,7 @@ TAPS = (*CAMERA, "--set", "sensor.taps=2")
 TRIALS = ("--trials", "1000")
 DECODE = ("decode", "raw.npy", "--code", "sinusoid-k4", *CAMERA)
 
-# Each in the directory that those before it have filled.
+# Each runs in the directory filled by the previous ones.
 COMMANDS = {
     "simulate": ("simulate", *SCENE, "--code", "sinusoid-k4", *CAMERA, *LIGHT, "--frames", "6", "-o",
                  "raw.npy", "--truth", "truth.npy"),
@@ -76,12 +76,12 @@ COMMANDS = {
                               "--code", "sinusoid-k4", *CAMERA, "-o", "warm.toml"),
     "export": ("export", "hamiltonian-k3", "--format", "csv", "--samples", "64", "-o", "export"),
 }
-# Without bytes of their own to compare: times, processes and machines are in it.
+# Not compared, because it contains times, processes and machines.
 IGNORED = re.compile(r"\.sqlite")
 
 
 def without_times(text):
-    """Results say how long they took and how they were asked for."""
+    """Removes computing times and the command line from results."""
     text = re.sub(rb'"seconds": ?[-+.e\d]+', b"", text)
     text = re.sub(rb'"(frames|megapixels)_per_s": ?[-+.e\d]+', b"", text)
     text = re.sub(rb"--threads \d+", b"", text)
@@ -103,7 +103,7 @@ class Threads(CommandLineTest):
                    '[[axis]]\nkey = "light.peak_factor"\nvalues = [2, 4, 6]\n')
 
     def outcome(self, folder, threads):
-        """What all commands print and write."""
+        """Returns the printed text and the files of all commands."""
         found = {}
         for name, words in COMMANDS.items():
             code, out, error = self.run_tool(*words, "--json", "--threads", threads, folder=folder)
@@ -124,7 +124,7 @@ class Threads(CommandLineTest):
         finally:
             self.directory = above
 
-    def test_any_number_of_them_gives_the_same_bytes(self):
+    def test_any_number_of_threads_gives_the_same_bytes(self):
         expected = None
         for threads in ("1", "3", "8"):
             self.prepare(threads)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The requests of tests/python/test_three_ways.py as a user of the C++ library writes them. Files
-// go to the directory that it runs in: three_ways_cli REQUEST
+// The requests of tests/python/test_three_ways.py, written like a user of the C++ library. Files
+// are written to the working directory: three_ways_cli REQUEST
 #include <fmt/format.h>
 
 #include <exception>

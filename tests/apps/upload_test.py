@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""tofsmith upload plays codes on a simulated generator, refuses what does not fit, and stops with
-outputs off. What uploads do with faults is in tests/python/test_instruments.py.
+"""tofsmith upload sends codes to a simulated generator, rejects unsuitable requests, and leaves
+outputs off when stopped. Faults are tested in tests/python/test_instruments.py.
 
-upload_test.py TOOL"""
+    upload_test.py TOOL
+"""
 
 import os
 import signal
@@ -23,7 +24,7 @@ CODE = ("upload", "hamiltonian-k3", "--set", "samples=60")
 
 
 class Upload(CommandLineTest):
-    def test_every_family_plays_and_verifies(self):
+    def test_every_family_outputs_and_verifies(self):
         for family, model, more in (("siglent", "SDG6022X", ("--samples", "500")),
                                     ("keysight", "33622A", ("--periods", "1")),
                                     ("tektronix", "AFG3252C", ("--samples", "100"))):
@@ -38,7 +39,7 @@ class Upload(CommandLineTest):
                 self.assertTrue(generator.is_on(n))
                 self.assertEqual(len(generator.played(n)), 2 * channel["points"])
 
-    def test_all_pairs_are_loaded_and_one_is_played_with_outputs_off(self):
+    def test_all_pairs_are_loaded_and_one_is_selected_with_outputs_off(self):
         with SimulatedGenerator("keysight", "33522B") as generator:
             text = self.do(*CODE, "--instrument", "tcp://" + generator.address, "--all",
                            "--exposure", "3", "--volts", "0,2", "--load", "inf")
@@ -48,7 +49,7 @@ class Upload(CommandLineTest):
         self.assertFalse(generator.is_on(1) or generator.is_on(2))
         self.assertEqual(len(generator.memory), 6)
 
-    def test_points_that_are_not_read_back_are_unverified(self):
+    def test_points_without_read_back_are_unverified(self):
         with SimulatedGenerator("keysight", "33522B") as generator:
             report = self.do_json(*CODE, "--instrument", generator.address, "--no-read-back")
         self.assertFalse(report["verified"])
@@ -76,7 +77,7 @@ class Upload(CommandLineTest):
         self.refuse((*CODE, "--instrument", f"127.0.0.1:{port}", "--timeout", "1"),
                     f"TCPIP::127.0.0.1::{port}::SOCKET", "check the address")
 
-    def test_a_wrong_model_and_too_small_a_one(self):
+    def test_a_wrong_model_and_an_insufficient_one(self):
         with SimulatedGenerator("keysight", "34465A") as generator:
             self.refuse((*CODE, "--instrument", generator.address),
                         "found the instrument 34465A of Keysight")
@@ -103,7 +104,7 @@ class Upload(CommandLineTest):
         self.assertEqual((upload.returncode, out, error), (130, b"", b"tofsmith: interrupted\n"))
         self.assertFalse(generator.is_on(1) or generator.is_on(2))
 
-    def test_what_is_missing_is_named(self):
+    def test_missing_packages_are_reported(self):
         without_package = self.path(self.write("python", '#!/bin/sh\nexec /usr/bin/python3 -I "$@"\n'))
         os.chmod(without_package, 0o755)
         for interpreter, words in (("/nowhere/python3", "/nowhere/python3: cannot be started"),

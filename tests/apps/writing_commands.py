@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that writes files, on inputs so small that one run takes a moment."""
+"""Every command that writes files, on inputs small enough to run in a moment."""
 
 import dataclasses
 import os
@@ -37,10 +37,10 @@ values = [12, 15]
 class Command:
     name: str
     arguments: tuple
-    outputs: tuple  # files and directories that it makes
+    outputs: tuple  # created files and directories
     is_slow: bool = False  # takes a second or more
-    timed: tuple = ()  # outputs that say how long the work took, so that two runs may differ
-    also: str = ""  # files besides those of a whole run that may be there: what their paths begin with
+    timed: tuple = ()  # outputs that contain computing times, so that two runs may differ
+    also: str = ""  # beginning of paths of further files that may exist
 
 
 def _command(line, *outputs, name=None, **more):
@@ -104,7 +104,7 @@ COMMANDS = (
 
 
 def make_inputs(tool, directory):
-    """All files that the commands read, into a directory."""
+    """Writes all input files of the commands into a directory."""
     def run(*arguments):
         subprocess.run([tool, "--quiet", *arguments], cwd=directory, check=True,
                        stdout=subprocess.DEVNULL)

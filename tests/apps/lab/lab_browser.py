@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lab's page in a headless Chromium, as its tests drive it."""
+"""Runs the lab page in a headless Chromium for its tests."""
 
 import contextlib
 import sys
@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "report" / "browser"))
-import browser_test  # noqa: E402  leaves with 77 where Selenium is missing
+import browser_test  # noqa: E402  exits with 77 if Selenium is missing
 from native_engine import page_with_engine  # noqa: E402
 
 HELPERS = """
@@ -45,7 +45,8 @@ window.dropped = (...files) => {
 
 
 class LabTest(unittest.TestCase):
-    """Tests in one Chromium a window's size; each begins with a fresh page and ends without errors."""
+    """Tests in one Chromium per window size; each starts with a fresh page and ends without errors.
+    """
 
     page = None
     width, height, dark = 1200, 900, False
@@ -72,7 +73,7 @@ class LabTest(unittest.TestCase):
         self.assertEqual([n for n in loads if not n.startswith(("data:", "blob:"))], [])
 
     def open(self, fragment="", settle=True):
-        """A fresh page, with nothing left to compute."""
+        """Opens a fresh page and waits until it has finished computing."""
         self.driver.get("about:blank")
         self.driver.get(self.page.resolve().as_uri() + fragment)
         self.driver.execute_script(HELPERS)
@@ -80,7 +81,8 @@ class LabTest(unittest.TestCase):
             self.run_script("await settled();")
 
     def run_script(self, body, *arguments):
-        """What an asynchronous function body returns; an exception in it fails the test."""
+        """Returns the result of an asynchronous function body; an exception in it fails the test.
+        """
         reply = self.driver.execute_async_script(
             "const given = Array.from(arguments), done = given.pop();"
             "(async (...args) => {" + body + "})(...given)"
@@ -91,11 +93,11 @@ class LabTest(unittest.TestCase):
         return reply.get("value")
 
     def state(self):
-        """The state of the lab."""
+        """Returns the state of the lab."""
         return self.driver.execute_script("return tofsmithLab.store.state")
 
     def text(self, selector):
-        """The text of an element."""
+        """Returns the text of an element."""
         return self.driver.execute_script(
             "return document.querySelector(arguments[0])?.textContent", selector)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lab has the numbers of the command. Exit 77: no page is built, or no browser.
+"""The lab gives the same numbers as the command line. Exit 77: no page is built, or no browser.
 
     lab_numbers_test.py TOFSMITH PAGE_OR_ENGINE
 """
@@ -23,13 +23,13 @@ TRIALS = 1000
 
 
 def command(*words):
-    """The document that a command prints."""
+    """Returns the document that a command prints."""
     done = subprocess.run([TOOL, "--json", *words], capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
 def numbers_of(document, path=""):
-    """All numbers of a document, by where they stand."""
+    """Returns all numbers of a document by their paths."""
     if isinstance(document, dict):
         return {k: v for key, one in document.items() for k, v in numbers_of(one, f"{path}.{key}").items()}
     if isinstance(document, list):
@@ -39,7 +39,7 @@ def numbers_of(document, path=""):
 
 
 def row_text(value, digits):
-    """A number as the table has it: so many digits that count, none with an exponent."""
+    """Formats a number like the table: with `digits` significant digits and no exponent."""
     return f"{value:#.{digits}g}".rstrip(".") if value else "0"
 
 
@@ -60,7 +60,7 @@ class Numbers(LabTest):
         self.assertEqual(found.keys(), expected.keys())
         range_m = 299792458 / (2 * theirs["camera"]["fundamental_frequency_hz"])
         for place, value in expected.items():
-            # Decoded in single precision, with and without fused multiply and add.
+            # Decoded in single precision, with and without fused multiply-add.
             self.assertLessEqual(abs(found[place] - value), 1e-6 * abs(value) + 2e-9 * range_m, place)
         for cell, kind in zip(cells[1:3], ("linear", "circular")):
             mean, deviation = (1e3 * theirs["codes"][0][kind][f"geometric_mean_{what}"] for what in ("m", "se_m"))
@@ -69,7 +69,7 @@ class Numbers(LabTest):
         self.assertEqual(self.shell(shown + " --json"), theirs)
 
     def compare_scene(self, camera, code):
-        """Depth of every pixel, to single precision."""
+        """Compares the depth of every pixel, to single precision."""
         ours = self.run_script("""
             const {depth_m} = await tofsmithLab.engine.call('scene', {
               camera: args[0], code: {name: args[1]}, scene: 'table-top', seed: 3, width: 64, signal: 1e5, ambient: 1e4, filter: 'off'
@@ -88,24 +88,24 @@ class Numbers(LabTest):
         np.testing.assert_allclose(found, theirs, rtol=1e-6)
 
     def shell(self, text):
-        """What the command that the page shows gives."""
+        """Runs the command shown on the page and returns its document."""
         words = text.replace("tofsmith", TOOL, 1)
         return json.loads(subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=True).stdout)
 
-    def test_the_table_and_the_command_shown_give_what_the_command_gives(self):
+    def test_the_table_and_the_shown_command_equal_the_command(self):
         self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.25"}], "hamiltonian-k4")
 
-    def test_curves_that_are_equally_long_in_several_directions_too(self):
+    def test_curves_that_are_equally_long_in_several_directions(self):
         self.compare("paper-10f0", [{"key": "light.peak_factor", "value": "6"}], "hamiltonian-k4")
 
-    def test_cameras_of_the_trade_too(self):
+    def test_commercial_cameras(self):
         self.compare("kinect-v2", [], "multifrequency-2x3-10x3-15x3")
 
     def test_scenes_have_the_depth_of_the_command(self):
         self.compare_scene("paper-10f0", "hamiltonian-k4")
         self.compare_scene("kinect-v2", "multifrequency-2x3-10x3-15x3")  # counts photons
 
-    def test_what_no_camera_may_be_is_told_as_the_command_tells_it(self):
+    def test_invalid_values_give_the_message_of_the_command(self):
         done = subprocess.run([TOOL, "cameras", "paper-10f0"], capture_output=True, text=True, check=True)
         self.assertIn("fundamental_frequency_hz", done.stdout)
         told = self.run_script("""

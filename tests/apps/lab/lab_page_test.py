@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lab's page in a real browser: controls, files, links, undo, designs. Exit 77: no browser here.
+"""The lab page in a browser: controls, files, links, undo, designs. Exit 77: no browser.
 
     lab_page_test.py PAGE_OR_ENGINE    a page, or the engine as a program (lab_engine_cli)
 """
@@ -18,7 +18,7 @@ PAGE = Path(sys.argv.pop(1))
 
 from lab_browser import LabTest, run_tests  # noqa: E402
 
-# Another valid value for each field, found from what the field is.
+# Sets another valid value of a field, chosen by its type.
 OTHER_VALUE = """
 const node = document.querySelector(`[data-key="${args[0]}"] :is(input:not([type=range]), select)`);
 const before = tofsmithLab.lab.camera.toml;
@@ -35,7 +35,7 @@ return [tofsmithLab.lab.camera.toml !== before, document.querySelector(`[data-ke
 
 
 class Page(LabTest):
-    def test_it_shows_all_of_a_code_at_once(self):
+    def test_all_views_of_a_code_are_shown(self):
         shown = self.run_script("""
             const area = (node) => { const b = node.getBoundingClientRect(); return b.width * b.height; };
             return Object.fromEntries(['waveforms', 'correlation', 'curve', 'map'].map((part) => [part,
@@ -49,27 +49,28 @@ class Page(LabTest):
         self.assertGreater(min(painted), 5)
         self.assertRegex(self.text("#error-progress"), r"^\d+ trials$")
 
-    def test_every_field_changes_the_camera_and_undo_changes_it_back(self):
-        # One code and few trials: less is drawn at each step.
+    def test_every_field_changes_the_camera_and_undo_restores_it(self):
+        # With one code and few trials, each step draws less.
         self.run_script("tofsmithLab.store.change((state) => { state.codes.length = 1; state.trials = 100; }); await settled();")
         keys = self.run_script("return tofsmithLab.lab.camera.fields.filter((f) => f.value !== null && !f.expert).map((f) => f.key);")
         self.assertGreater(len(keys), 8)
         for key in keys:
             before = self.run_script("return tofsmithLab.lab.camera.toml;")
             changed, problem = self.run_script(OTHER_VALUE, key)
-            if not changed:  # not every camera may have every value, but then it says why
+            if not changed:  # the camera may not support every value, but then the field reports
+                             # why
                 self.assertTrue(problem, key)
                 continue
             self.run_script("byId('undo').click(); await waitFor(() => tofsmithLab.lab.camera.toml === args[0]);", before)
 
-    def test_a_changed_field_stands_in_every_command(self):
+    def test_a_changed_field_is_in_every_command(self):
         self.run_script("enter(byId('field-light-peak_factor'), '7'); await settled();")
         commands = self.run_script("return [...document.querySelectorAll('.command pre')].map((p) => p.textContent);")
         self.assertEqual(len(commands), 4)
         for command in commands:
             self.assertRegex(command, r"--set '?light\.peak_factor=7")
 
-    def test_a_slider_moves_the_picture_and_one_undo_takes_the_whole_drag_back(self):
+    def test_a_slider_changes_the_picture_and_one_undo_reverts_the_whole_drag(self):
         first = self.run_script("""
             const slider = document.querySelector('[data-key="light.peak_factor"] input[type=range]');
             const picture = () => document.querySelector('[data-part=waveforms] svg').outerHTML;
@@ -114,17 +115,17 @@ class Page(LabTest):
         self.run_script("enter(byId('design-effort'), '1'); byId('fresh').click(); await settled();")
         self.assertEqual(self.state()["camera"]["built_in"], "paper-10f0")
 
-    def test_four_codes_stand_side_by_side_and_no_more(self):
+    def test_at_most_four_codes_are_shown_side_by_side(self):
         self.run_script("for (let i = 0; i < 5; ++i) { byId('add-code')?.click(); await settled(); }")
         self.assertEqual(len(self.state()["codes"]), 4)
         self.assertEqual(self.driver.execute_script("return document.querySelectorAll('[data-part=map] figure').length"), 4)
 
-    def test_a_cell_of_the_map_lights_the_scene(self):
+    def test_a_cell_of_the_map_sets_the_light_of_the_scene(self):
         self.run_script("""document.querySelector('[data-part=map] .cell:nth-of-type(2)').dispatchEvent(new MouseEvent('click', {bubbles: true})); await settled();""")
         self.assertIsNotNone(self.state()["scene"]["signal"])
         self.assertIn("signal", self.text("#scene-figures"))
 
-    def test_edges_move_by_pointer_and_keys_and_back(self):
+    def test_edges_are_moved_by_pointer_and_keys_and_restored_by_undo(self):
         moved = self.run_script("""
             const node = document.querySelector('[data-part=waveforms] .plot');
             const edge = () => [...node.querySelectorAll('.edge')].find((e) => e.dataset.arm === 'gate' && e.dataset.k === '1' && e.dataset.edge === '1');
@@ -150,7 +151,7 @@ class Page(LabTest):
         self.assertTrue(is_focused)
         self.assertAlmostEqual(again, before)
 
-    def test_an_edited_code_is_named_in_the_command_with_the_file_to_save(self):
+    def test_an_edited_code_is_in_the_command_with_the_file_to_save(self):
         self.run_script("""
             const edge = document.querySelector('[data-part=waveforms] .edge');
             edge.focus();
@@ -159,7 +160,7 @@ class Page(LabTest):
         self.assertIn("hamiltonian-k4-edited.code.json", self.text("[data-command=evaluate] pre"))
         self.assertIn("from this page first", self.text("[data-command=evaluate] .files"))
 
-    def test_what_no_field_may_hold_is_told_there_and_the_picture_stays(self):
+    def test_invalid_values_are_reported_at_the_field_and_the_picture_stays(self):
         for text in ("nan", "inf", "-1", "1e400", "five", ""):
             told, same = self.run_script("""
                 const picture = document.querySelector('[data-part=waveforms] svg').outerHTML, state = JSON.stringify(tofsmithLab.store.state);
@@ -178,7 +179,7 @@ class Page(LabTest):
             self.run_script("enter(byId(args[0]), 'NaN');", name)
             self.assertEqual(self.driver.execute_script("return byId(arguments[0]).getAttribute('aria-invalid')", name), "true")
 
-    def test_a_family_that_is_none_is_told_at_its_code(self):
+    def test_an_unknown_family_is_reported_at_its_code(self):
         self.run_script("enter(byId('family-0'), '?'); enter(byId('other-0'), '<img src=x onerror=alert(1)>'); await settled();")
         self.assertIn("<img", self.text(".slot .problem"))
         self.assertIn("before the problem", self.text("#error-table tbody tr"))
@@ -193,7 +194,7 @@ class Files(LabTest):
         "<img src=x>.toml": "'= = ='", "picture.png": "Uint8Array.of(137, 80, 78, 71, 13, 10, 26, 10, 0, 0)",
     }
 
-    def test_hostile_files_are_refused_by_name_and_change_nothing(self):
+    def test_hostile_files_are_rejected_by_name_and_change_nothing(self):
         for name, content in self.HOSTILE.items():
             message, same = self.run_script(f"""
                 const before = JSON.stringify(tofsmithLab.store.state);
@@ -205,7 +206,7 @@ class Files(LabTest):
             self.assertTrue(same, name)
         self.run_script("await settled();")
 
-    def test_a_file_of_a_gigabyte_is_refused_unread(self):
+    def test_a_file_of_a_gigabyte_is_rejected_unread(self):
         with tempfile.TemporaryDirectory() as folder:
             big = Path(folder) / "big.toml"
             with big.open("wb") as file:
@@ -215,7 +216,7 @@ class Files(LabTest):
             self.wait("!document.getElementById('notice').hidden")
         self.assertIn("1.0 GB is too large", self.text("#notice"))
 
-    def test_a_camera_and_a_code_are_taken_and_given_back(self):
+    def test_a_camera_and_a_code_are_loaded_and_saved(self):
         self.run_script("""
             window.saved = [];
             URL.createObjectURL = ((make) => (blob) => { saved.push(blob); return make.call(URL, blob); })(URL.createObjectURL);
@@ -236,7 +237,7 @@ class Files(LabTest):
 
 
 class Links(LabTest):
-    def test_a_link_gives_the_state_again(self):
+    def test_a_link_restores_the_state(self):
         link = self.run_script("""
             enter(byId('field-light-peak_factor'), '9');
             await settled();
@@ -250,7 +251,7 @@ class Links(LabTest):
         self.assertEqual(self.state(), state)
         self.assertEqual(self.driver.execute_script("return byId('field-light-peak_factor').value"), "9")
 
-    def test_a_link_of_another_version_or_none_starts_fresh_and_says_so(self):
+    def test_an_invalid_link_starts_with_the_default_and_a_message(self):
         def packed(state):
             squeezed = zlib.compressobj(9, zlib.DEFLATED, -15)
             data = squeezed.compress(json.dumps(state).encode()) + squeezed.flush()
@@ -265,7 +266,7 @@ class Links(LabTest):
             self.assertIn(word, self.text("#notice"), fragment[:40])
             self.assertEqual(self.state(), first)
 
-    def test_a_link_to_a_camera_that_is_gone_says_so(self):
+    def test_a_link_to_a_missing_camera_shows_a_message(self):
         self.run_script("tofsmithLab.store.change((state) => { state.camera.built_in = 'gone'; }); await settled();")
         self.assertIn("gone", self.text("#camera-error"))
         self.run_script("byId('undo').click(); await settled();")
@@ -283,7 +284,7 @@ class UndoAndDesign(LabTest):
             return seen;""")
         self.assertEqual(values, ["9", "", "9", "11", "9"])
 
-    def test_a_design_cancelled_half_way_leaves_everything_as_it_was(self):
+    def test_a_cancelled_design_changes_nothing(self):
         before, after = self.run_script("""
             const before = JSON.stringify(tofsmithLab.store.state);
             byId('design-start').click();
@@ -295,7 +296,7 @@ class UndoAndDesign(LabTest):
         self.assertEqual(before, after)
         self.assertIn("cancelled", self.text("#design-text"))
 
-    def test_a_design_becomes_a_code_beside_the_others(self):
+    def test_a_design_is_added_to_the_codes(self):
         self.run_script("byId('design-start').click(); await waitFor(() => tofsmithLab.store.state.codes.length === 3, 100); await settled();")
         self.assertIn("file", self.state()["codes"][2])
         self.assertEqual(self.driver.execute_script("return document.querySelectorAll('#error-table tbody tr').length"), 3)
@@ -319,7 +320,7 @@ class Readers(LabTest):
     def test_most_pixels_of_the_first_scene_are_ok(self):
         self.assertRegex(self.text("#scene-figures"), r"pixels that are ok 9\d[.\d]* % alone, 9")
 
-    def test_every_field_is_explained_in_words(self):
+    def test_every_field_has_an_explanation(self):
         texts = self.run_script("return [...document.querySelectorAll('.field .doc')].map((doc) => doc.textContent);")
         self.assertGreater(len(texts), 20)
         for text in texts:
@@ -332,7 +333,7 @@ class Readers(LabTest):
               !(node.getAttribute('aria-label') || node.labels?.length || (node.tagName === 'BUTTON' && node.textContent.trim()))).map((node) => node.outerHTML.slice(0, 120));""")
         self.assertEqual(nameless, [])
 
-    def test_plots_are_read_and_turned_by_keys(self):
+    def test_plots_can_be_read_and_rotated_by_keys(self):
         said = self.run_script("""
             const press = (node, key) => { node.focus(); node.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true})); return byId('status').textContent; };
             const canvas = document.querySelector('[data-part=curve] canvas'), before = canvas.toDataURL();
@@ -345,7 +346,7 @@ class Readers(LabTest):
         self.assertIn("Cramer-Rao", said[2])
         self.assertTrue(said[3])
 
-    def test_a_browser_without_simd_is_told_so(self):
+    def test_a_browser_without_simd_gets_a_message(self):
         script = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": "WebAssembly.validate = () => false;"})
         self.open(settle=False)
         self.wait("document.querySelector('.stop[role=alert]')")
@@ -356,7 +357,7 @@ class Readers(LabTest):
 class Wide(LabTest):
     width = 1210  # three narrow columns: captions and legends differ in height
 
-    def test_plots_of_one_row_begin_at_one_height(self):
+    def test_plots_in_a_row_are_aligned(self):
         tops = self.run_script("""
             tofsmithLab.store.change((state) => {
               state.trials = 100;
@@ -373,7 +374,7 @@ class Wide(LabTest):
 class DarkPhone(LabTest):
     width, height, dark = 320, 640, True
 
-    def test_nothing_is_wider_than_a_phone(self):
+    def test_nothing_exceeds_the_width_of_a_phone(self):
         self.run_script("for (const fold of document.querySelectorAll('details')) fold.open = true; for (let i = 0; i < 2; ++i) { byId('add-code').click(); await settled(); }")
         self.assertLessEqual(self.driver.execute_script("return document.documentElement.scrollWidth"), 320)
         wide = self.run_script("return [...document.querySelectorAll('body *')].filter((n) => n.getBoundingClientRect().right > 321 && !n.closest('.table, svg, .value, .skip, .quiet, [hidden]')).map((n) => n.outerHTML.slice(0, 100));")

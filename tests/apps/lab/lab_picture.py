@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A picture of the lab's page, as docs/images/lab.png is one.
+"""Saves a screenshot of the lab page, like docs/images/lab.png.
 
     lab_picture.py PAGE -o PICTURE.png [--width 1280] [--height 1000] [--dark] [--section error]
 """
@@ -14,7 +14,7 @@ from lab_browser import HELPERS, browser_test
 
 
 def main():
-    """Opens the page, waits until all is computed, and keeps what a window shows."""
+    """Opens the page, waits until it has finished computing, and saves a screenshot."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=Path)
     parser.add_argument("-o", "--output", type=Path, required=True)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lab's page with the C++ engine as a program in place of WebAssembly, on a local port."""
+"""Serves the lab page with the C++ engine as a program instead of WebAssembly, on a local port."""
 
 import contextlib
 import http.server
@@ -40,7 +40,7 @@ def handler_of(program):
 
 @contextlib.contextmanager
 def page_with_engine(program):
-    """The path of a page whose workers ask the program."""
+    """Yields the path of a page whose workers send requests to the program."""
     with tempfile.TemporaryDirectory(prefix="tofsmith-lab-") as folder:
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler_of(program))
         threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""pack.py packs every part into the page and rejects unsupported imports.
+"""pack.py packs all parts into the page and rejects unsupported imports.
 
     pack_test.py PACK
 """
@@ -37,7 +37,7 @@ class Pack(unittest.TestCase):
             page = folder / "lab.html"
             return done.returncode, done.stderr, page.read_text() if page.exists() else None
 
-    def test_all_is_in_one_page(self):
+    def test_everything_is_in_one_page(self):
         status, _, page = self.packed(
             main_js="import {a as b,\n  C} from './x.js';\n\nb(new C(), '</script>');\n",
             x_js="import {y} from './y.js';\nexport const a = y;\nexport class C {}\n",
