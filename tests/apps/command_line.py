@@ -45,19 +45,18 @@ class CommandLineTest(unittest.TestCase):
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
     def run_tool(self, *arguments, **options):
-        """Returns exit code, standard output and standard error."""
         process = self.start(*arguments, **options)
         out, error = process.communicate(timeout=60)
         return process.returncode, out, error.decode(errors="replace")
 
     def do(self, *arguments, **options):
-        """Runs a command that must succeed without standard error; returns standard output."""
+        """The command must succeed without standard error; returns standard output."""
         code, out, error = self.run_tool(*arguments, **options)
         self.assertEqual((code, error), (0, ""), arguments)
         return out.decode()
 
     def do_json(self, *arguments):
-        """Runs a command with --json; it must print exactly one JSON document."""
+        """The command must print exactly one JSON document."""
         return json.loads(self.do(*arguments, "--json"))
 
     def refuse(self, arguments, *words, code=1):

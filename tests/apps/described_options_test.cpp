@@ -64,7 +64,6 @@ class OvenCommand {
     });
   }
 
-  /// Returns the error message, or "".
   std::string parse(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);
     try {

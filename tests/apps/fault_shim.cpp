@@ -77,7 +77,6 @@ bool fails(Kind kind) {
   return true;
 }
 
-/// Returns the present error of the clock.
 time_t clock_error_s() {
   static std::atomic<unsigned> asked{0};
   return is_active && clock_jump_s != 0 ? (asked++ % 2 == 0 ? clock_jump_s : -clock_jump_s) : 0;

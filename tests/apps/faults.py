@@ -72,7 +72,6 @@ class Rig:
 
     @staticmethod
     def snapshot(directory):
-        """Returns the bytes of every file by its path within the directory."""
         found = {}
         for folder, _, files in os.walk(directory):
             for name in files:
@@ -111,7 +110,6 @@ class Rig:
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def run(self, command, force=False, **settings):
-        """Returns exit code and message."""
         process = self.start(command, force, **settings)
         error = process.communicate(timeout=120)[1]
         return process.returncode, error.decode(errors="replace")
@@ -154,7 +152,6 @@ class Rig:
                 require(command.also and name.startswith(command.also), "an unknown file:", name)
 
     def check_rerun(self, command, force):
-        """Runs the same command once more."""
         whole, differ, _, _ = self.clean(command, force)
         before = self.made()
         code, error = self.run(command, force)
@@ -216,7 +213,6 @@ class Rig:
         return code
 
     def kill(self, command, call, at):
-        """Kills the process at a call."""
         self.fresh()
         code, _ = self.run(command, call=call, at=at, errno=0)
         self.check_files(command, {}, after_kill=True)

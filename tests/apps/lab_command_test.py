@@ -14,7 +14,6 @@ PAGE = b"<!doctype html>\n<title>The lab</title>\n"
 
 class Lab(CommandLineTest):
     def installed(self, *arguments):
-        """Runs the installed program; returns exit code, standard output and standard error."""
         done = subprocess.run([self.path("usr/bin/tofsmith"), *arguments], cwd=self.directory,
                               capture_output=True, text=True, timeout=60)
         return done.returncode, done.stdout, done.stderr

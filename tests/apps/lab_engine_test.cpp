@@ -92,8 +92,7 @@ TEST(LabEngine, AFieldHasTypeUnitAndBounds) {
   EXPECT_TRUE(bits["value"].is_null());
   EXPECT_EQ(field_of(answered, "sensor.dark_current_e_per_s")["unit"], "e/s");
   EXPECT_EQ(field_of(answered, "operating.error")["choices"], Json({"linear", "circular"}));
-  EXPECT_TRUE(field_of(answered, "light.impulse_response.cutoff_hz").is_null());  // only for kind
-                                                                                  // hann
+  EXPECT_TRUE(field_of(answered, "light.impulse_response.cutoff_hz").is_null());  // kind is hann
 }
 
 TEST(LabEngine, SetEqualsTheCommandLineOption) {

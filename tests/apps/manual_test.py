@@ -87,7 +87,6 @@ class Manual(CommandLineTest):
 @unittest.skipUnless(shutil.which("bash"), "bash is not installed")
 class Bash(CommandLineTest):
     def complete(self, *lines):
-        """Returns the completions of bash at the end of each line."""
         done = subprocess.run(["bash", "-c", COMPLETE_LINES, "bash",
                                os.path.join(COMPLETION, "tofsmith")],
                               input="".join(line + "\n" for line in lines), cwd=self.directory,

@@ -103,7 +103,6 @@ class Threads(CommandLineTest):
                    '[[axis]]\nkey = "light.peak_factor"\nvalues = [2, 4, 6]\n')
 
     def outcome(self, folder, threads):
-        """Returns the printed text and the files of all commands."""
         found = {}
         for name, words in COMMANDS.items():
             code, out, error = self.run_tool(*words, "--json", "--threads", threads, folder=folder)

@@ -104,7 +104,6 @@ COMMANDS = (
 
 
 def make_inputs(tool, directory):
-    """Writes all input files of the commands into a directory."""
     def run(*arguments):
         subprocess.run([tool, "--quiet", *arguments], cwd=directory, check=True,
                        stdout=subprocess.DEVNULL)

@@ -43,7 +43,7 @@ Camera camera_of(const Bench& bench, int taps = 1) {
 double delay_of(int p) { return 0.004 * std::sin(1.7 * p); }  // periods
 double gain_of(int p) { return 1.0 + 0.2 * std::cos(2.3 * p); }
 
-/// Returns raw values of pixels with individual delays and gains, whose means are 0 and 1.
+/// Pixels have individual delays and gains, whose means are 0 and 1.
 DelaySweep sweep_of(const Bench& bench, const ForwardModel& model) {
   DelaySweep sweep;
   const int pixels = bench.side * bench.side, columns = model.measurements();
@@ -72,8 +72,8 @@ DelaySweep sweep_of(const Bench& bench, const ForwardModel& model) {
   return sweep;
 }
 
-/// Returns the largest and mean square deviation from the truth in standard errors. Drifting light
-/// is known at the middle of the sweep.
+/// Largest and mean square deviation from the truth in standard errors. Drifting light is known at
+/// the middle of the sweep.
 std::pair<double, double> distance(const CalibratedCorrelation& found, const ForwardModel& model) {
   const Eigen::MatrixXd truth =
       (scale * model.correlation_table(found.table.samples())).array() + level;
@@ -97,7 +97,6 @@ TEST(CorrelationCalibration, RecoversTheTableWithinFourStandardErrorsAtEverySamp
     const auto [largest, square] = distance(found, model);
     EXPECT_LT(largest, 4.0);
     mean_square += square / seeds;
-    // Maps of the delays and gains of the pixels.
     RunningStatistics offset, gain;
     for (int p = 0; p < bench.side * bench.side; ++p) {
       const auto i = static_cast<std::size_t>(p);
@@ -165,7 +164,6 @@ TEST(CorrelationCalibration, OfAMixerFindsItsSignedTable) {
   const Eigen::ArrayXXd off =
       found.table.correlation - scale * model.correlation_table(found.table.samples());
   EXPECT_LT((off / found.standard_error.array()).abs().maxCoeff(), 4.0);
-  // The calibrated table decodes depths of the mixer.
   const Decoder decoder(make_decoding_table(found.table, camera));
   for (int bin = 0; bin < model.samples(); bin += 7) {
     const Eigen::VectorXf raw =

@@ -84,7 +84,7 @@ struct Bench {
     return calibrate_depth(raw, reference, build_family("sinusoid-k4", camera), camera);
   }
 
-  /// Decodes with the table, subtracts its correction and returns the median error [m].
+  /// Decodes and subtracts the correction of the table.
   double median_error_m(const MeasuredTable& measured) const {
     const Decoder decoder(make_decoding_table(measured, phase_camera()));
     std::vector<double> left_m;
@@ -115,7 +115,7 @@ DepthErrorTerms wiggle() {
   return terms;
 }
 
-/// Returns random depth errors: some harmonics up to the 8th of 1 to 20 mm, slopes, any offset.
+/// Some harmonics up to the 8th of 1 to 20 mm, slopes, any offset.
 DepthErrorTerms random_terms(std::uint64_t seed) {
   RandomStream random(seed, 9, 0);
   const auto signed_m = [&](double min_m, double max_m) {
@@ -131,7 +131,6 @@ DepthErrorTerms random_terms(std::uint64_t seed) {
   return terms;
 }
 
-/// Returns the true value of a calibrated term [m].
 double term_m(const DepthErrorTerms& terms, const std::string& name) {
   if (name == "offset") return terms.offset_m;
   if (name == "row") return terms.field_m[0];
@@ -181,8 +180,7 @@ TEST(DepthCalibration, EstimatesTheModelErrorThatDecodersMustTolerate) {
                 return note.find("no depth explains") != std::string::npos;
               }));
     EXPECT_GE(percent, 100.0 * share);
-    EXPECT_LE(percent, 170.0 * share);  // at the depth of the maximum: factor sqrt(2), rounded to
-                                        // 20 %
+    EXPECT_LE(percent, 170.0 * share);  // at most sqrt(2), by fifths
     EXPECT_LT(inconsistent_share(bench, found.table), 0.02);
     MeasuredTable strict = found.table;
     strict.model_error_percent = 0.0;

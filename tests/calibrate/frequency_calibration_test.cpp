@@ -77,7 +77,7 @@ struct SensorUnderTest {
     return calibrate_depth(raw, reference, build_family(code_name, camera), camera);
   }
 
-  /// Returns the root mean square depth error [m], excluding the largest 2 %.
+  /// Root mean square error [m], excluding the largest 2 %.
   double error_m(const DecodingTable& table,
                  const std::optional<DepthCorrection>& correction) const {
     const Decoder decoder(table);

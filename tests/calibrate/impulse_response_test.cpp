@@ -23,8 +23,8 @@ ImpulseResponse response_of(Kind kind) {
   return {.kind = kind, .f_max_hz = 150e6, .cutoff_hz = 90e6};
 }
 
-/// Returns an oscilloscope record of a response that starts at `onset_s`: computed in the time
-/// domain from its transfer function, with height 1 and normal noise.
+/// A noisy oscilloscope record of a response that starts at `onset_s`, computed from its transfer
+/// function, with height 1.
 ResponseRecord record_of(const ImpulseResponse& response, Excitation excitation, double noise,
                          std::uint64_t seed) {
   constexpr int harmonics = 6000;

@@ -24,7 +24,6 @@ Camera known_camera() {
   return camera;
 }
 
-/// Returns frames of a flat wall with differing pixels, in ambient light only.
 RawFrames frames_of(const Camera& camera, double ambient_e_per_s, std::uint64_t seed) {
   SceneImage scene(24, 24);
   scene.ambient_scale = Image<float>(24, 24, 1.0f);
@@ -102,7 +101,6 @@ TEST(PhotonTransfer, ReportsMissingInput) {
   EXPECT_THROW(photon_transfer({one}, dark), std::invalid_argument);
 }
 
-/// Returns a camera that reads A - B.
 Camera difference_camera() {
   Camera camera = known_camera();
   camera.sensor.taps = 2;
@@ -110,7 +108,7 @@ Camera difference_camera() {
   return camera;
 }
 
-/// Returns a pair of frames of a slanted plane with many albedos, without ambient light.
+/// Two frames of a slanted plane with many albedos, without ambient light.
 RawFrames differences_of(const Camera& camera, double signal_e_per_s, std::uint64_t seed) {
   SceneImage scene(32, 32);
   for (int row = 0; row < 32; ++row)

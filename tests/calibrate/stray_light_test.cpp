@@ -64,7 +64,6 @@ struct Bench {
         }
     return raw;
   }
-  /// Returns the fraction of all light that is scattered within this radius.
   double share_within(double radius_px) const {
     const Image<float> k = kernel();
     const int reach = k.width / 2;

@@ -100,7 +100,6 @@ TEST(DepthPrior, OfACameraCoversItsRange) {
   EXPECT_EQ(prior.below(0.75), 1.0);
 }
 
-/// Returns the error message of a camera with these depths.
 std::string refusal(const std::optional<std::vector<double>>& depths,
                     const std::optional<std::array<double, 2>>& working_distance_m = {}) {
   Camera camera = built_in_camera("paper-10f0");

@@ -128,7 +128,6 @@ TEST(ForwardModel, ContrastMayDifferPerExposureOrPerFrequency) {
   }
 }
 
-/// Returns the message that `check` throws, or nothing.
 template <typename Check>
 std::optional<std::string> refusal(Check&& check) {
   try {

@@ -31,8 +31,7 @@ double value_at(const Waveform& waveform, double t) {
   return 0.0;
 }
 
-/// Returns any binary waveform, from never to always on, with touching pulses and one across the
-/// end.
+/// Covers never to always on, touching pulses, and a pulse across the end.
 Waveform random_binary(RandomStream& random) {
   std::vector<double> times(2 * (random() % 12));
   for (double& time : times) time = random.uniform();

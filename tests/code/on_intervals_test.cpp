@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns random disjoint sorted intervals; the last one may wrap around the end of the period.
+/// Disjoint and sorted; the last one may wrap around the end of the period.
 std::vector<OnInterval> random_intervals(RandomStream& random) {
   const int count = 1 + static_cast<int>(6 * random.uniform());
   std::vector<double> edges(static_cast<std::size_t>(2 * count));

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Returns typical calibrated lenses, from mild to strong distortion.
+/// Typical lenses, from mild to strong distortion.
 std::vector<LensDistortion> lenses() {
   using enum DistortionModel;
   return {{opencv, {-0.28, 0.07, 1e-3, -5e-4}},

@@ -17,7 +17,6 @@
 namespace tofsmith {
 namespace {
 
-/// Records the reports.
 struct Listener {
   std::vector<double> seen;
   Progress progress = [this](double fraction, std::string_view step) {

@@ -95,8 +95,7 @@ TEST(Parallel, UsesMoreThreadsThanCoresOnRequest) {
   std::mutex mutex;
   std::condition_variable all_there;
   int there = 0;
-  parallel_for(threads, [&](std::int64_t) {  // each task waits for all others, so that each thread
-                                             // gets one
+  parallel_for(threads, [&](std::int64_t) {  // all threads must run at once
     std::unique_lock lock(mutex);
     if (++there == threads) all_there.notify_all();
     all_there.wait_for(lock, std::chrono::seconds(20), [&] { return there == threads; });

@@ -113,9 +113,8 @@ TEST(RandomTile, NormalsHaveLongTailsAndMatchTheFormula) {
   });
 }
 
-/// Compares counts with the Poisson distribution by chi-square, in classes of at least ten expected
-/// counts.
-/// @returns the deviation from its mean in standard deviations (Wilson-Hilferty)
+/// Compares counts with the Poisson distribution, in classes of at least ten expected counts.
+/// @returns the deviation of chi-square from its mean in standard deviations (Wilson-Hilferty)
 double chi_square_deviation(const std::vector<double>& counts, double mean) {
   const auto total = static_cast<double>(counts.size());
   const double sigma = std::sqrt(mean);

@@ -9,7 +9,6 @@
 namespace tofsmith {
 namespace {
 
-/// Reports progress ten times per second until `end_s`.
 RemainingTime watched(const std::function<double(double)>& fraction_at, double end_s) {
   RemainingTime time;
   for (int i = 0; i <= 10 * end_s; ++i) time.add(0.1 * i, fraction_at(0.1 * i));

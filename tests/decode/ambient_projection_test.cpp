@@ -18,7 +18,6 @@ DecodingTable table_of(const std::string& code, double peak_factor) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Returns the table with rounding errors of another processor.
 DecodingTable rounded_otherwise(DecodingTable table) {
   RandomStream random(1, 0, 0);
   for (double& value : table.correlation.reshaped()) value *= 1.0 + 4e-16 * random.normal();

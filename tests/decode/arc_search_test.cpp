@@ -99,13 +99,12 @@ std::int32_t lowest_best_row(const DirectionTable& directions, const double* q,
       score.begin());
 }
 
-/// Returns the unit vector that choose() requires.
 std::vector<double> unit_of(const double* q, int rank) {
   const Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(q, rank).normalized();
   return {unit.begin(), unit.end()};
 }
 
-/// Returns the smallest fraction of proven vectors over all instruction sets.
+/// Returns the smallest fraction of proven vectors.
 double expect_agreement(const DirectionTable& directions, const ArcSearch& search,
                         const Vectors& vectors) {
   std::vector<std::int32_t> expected, chosen;

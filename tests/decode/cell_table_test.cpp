@@ -17,7 +17,6 @@ constexpr int vectors = 20000;
 constexpr int vectors = 500;
 #endif
 
-/// A cell table with its inputs.
 struct Cells {
   explicit Cells(DirectionTable table)
       : directions(std::move(table)), distinct(directions), cells(distinct) {}
@@ -31,7 +30,6 @@ bool holds(const CellRecord& run, std::int32_t direction, std::int32_t count) {
   return (direction - run.first + count) % count <= run.length;
 }
 
-/// Draws a unit vector near the curve or anywhere.
 Eigen::VectorXd draw(const DistinctDirections& distinct, RandomStream& random) {
   const double noise = random.uniform() < 0.3 ? 100.0 : 0.5 * random.uniform();
   const auto n = static_cast<Eigen::Index>(distinct.count() * random.uniform());

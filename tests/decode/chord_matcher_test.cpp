@@ -45,7 +45,7 @@ DecodingTable coarse_table(int measurements, int samples, std::uint64_t seed) {
 /// Chords up to 10 degrees are not subdivided; two depths closer than half of that may be confused.
 constexpr double closest_score = 1.0 - 4e-3;
 
-/// Returns the best score on all chords that are not jumps.
+/// Excludes jumps.
 double best_score(const ReferenceDecoder& reference, const Eigen::VectorXd& difference,
                   const Eigen::VectorXd& turn_rad) {
   double best = 0.0;

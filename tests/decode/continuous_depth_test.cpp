@@ -28,7 +28,6 @@ std::string name_of(const Frequencies& list) {
   return name;
 }
 
-/// Returns a camera that subtracts two buckets, which cancels ambient light.
 Camera two_bucket_camera(double fundamental_frequency_hz, int samples) {
   Camera camera;
   camera.operating = paper_operating_range();
@@ -166,7 +165,7 @@ class ContinuousScore {
     for (Eigen::Index k = 0; k < x.size(); ++k) along += raw[k] * x[k];
     return along / x.norm();
   }
-  /// Returns the best depth: a grid search, then golden-section search at its best peaks.
+  /// Grid search, then golden-section search at its best peaks.
   double best_bin(const float* raw, int points) const {
     const double step = static_cast<double>(table_.bin_count()) / points;
     std::vector<double> score(static_cast<std::size_t>(points));

@@ -35,7 +35,6 @@ TEST(DecodedPlanes, ViewsHaveExactlyThePlanesOfTheirImage) {
   }
 }
 
-/// Fills planes with values that no decoder writes.
 void spoil(DepthImage& image) {
   for_each_plane(
       []<typename Value>(Image<Value>& plane) {

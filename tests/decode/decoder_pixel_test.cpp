@@ -75,7 +75,7 @@ TEST(Decoder, FaintSignalIsLowSignal) {
   EXPECT_NEAR(image.depth_m(0, 0), setup.camera.range_m() / 8, 1e-2);
 }
 
-/// Returns electrons half-way between the closest directions of depths at least 3 m apart.
+/// Electrons half-way between the closest directions of depths at least 3 m apart.
 std::vector<float> between_two_depths(const DecodingTable& table) {
   Eigen::MatrixXd units = table.correlation.colwise() - table.correlation.rowwise().mean();
   units.rowwise().normalize();

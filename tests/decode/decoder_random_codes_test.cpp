@@ -38,7 +38,6 @@ TEST(DecoderOfRandomCodes, FindsTheBinsOfTheDefinition) {
   }
 }
 
-/// Returns a table whose raw values are electrons, with equal exposures and noise.
 DecodingTable measured_table_of(Eigen::MatrixXd correlation) {
   DecodingTable table;
   const auto every = [&](double value) {
@@ -95,7 +94,7 @@ TEST(DecoderOfRandomCodes, FindsTheSameBinsOnEveryProcessor) {
   EXPECT_EQ(hash, 11286135160687803514u);
 }
 
-/// Returns a code of few directions, each with many bins; small integers often tie two of them.
+/// Few directions of many bins each; small integers often tie two of them.
 DecodingTable table_of_steps(RandomStream& random) {
   constexpr int samples = 3000, steps = 35, measurements = 4;
   Eigen::MatrixXd levels(steps, measurements);

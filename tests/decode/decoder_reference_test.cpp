@@ -57,7 +57,6 @@ TEST_P(DecoderOfCode, AgreesWithTheReferenceOnEveryPixel) {
   Camera camera = camera_with(c.camera, c.taps, c.readout);
   camera.samples = c.samples;
   const DecodeSetup setup(c.code, camera);
-  // The reference evaluates all bins.
   const int each = c.samples < 300 ? pixels_per_level : 1 + pixels_per_level * 60 / c.samples;
   std::vector<float> raw = pixels_at_all_light_levels(setup.decoder.table(), each);
   const std::vector<float> sunlit = noisy_pixels(setup.decoder.table(), 1e6, 1e8, each, 6);

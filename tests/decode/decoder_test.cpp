@@ -53,7 +53,6 @@ std::vector<bool> is_distinguishable(const DecodingTable& table) {
   return unique;
 }
 
-/// Returns the largest error [bin] over many depths without noise.
 double largest_error_bin(const DecodeSetup& setup) {
   const std::vector<bool> unique = is_distinguishable(setup.decoder.table());
   const int samples = setup.decoder.samples();
@@ -108,7 +107,7 @@ TEST(Decoder, RecoversEveryDepthWithUnequalExposuresAndDarkCurrent) {
   EXPECT_LT(largest_error_bin(DecodeSetup("hamiltonian-k3", camera)), 1e-3);
 }
 
-/// Returns whole electrons, whose sums and multiples are exact in single precision.
+/// Sums and multiples of whole electrons are exact in single precision.
 std::vector<float> whole_noisy_pixels(const DecodingTable& table, int pixels) {
   std::vector<float> raw = noisy_pixels(table, 1e4, 1e4, pixels, 7);
   for (float& value : raw) value = std::round(value);

@@ -14,7 +14,6 @@
 namespace tofsmith {
 namespace {
 
-/// Strides of rows, columns and measurements, in elements.
 struct Layout {
   const char* name;
   std::ptrdiff_t row, column, measurement;
@@ -36,7 +35,6 @@ std::vector<Layout> layouts(std::ptrdiff_t k_count) {
           {"mirrored planes", width, -1, height * width}};
 }
 
-/// A frame with its own memory.
 template <typename Number>
 class Frame {
  public:
@@ -77,7 +75,6 @@ Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 12
   return outputs;
 }
 
-/// Returns dim pixels of integers that fit into a byte.
 std::vector<float> bytes_of_pixels(const DecodingTable& table) {
   std::vector<float> raw = noisy_pixels(table, 600.0, 300.0, static_cast<int>(frame_pixels), 12);
   for (float& value : raw) value = std::clamp(std::round(value), 0.0f, 255.0f);

@@ -20,7 +20,6 @@ DecodingTable good_table() {
   return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
 }
 
-/// Returns the message of validate() for a table after `change`.
 template <typename Change>
 std::string complaint(const Change& change) {
   DecodingTable table = good_table();

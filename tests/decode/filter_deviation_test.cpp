@@ -29,7 +29,6 @@ int from_border(int row, int column) {
 bool is_inner(int row, int column) { return from_border(row, column) >= 13; }
 bool is_at_border(int row, int column) { return from_border(row, column) < 3; }
 
-/// Depths and predicted deviations of all captures [bins].
 struct Repeats {
   std::vector<std::vector<double>> depth, deviation;
 
@@ -57,7 +56,7 @@ struct Repeats {
     }
   }
 
-  /// Returns spread over predicted deviation for a part of the pixels.
+  /// Spread over predicted deviation.
   double ratio(const Part& part) const {
     double squares = 0.0, count = 0.0;
     for (int y = 0; y < height; ++y)

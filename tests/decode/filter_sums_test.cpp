@@ -88,7 +88,6 @@ struct Sums {
     for (int y = 0; y < height; ++y) keep_near(sums, grid, y);
   }
 
-  /// Returns the difference of the two depths in deviations of the near one.
   double difference(std::ptrdiff_t at) {
     double far2 = 0.0, dot = 0.0, moved = 0.0, move2 = 0.0;
     for (int k = 0; k < rank; ++k)
@@ -165,7 +164,7 @@ TEST(FilterSums, KeepsNearSumsLikeTheReference) {
   });
 }
 
-/// Returns the mean error [bins] on balls of 13 pixels radius and 6 bins depth for each filter.
+/// Mean errors [bins] on balls of 13 pixels radius and 6 bins depth.
 std::vector<double> errors_on_balls(double signal, const std::vector<FilterOptions>& filters) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
@@ -239,7 +238,6 @@ TEST(FilterSums, SlantedPlanesAreUnbiasedFarFromEdgesInBrightLight) {
       const double own = (squares[at] / captures - mean * mean) * captures / (captures - 1);
       bias2 += mean * mean - own / captures, variance += own;
     }
-  // Few windows are independent.
   EXPECT_LT(bias2, 0.2 * 0.2 * variance) << std::sqrt(std::max(0.0, bias2 / variance));
 }
 

@@ -19,7 +19,6 @@
 namespace tofsmith {
 namespace {
 
-/// Depth and signal seen by a pixel of a synthetic scene.
 struct Seen {
   double depth_bin = 0.0;
   double signal_e_per_s = 0.0;
@@ -178,7 +177,6 @@ TEST(Filter, ErrorOnAConstantPlaneFallsWithTheNumberOfAveragedPixels) {
               0.15 * alone / std::sqrt(added));
   const FilteredFrame normal = Filter(table).apply(raw);
   EXPECT_GT(normal.averaged()(64, 64), 330.0f);  // 625 without the noise of slopes
-  // Few windows are independent in such a small image.
   EXPECT_LT(deviation(decoded(setup.decoder, normal)), 1.6 * alone / 25);
 }
 

@@ -19,7 +19,6 @@ constexpr int side = 48;
 
 class FilteredNoise : public testing::TestWithParam<std::tuple<FilterStrength, const char*>> {
  protected:
-  /// Returns the planes of a filtered capture of a slanted plane.
   DepthImage decode_plane(double signal, double first_bin, unsigned seed) const {
     const DecodingTable& table = setup.decoder.table();
     const RawFrames raw =

@@ -24,7 +24,6 @@
 namespace tofsmith {
 namespace {
 
-/// Decodes pixels as one row.
 DepthImage decoded_row(DecodeMethod method, const DecodingTable& table,
                        const std::vector<float>& raw) {
   const RawFrames frame = frame_of(raw, table.measurements());
@@ -37,7 +36,6 @@ DecodingTable table_of(const std::string& code, const Camera& camera) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Returns the standard deviation of the signal of a typical bin in this ambient light.
 double signal_deviation(const DecodingTable& table, double ambient) {
   const AmbientProjection projection(table);
   const ExpectedNoise noise(table);
@@ -45,7 +43,7 @@ double signal_deviation(const DecodingTable& table, double ambient) {
   return std::sqrt(variance) / projection.curve.rowwise().norm().mean();
 }
 
-/// Returns the largest difference from brute force over pixels of these signals (in deviations).
+/// Differences are in standard deviations.
 double largest_difference(const DecodingTable& table, const std::vector<double>& signals,
                           int pixels, int parts) {
   const AmbientProjection projection(table);
@@ -105,7 +103,7 @@ TEST(LobePosterior, IsTheSameIntegralWithUnequalExposures) {
   EXPECT_LT(largest_difference(table, {1.0, 3.0, 6.0}, 8, 1), 0.02);
 }
 
-/// Returns a smooth table with more rows, for pixels on the curve and not on chords.
+/// A smooth table with more rows puts pixels on the curve and not on chords.
 DecodingTable finely_sampled(DecodingTable table) {
   constexpr int finer = 8;
   if (!depth_polynomials(AmbientProjection(table).curve)) return table;

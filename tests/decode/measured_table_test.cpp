@@ -16,7 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Returns the result of a delay sweep with this code, tap by tap.
 MeasuredTable sweep_of(const ForwardModel& model, const Camera& camera) {
   MeasuredTable measured;
   measured.correlation = model.tap_correlation_table(model.samples());

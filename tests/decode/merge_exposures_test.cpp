@@ -33,7 +33,7 @@ DecodingTable exposed_table() {
   return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
 }
 
-/// Returns a row of pixels at one depth with increasing light, in one exposure.
+/// Pixels have one depth and increasing light.
 RawFrames exposed(double exposure, double least_e, double most_e, int width, std::uint64_t seed) {
   const DecodingTable table = exposed_table();
   RandomStream random(seed, static_cast<std::uint64_t>(exposure), 0);
@@ -124,10 +124,10 @@ TEST(MergeExposures, ASingleUsableExposureIsUnchanged) {
 TEST(MergeExposures, PixelsSaturatedOrInvalidInAllExposuresStaySo) {
   std::vector<RawFrames> frames = bracket(1e3, 1.1e3, 4);
   for (RawFrames& raw : frames) {
-    raw.values[0] = 4095.0F;                                  // pixel 0 is clipped in all
-    raw.values[5] = std::numeric_limits<float>::quiet_NaN();  // pixel 1 is invalid in all
+    raw.values[0] = 4095.0F;                                  // clipped in all exposures
+    raw.values[5] = std::numeric_limits<float>::quiet_NaN();  // invalid in all exposures
   }
-  frames[1].values[9] = std::numeric_limits<float>::infinity();  // pixel 2 in one exposure
+  frames[1].values[9] = std::numeric_limits<float>::infinity();  // in one exposure
   const MergedExposures found = merged(frames);
   EXPECT_EQ(found.values.values[0], 4095.0F);
   EXPECT_TRUE(std::isnan(found.values.values[4]));

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int height = 40, width = 60, edge = 30;
 
-/// Two surfaces seen by a pixel, with the share of the first.
 struct Seen {
   double depth_bin = 0.0, signal_e_per_s = 1e5;
   double second_bin = 0.0, second_e_per_s = 0.0;
@@ -39,7 +38,7 @@ RawFrames frame_seen(const DecodingTable& table, const SceneOfPixels& scene) {
       });
 }
 
-/// Near surface on the left, far on the right, and one mixed column between them.
+/// Near surface on the left, far on the right, one mixed column.
 Seen edge_between(int column) {
   if (column == edge) return {70.0, 0.6e5, 120.0, 0.4e5};
   return {column < edge ? 70.0 : 120.0};
@@ -224,7 +223,7 @@ TEST(MixedPixels, PreviouslyFoundPixelsStayMarkedAndBelongToNoSurface) {
   UnfilteredPixels unfiltered{.measured = &measured,
                               .mixed = Image<std::uint8_t>(height, width, 0)};
   for (int y = 0; y < height; ++y) unfiltered.mixed(y, edge) = 1;
-  unfiltered.mixed(5, 12) = 1;  // in the middle of the near surface
+  unfiltered.mixed(5, 12) = 1;  // in the near surface
   for (const MixedPixels mixed : all_mixed_pixels) {
     const DepthImage before = setup.decoder.decode(filtered);
     DepthImage image = before;

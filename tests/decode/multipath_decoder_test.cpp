@@ -22,13 +22,12 @@ using testing::ThrowsMessage;
 
 constexpr double ambient_e_per_s = 1e4;
 
-/// Two-bucket Hamiltonian code with five exposures.
 struct TwoBucket {
   Camera camera = camera_with("paper-10f0", 2);
   ForwardModel model{build_family("hamiltonian-k5", camera), camera};
   DecodingTable table = make_decoding_table(model, camera);
 
-  /// Returns pixels spread over the range, with normal noise of `noise` standard deviations.
+  /// @param noise  in standard deviations
   RawFrames pixels(int count, double signal, double ratio, double delay_m, double noise,
                    std::vector<double>& true_m) const {
     RawFrames raw;

@@ -21,7 +21,6 @@ Image<float> row_of(const std::vector<float>& values) {
   return image;
 }
 
-/// Returns decoded pixels of these depths.
 DepthImage decoded(const std::vector<float>& depth_m) {
   DepthImage image(1, static_cast<int>(depth_m.size()));
   image.depth_m.pixels = depth_m;

@@ -41,7 +41,6 @@ DecodingTable table_of(const Camera& camera, const char* code) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Returns noise-free values of a pixel in the scale of the table.
 std::vector<float> pixel_of(const DecodingTable& table, int bin, double largest_dn) {
   std::vector<float> raw;
   const double scale = largest_dn / table.correlation.cwiseAbs().maxCoeff();
@@ -69,7 +68,6 @@ std::vector<PixelStatus> statuses_of(const DepthDecoder& decoder, const std::vec
   return statuses_of(decoder, row_of(raw, measurements));
 }
 
-/// Returns every method with a code that it decodes.
 std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& camera) {
   std::vector<std::unique_ptr<const DepthDecoder>> decoders;
   for (const DecodeMethod method : all_decode_methods)
@@ -79,7 +77,7 @@ std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& came
   return decoders;
 }
 
-/// Returns one unclipped pixel, and one pixel for each replaced measurement and replacing number.
+/// One unclipped pixel, and one pixel for each replaced measurement and number.
 std::vector<float> with_each(const DecodingTable& table, const std::vector<float>& numbers) {
   const std::vector<float> pixel = pixel_of(table, 31, 400.0);
   std::vector<float> raw = pixel;
@@ -92,7 +90,6 @@ std::vector<float> with_each(const DecodingTable& table, const std::vector<float
   return raw;
 }
 
-/// Expects that the first pixel is decoded and that all others have `status`.
 void expect_only_first_is_measured(const DepthDecoder& decoder, const std::vector<float>& numbers,
                                    PixelStatus status) {
   const DecodingTable& table = decoder.table();
@@ -180,7 +177,6 @@ TEST(RawMarking, MarkersTakePrecedenceOverTheLimitsOfTheConverter) {
   }
 }
 
-/// Returns a frame of a plane, 12 x 12, with one pixel in the middle whose first value is `number`.
 RawFrames frame_with(const DecodingTable& table, float number) {
   RandomStream random(5, 0);
   RawFrames raw{
@@ -191,7 +187,6 @@ RawFrames frame_with(const DecodingTable& table, float number) {
   return raw;
 }
 
-/// Returns the values of all pixels except the middle one.
 std::vector<float> around_the_middle(const RawView& raw) {
   std::vector<float> values(static_cast<std::size_t>(raw.pixels() * raw.measurements));
   copy_pixels(raw, 0, raw.pixels(), values.data());

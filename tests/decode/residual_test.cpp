@@ -20,13 +20,12 @@ DecodingTable table_of(const std::string& code, const Camera& camera) {
   return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
 }
 
-/// Returns a table fine enough that its chords equal the true correlation functions.
+/// Its chords equal the true correlation functions.
 DecodingTable fine_table_of(const std::string& code, Camera camera) {
   camera.samples *= 16;
   return table_of(code, camera);
 }
 
-/// Decodes pixels as one row, with residuals.
 DepthImage decode_row(DecodeMethod method, const DecodingTable& table,
                       const std::vector<float>& raw, const DecodeOptions& options = {},
                       const float* averaged = nullptr) {
@@ -50,7 +49,7 @@ double mean_residual(const DepthImage& image) {
   return sum / static_cast<double>(image.residual.size());
 }
 
-/// Returns pixels whose measurements from `first` on see another depth.
+/// Measurements from `first` on see another depth.
 std::vector<float> displaced_pixels(const DecodingTable& table, double signal, double near_bin,
                                     double far_bin, int first, int pixels) {
   std::vector<float> raw, other;

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int samples = 60;
 
-/// Rows of a code, and noisy pixels: weighted counts of all time bins.
 struct RowsSetup {
   explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3)
       : camera(rows_camera(samples, signal_e, ambient_e)),
@@ -28,7 +27,7 @@ struct RowsSetup {
     for (int z = 0; z < samples; ++z) light.col(z) = bins_e(model, z, 1.0, 0.0);
   }
 
-  /// Returns the expected light in every time bin, interpolated between depths.
+  /// Interpolates between depths.
   Eigen::VectorXd bins(double depth_bin, double signal, double ambient) const {
     const int from = static_cast<int>(depth_bin), to = (from + 1) % samples;
     const double t = depth_bin - from;
@@ -151,7 +150,7 @@ TEST(RowsDecoder, NoDepthIsMoreLikelyThanThatOfMaximumLikelihood) {
   }
 }
 
-/// Returns predicted over empirical deviation for many pixels at one depth.
+/// Predicted over empirical deviation.
 template <typename AnyDecoder>
 double deviation_ratio(const RowsSetup& setup, const AnyDecoder& decoder) {
   const OperatingPoint light = setup.camera.operating.middle();

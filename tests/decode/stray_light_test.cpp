@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Returns a kernel of sum `total` that falls with the square of the distance.
+/// Falls with the square of the distance; sum `total`.
 Image<float> glare(double total, int reach = 20) {
   Image<float> kernel(2 * reach + 1, 2 * reach + 1);
   double sum = 0.0;
@@ -37,7 +37,7 @@ DecodingTable table() {
   return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
 }
 
-/// Returns a bright object next to a dark one at another depth, without noise.
+/// A bright object next to a dark one at another depth, without noise.
 RawFrames scene(const DecodingTable& table) {
   RawFrames raw{.frames = 1, .height = 24, .width = 32, .measurements = 4, .values = {}};
   for (int v = 0; v < raw.height; ++v)

@@ -14,7 +14,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a table of random duties, exposures, gains and black levels.
 DecodingTable random_table(int measurements, bool is_equal, RandomStream& random) {
   DecodingTable table;
   table.correlation = Eigen::MatrixXd(60, measurements);

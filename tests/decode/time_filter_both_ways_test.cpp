@@ -35,7 +35,6 @@ Out out_of(const RawView& raw) {
   return out;
 }
 
-/// Returns all output frames of a recording.
 std::vector<Out> filtered(TimeFilter& filter, const std::vector<RawFrames>& frames) {
   std::vector<Out> out;
   for (const RawFrames& raw : frames)
@@ -64,8 +63,7 @@ RawFrames frame_of(const DecodingTable& table, std::uint64_t seed,
 
 double slanted(int row, int column) { return 60.0 + 0.3 * row + 0.1 * column; }
 
-/// Returns frames of a block, 12 columns wide, that moves `columns` per frame before a slanted
-/// plane.
+/// A block of 12 columns moves `columns` per frame in front of a slanted plane.
 std::vector<RawFrames> moving(const DecodingTable& table, int frames, int columns) {
   std::vector<RawFrames> recording;
   for (int frame = 0; frame < frames; ++frame)
@@ -137,7 +135,7 @@ TEST(TimeFilterBothWays, OutputIsDelayedByTheLookAhead) {
     EXPECT_EQ(filter.add(view_of_frame(recording[i], 0)).has_value(), i >= 3) << i;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(filter.add_end().has_value());
   EXPECT_FALSE(filter.add_end().has_value());
-  // After finish(), the next frame starts a new recording.
+  // After the end of a recording, the next frame starts a new one.
   RawView smaller = view_of_frame(recording[0], 0);
   smaller.height = 5;
   EXPECT_FALSE(filter.add(smaller).has_value());

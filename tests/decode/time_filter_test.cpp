@@ -20,7 +20,6 @@ using ::testing::ThrowsMessage;
 
 constexpr int height = 37, width = 45;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-/// Depth [bin] of a pixel.
 using DepthOfPixels = std::function<double(int row, int column)>;
 
 RawFrames frame_of(const DecodingTable& table, const DepthOfPixels& depth, double signal_e_per_s,
@@ -55,7 +54,7 @@ DecodingTable table_of(const std::string& code = "hamiltonian-k4",
   return DecodeSetup(code, camera).decoder.table();
 }
 
-/// Adds `count` frames of a static scene; returns the last result.
+/// Returns the last result.
 RawView add_static(TimeFilter& filter, int count, double signal, double ambient,
                    std::uint64_t seed) {
   RawView last;

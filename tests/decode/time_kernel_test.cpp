@@ -19,7 +19,7 @@ namespace {
 
 constexpr int height = 37, width = 45, pixels = height * width;
 
-/// Returns frames of a block moving in front of a slanted plane.
+/// A block moves in front of a slanted plane.
 std::vector<RawFrames> recording_of(const DecodingTable& table, int frames) {
   std::vector<RawFrames> recording;
   for (int frame = 0; frame < frames; ++frame)

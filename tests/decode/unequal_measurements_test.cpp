@@ -45,7 +45,6 @@ DecodingTable random_table(RandomStream& random, int measurements) {
   return table;
 }
 
-/// Appends the noise-free raw values of a depth.
 void append_raw(std::vector<float>& raw, const DecodingTable& table, double signal, double ambient,
                 double depth_bin) {
   const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();

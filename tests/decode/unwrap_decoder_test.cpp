@@ -23,7 +23,6 @@ constexpr const char* codes[] = {"sinusoid-k3",
                                  "multifrequency-2x4-5x2",
                                  "multifrequency-1x3-5x3-12x3"};
 
-/// Returns the largest error [bin] over random depths without noise.
 double largest_error_bin(const ForwardModel& model, const UnwrapDecoder& decoder) {
   RandomStream random(5, 0);
   std::vector<double> truth;

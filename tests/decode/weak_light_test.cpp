@@ -27,7 +27,6 @@ DepthImage captured(const DecodeSetup& setup, double signal) {
                      }));
 }
 
-/// Returns the length of the closed curve of directions [rad].
 double length_of_directions(const DecodingTable& table) {
   Eigen::MatrixXd curve = AmbientProjection(table).curve;
   curve.rowwise().normalize();
@@ -37,7 +36,7 @@ double length_of_directions(const DecodingTable& table) {
   return length;
 }
 
-/// Returns the signal [e/s] that equals `deviations` of its own standard deviations.
+/// `deviations` is the signal in units of its standard deviation.
 double signal_of(const DecodingTable& table, double deviations) {
   const AmbientProjection projection(table);
   const PixelModel model(table, projection);

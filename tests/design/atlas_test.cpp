@@ -167,7 +167,7 @@ TEST(Atlas, ReturnsTheNearestCodesThatSuitACamera) {
   EXPECT_TRUE(names({}, 4).empty());
 }
 
-/// Returns cameras between and beyond those of the atlas.
+/// Interpolates and extrapolates the cameras of the atlas.
 std::vector<Camera> other_cameras() {
   std::vector<Camera> cameras;
   for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
@@ -285,15 +285,13 @@ TEST(Atlas, CodesOfEveryCameraCanBeFittedToEveryPeak) {
     }
 }
 
-/// Returns the paper's power-limited camera with few samples and light levels.
 Camera power_limited() {
   Camera camera = small_camera("paper-30x");
   camera.light.peak_factor = 5.0;
   return camera;
 }
 
-/// Returns a camera with gates of any duty that reads the difference of two taps: ambient light
-/// cancels in few codes.
+/// With gates of any duty, ambient light cancels in few differences of taps.
 Camera analog_difference() {
   Camera camera = small_camera("paper-10f0");
   const double f0_hz = camera.fundamental_frequency_hz;

@@ -24,7 +24,6 @@ const OperatingPoint high{1.7e7, 0.0}, low_ambient{1.7e7, 8e7}, low_signal{1.1e6
 
 Camera nine_chips() { return built_in_camera("exclusive-3tap-9chip"); }
 
-/// Returns the camera with the clock and taps of a code, and whole chips of samples.
 Camera camera_for(const ChipCode& code, Camera camera) {
   camera.sensor.taps = code.taps;
   camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * code.chips);

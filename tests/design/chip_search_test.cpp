@@ -28,8 +28,7 @@ using ::testing::ThrowsMessage;
 
 const OperatingPoint high{1.7e7, 0.0}, low_ambient{1.7e7, 8e7}, low_signal{1.1e6, 0.0};
 
-/// Calls `look` for each assignment of chips to taps or to none in which every tap is open at
-/// times.
+/// Calls `look` for each assignment of chips to taps or to none; every tap is open at times.
 void for_every_assignment(int chips, int taps, bool equal_duty,
                           const std::function<void(const std::vector<ChipWord>&)>& look) {
   std::vector<int> owner(static_cast<std::size_t>(chips), 0);
@@ -52,7 +51,7 @@ void for_every_assignment(int chips, int taps, bool equal_duty,
   }
 }
 
-/// Returns the minimum metric of all safe one-exposure codes, without symmetry, bounds or ordering.
+/// Minimum metric of all safe one-exposure codes, without symmetry, bounds or ordering.
 double raw_optimum_m(const Camera& camera, const ChipSearchOptions& options, double* codes) {
   const int chips = chips_of(camera), taps = camera.sensor.taps;
   const OperatingPoint point = camera.operating.points().front();

@@ -33,7 +33,6 @@ std::vector<Camera> cameras() {
           camera_of("paper-30x", Readout::separate)};
 }
 
-/// Smooth waveforms with random perturbations.
 struct Setting {
   explicit Setting(const Camera& its) : camera(its), steps(camera, samples, exposures) {
     RandomStream random(5, 1);

@@ -46,7 +46,6 @@ TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = fals
                      later ? &second : nullptr, depths);
 }
 
-/// Returns the batch with trial t only.
 TrialBatch only(TrialBatch batch, std::size_t t) {
   const double* normals = batch.normals_of(t);
   batch.normals = std::vector<double>(normals, normals + batch.measurements);
@@ -155,7 +154,6 @@ TEST(DepthErrorLoss, WeightsAndPointsAdd) {
             1e-4 * once.gradient().correlation.norm());
 }
 
-/// Returns trials of two returns that are decoded as two returns.
 TrialBatch two_return_trials(const Setting& setting, int count, TwoReturnGrid grid) {
   RandomStream random(7, 3);
   const MultipathTrials later{{{0.2, 0.9}, {1.0, 4.0}}, setting.camera.range_m(), grid};

@@ -13,7 +13,6 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
-/// Returns options of an optimization that takes a fraction of a second.
 DesignOptions quick(DesignMethod method, std::vector<int> exposures) {
   DesignOptions options = small_options(std::move(exposures));
   options.method = method;
@@ -29,7 +28,6 @@ DesignOptions quick(DesignMethod method, std::vector<int> exposures) {
   return options;
 }
 
-/// Returns a camera of three exclusive taps with six chips per period, in bright light.
 Camera clocked() {
   Camera camera = built_in_camera("exclusive-3tap-9chip");
   camera.sensor.shortest_pulse_s = 15e-9;

@@ -35,7 +35,6 @@ Camera weak() {
   return camera;
 }
 
-/// Expects that the winner has the lowest error and that the naive code is a candidate.
 void expect_best_wins(const Camera& camera, const DesignResult& result, const std::string& naive) {
   ASSERT_NE(result.find(naive), nullptr) << naive;
   const DepthErrorKind kind = camera.operating.error;

@@ -13,7 +13,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Returns the explanation for a code whose Cramer-Rao bound is `bound_over_error` times its error.
 std::string limit_of(double bound_over_error) {
   const Camera camera = small_camera("paper-10f0");
   DesignResult result = judge(

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Returns a camera with one light level and a small grid: an optimization takes milliseconds.
+/// An optimization for this camera takes milliseconds.
 Camera small_camera(DepthErrorKind error = DepthErrorKind::circular) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 6.0;
@@ -42,7 +42,7 @@ OptimizeOptions small_options() {
   return options;
 }
 
-/// Returns the shortest time between two switches in the cyclic period [periods].
+/// The period is cyclic; the result is in periods.
 double shortest_run(const Waveform& waveform) {
   const std::vector<OnInterval>& on = waveform.on_intervals();
   double shortest = 1.0;
@@ -53,7 +53,7 @@ double shortest_run(const Waveform& waveform) {
   return shortest;
 }
 
-/// Returns the candidates that judge() keeps, without the given codes.
+/// Removes the given codes.
 DesignResult judged(const Camera& camera, std::vector<Candidate> candidates,
                     const std::vector<CodeSet>& given = {}) {
   for (const CodeSet& code : given) candidates.push_back({.code = code, .method = "family"});

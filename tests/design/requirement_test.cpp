@@ -12,7 +12,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a camera with one light level and few harmonics, for designs in a moment.
 Camera small_camera() {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 48;

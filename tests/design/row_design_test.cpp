@@ -14,7 +14,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a camera for circular errors with short light pulses.
 Camera camera_of(int samples, double signal_e, double ambient_e, double cutoff_hz) {
   Camera camera = rows_camera(samples, signal_e, ambient_e);
   camera.light.peak_factor = 12;
@@ -126,7 +125,6 @@ TEST(RowDesign, ReportsUnsupportedRequests) {
   // At most 8 exposures are supported.
   DesignOptions many = quick(9);
   EXPECT_THROW(design(built_in_camera("paper-10f0"), many), InvalidArgument);
-  // Methods for tap waveforms reject rows.
   DesignOptions options = quick(4);
   options.method = DesignMethod::factorize;
   EXPECT_THROW(design(small_camera(), options), InvalidArgument);

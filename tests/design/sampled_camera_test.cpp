@@ -79,7 +79,7 @@ TEST(SampledCamera, AccountsForAmbientLightLeakedByUnevenBuckets) {
   }
 }
 
-/// Returns random weights of a mixer as two buckets.
+/// Weights of a mixer as two buckets.
 SampledCode random_weights(int samples, int exposures) {
   SampledCode code = random_code(samples, exposures, 2);
   for (int e = 0; e < exposures; ++e)

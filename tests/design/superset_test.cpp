@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Returns a camera with one light level and a small grid: an optimization takes about a second.
+/// An optimization for this camera takes about a second.
 Camera small_camera(DepthErrorKind error, int taps) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 6.0;

@@ -27,7 +27,7 @@ DesignProblem problem_of(const Camera& camera, int exposures, double two_return_
   return make_design_problem(std::span(&camera, 1), exposures, 48, two_return_weight);
 }
 
-/// Returns the mean error of the direct depth [bin], decoded as the first of two returns.
+/// The direct depth is decoded as the first of two returns.
 double two_return_error_bin(const DesignProblem& problem, const WaveformParameters& parameters) {
   const SampledCamera& camera = problem.variants.front().camera;
   const SampledCode code = render(problem.space, parameters, {6.0, 8.0});

@@ -46,7 +46,6 @@ layout = "interleaved"
 
 
 def commands_of(page):
-    """Returns the commands of the tables, in order."""
     rows = re.findall(r"^\|[^|]*\|([^|]*)\|", (DOCS / page).read_text(), re.M)
     return [command for row in rows for command in re.findall(r"`([^`]+)`", row)]
 

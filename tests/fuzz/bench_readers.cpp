@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Records of instruments.
 #include <array>
 
 #include "reader.hpp"

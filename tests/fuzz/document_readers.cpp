@@ -34,7 +34,7 @@ Camera small_camera() {
   return camera;
 }
 
-/// Returns a design with a code of a family and one marked as designed.
+/// A family's code, and one marked as designed.
 DesignResult small_design(const Camera& camera, const DesignOptions& options) {
   DesignResult result;
   for (const char* name : {"hamiltonian-k3", "sinusoid-k3"}) {
@@ -50,7 +50,7 @@ DesignResult small_design(const Camera& camera, const DesignOptions& options) {
   return result;
 }
 
-/// Returns a design directory, created once, whose documents are replaced by the inputs.
+/// The directory is created once; inputs replace its documents.
 const fs::path& design_directory() {
   static const fs::path directory = [] {
     const fs::path path = scratch_file("design");

@@ -103,8 +103,7 @@ bool mutate_png_rows(std::uint8_t* data, std::size_t size, const Mutate& mutate)
     rows->resize(mutate(rows->data(), rows->size(), rows->size()));
     const Octets packed = deflated(*rows, 15);
     if (packed.size() > length) return;
-    std::copy(packed.begin(), packed.end(), content);  // bytes after the end of the stream are
-                                                       // ignored
+    std::copy(packed.begin(), packed.end(), content);  // rest is ignored
     done = true;
   });
   return done;

@@ -21,7 +21,7 @@ Outputs decoded(const Decoder& decoder, const RawView& raw, unsigned planes = 25
   return outputs;
 }
 
-/// @param left  receives the number of pixels that the device left to the decoder
+/// @param left  receives the number of pixels left to the decoder
 Outputs decoded(const DeviceDecoder& decoder, const RawView& raw, std::int64_t& left,
                 unsigned planes = 255) {
   Outputs outputs(static_cast<std::size_t>(raw.pixels()));

@@ -11,7 +11,6 @@
 namespace tofsmith {
 namespace {
 
-/// A frame and its expected planes.
 class FailingDevice : public OnDevice {
  protected:
   static constexpr int height = 90, width = 30;
@@ -34,7 +33,7 @@ class FailingDevice : public OnDevice {
     work(outputs);
     return outputs;
   }
-  /// Expects an error with the name of the device.
+  /// The error must contain the name of the device.
   void expect_failure(const Work& work) const {
     try {
       outputs_of(work);

@@ -14,7 +14,7 @@ namespace {
 
 using DeviceFiltering = OnDevice;
 
-/// Returns slanted surfaces, an edge, a dark part and a wrap of depth; dim and bright.
+/// Slanted surfaces, an edge, a dark part and a wrap of depth; dim and bright.
 RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
                             std::uint64_t seed = 1) {
   const double samples = table.bin_count();
@@ -30,7 +30,6 @@ RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
       });
 }
 
-/// Makes pixels saturated or NaN, isolated and in groups.
 void spoil(RawFrames& raw, float saturated) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < raw.values.size(); ++i)
@@ -39,8 +38,7 @@ void spoil(RawFrames& raw, float saturated) {
     raw.values[i] = std::numeric_limits<float>::infinity();
 }
 
-/// Returns the fraction of values, including those of `averaged`, with a relative difference above
-/// `most`.
+/// Fraction of values and `averaged` with a relative difference above `most`.
 double share_beyond(const FilteredFrame& a, const FilteredFrame& b, double most) {
   const RawFrames values = a.values(), expected = b.values();
   std::size_t count = 0;

@@ -19,7 +19,7 @@ using ::testing::ThrowsMessage;
 
 constexpr float float_infinity = std::numeric_limits<float>::infinity();
 
-/// Returns frame f of a scene with a moving edge, a slowly drifting part and a part that brightens.
+/// A moving edge, a slowly drifting part and a part that brightens.
 RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int f) {
   const double samples = table.bin_count();
   return frame_by_pixel(
@@ -32,7 +32,6 @@ RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int
       });
 }
 
-/// Makes pixels saturated or NaN, different ones in every frame.
 void spoil(RawFrames& raw, float saturated, int f) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto frame = static_cast<std::size_t>(f);
@@ -59,7 +58,6 @@ class DeviceFramesOf : public OnDevice {
         ASSERT_EQ(x[i], y[i]) << "number " << i;
       }
   }
-  /// Compares the result of each frame, and its planes.
   void expect_what_the_time_filter_gives(const DecodingTable& table,
                                          const TimeFilterOptions& options,
                                          const std::vector<RawView>& frames) const {

@@ -24,7 +24,7 @@ class DevicePipelines : public OnDevice {
     return frame_backend(device_name, make_decoder(method, setup_.decoder.table()));
   }
 
-  /// Returns the planes of all output frames, filtered again without mixed pixels.
+  /// Frames are filtered again without mixed pixels.
   static std::vector<Outputs> decoded(const FrameBackend& backend, const FrameSteps& steps,
                                       const PlaneCorrections& corrections,
                                       const std::vector<std::vector<float>>& raw) {

@@ -17,7 +17,6 @@ struct Failure {
   cl_int error = CL_SUCCESS;
   int calls = 0;
 
-  /// Returns the error of the next call.
   cl_int next() {
     const int call = calls++;
     return call >= first && call <= last ? error : CL_SUCCESS;

@@ -79,7 +79,6 @@ std::vector<std::string> shared_kernels(const SourceFile& file) {
   return found;
 }
 
-/// Returns the types defined in named namespaces of a file, such as `tofsmith Camera`.
 std::set<std::string> types_defined_in(const SourceFile& file) {
   static const std::regex definition(
       R"((?:struct|class|union|enum(?: class)?) ([\w:]+)(?: final)?(?: : .*)? \{.*)");

@@ -54,7 +54,6 @@ def is_private(module):
 
 
 def upward_imports(sources):
-    """Returns descriptions of upward imports."""
     found = []
     for module, source in sources.items():
         if module.startswith(USERS):

@@ -7,19 +7,18 @@
 
 namespace tofsmith::house {
 
-/// A C++ file of this repository; the path is relative to the root with forward slashes.
+/// The path is relative to the root, with forward slashes.
 struct SourceFile {
   std::string path;
   std::vector<std::string> lines;
 };
 
-/// Returns every .hpp and .cpp file under `folders` of the repository, sorted by path.
+/// Files are sorted by path.
 std::vector<SourceFile> read_sources(const std::vector<std::string>& folders);
 
 /// Formats a violation for editors: "path:line: rule".
 std::string violation(const SourceFile& file, std::size_t line_index, const std::string& rule);
 
-/// Applies `check` to all `files`; returns one violation per line.
 template <typename Check>
 std::string violations_in(const std::vector<SourceFile>& files, const Check& check) {
   std::string all;

@@ -148,7 +148,7 @@ TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
 TEST(AtomicFile, LeftoversOfAKilledProcessAreRemovedWithTheNextFile) {
   const TemporaryDirectory directory;
   const pid_t child = fork();
-  if (child == 0) {  // killed half-way
+  if (child == 0) {
     AtomicFile file(directory / "a.txt", refuse);
     file.write("half");
     kill(getpid(), SIGKILL);

@@ -56,7 +56,6 @@ TEST(LoadCode, ReadsAFileWithTheTapsOfTheCamera) {
   expect_same_samples(load_code(path, camera, {.tap_order = TapOrder::interleaved}), code);
 }
 
-/// A pair of array files for load_code(), with errors in place of codes.
 struct ArrayPair {
   ArrayPair(const Eigen::MatrixXd& light, const Eigen::MatrixXd& gates) {
     write_npy(directory / "light.npy", array_of(light), OutputPolicy::overwrite);

@@ -19,8 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Returns a code of two taps with one binary and one sampled waveform each, and values without a
-/// finite decimal representation.
+/// One binary and one sampled waveform per tap, and values without a finite decimal representation.
 CodeSet awkward_code() {
   Eigen::VectorXd light(4), gains(4);
   light << 1.0 / 3, 0.1, 0.0, 4 - 0.1 - 1.0 / 3;
@@ -35,7 +34,6 @@ CodeSet awkward_code() {
   return code;
 }
 
-/// Returns the document with one change.
 json changed(const std::string& pointer, const json& value) {
   json document = json::parse(code_to_json(awkward_code()));
   document[json::json_pointer(pointer)] = value;

@@ -25,7 +25,6 @@ Eigen::MatrixXd matrix(const NpzArrays& arrays, const char* name) {
   return matrix_of(arrays.at(name), name);
 }
 
-/// Returns the arrays with one value changed.
 FileBytes with_value(const CodeSet& code, const char* name, int n, int i, double value) {
   NpzArrays arrays = parse_npz(serialize_code_npz(code, TapOrder::interleaved), "a.npz");
   Eigen::MatrixXd changed = matrix(arrays, name);

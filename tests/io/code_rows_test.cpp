@@ -17,7 +17,6 @@
 namespace tofsmith {
 namespace {
 
-/// A pair of matrix files.
 struct Pair {
   Pair(const Eigen::MatrixXd& light_values, const Eigen::MatrixXd& rows_values)
       : light(directory.path() / "light.npy"), rows(directory.path() / "rows.npy") {

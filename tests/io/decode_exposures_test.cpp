@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of several exposures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -32,7 +32,6 @@ class DecodeRecording : public testing::Test {
   DecodeRequest request(const char* output) const {
     return {.raw = {path("raw.npy")}, .output = path(output)};
   }
-  /// Returns a plane of frame number `frame` of a stack.
   std::vector<float> plane(const char* name, std::size_t frame) const {
     const NpyArray array = read_npy(path(name));
     const auto* const first = reinterpret_cast<const float*>(array.bytes().data()) + frame * 6 * 5;

@@ -304,7 +304,6 @@ TEST_F(DecodeRecording, MeansAreIndependentOfBandsAndFiltersUseTheirNoise) {
   for (const char* plane : {".npy", "-deviation.npy"})
     EXPECT_TRUE(std::ranges::equal(read_npy(path("whole").string() + plane).bytes(),
                                    read_npy(path("bands").string() + plane).bytes()));
-  // The last mean is of one frame.
   mean.memory_mb = 64;
   mean.output = path("filtered.npy");
   mean.outputs = {DecodedPlane::depth, DecodedPlane::averaged};

@@ -53,7 +53,6 @@ class DecodeStream : public DecodeRecording {
     decode_stream(request, *backend_, read, write, {}, result);
     return result;
   }
-  /// Returns the planes of the files of a stack, frame by frame.
   std::vector<std::byte> of_files(DecodeRequest request) {
     request.raw = {path("dump.bin")};
     request.raw_format = path("s.raw.toml");

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Decoding tables of codes from files.
 #include "tofsmith/io/decoding_table_file.hpp"
 
 #include <gmock/gmock.h>

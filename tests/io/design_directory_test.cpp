@@ -201,7 +201,7 @@ TEST(DesignStore, ReturnsADesignForTheSameInputsOnly) {
 
 fs::path only_file(const fs::path& directory) { return fs::directory_iterator(directory)->path(); }
 
-/// Writes without the disk synchronization of an atomic file.
+/// Does not synchronize the disk, unlike an atomic file.
 void overwrite(const fs::path& path, std::span<const std::byte> bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));

@@ -17,7 +17,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns all kinds of shapes, next to and inside each other.
 std::vector<Shape> mixed_scene() {
   Mesh ball = placed_mesh(tessellated_sphere(3), {1.0, -0.5, 0.7}, 0.9);
   ball.texture = {Texture::Pattern::checker, 0.2, 0.9, 0.15};

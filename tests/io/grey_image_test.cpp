@@ -41,7 +41,7 @@ void append(FileBytes& bytes, std::uint16_t number, bool big_endian) {
   bytes.insert(bytes.end(), {big_endian ? high : low, big_endian ? low : high});
 }
 
-/// Returns the stored values of a block; 0 outside the image.
+/// Values outside the image are 0.
 FileBytes block_bytes(std::size_t first_row, std::size_t rows, std::size_t first_column,
                       std::size_t columns, bool big_endian, bool differences) {
   FileBytes bytes;
@@ -73,7 +73,7 @@ FileBytes pack_bits(const FileBytes& bytes) {
   return packed;
 }
 
-/// Returns one stored block of Deflate.
+/// Writes a single stored block.
 FileBytes pack_deflate(const FileBytes& bytes) {
   FileBytes packed = {std::byte{0x78}, std::byte{0x01}, std::byte{0x01}};
   const auto size = static_cast<std::uint16_t>(bytes.size());
@@ -178,7 +178,6 @@ TEST(Pgm, RejectsDamagedFilesWithTheReason) {
   EXPECT_THAT(refusal("P2 2 1 15 3 x"), AllOf(HasSubstr("a.pgm"), HasSubstr("number of a pixel")));
 }
 
-/// Writes four phases, one image each.
 std::vector<std::filesystem::path> write_phases(const TemporaryDirectory& directory,
                                                 const std::string& extension) {
   std::vector<std::filesystem::path> files;

@@ -218,7 +218,6 @@ TEST(LensCalibration, SelectsOneOfSeveralCamerasByName) {
             "model");
 }
 
-/// With invented values.
 const std::string azure_kinect = R"({"CalibrationInformation": {"Cameras": [
   {"Intrinsics": {"ModelParameterCount": 14, "ModelParameters":
       [0.51, 0.52, 0.48, 0.64, 0.5, -2.6, 1.5, 0.4, -2.4, 1.4, 0, 0, 0, 0],

@@ -22,14 +22,13 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Returns arbitrary, partly negative correlation functions without repetition.
+/// Arbitrary, partly negative functions without repetition.
 Eigen::MatrixXd sweep(Eigen::Index samples, Eigen::Index columns) {
   return Eigen::MatrixXd::NullaryExpr(samples, columns, [&](Eigen::Index n, Eigen::Index k) {
     return std::cos(2 * M_PI * (double(n) / double(samples) - double(k) / double(columns))) + 0.1;
   });
 }
 
-/// Appends the first sample at the end.
 Eigen::MatrixXd closed(const Eigen::MatrixXd& functions) {
   Eigen::MatrixXd longer(functions.rows() + 1, functions.cols());
   longer << functions, functions.row(0);
@@ -56,7 +55,6 @@ class MeasuredTableFileTest : public testing::Test {
     EXPECT_THAT(message, HasSubstr(path().string()));
     return message.substr(std::min(message.size(), path().string().size()));
   }
-  /// Returns the notes without the leading file name.
   static std::vector<std::string> without_name(const MeasuredTableFile& file) {
     std::vector<std::string> notes;
     for (const std::string& note : file.notes) notes.push_back(note.substr(note.find("npz: ") + 5));

@@ -85,7 +85,7 @@ std::string stl_binary_square() {
   return text;
 }
 
-/// Returns the corners of every triangle, independent of vertex order.
+/// The result does not depend on the vertex order.
 std::vector<Eigen::Vector3d> corners(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3d> points;
   for (const auto& triangle : mesh.triangles)

@@ -15,7 +15,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns noise-free pixels of two surfaces with mixed pixels between them.
+/// Two surfaces with mixed pixels between them.
 RawFrames edge_seen(const ForwardModel& model, int height, int width) {
   RawFrames raw{.frames = 1,
                 .height = height,
@@ -32,7 +32,6 @@ RawFrames edge_seen(const ForwardModel& model, int height, int width) {
   return raw;
 }
 
-/// Returns a request for the depth of frames in its own folder.
 DecodeRequest request_of(const RawFrames& raw, const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
   std::filesystem::create_directories(folder);

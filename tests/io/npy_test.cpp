@@ -20,7 +20,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Returns a file with this header, padded like NumPy, followed by `data`.
+/// Pads the header like NumPy.
 FileBytes npy_file(std::string header, std::string_view data, int major = 1) {
   const std::size_t prefix = major == 1 ? 10 : 12;
   header.append(63 - (prefix + header.size()) % 64, ' ');
@@ -198,7 +198,6 @@ TEST(NpyReader, ReadsBothAxisOrders) {
   std::vector<float> values(5 * 2 * 3);
   std::iota(values.begin(), values.end(), 0.0f);
   write_npy(directory / "c.npy", NpyArray::of<float>({5, 2, 3}, values), OutputPolicy::overwrite);
-  // The same array in Fortran order.
   std::vector<float> columns;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t j = 0; j < 2; ++j)

@@ -92,8 +92,7 @@ TEST(NumberTable, FindsColumnsByNameUnitAndNumber) {
 }
 
 TEST(NumberTable, AmbiguousCommasAreResolvedOrRejected) {
-  EXPECT_EQ(parse_number_table("0,5\n1,7\n2,4\n", "t.csv").values.cols(), 2);  // the first column
-                                                                               // increases
+  EXPECT_EQ(parse_number_table("0,5\n1,7\n2,4\n", "t.csv").values.cols(), 2);  // first column rises
   EXPECT_EQ(parse_number_table("a,b\n4,5\n1,7\n", "t.csv").values.cols(), 2);
   EXPECT_EQ(parse_number_table("a\n4,5\n1,7\n", "t.csv").values(0, 0), 4.5);
   EXPECT_EQ(parse_number_table("4,5\n1,05\n", "t.csv").values(1, 0), 1.05);

@@ -24,7 +24,6 @@ bool python_agrees(const std::string& step, const std::filesystem::path& directo
   return std::system(command.c_str()) == 0;
 }
 
-/// Returns 0, 1, 2, ... of the given type, as numpy_exchange.py does.
 template <typename Item>
 NpyArray counting(NpyShape shape) {
   NpyArray array(npy_type_of<Item>, shape);

@@ -49,7 +49,6 @@ TEST_P(PngKind, RefusesEveryTruncation) {
 INSTANTIATE_TEST_SUITE_P(AllKinds, PngKind,
                          testing::Combine(testing::Values(1, 2, 3, 4), testing::Values(8, 16)));
 
-/// Returns a chunk of a PNG file with its checksum.
 std::string chunk(const std::string& type_and_data) {
   std::uint32_t crc = 0xffffffffu;
   for (const char c : type_and_data) {

@@ -29,14 +29,14 @@ Eigen::Vector3d at(const Corners& corners, std::size_t i) {
   return {p[0], p[1], p[2]};
 }
 
-/// Returns twice the area of a polygon as a vector along its normal.
+/// Twice the area, as a vector along the normal.
 Eigen::Vector3d area_of(const Corners& corners) {
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i) area += at(corners, i).cross(at(corners, i + 1));
   return area;
 }
 
-/// Returns a star-shaped polygon with concave corners, randomly rotated.
+/// The star has concave corners and a random orientation.
 Corners star(RandomStream& random, int count) {
   const Eigen::Quaterniond turned(
       Eigen::Vector4d(random.normal(), random.normal(), random.normal(), random.normal())

@@ -25,7 +25,6 @@ struct FittedPlane {
   double rms_m = 0.0;
 };
 
-/// Fits a plane to columns [first, last) of a radial depth image.
 FittedPlane fit(const Image<float>& depth_m, const PinholeView& view, int first, int last) {
   Eigen::MatrixX3d points(Eigen::Index{depth_m.height} * (last - first), 3);
   Eigen::Index i = 0;

@@ -18,7 +18,6 @@ const std::filesystem::path published =
     std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data";
 const std::filesystem::path kea = published / "kea_corrf_hamk3/keatof_2MHz_ham-k3_min.npy";
 
-/// Returns a camera without band limits.
 Camera ideal_camera(int samples, int taps, Readout readout = Readout::separate) {
   Camera camera = camera_with("paper-30x", taps, readout);
   camera.samples = samples;
@@ -26,7 +25,7 @@ Camera ideal_camera(int samples, int taps, Readout readout = Readout::separate) 
   return camera;
 }
 
-/// Returns the norm of each bin's measurements after projecting out ambient light (N).
+/// Norm of each bin's measurements after projecting out ambient light (N).
 Eigen::VectorXd contrast_of(const DecodingTable& table) {
   const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
   Eigen::MatrixXd x = table.correlation * table.exposure_s.asDiagonal();
@@ -34,8 +33,8 @@ Eigen::VectorXd contrast_of(const DecodingTable& table) {
   return x.rowwise().norm();
 }
 
-/// Returns the number of bins that decode to another bin, except bins equal to a lower one and bins
-/// without contrast, which look like ambient light.
+/// Number of bins that decode to another bin, except bins equal to a lower one and bins without
+/// contrast.
 int wrong_bins(const DecodingTable& table) {
   std::vector<std::int32_t> expected(static_cast<std::size_t>(table.samples()));
   std::iota(expected.begin(), expected.end(), 0);

@@ -130,7 +130,6 @@ std::size_t place_in_file(const RawFormat& f, int frame, int row, int column, in
   return static_cast<std::size_t>(place);
 }
 
-/// Returns the expected values of a pixel.
 std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>& numbers,
                                    int frame, int row, int column) {
   const auto [r, c] = row_and_column_in_file(f, row, column);

@@ -33,7 +33,6 @@ Number number_of(double value) {
     return static_cast<Number>(value);
 }
 
-/// Returns (F, H, W, K) values of light and noise.
 template <typename Number>
 std::vector<Number> recording(const DecodeSetup& setup) {
   const int pixels = static_cast<int>(frames * height * width);
@@ -43,7 +42,6 @@ std::vector<Number> recording(const DecodeSetup& setup) {
   return numbers;
 }
 
-/// Converts (F, H, W, K) to (F, K, H, W).
 template <typename Number>
 std::vector<Number> planar(const std::vector<Number>& numbers) {
   std::vector<Number> planes(numbers.size());
@@ -96,7 +94,6 @@ TYPED_TEST(RawRows, DecodeInBandsLikeTheWholeFrame) {
       EXPECT_EQ(reader.row_bytes(), width * measurements * sizeof(TypeParam));
       std::vector<std::byte> buffer;
       for (int frame = 0; frame < reader.frames(); ++frame) {
-        // Reference: one interleaved frame.
         const std::size_t values = height * width * measurements;
         Planes whole;
         this->setup_.decoder.decode(

@@ -47,7 +47,6 @@ class RawMarkersOfRecordings : public DecodeRecording {
     std::ofstream(path(name), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   }
-  /// Returns the values of one frame, 4 or 8 per pixel.
   template <typename Number>
   std::vector<Number> numbers(int per_pixel, double offset) {
     std::vector<Number> all;
@@ -55,7 +54,6 @@ class RawMarkersOfRecordings : public DecodeRecording {
       all.push_back(static_cast<Number>(offset + 10.0 + i * 37 % 101));
     return all;
   }
-  /// Returns the statuses of the first frame.
   std::vector<std::uint8_t> statuses(DecodeRequest request, const FrameBackend& backend) {
     request.output = path("out.npy");
     request.stack = true;

@@ -89,7 +89,7 @@ TEST(SceneDirectory, ReadingUndoesWriting) {
   }
 }
 
-/// Writes without the disk synchronization of an atomic file.
+/// Does not synchronize the disk, unlike an atomic file.
 void overwrite(const fs::path& path, std::span<const std::byte> bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));

@@ -38,7 +38,6 @@ int count(const std::string& text, const std::string& word) {
   return found;
 }
 
-/// Returns the document embedded in a rendered page.
 json embedded_document(const std::string& html) {
   const std::string mark = "id=\"document\">";
   const std::size_t begin = html.find(mark) + mark.size();

@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// Returns a page with every kind of block and figure, filled with plausible invented values.
+/// A page with every kind of block and figure, filled with plausible invented values.
 Page sample_page();
 
 }  // namespace tofsmith

@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Multipath light of a pixel relative to its direct light, and its mean delay.
 struct Sum {
   double ratio = 0.0;
   double delay_m = 0.0;
@@ -32,7 +31,7 @@ Sum sum_of(const MultipathReturns& light, int row, int column, double direct_m) 
   return sum;
 }
 
-/// Returns a scene with a camera of one pixel at `from` that looks at `at`.
+/// A camera of one pixel at `from` looks at `at`.
 StagedScene looking(std::vector<Shape> shapes, const Vector3d& from, const Vector3d& at) {
   StagedScene scene{.shapes = std::move(shapes), .view = {1.0, 1.0, 0.0, 0.0, 1, 1}};
   scene.camera_to_world.linear() =

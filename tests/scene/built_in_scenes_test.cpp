@@ -25,7 +25,7 @@ Seen see(std::string_view name) {
   return {std::move(staged), std::move(scene)};
 }
 
-/// Calls `look(row, column)` for every pixel that sees the shape; returns the number of pixels.
+/// Calls `look(row, column)` for every pixel that sees the shape.
 template <typename Look>
 int pixels_of(const Seen& seen, std::int32_t shape, Look&& look) {
   int count = 0;

@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a tetrahedron of size `size`, far from the origin.
+/// The mesh is far from the origin.
 TriangleMesh tetrahedron(double size) {
   TriangleMesh mesh;
   for (const auto& corner : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(2, 0, 0),

@@ -60,7 +60,7 @@ TEST(Mesh, ScaleRotationAndTranslationPlaceItInTheWorld) {
   EXPECT_NEAR(hit->distance_m, 3.0 - 0.1 * std::sqrt(2.0), 1e-12);
 }
 
-/// Returns a texture of 2 x 2 pixels: 0.1 0.2 above 0.3 0.4.
+/// 2 x 2 pixels: 0.1 0.2 above 0.3 0.4.
 Texture four_fields() {
   Texture texture{.pattern = Texture::Pattern::image, .albedo = 1.0, .image = Image<float>(2, 2)};
   texture.image.pixels = {0.1f, 0.2f, 0.3f, 0.4f};

@@ -28,7 +28,6 @@ TEST(RayCaster, TestsEveryTriangleOfAMeshByDefault) {
   }
 }
 
-/// A search that reports a hit at 1 m for every ray.
 struct NearSearch final : MeshSearch {
   void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
              std::int32_t shape) const override {

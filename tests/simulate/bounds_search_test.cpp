@@ -15,7 +15,6 @@
 namespace tofsmith {
 namespace {
 
-/// A code of pulse trains with the parameters of the search.
 struct TrainCode {
   int frequency = 1;          // pulses and gates per period
   double pulse_duty = 0.1;    // duty of the light
@@ -23,8 +22,7 @@ struct TrainCode {
   std::vector<double> begin;  // where the first gate of every exposure opens, in gate periods
 };
 
-/// Returns `count` gates per period, each open for the fraction `duty` from `begin` (in gate
-/// periods).
+/// @param begin  in gate periods
 Waveform gates(int count, double duty, double begin) {
   std::vector<OnInterval> on;
   for (int i = 0; i < count; ++i) {
@@ -53,15 +51,13 @@ CodeSet build(const TrainCode& train, const Camera& camera) {
                          std::move(demodulation));
 }
 
-/// Returns the receiver bound from information only: like a Cramer-Rao bound, it ignores confusion
-/// of depths.
+/// Like a Cramer-Rao bound, this ignores confusion of depths.
 double bound_by_information_m(const ReceiverBound& bound, const Camera& camera,
                               const OperatingPoint& point) {
   return camera.range_m() * std::sqrt(2.0 / std::numbers::pi / bound.information(point));
 }
 
-/// Returns the Cramer-Rao bound of a code over the receiver bound of its camera; must be at least
-/// 1.
+/// Cramer-Rao bound of a code over the receiver bound of its camera: at least 1.
 double ratio_of(const CodeSet& code, const Camera& camera, const OperatingPoint& point,
                 double bound_m) {
   return CramerRaoBound(ForwardModel(code, camera), camera).mae_m(point) / bound_m;
@@ -81,7 +77,7 @@ Camera camera_for(const char* name, int taps, bool drain, double peak_factor) {
   return camera;
 }
 
-/// Returns wide pulses and evenly spaced gates, so that no depth is undetermined initially.
+/// No depth is undetermined initially.
 TrainCode even_train(RandomStream& random, const Camera& camera, int exposures) {
   TrainCode train;
   train.frequency = 2 + static_cast<int>(3 * random.uniform());
@@ -102,8 +98,7 @@ TrainCode neighbour(TrainCode train, RandomStream& random, double step) {
   return train;
 }
 
-/// Returns the smallest ratio found by hill climbing; every intermediate code must respect the
-/// bound.
+/// Smallest ratio found; every intermediate code must respect the bound.
 double climb(const Camera& camera, const OperatingPoint& point, int exposures, std::uint64_t item) {
   RandomStream random(11, item);
   TrainCode best = even_train(random, camera, exposures);
@@ -174,7 +169,7 @@ TEST(ReceiverBoundSearch, HoldsForEveryKindOfSensorAndLight) {
   }
 }
 
-/// Frequency and delay (in its periods) of each exposure: pulses and gates open half of the time.
+/// Gates and pulses of half a period; delay in periods.
 struct ToneCode {
   std::vector<int> frequency;
   std::vector<double> begin;

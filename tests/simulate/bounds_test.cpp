@@ -24,8 +24,7 @@ CramerRaoBound bound_of(const CodeSet& code, const Camera& camera,
   return {ForwardModel(code, camera), camera, information};
 }
 
-/// Returns the receiver bound from information only: like a Cramer-Rao bound, it ignores confusion
-/// of depths.
+/// Like a Cramer-Rao bound, this ignores confusion of depths.
 double by_information_m(const ReceiverBound& bound, const Camera& camera,
                         const OperatingPoint& point) {
   return camera.range_m() * std::sqrt(2 / pi / bound.information(point));
@@ -102,7 +101,6 @@ TEST(CramerRaoBound, UniformAlbedoIncreasesTheBoundButKeepsItFinite) {
   const OperatingPoint point{1e5, 1e3};
   EXPECT_GT(bound.mae_uniform_albedo_m(point), bound.mae_m(point));
   EXPECT_LT(bound.mae_uniform_albedo_m(point), camera.range_m() / 4);
-  // Compare with a midpoint sum over 400 albedos.
   double sum = 0.0;
   for (int i = 0; i < 400; ++i)
     sum += std::min(camera.range_m() / 4, bound.mae_m({(i + 0.5) / 400 * 1e5, 1e3}));

@@ -26,7 +26,7 @@ Camera noiseless_camera() {
   return camera;
 }
 
-/// Returns the largest difference from the exact function, at the centres of the table's cells.
+/// Evaluates the error at the centres of the table's cells.
 double largest_error(const FineCorrelation& fine, const ForwardModel& model) {
   const Eigen::MatrixXd exact = model.tap_correlation_table(2 * fine.points());
   Eigen::VectorXd chi(fine.tap_values());

@@ -8,7 +8,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns the circular depth error [m] of a code at one light level.
 Estimate error_of(const char* code, const char* camera_name, OperatingPoint point,
                   DecodeMethod method, UnwrapWeights weights = UnwrapWeights::variance) {
   Camera camera = built_in_camera(camera_name);

@@ -212,7 +212,6 @@ TEST(Evaluate, UniformAlbedoAveragesOverSignals) {
   EXPECT_GT(error.cramer_rao_mae_m, error.receiver_bound_mae_m);
 }
 
-/// Returns the mean circular error of decoded sums of `n` captured pixels at one depth.
 Estimate error_of_sums(const CodeSet& code, const Camera& camera, int n) {
   constexpr int depths = 4000;
   SceneImage scene(1, depths);

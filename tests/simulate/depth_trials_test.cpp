@@ -31,7 +31,6 @@ double joint(const Estimate& a, const Estimate& b) {
   return std::hypot(a.standard_error, b.standard_error);
 }
 
-/// True and decoded positions of the first `count` trials of a round.
 struct Positions {
   std::vector<double> truth, found;
 };
@@ -85,7 +84,6 @@ TEST(DepthTrials, EverySliceHasOneDepth) {
   });
 }
 
-/// Mean and covariance of projected measurements at one depth.
 struct PlaneMoments {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;

@@ -25,7 +25,7 @@ Camera gaussian_light(double cutoff_hz, double peak_factor) {
   return camera;
 }
 
-/// Returns the deviation of a Gaussian response in periods; |H(cutoff)|^2 = 1/2.
+/// Deviation of a Gaussian response in periods; |H(cutoff)|^2 = 1/2.
 double deviation(const Camera& camera) {
   return std::sqrt(std::log(2.0)) / (2 * pi) * camera.fundamental_frequency_hz /
          camera.light.impulse_response.cutoff_hz;

@@ -26,7 +26,7 @@ const LensBlur disc{.kind = LensBlur::Kind::disc,
                     .pixel_pitch_m = 10e-6,
                     .pixel_samples = 2};
 
-/// Returns a camera with shot and read noise far below every tolerance.
+/// Shot and read noise are far below every tolerance.
 Camera quiet_camera(const LensBlur& blur) {
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.noise = NoiseModel::gaussian;
@@ -38,7 +38,6 @@ Camera quiet_camera(const LensBlur& blur) {
 
 CodeSet code_of(const Camera& camera) { return build_family("hamiltonian-k4", camera); }
 
-/// Captures without falloff and ambient light.
 RawFrames captured(const SceneImage& scene, const Camera& camera) {
   return capture(scene, code_of(camera), camera, {.ambient_e_per_s = 0.0, .falloff = false});
 }
@@ -121,7 +120,7 @@ TEST(Lens, ConservesTheLightOfTheImage) {
   }
 }
 
-/// Returns a near half-plane in front of a far wall, with its edge within a pixel.
+/// A near half-plane in front of a far wall, with its edge within a pixel.
 StagedScene edge_scene(int width, int height) {
   return {.shapes = {Box{.centre = {-1.03, 0.0, 1.0},
                          .size_m = {2.0, 4.0, 0.001},
@@ -130,8 +129,8 @@ StagedScene edge_scene(int width, int height) {
           .view = PinholeView::centred(width, height, 0.6)};
 }
 
-/// Returns electrons per exposure of a supersampled view, summed over its pixels with the weights
-/// of the point spread function: a reference without kernels on rays.
+/// Reference without kernels on rays: a supersampled view, summed over its pixels with the weights
+/// of the point spread function.
 RawFrames by_brute_force(const StagedScene& scene, const Camera& camera, int parts, int margin_px) {
   Camera sharp = camera;
   sharp.blur.reset();

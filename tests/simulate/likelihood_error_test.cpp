@@ -21,7 +21,7 @@ Camera camera_at(OperatingPoint point, std::vector<double> exposure_s = {}) {
   return camera;
 }
 
-/// Returns the circular error [bin] of every trial at the first operating point, with equal noise.
+/// All methods see the same noise.
 std::vector<double> errors_bin(const CodeSet& code, const Camera& camera, DecodeMethod method) {
   constexpr std::int64_t count = 10240;
   const ForwardModel model(code, camera);
@@ -80,7 +80,7 @@ TEST(MaximumLikelihood, IsBetterOnUnequalExposures) {
   }
 }
 
-/// Returns gates of 10 %, 50 % and 90 % of the period with a short pulse.
+/// Gates of 10 %, 50 % and 90 % of the period.
 CodeSet code_of_unequal_duties(int samples) {
   const std::vector<Waveform> pulse(5, Waveform::binary({{0.0, 0.125}}, 8.0));
   return CodeSet::create("unequal-duties", samples, 1, pulse,

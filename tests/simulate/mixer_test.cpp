@@ -30,7 +30,6 @@ Camera mixer_camera() {
   return camera;
 }
 
-/// Returns sampled weights with mean `mean`, and light pulses of 5 cells.
 CodeSet analog_code(int samples, double mean = 0.0) {
   constexpr int exposures = 4;
   std::vector<Waveform> light;

@@ -10,7 +10,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a camera with four exposures of 10 ms, gaps of 2 ms and a frame every 60 ms.
 Camera timed_camera() {
   Camera camera = built_in_camera("paper-10f0");
   camera.exposure_s.total_s = 40e-3;
@@ -21,7 +20,6 @@ Camera timed_camera() {
 
 CodeSet code_of(const Camera& camera) { return build_family("hamiltonian-k4", camera); }
 
-/// Returns a wall that approaches along its normal.
 StagedScene approaching_wall(double velocity_m_per_s) {
   StagedScene scene{.shapes = {Plane{.point = {0, 0, 3.0}, .texture = {.image = {}}}},
                     .view = PinholeView::centred(6, 4, 0.5)};
@@ -54,7 +52,6 @@ TEST(Motion, AShapeIsDisplacedByItsVelocityInTheMiddleOfEachFrame) {
     const PinholeView view = approaching_wall(0.0).view;
     const auto at = static_cast<std::size_t>(frame);
     EXPECT_NEAR(made.truth[at].depth_m(1, 2), z_m * view.radial_per_z(1, 2), 1e-5);
-    // From the first exposure to the last.
     EXPECT_NEAR(made.far_m[at](1, 2) - made.near_m[at](1, 2), 2.0 * 36e-3 * view.radial_per_z(1, 2),
                 1e-5);
   }

@@ -15,7 +15,7 @@ struct Moments {
   double mean, mean_se, variance, variance_se;
 };
 
-/// Returns sample moments of 40,000 draws with standard errors from the fourth moment.
+/// Moments of 40,000 draws; standard errors are computed from the fourth moment.
 template <typename Draw>
 Moments moments_of(Draw&& draw) {
   constexpr int count = 40000;

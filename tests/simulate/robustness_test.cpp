@@ -187,7 +187,7 @@ TEST(Robustness, CalibratedEqualsTheDepthErrorOfThePerturbedCamera) {
   }
 }
 
-/// Returns two measurements in which ambient light cancels if the taps are equal.
+/// Ambient light cancels if the taps are equal.
 CodeSet two_differences(const Camera& camera) {
   const Waveform light = rectangular_pulse(0.1);
   const auto gate = [](double begin) { return square_wave(1, begin); };

@@ -80,7 +80,6 @@ TEST(RowsBounds, ARowForEveryBinUsesTheWholeHistogram) {
     for (const CodeSet& code : {all, mixed})
       EXPECT_NEAR(CramerRaoBound(ForwardModel(code, camera), camera).mae_m(point), expected_m,
                   1e-5 * expected_m);
-    // Fewer rows contain less information.
     EXPECT_GT(CramerRaoBound(ForwardModel(pulse, camera), camera).mae_m(point), expected_m);
   }
 }

@@ -13,7 +13,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns the number of doubles in a vector of an instruction set.
 std::size_t lanes_of(std::int64_t target) {
   if (target == HWY_SCALAR) return 1;
   if (target == HWY_AVX3) return 8;

@@ -22,7 +22,6 @@ Camera two_bucket_camera(int samples = 240) {
   return camera;
 }
 
-/// Returns H x W pixels at random depths of the range, with albedo 1.
 SceneImage random_depths(int height, int width, double range_m) {
   SceneImage scene(height, width);
   RandomStream random(4, 0);
@@ -95,7 +94,6 @@ TEST(TwoBuckets, TheSecondBucketReducesTheError) {
     const DepthErrorReport one = evaluate(build_family(c.name, camera), camera, {.trials = 4000});
     EXPECT_EQ(one.exposures, two.exposures);
     EXPECT_LT(two.circular.mean_m.value, 0.9 * one.circular.mean_m.value) << c.name;
-    // Never below the receiver bound.
     EXPECT_GT(two.circular.mean_m.value, two.points[0].receiver_bound_mae_m) << c.name;
   }
 }

@@ -27,7 +27,6 @@ Camera small_camera(Weights depths = {}) {
   return camera;
 }
 
-/// Returns `parts` weights that restrict depths to one part.
 std::vector<double> only(int part, int parts) {
   std::vector<double> weights(static_cast<std::size_t>(parts), 0.0);
   weights[static_cast<std::size_t>(part)] = 2.0;
@@ -195,7 +194,7 @@ TEST(WeighedDepths, TheHistogramBoundIsTheMeanOverThemWithinABin) {
   EXPECT_NEAR(sum_m / 4, anywhere_m, 1e-9 * anywhere_m);
 }
 
-/// Returns a camera for depths where nothing wraps: linear and circular error are equal.
+/// Depths do not wrap here, so that linear and circular error are equal.
 Camera camera_of_the_middle() {
   Camera camera = small_camera(Weights({0, 0, 0, 1, 1, 0, 0, 0}));
   camera.operating.signal_e_per_s = {1e6};

@@ -13,7 +13,6 @@
 
 namespace tofsmith {
 
-/// Returns a camera with exclusive taps on a chip clock and one operating point.
 inline Camera chip_camera(int chips, int taps, const OperatingPoint& point) {
   Camera camera = built_in_camera("exclusive-3tap-9chip");
   camera.operating.signal_e_per_s = {point.signal_e_per_s};
@@ -23,15 +22,14 @@ inline Camera chip_camera(int chips, int taps, const OperatingPoint& point) {
   return camera;
 }
 
-/// Depth error of a code at one operating point.
 struct ComparedCode {
   std::string name;
   double rms_m = 0.0;       ///< root mean square over depth of CramerRaoBound::sigma_m
   Estimate circular_mde_m;  ///< Monte Carlo, maximum likelihood
 };
 
-/// Evaluates each code with the maximum-likelihood decoder at the camera's only operating point.
-/// Taps and samples of the camera are set to the code's.
+/// Evaluates each code with maximum likelihood at the camera's only operating point; taps and
+/// samples of the camera are set to the code's.
 inline std::vector<ComparedCode> compare_chip_codes(const std::vector<StandardCode>& codes,
                                                     const Camera& camera, EvaluateOptions options) {
   options.method = DecodeMethod::ml;

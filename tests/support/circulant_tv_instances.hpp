@@ -12,7 +12,6 @@
 
 namespace tofsmith::test {
 
-/// Parameters of a random sub-problem of code design.
 struct InstanceKind {
   int samples = 240;
   double weight_per_sample = 2e-5;
@@ -28,7 +27,6 @@ inline Eigen::VectorXd smoothed(const Eigen::VectorXd& x, int width) {
   return circular_convolution(x, window / window.sum());
 }
 
-/// Correlation of a rectangular pulse with a square wave: a typical Hamiltonian target.
 inline Eigen::VectorXd trapezoid_target(int samples, double pulse_duty) {
   Eigen::VectorXd square(samples), pulse(samples);
   for (int n = 0; n < samples; ++n) {
@@ -38,7 +36,7 @@ inline Eigen::VectorXd trapezoid_target(int samples, double pulse_duty) {
   return circular_correlation(square, pulse) / samples;
 }
 
-/// Returns a random sub-problem of the alternating design: the fixed waveform is binary with 1 to 8
+/// Returns a random sub-problem of the alternating design. The fixed waveform is binary with 1 to 8
 /// pulses, the target a trapezoid, noisy in half of the cases. The unknown is a demodulation (at
 /// most 1, no budget) or a modulation (peak factor 2 to 30, mean at most 1).
 inline CirculantTvProblem random_circulant_tv(const InstanceKind& kind, RandomStream& random) {

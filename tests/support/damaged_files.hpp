@@ -24,7 +24,7 @@ inline FileBytes bytes_of(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Returns the message of the IoError that `action` throws; the test fails if it throws none.
+/// Returns the message of the IoError that `action` must throw.
 inline std::string io_error_of(const std::function<void()>& action) {
   try {
     action();
@@ -44,7 +44,7 @@ inline void expect_truncations_refused(const FileBytes& whole, const FileParser&
   }
 }
 
-/// Returns a copy of a file with some bytes replaced, removed or inserted.
+/// Replaces, removes or inserts some bytes.
 inline FileBytes damaged(FileBytes bytes, RandomStream& random) {
   const int wounds = 1 + static_cast<int>(random() % 6);
   for (int i = 0; i < wounds && !bytes.empty(); ++i) {
@@ -76,8 +76,8 @@ inline FileBytes damaged(FileBytes bytes, RandomStream& random) {
   return bytes;
 }
 
-/// Expects that each of `count` damaged copies is read or rejected with IoError or
-/// std::invalid_argument. Returns the number of rejected copies.
+/// Expects that each of `count` damaged copies is read, or rejected with IoError or
+/// std::invalid_argument; returns the number of rejected copies.
 inline int expect_damage_read_or_refused(const FileBytes& whole, int count, std::uint64_t seed,
                                          const FileParser& parse) {
   int refused = 0;

@@ -25,7 +25,6 @@ struct DecoderSetup {
         model(build_family(code, camera), camera),
         decoder(make_decoding_table(model, camera), options) {}
 
-  /// Appends the expected raw electrons of one pixel.
   void append_expected(std::vector<float>& raw, double signal, double depth_bin,
                        double ambient) const {
     const Return r{signal, depth_bin};
@@ -63,7 +62,7 @@ inline void append_noisy_pixel(const DecodingTable& table, double signal, double
   }
 }
 
-/// Returns noisy raw values (pixels, K) at random depths.
+/// Raw values (pixels, K) at random depths.
 inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
                                        int pixels, std::uint64_t seed) {
   std::vector<float> raw;
@@ -89,8 +88,7 @@ RawFrames frame_by_pixel(int measurements, int height, int width, std::uint64_t 
   return frame;
 }
 
-/// Returns noisy raw values for dim to bright signals, in ambient light between a hundred times the
-/// signal and a thousandth of it.
+/// Dim to bright signals, in ambient light from a hundred times the signal to a thousandth of it.
 inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table, int each) {
   std::vector<float> raw;
   std::uint64_t seed = 1;
@@ -117,7 +115,6 @@ std::vector<double> depth_bins_of(const AnyDecoder& decoder, const std::vector<f
   return bins;
 }
 
-/// Returns a frame of one row of pixels.
 inline RawFrames frame_of(const std::vector<float>& raw, int measurements) {
   RawFrames frames;
   frames.frames = frames.height = 1;

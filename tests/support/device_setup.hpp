@@ -12,12 +12,11 @@
 
 namespace tofsmith {
 
-/// Returns the first device, or nothing without one.
 inline std::optional<Device> device_of_tests() {
   try {
     const std::vector<Device> devices = Device::all();
     if (!devices.empty()) return devices.front();
-  } catch (const IoError&) {  // built without OpenCL
+  } catch (const IoError&) {
   }
   return std::nullopt;
 }

@@ -10,7 +10,6 @@
 
 namespace tofsmith {
 
-/// Returns the directions of a closed curve.
 inline DirectionTable directions_of(const Curve& curve) {
   DecodingTable table;
   table.correlation = curve;
@@ -19,7 +18,7 @@ inline DirectionTable directions_of(const Curve& curve) {
   return DirectionTable(AmbientProjection(table));
 }
 
-/// Returns the directions of a code's curve with `code_samples` bins, ambient light projected out.
+/// The code has `code_samples` bins; ambient light is projected out.
 inline DirectionTable directions_of(const std::string& code, int code_samples, int samples) {
   Camera camera = camera_with("paper-10f0");
   camera.samples = code_samples;

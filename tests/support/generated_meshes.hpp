@@ -15,7 +15,6 @@
 
 namespace tofsmith {
 
-/// Returns a regular icosahedron on the unit sphere, normals pointing outwards.
 inline TriangleMesh icosahedron() {
   const double g = 0.5 * (1 + std::sqrt(5.0));
   TriangleMesh mesh;
@@ -29,7 +28,6 @@ inline TriangleMesh icosahedron() {
   return mesh;
 }
 
-/// Splits each triangle into four and projects new vertices onto the unit sphere.
 inline TriangleMesh subdivided(const TriangleMesh& coarse) {
   TriangleMesh fine;
   fine.vertices = coarse.vertices;
@@ -48,14 +46,14 @@ inline TriangleMesh subdivided(const TriangleMesh& coarse) {
   return fine;
 }
 
-/// Returns the unit sphere as 20 * 4^times triangles.
+/// The unit sphere as 20 * 4^times triangles.
 inline TriangleMesh tessellated_sphere(int times) {
   TriangleMesh mesh = icosahedron();
   for (int i = 0; i < times; ++i) mesh = subdivided(mesh);
   return mesh;
 }
 
-/// Returns the axis-aligned cube of edge length 1 centred on the origin (12 triangles).
+/// Edge length 1, centred on the origin.
 inline TriangleMesh unit_cube() {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -65,7 +63,7 @@ inline TriangleMesh unit_cube() {
   return mesh;
 }
 
-/// Returns a random ray that starts near the origin; deterministic per item.
+/// A random ray that starts near the origin; deterministic per item.
 inline Ray ray_about_origin(std::uint64_t item, double spread_m = 3.0) {
   RandomStream random(27, item);
   const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
@@ -73,7 +71,6 @@ inline Ray ray_about_origin(std::uint64_t item, double spread_m = 3.0) {
   return {spread_m * origin, direction.normalized()};
 }
 
-/// Places a mesh with a fixed rotation.
 inline Mesh placed_mesh(TriangleMesh triangles, const Eigen::Vector3d& place, double scale_m) {
   Mesh mesh;
   mesh.triangles = std::move(triangles);

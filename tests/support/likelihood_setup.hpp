@@ -7,7 +7,6 @@
 
 namespace tofsmith {
 
-/// A code, a camera and the maximum-likelihood decoder.
 using LikelihoodSetup = DecoderSetup<LikelihoodDecoder, DecodeOptions>;
 
 }  // namespace tofsmith

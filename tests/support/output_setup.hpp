@@ -43,7 +43,7 @@ struct Outputs : DepthImage {
         *this);
   }
 
-  /// @param planes  bit p is set if plane p of decoder_planes is requested
+  /// @param planes  bit p requests plane p of decoder_planes
   DecodedView view(unsigned planes = ~0u) {
     DecodedView wanted;
     for (std::size_t p = 0; p < decoder_planes.size(); ++p)
@@ -55,7 +55,7 @@ struct Outputs : DepthImage {
   }
 };
 
-/// Compares values bitwise; NaN equals NaN.
+/// NaN equals NaN.
 template <typename Value>
 testing::AssertionResult same(const std::vector<Value>& a, const std::vector<Value>& b) {
   if (a.size() != b.size()) return testing::AssertionFailure() << "sizes differ";
@@ -67,7 +67,7 @@ testing::AssertionResult same(const std::vector<Value>& a, const std::vector<Val
   return testing::AssertionSuccess();
 }
 
-/// Expects that requested planes equal those of `all` and that the other planes are unchanged.
+/// Expects that requested planes are equal in `all` and that the other planes are unchanged.
 /// @param planes  bit mask of Outputs::view()
 inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes) {
   const Outputs none(all.bin.size());
@@ -108,7 +108,6 @@ class Matched {
     return *std::max_element(raw_.begin(), raw_.end()) / table_.exposure_s.minCoeff();
   }
 
-  /// Applies the definition: best bin, PixelModel and store_pixel.
   Outputs expected() const {
     Outputs result(pixels_);
     for (std::size_t i = 0; i < pixels_; ++i) {
@@ -153,7 +152,6 @@ class Matched {
     for (int j = 0; j < u.size(); ++j) u[j] = directions_.direction(n, j);
     return u;
   }
-  /// Returns the first bin with the highest score.
   std::int32_t best_bin(const Eigen::VectorXd& q) const {
     const auto has_contrast = [this](std::int32_t bin) {
       return !projection_.curve.row(bin).isZero(0.0);
@@ -179,7 +177,6 @@ class Matched {
   std::vector<std::int32_t> bin_;
 };
 
-/// Returns the circular distance in rows from the row of the reference.
 inline double off_rows(float depth_m, double depth_row, const DecodingTable& table) {
   return std::abs(circular_difference(depth_m / table.row_m(), depth_row, table.samples()));
 }

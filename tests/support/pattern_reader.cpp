@@ -37,7 +37,6 @@ std::string without(std::string_view text, std::string_view begin, std::string_v
   }
 }
 
-/// Parser with the file name for error messages.
 class Reader {
  public:
   explicit Reader(std::string_view file) : file_(file) {}
@@ -56,7 +55,6 @@ class Reader {
     return value;
   }
 
-  /// Returns the text between `key` and `end`.
   std::string_view between(std::string_view text, std::string_view key,
                            std::string_view end) const {
     const std::size_t at = text.find(key);
@@ -66,7 +64,6 @@ class Reader {
     return text.substr(begin, stop - begin);
   }
 
-  /// Calls `parse(item)` for each item separated by commas or blanks.
   template <typename Parse>
   std::vector<std::uint64_t> words(std::string_view list, Parse&& parse) const {
     std::vector<std::uint64_t> result;
@@ -84,7 +81,7 @@ class Reader {
   std::string file_;
 };
 
-/// Removes the text after the first semicolon of each line, which is a comment.
+/// Removes the text after the first semicolon of each line.
 std::string without_coe_comments(std::string_view text) {
   std::string result;
   for (std::size_t begin = 0; begin < text.size();) {

@@ -8,10 +8,8 @@
 
 namespace tofsmith {
 
-/// Syntax of a memory file.
 enum class PatternSyntax { coe, mif, mem, systemverilog, vhdl, c };
 
-/// Content of a memory file.
 struct PatternWords {
   int word_bits = 0;  ///< 0 if the file does not contain it (.coe, .mem)
   std::vector<std::uint64_t> words;

@@ -21,7 +21,6 @@ namespace tofsmith {
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// Decodes pixels as an image of one row.
 template <typename AnyDecoder>
 DepthImage decode_pixels(const AnyDecoder& decoder, const std::vector<float>& raw) {
   return decoder.decode(frame_of(raw, decoder.measurements()));
@@ -98,7 +97,6 @@ void expect_negative_signal_is_no_return() {
   EXPECT_EQ(decode_pixels(decoder, {0.0f, 1e6f, 2e5f}).status(0, 0), PixelStatus::ok);
 }
 
-/// Statistics of the estimates of noisy pixels at one depth.
 struct PixelEstimates {
   RunningStatistics depth_m, signal, ambient, predicted_m;
   /// Predicted over empirical deviation; with n trials its standard error is 1 / sqrt(2 n).
@@ -127,7 +125,7 @@ PixelEstimates estimates_at(const Setup& setup, double truth_bin, double signal,
   return result;
 }
 
-/// Decodes 20,000 noisy pixels of five measurements at random depths, and calls use(confidence,
+/// Decodes 20,000 noisy pixels of five measurements at random depths; calls use(confidence,
 /// error_m) for each pixel with a depth.
 template <typename Setup, typename Use>
 void for_each_confidence(const Setup& setup, double signal, double ambient, const Use& use) {

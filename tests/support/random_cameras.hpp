@@ -25,7 +25,6 @@ inline double log_between(RandomStream& random, double low, double high) {
 
 inline bool one_in(RandomStream& random, int n) { return random.uniform() * n < 1.0; }
 
-/// Returns a random integer in [low, high].
 inline int whole_between(RandomStream& random, int low, int high) {
   return low + static_cast<int>(random.uniform() * (high - low + 1));
 }

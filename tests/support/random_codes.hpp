@@ -12,13 +12,12 @@
 
 namespace tofsmith {
 
-/// Size of a random code.
 struct RandomCode {
   int measurements, samples;
   int rank;  ///< upper limit of the rank of its curve without ambient light
 };
 
-/// Returns the table of a smooth closed curve, randomly oriented in measurement space.
+/// A smooth closed curve, randomly oriented in measurement space.
 inline DecodingTable random_table(const RandomCode& code, RandomStream& random) {
   Eigen::MatrixXd curve(code.samples, code.rank), axes(code.rank, code.measurements);
   for (int j = 0; j < code.rank; ++j) {

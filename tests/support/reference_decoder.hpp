@@ -56,7 +56,6 @@ class ReferenceDecoder {
                               : -std::numeric_limits<double>::infinity();
   }
 
-  /// Returns the bin nearest to the best row.
   template <typename Number>
   int bin(const Number* raw) const {
     return table_.nearest_bin(row(raw));
@@ -72,8 +71,7 @@ class ReferenceDecoder {
     return n;
   }
 
-  /// Returns the score at any depth: by trigonometric interpolation of smooth tables, else on
-  /// chords.
+  /// Score at any depth: by trigonometric interpolation of smooth tables, else on chords.
   double score_at(const Eigen::VectorXd& difference, double depth_bin) const {
     if (spectrum_.size() > 0) {
       const Eigen::VectorXd smooth_point = on_smooth_curve(depth_bin);
@@ -85,7 +83,7 @@ class ReferenceDecoder {
     return difference.dot(point) / point.norm();
   }
 
-  /// Returns the best score on the two chords at a bin, by golden-section search.
+  /// Best score on the two chords at a bin, by golden-section search.
   double best_score_beside(const Eigen::VectorXd& difference, int bin) const {
     double best = score(difference, bin);
     const int left = (bin + table_.samples() - 1) % table_.samples();

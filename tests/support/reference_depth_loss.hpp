@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Returns the points (R, N) of the decoding curve as defined by DecodingCurve.
+/// Points (R, N) of the decoding curve as defined by DecodingCurve.
 inline Eigen::MatrixXd reference_points(const SampledCamera& camera,
                                         const MeasurementTable& table) {
   const Eigen::VectorXd relative = camera.exposure_s() / camera.exposure_s().mean();
@@ -23,7 +23,6 @@ inline Eigen::MatrixXd reference_points(const SampledCamera& camera,
   return projection * relative.asDiagonal() * table.correlation.transpose();
 }
 
-/// Returns the electrons measured in trial t.
 inline Eigen::VectorXd reference_electrons(const SampledCamera& camera,
                                            const MeasurementTable& table,
                                            const OperatingPoint& point, const TrialBatch& batch,

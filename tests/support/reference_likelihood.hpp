@@ -39,8 +39,8 @@ class ReferenceLikelihood {
     return ((y - mean).array().square() / v + v.log()).sum();
   }
 
-  /// Returns the minimum cost over a grid of depths. At every depth, the light is fitted by
-  /// iteratively reweighted least squares; the minimum includes all iterations.
+  /// Minimum over a grid of depths and over all iterations of a reweighted least-squares fit of the
+  /// light.
   double min_cost(const Eigen::VectorXd& y, int depths_per_bin) const {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < table_.samples() * depths_per_bin; ++i) {
@@ -73,7 +73,7 @@ class ReferenceLikelihood {
     const Eigen::VectorXd light = signal * at(shot_, depth_bin) + ambient * shot_ambient_gain_;
     return (light.cwiseProduct(table_.exposure_s) + floor_).cwiseMax(1e-4 * y.cwiseAbs().mean());
   }
-  /// Returns the weighted least-squares estimate of signal and ambient light, both >= 0.
+  /// Signal and ambient light, both >= 0.
   Eigen::Vector2d weighted_fit(const Eigen::VectorXd& y, double depth_bin,
                                const Eigen::VectorXd& v) const {
     const Eigen::VectorXd weight = v.cwiseSqrt().cwiseInverse();

@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// Returns a camera with row readout: photons counted in one exposure of one second.
+/// Photons counted in rows, in one exposure of one second.
 inline Camera rows_camera(int samples = 60, double signal_e = 1e3, double ambient_e = 1e3) {
   Camera camera;
   camera.fundamental_frequency_hz = 5e6;
@@ -23,7 +23,6 @@ inline Camera rows_camera(int samples = 60, double signal_e = 1e3, double ambien
   return camera;
 }
 
-/// Returns the expected electrons in every time bin.
 inline Eigen::VectorXd bins_e(const ForwardModel& model, double depth_bin, double signal_e_per_s,
                               double ambient_e_per_s) {
   const Return seen{signal_e_per_s, depth_bin};

@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// Expects that two codes agree in every cell up to rounding.
+/// Compares samples up to rounding.
 inline void expect_same_samples(const CodeSet& a, const CodeSet& b) {
   ASSERT_EQ(a.samples(), b.samples());
   ASSERT_EQ(a.taps(), b.taps());
@@ -17,7 +17,6 @@ inline void expect_same_samples(const CodeSet& a, const CodeSet& b) {
   EXPECT_TRUE(a.demodulation_samples().isApprox(b.demodulation_samples(), 1e-12));
 }
 
-/// Expects that two codes have identical modulation and readout functions.
 inline void expect_same_functions(const CodeSet& a, const CodeSet& b) {
   ASSERT_EQ(a.samples(), b.samples());
   ASSERT_EQ(a.taps(), b.taps());
@@ -26,7 +25,7 @@ inline void expect_same_functions(const CodeSet& a, const CodeSet& b) {
   for (int i = 0; i < a.measurements(); ++i) EXPECT_EQ(a.demodulation(i), b.demodulation(i)) << i;
 }
 
-/// Expects identical functions, name and provenance.
+/// Compares name and provenance, too.
 inline void expect_same_code(const CodeSet& a, const CodeSet& b) {
   expect_same_functions(a, b);
   EXPECT_EQ(a.name(), b.name());

@@ -12,8 +12,8 @@ inline constexpr bool with_sanitizers = true;
 inline constexpr bool with_sanitizers = false;
 #endif
 
-/// Returns the number of repetitions of a long test: `all`, or an eighth with sanitizers, which are
-/// about ten times slower.
+/// Number of repetitions of a long test: an eighth of `all` with sanitizers, which are about ten
+/// times slower.
 template <typename Count>
 constexpr Count repetitions(Count all) {
   return with_sanitizers ? std::max(Count{1}, all / 8) : all;

@@ -17,7 +17,6 @@ namespace {
 
 int bits_of(WvdtPoints points) { return points == WvdtPoints::bits16_little_endian ? 16 : 14; }
 
-/// Keys of the header lines, in this order.
 constexpr std::string_view header_keys[] = {"frequency", "amp", "offset", "phase"};
 constexpr int blank_lines = 7;
 
@@ -92,7 +91,6 @@ class WvdtHeader {
     std::from_chars(prefix_.data() + c + 1, prefix_.data() + prefix_.size(), channel);
     return channel;
   }
-  /// Returns a leading slot such as "M50", or an empty string.
   std::string slot() const {
     return !words_.empty() && words_[0].starts_with('M') ? std::string(words_[0]) : std::string();
   }

@@ -73,7 +73,7 @@ class SimulatedGenerator:
         return self.settings[key] == "ON"
 
     def played(self, channel):
-        """Returns the points of a channel's waveform, as received."""
+        """Returns the points of a channel as received."""
         n = channel
         if self.family == "siglent":
             arb, name = self.settings[f"C{n}:BSWV WVTP"] == "ARB", self.settings[f"C{n}:ARWV NAME"]
@@ -361,7 +361,6 @@ class SimulatedGenerator:
 
 
 def _number(text):
-    """Returns the number at the beginning of a text, or 0."""
     found = re.match(r"[+-]?(\d+\.?\d*|\.\d+)(E[+-]?\d+)?", text, re.I)
     return float(found[0]) if found else 0.0
 
@@ -371,5 +370,4 @@ def _block(data):
 
 
 def _flipped(text, at, detail):
-    """Returns the text with one bit flipped."""
     return text[:at] + chr(ord(text[at]) ^ 1 << (detail >> 16) % 8) + text[at + 1:]

@@ -10,7 +10,6 @@
 
 namespace tofsmith {
 
-/// Returns a built-in camera with few light levels.
 inline Camera small_camera(const std::string& name, DepthErrorKind error = DepthErrorKind::linear) {
   Camera camera = built_in_camera(name);
   camera.samples = 60;
@@ -20,7 +19,7 @@ inline Camera small_camera(const std::string& name, DepthErrorKind error = Depth
   return camera;
 }
 
-/// Returns options of a design that runs for a fraction of a second.
+/// A design with these options takes a fraction of a second.
 inline DesignOptions small_options(std::vector<int> exposures = {3}) {
   DesignOptions options;
   options.method = DesignMethod::factorize;

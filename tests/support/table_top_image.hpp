@@ -7,7 +7,6 @@
 
 namespace tofsmith {
 
-/// Returns the demo scene as seen by its pinhole camera.
 inline SceneImage table_top_image(int width, int height) {
   const StagedScene scene = built_in_scene("table-top", width, height);
   return ray_cast(scene.shapes, scene.view, scene.camera_to_world);

@@ -28,7 +28,7 @@ class TemporaryDirectory {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  /// Returns the number of files, including hidden files.
+  /// Includes hidden files.
   int files() const {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(path_))

@@ -54,7 +54,6 @@ inline TiffBytes pack_lzw(const TiffBytes& bytes) {
   return packed;
 }
 
-/// A TIFF file of one page.
 struct TiffWriter {
   bool big_endian = false;
   std::vector<std::pair<int, std::vector<std::uint32_t>>> tags;  ///< in ascending order

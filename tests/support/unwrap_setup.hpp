@@ -7,7 +7,6 @@
 
 namespace tofsmith {
 
-/// A code of sinusoids, a camera and the unwrapping decoder.
 using UnwrapSetup = DecoderSetup<UnwrapDecoder, UnwrapOptions>;
 
 }  // namespace tofsmith

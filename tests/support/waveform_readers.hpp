@@ -14,7 +14,6 @@
 
 namespace tofsmith {
 
-/// Content of an EasyWave CSV.
 struct EasyWaveTable {
   double frequency_hz = 0.0;   ///< of the whole table
   double amplitude_vpp = 0.0;  ///< peak to peak
@@ -33,13 +32,12 @@ EasyWaveTable parse_easywave_csv(std::string_view text, std::string_view file);
 /// @throws IoError "place: byte N: ..." for any other content
 WvdtCommand parse_wvdt(std::span<const std::byte> bytes, WvdtPoints points, std::string_view place);
 
-/// Content of an .arb file.
 struct KeysightArb {
   double sample_rate_hz = 0.0;
   double high_level_v = 0.0;         ///< of 32767
   double low_level_v = 0.0;          ///< of -32767
   int marker_point = 0;              ///< point at which the sync output becomes low; 0: missing
-  std::vector<std::int16_t> points;  ///< -32767 .. 32767
+  std::vector<std::int16_t> points;  ///< from -32767 to 32767
 };
 
 /// @param file  name for error messages
@@ -55,10 +53,9 @@ std::vector<std::int16_t> parse_keysight_dac_bytes(std::span<const std::byte> by
 std::vector<std::int32_t> parse_tektronix_tfw(std::span<const std::byte> bytes,
                                               std::string_view file);
 
-/// Content of an AWG .wfm file.
 struct TektronixWfm {
   double sample_rate_hz = 0.0;        ///< 0: the file has no CLOCK
-  std::vector<float> values;          ///< -1 .. 1, full scale of the DAC
+  std::vector<float> values;          ///< from -1 to 1, full scale of the DAC
   std::vector<std::uint8_t> markers;  ///< bit 0: marker 1, bit 1: marker 2
 };
 

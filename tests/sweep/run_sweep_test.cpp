@@ -127,8 +127,7 @@ TEST(SweepQueue, ReclaimsItemsOfAnotherProcessLast) {
 
 TEST(ComputeItems, EqualsTheResultsOfRunSweep) {
   const TemporaryDirectory directory;
-  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // not supported by Hamiltonian
-                                                                    // codes
+  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // unwrap: sinusoids only
   const std::vector<std::string> keys = list.keys();
   SweepStore store = SweepStore::open(directory / "s.sqlite");
   run_sweep(list, keys, store);
@@ -186,8 +185,7 @@ TEST(RunSweep, ShardsMergeToTheWhole) {
 
 TEST(RunSweep, AFailedItemDoesNotAffectOthers) {
   const TemporaryDirectory directory;
-  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // not supported by Hamiltonian
-                                                                    // codes
+  const WorkList list = small_list("15", "method = \"unwrap\"\n");  // unwrap: sinusoids only
   const std::vector<std::string> keys = list.keys();
   SweepStore store = SweepStore::open(directory / "s.sqlite");
   const SweepRun run = run_sweep(list, keys, store);

@@ -10,7 +10,6 @@
 
 namespace tofsmith {
 
-/// Returns a small sweep over these peak factors.
 inline WorkList small_list(const std::string& peaks = "12, 15", const std::string& more = "") {
   return WorkList(parse_sweep_toml(
       "set = [\"samples=24\"]\ncodes = [\"sinusoid-k4\", \"hamiltonian-k3\"]\ntrials = 16\n" +
@@ -19,7 +18,7 @@ inline WorkList small_list(const std::string& peaks = "12, 15", const std::strin
       "[[axis]]\nkey = \"ambient_e_per_s\"\nvalues = [1e4]\n"));
 }
 
-/// Runs a sweep on a store and returns the content of the store.
+/// Returns the content of the store.
 inline std::string swept(const std::filesystem::path& path, const WorkList& list,
                          std::int64_t* computed = nullptr, const SweepRunOptions& options = {}) {
   const std::vector<std::string> keys = list.keys();

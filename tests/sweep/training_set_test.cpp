@@ -26,7 +26,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Returns a wall of a few pixels at the distance given by its name: "2.5".
+/// The name of the scene is its distance.
 LoadedTrainingScene wall(const TrainingScene& scene) {
   if (scene.name == "bad") throw IoError(scene.name, "is no scene");
   LoadedTrainingScene loaded{SceneImage(3, 4), PinholeView::centred(4, 3, 1.0)};
@@ -50,7 +50,6 @@ TrainingSetRun write(const fs::path& directory, const std::vector<std::string>& 
                             wall, options);
 }
 
-/// Returns the content of every file by its path.
 std::map<std::string, std::string> content_of(const fs::path& directory) {
   std::map<std::string, std::string> content;
   for (const auto& entry : fs::recursive_directory_iterator(directory))

@@ -32,8 +32,7 @@ QuantizedWaveform random_waveform(const GeneratorModel& model, Arm arm, int inde
   return waveform;
 }
 
-/// Returns a request for light on channel 1 and sensor on channel 2, two exposures in memory, the
-/// second selected.
+/// Two exposures in memory, the second selected.
 UploadRequest example_request(const GeneratorModel& model) {
   UploadRequest request;
   for (const Arm arm : {Arm::light, Arm::sensor})

@@ -36,7 +36,6 @@ std::string problem_of(const CodeSet& code, const Camera& camera, const ExportOp
   return "";
 }
 
-/// Returns the values of a waveform at each point, read back from its file.
 std::vector<double> values_read_back(const ExportedFile& file, const QuantizedWaveform& w,
                                      const WaveformExport& exported) {
   const std::string& format = exported.format.name;

@@ -42,7 +42,7 @@ QuantizedWaveform golden_waveform(std::int32_t levels, int periods = 1) {
   return waveform;
 }
 
-/// Returns random values that include the ends of the range.
+/// Values include the ends of the range.
 QuantizedWaveform random_waveform(std::uint32_t item, std::int32_t levels, int points) {
   RandomStream random(91, item);
   QuantizedWaveform waveform{.name = "demodulation_3", .levels = levels};

@@ -93,16 +93,13 @@ class LabTest(unittest.TestCase):
         return reply.get("value")
 
     def state(self):
-        """Returns the state of the lab."""
         return self.driver.execute_script("return tofsmithLab.store.state")
 
     def text(self, selector):
-        """Returns the text of an element."""
         return self.driver.execute_script(
             "return document.querySelector(arguments[0])?.textContent", selector)
 
     def wait(self, script, seconds=20):
-        """Waits until an expression of the page is true."""
         end = time.monotonic() + seconds
         while not (found := self.driver.execute_script("return " + script)):
             if time.monotonic() > end:

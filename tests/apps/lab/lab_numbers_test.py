@@ -23,13 +23,11 @@ TRIALS = 1000
 
 
 def command(*words):
-    """Returns the document that a command prints."""
     done = subprocess.run([TOOL, "--json", *words], capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
 def numbers_of(document, path=""):
-    """Returns all numbers of a document by their paths."""
     if isinstance(document, dict):
         return {k: v for key, one in document.items() for k, v in numbers_of(one, f"{path}.{key}").items()}
     if isinstance(document, list):
