@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Table size and edge grid of a generator.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Conversion of watts and lux to electrons.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Tied bins, compared with an exhaustive search.
 #include "decode/search/bin_matcher.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Candidates of each cell, compared with an exhaustive search in double.
 #include "decode/search/cell_table.hpp"
 
 #include <gtest/gtest.h>

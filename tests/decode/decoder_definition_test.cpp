@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// All planes of the decoder, compared with their definition in double.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Bins of random codes, compared with the definition; independence of pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The fast decoder, compared with the reference pixel by pixel.
 #include <gtest/gtest.h>
 
 #include <limits>

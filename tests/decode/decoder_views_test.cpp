@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames of any number type and memory layout.
 #include <gtest/gtest.h>
 
 #include <algorithm>

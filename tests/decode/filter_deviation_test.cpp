@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Predicted deviation after filtering, compared with the spread of repeated captures.
 #include <gtest/gtest.h>
 
 #include <algorithm>

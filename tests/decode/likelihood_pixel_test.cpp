@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Planes of a pixel other than its depth, from the maximum-likelihood decoder.
 #include <gtest/gtest.h>
 
 #include <cmath>

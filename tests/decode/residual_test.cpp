@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Measurements that are inconsistent with any depth.
 #include <gtest/gtest.h>
 
 #include <algorithm>

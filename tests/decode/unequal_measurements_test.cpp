@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Codes whose measurements differ in duty, exposure, gain and offset.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Planes of a pixel other than its depth, from the unwrapping decoder.
 #include <gtest/gtest.h>
 
 #include "pixel_laws.hpp"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Deviation, confidence and status in almost no light.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Camera settings required for a given depth error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Device filtering, compared with the Filter.
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The same frames through the pipelines of the CPU and of a device.
 #include <gmock/gmock.h>
 
 #include "device_setup.hpp"

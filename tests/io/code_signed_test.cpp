@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Code files for a mixer.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

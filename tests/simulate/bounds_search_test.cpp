@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Searches for codes that violate the receiver bound.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error of the same code with ZNCC and with phase unwrapping.
 #include <gtest/gtest.h>
 
 #include "tofsmith/simulate/depth_error.hpp"

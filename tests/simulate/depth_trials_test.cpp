@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The trial engine, compared with plain references.
 #include "simulate/depth_trials.hpp"
 
 #include <gtest/gtest.h>

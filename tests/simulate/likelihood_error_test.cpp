@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error of the same trials with maximum likelihood and with ZNCC.
 #include <gtest/gtest.h>
 
 #include <cmath>
