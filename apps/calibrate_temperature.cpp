@@ -17,38 +17,97 @@ namespace tofsmith::apps {
 namespace {
 
 struct TemperatureArguments {
-  std::string file, temperatures, code;
-  std::optional<double> reference_c;
+  std::string file, temperatures, light_column, sensor_column, code;
+  std::optional<double> reference_c, sensor_reference_c;
   CameraArguments camera;
   TapArguments taps;
   CalibrateOutput output;
 };
 
 nlohmann::ordered_json document_of(const TemperatureDrift& found) {
-  return {{"mean_c", found.mean_c},
-          {"offset_m_per_c", estimate_json(found.offset_m_per_c)},
-          {"signal_per_c", estimate_json(found.signal_per_c)},
-          {"offset_m_per_c2", estimate_json(found.offset_m_per_c2)},
-          {"signal_per_c2", estimate_json(found.signal_per_c2)},
-          {"interval_factor", found.interval_factor},
-          {"offset_rms_m", found.offset_rms_m},
-          {"signal_rms", found.signal_rms},
-          {"temperature_c", found.temperature_c},
-          {"offset_m", found.offset_m},
-          {"log_signal", found.log_signal},
-          {"pixels", found.pixels},
-          {"notes", found.notes}};
+  nlohmann::ordered_json document = {{"mean_c", found.mean_c},
+                                     {"offset_m_per_c", estimate_json(found.offset_m_per_c)},
+                                     {"signal_per_c", estimate_json(found.signal_per_c)},
+                                     {"offset_m_per_c2", estimate_json(found.offset_m_per_c2)},
+                                     {"signal_per_c2", estimate_json(found.signal_per_c2)},
+                                     {"interval_factor", found.interval_factor},
+                                     {"offset_rms_m", found.offset_rms_m},
+                                     {"signal_rms", found.signal_rms},
+                                     {"temperature_c", found.temperature_c},
+                                     {"offset_m", found.offset_m},
+                                     {"log_signal", found.log_signal},
+                                     {"pixels", found.pixels},
+                                     {"notes", found.notes}};
+  if (found.sensor)
+    document["sensor"] = {{"mean_c", found.sensor->mean_c},
+                          {"offset_m_per_c", estimate_json(found.sensor->offset_m_per_c)},
+                          {"signal_per_c", estimate_json(found.sensor->signal_per_c)},
+                          {"temperature_c", found.sensor->temperature_c}};
+  if (found.hysteresis_m) document["hysteresis_m"] = estimate_json(*found.hysteresis_m);
+  return document;
 }
 
 std::string lines_of(const TemperatureDrift& found) {
-  const auto line = [&](const char* what, const Estimate& e, double scale, const char* unit) {
-    return fmt::format("{:<7} {:+9.4f} ± {:.4f} {} per degree\n", what, scale * e.value,
-                       scale * found.interval_factor * e.standard_error, unit);
+  const auto lines = [&](const auto& drift, const char* of_what) {
+    const auto line = [&](const char* what, const Estimate& e, double scale, const char* unit) {
+      return fmt::format("{:<7} {:+9.4f} ± {:.4f} {} per degree{}\n", what, scale * e.value,
+                         scale * found.interval_factor * e.standard_error, unit, of_what);
+    };
+    return line("depth", drift.offset_m_per_c, 1e3, "mm") +
+           line("signal", drift.signal_per_c, 1e2, "%");
   };
   return fmt::format("{} frames around {:.1f} degrees C, {} pixels\n", found.offset_m.size(),
                      found.mean_c, found.pixels) +
-         line("depth", found.offset_m_per_c, 1e3, "mm") +
-         line("signal", found.signal_per_c, 1e2, "%") + note_lines(found.notes);
+         lines(found, found.sensor ? " of the light source" : "") +
+         (found.sensor ? lines(*found.sensor, " of the sensor") : "") + note_lines(found.notes);
+}
+
+std::vector<double> column(const NumberTable& table, Eigen::Index index) {
+  return {table.values.col(index).begin(), table.values.col(index).end()};
+}
+
+/// Temperatures of the frames, and notes on how their file was read.
+struct ReadTemperatures {
+  FrameTemperatures of_frames;
+  std::vector<std::string> notes;
+};
+
+/// Reads the only column, or the named ones. The light source's is the only other one by default.
+ReadTemperatures read_temperatures(const TemperatureArguments& arguments) {
+  const std::string& file = arguments.temperatures;
+  if (arguments.light_column.empty() && arguments.sensor_column.empty()) {
+    const NumberTable table = read_number_column(
+        file, "the temperatures, or --light-column and --sensor-column with their names");
+    return {.of_frames = {.of_camera_c = column(table, 0), .of_sensor_c = {}},
+            .notes = table.notes};
+  }
+  const NumberTable table = read_number_table(file, {.min_columns = 2});
+  ReadTemperatures result{.of_frames = {}, .notes = table.notes};
+  std::optional<Eigen::Index> sensor;
+  if (!arguments.sensor_column.empty()) {
+    sensor = table.column_of(arguments.sensor_column, file);
+    result.of_frames.of_sensor_c = column(table, *sensor);
+  }
+  if (arguments.light_column.empty() && table.values.cols() != 2)
+    throw IoError(file, fmt::format("found {}; expected --light-column to select the temperatures "
+                                    "of the light source",
+                                    table.describe_columns()));
+  const Eigen::Index light =
+      arguments.light_column.empty() ? 1 - *sensor : table.column_of(arguments.light_column, file);
+  if (light == sensor)
+    throw UsageError(
+        fmt::format("--sensor-column: {} is also the --light-column; expected "
+                    "another one",
+                    arguments.sensor_column));
+  result.of_frames.of_camera_c = column(table, light);
+  return result;
+}
+
+Camera camera_of(const Camera& camera, const TemperatureDrift& found,
+                 const TemperatureArguments& arguments) {
+  // Without a drift of the sensor, its reference has no use.
+  return with_temperature(camera, found, arguments.reference_c,
+                          found.sensor ? arguments.sensor_reference_c : std::nullopt);
 }
 
 void run(TemperatureArguments& arguments, const Session& session) {
@@ -56,23 +115,27 @@ void run(TemperatureArguments& arguments, const Session& session) {
   arguments.output.check(session);
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   const RawFrames frames = read_raw_frames(arguments.file);
-  const NumberTable table = read_number_column(arguments.temperatures, "the temperatures");
+  const ReadTemperatures read = read_temperatures(arguments);
   TemperatureDrift found;
   try {
-    found = calibrate_temperature(frames, {table.values.col(0).begin(), table.values.col(0).end()},
-                                  code, camera, terminal_progress("calibrating"));
+    found = calibrate_temperature(frames, read.of_frames, code, camera,
+                                  terminal_progress("calibrating"));
   } catch (const std::invalid_argument& error) {
-    throw wrong_file(error, arguments.file, {{"temperatures", arguments.temperatures}});
+    throw wrong_file(error, arguments.file,
+                     {{"temperatures", arguments.temperatures},
+                      {"sensor_temperatures", arguments.temperatures}});
   }
-  found.notes.insert(found.notes.begin(), table.notes.begin(), table.notes.end());
+  found.notes.insert(found.notes.begin(), read.notes.begin(), read.notes.end());
   session.print_json(document_of(found));
   session.say(lines_of(found));
   arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),
                               session);
   arguments.output.write_camera(
-      with_temperature(camera, found, arguments.reference_c), session,
-      fmt::format("tofsmith decode RAW --code {} --camera {} --temperature {:.0f}", arguments.code,
-                  arguments.output.camera_path, found.mean_c));
+      camera_of(camera, found, arguments), session,
+      fmt::format(
+          "tofsmith decode RAW --code {} --camera {} --temperature {:.0f}{}", arguments.code,
+          arguments.output.camera_path, found.mean_c,
+          found.sensor ? fmt::format(" --sensor-temperature {:.0f}", found.sensor->mean_c) : ""));
 }
 
 }  // namespace
@@ -87,12 +150,25 @@ void add_calibrate_temperature(CLI::App& calibrate, Session& session) {
       ->required();
   command
       ->add_option("--temperatures", arguments->temperatures,
-                   "text of one column: the temperature of each frame [degrees C]")
+                   "text of one column: the temperature of each frame [degrees C]; with "
+                   "--sensor-column, of several columns")
       ->required();
+  CLI::Option* const sensor_column = command->add_option(
+      "--sensor-column", arguments->sensor_column,
+      "name or number (from 1) of the column with the temperature of the sensor: drifts with it "
+      "and with the light source are fitted together (one temperature)");
+  command->add_option("--light-column", arguments->light_column,
+                      "name or number (from 1) of the column with the temperature of the light "
+                      "source, or of the camera (the only other column)");
   command->add_option("--code", arguments->code, "the code that the camera played")->required();
   command->add_option("--reference-c", arguments->reference_c,
                       "temperature at which the camera was calibrated otherwise, so that nothing "
                       "changes there [degrees C] (the mean of the frames)");
+  command
+      ->add_option("--sensor-reference-c", arguments->sensor_reference_c,
+                   "the same for the temperature of the sensor [degrees C] (the mean of the "
+                   "frames)")
+      ->needs(sensor_column);
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   arguments->output.add_to(*command);

@@ -90,6 +90,11 @@ void CameraArguments::add_temperature_to(CLI::App& command) {
                   "of the camera [degrees C]: depth and signal change as its [temperature] "
                   "says (temperature.now_c, or the reference)")
       ->group(for_experts);
+  command
+      .add_option("--sensor-temperature", sensor_temperature_c,
+                  "of the sensor [degrees C], for a camera with [temperature.sensor] "
+                  "(temperature.sensor.now_c, or the reference)")
+      ->group(for_experts);
 }
 
 std::filesystem::path camera_beside(const std::filesystem::path& raw) {
@@ -108,14 +113,23 @@ std::optional<std::string> CameraArguments::take_that_of(const std::filesystem::
 
 Camera CameraArguments::load() const {
   Camera camera = load_camera(name, settings);
-  if (!temperature_c) return camera;
-  if (!camera.temperature)
-    throw UsageError(
-        fmt::format("--temperature: {} has no [temperature]; expected a camera of "
-                    "`tofsmith calibrate temperature .. -o camera.toml`",
-                    name));
-  camera.temperature->now_c = temperature_c;
-  camera.validate();
+  if (temperature_c) {
+    if (!camera.temperature)
+      throw UsageError(
+          fmt::format("--temperature: {} has no [temperature]; expected a camera of "
+                      "`tofsmith calibrate temperature ... -o camera.toml`",
+                      name));
+    camera.temperature->now_c = temperature_c;
+  }
+  if (sensor_temperature_c) {
+    if (!camera.temperature || !camera.temperature->sensor)
+      throw UsageError(
+          fmt::format("--sensor-temperature: {} has no [temperature.sensor]; expected a camera of "
+                      "`tofsmith calibrate temperature ... --sensor-column NAME -o camera.toml`",
+                      name));
+    camera.temperature->sensor->now_c = sensor_temperature_c;
+  }
+  if (temperature_c || sensor_temperature_c) camera.validate();
   return camera;
 }
 

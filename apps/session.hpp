@@ -63,7 +63,7 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
 struct CameraArguments {
   std::string name = std::string(default_camera_name);
   std::vector<std::string> settings;
-  std::optional<double> temperature_c;
+  std::optional<double> temperature_c, sensor_temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
   /// Takes the camera that `simulate` left beside raw frames, if there is one and nobody names
@@ -79,7 +79,7 @@ struct CameraArguments {
 
   /// Adds `--camera` and `--set` to a subcommand.
   void add_to(CLI::App& command);
-  /// Adds `--temperature`, too.
+  /// Adds `--temperature` and `--sensor-temperature`, too.
   void add_temperature_to(CLI::App& command);
   /// Adds a positional CAMERA beside them.
   void add_positional(CLI::App& command);

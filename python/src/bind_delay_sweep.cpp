@@ -209,11 +209,13 @@ py::dict depth_dict(const CalibratedDepth& found) {
 }
 
 TemperatureDrift calibrate_drift(const py::object& frames, const std::vector<double>& temperature_c,
+                                 const std::vector<double>& sensor_temperature_c,
                                  const CodeSet& code, const Camera& camera,
                                  const py::object& callback) {
   const RawFrames raw = to_raw_frames(frames, "frames");
   return without_gil(callback, [&](const Progress& progress) {
-    return calibrate_temperature(raw, temperature_c, code, camera, progress);
+    return calibrate_temperature(raw, {temperature_c, sensor_temperature_c}, code, camera,
+                                 progress);
   });
 }
 
@@ -232,6 +234,17 @@ py::dict drift_dict(const TemperatureDrift& found) {
   dict["log_signal"] = found.log_signal;
   dict["pixels"] = found.pixels;
   dict["notes"] = found.notes;
+  dict["sensor"] = py::none();
+  if (found.sensor) {
+    py::dict sensor;
+    sensor["mean_c"] = found.sensor->mean_c;
+    sensor["offset_m_per_c"] = pair_of(found.sensor->offset_m_per_c);
+    sensor["signal_per_c"] = pair_of(found.sensor->signal_per_c);
+    sensor["temperature_c"] = found.sensor->temperature_c;
+    dict["sensor"] = sensor;
+  }
+  dict["hysteresis_m"] = py::none();
+  if (found.hysteresis_m) dict["hysteresis_m"] = pair_of(*found.hysteresis_m);
   return dict;
 }
 
@@ -296,8 +309,8 @@ void bind_delay_sweep(py::module_& module) {
       .def("fields", &drift_dict)
       .def("camera",
            [](const TemperatureDrift& found, const Camera& camera,
-              std::optional<double> reference_c) {
-             return with_temperature(camera, found, reference_c);
+              std::optional<double> reference_c, std::optional<double> sensor_reference_c) {
+             return with_temperature(camera, found, reference_c, sensor_reference_c);
            })
       .def("write_report", [](const TemperatureDrift& found, const std::string& path,
                               const std::string& source, bool overwrite) {

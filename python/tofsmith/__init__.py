@@ -39,6 +39,7 @@ from ._camera_fields import (
     Playback,
     RawMarkers,
     Sensor,
+    SensorTemperature,
     Temperature,
 )
 from ._code import (
@@ -155,7 +156,7 @@ from ._scene import (
 )
 from ._stray_light import CalibratedStrayLight, calibrate_stray_light, remove_stray_light
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
-from ._temperature import TemperatureDrift, calibrate_temperature
+from ._temperature import SensorDrift, TemperatureDrift, calibrate_temperature
 from ._tofsmith import Interrupted
 from ._training_set import TrainingSetRun, write_training_set
 from ._waveform import Waveform
@@ -261,6 +262,8 @@ __all__ = [
     "OperatingMultipathReport",
     "OperatingMultipath",
     "Sensor",
+    "SensorDrift",
+    "SensorTemperature",
     "StagedCapture",
     "Sufficiency",
     "SweepResults",

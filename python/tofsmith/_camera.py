@@ -26,6 +26,7 @@ from ._camera_fields import (
     Playback,
     RawMarkers,
     Sensor,
+    SensorTemperature,
     Temperature,
 )
 from ._check import Path
@@ -243,11 +244,25 @@ class Camera:
     def temperature(self) -> Optional[Temperature]:
         """How depth and signal change with the camera's temperature, if the camera says it."""
         temperature = self._fields.get("temperature")
-        return None if temperature is None else Temperature(**temperature)
+        if temperature is None:
+            return None
+        fields: dict[str, Any] = dict(temperature)
+        if fields.get("sensor") is not None:
+            fields["sensor"] = SensorTemperature(**fields["sensor"])
+        return Temperature(**fields)
 
-    def at_temperature(self, temperature_c: float) -> Camera:
+    def at_temperature(
+        self, temperature_c: float, sensor_temperature_c: Optional[float] = None
+    ) -> Camera:
         """The camera at that temperature [degrees C], by its [temperature]: what it then simulates
         and decodes is of frames taken there.
+
+        Parameters
+        ----------
+        temperature_c : float
+            Temperature of the camera, or of its light source if it has [temperature.sensor].
+        sensor_temperature_c : float, optional
+            Temperature of the sensor. By default it does not change.
 
         Raises
         ------
@@ -263,7 +278,14 @@ class Camera:
         if self.temperature is None:
             raise ValueError("temperature_c: the camera has no [temperature]; needs what "
                              "calibrate_temperature() finds")
-        return self.replace(**{"temperature.now_c": _check.number(temperature_c, "temperature_c")})
+        now = {"temperature.now_c": _check.number(temperature_c, "temperature_c")}
+        if sensor_temperature_c is not None:
+            if self.temperature.sensor is None:
+                raise ValueError("sensor_temperature_c: the camera has no [temperature.sensor]; needs "
+                                 "what calibrate_temperature() finds with sensor_temperature_c")
+            now["temperature.sensor.now_c"] = _check.number(
+                sensor_temperature_c, "sensor_temperature_c")
+        return self.replace(**now)
 
     def at_distances(
         self,

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,16 @@ from ._camera import Camera, CameraLike, camera_of
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._reports import Estimate
+
+
+@dataclass(frozen=True)
+class SensorDrift:
+    """Part of the drift that follows the temperature of the sensor; see TemperatureDrift."""
+
+    mean_c: float
+    offset_m_per_c: Estimate
+    signal_per_c: Estimate
+    temperature_c: list[float]
 
 
 @dataclass(frozen=True)
@@ -38,6 +48,12 @@ class TemperatureDrift:
     pixels : int
         That decode in every frame.
     notes : list of str
+    sensor : SensorDrift or None
+        Drift with the temperature of the sensor, if it was fitted; the other attributes then are of
+        the temperature of the light source.
+    hysteresis_m : Estimate or None
+        Offset while the temperature rises, minus the offset while it falls [m]; None if it does not
+        do both.
     """
 
     mean_c: float
@@ -53,9 +69,17 @@ class TemperatureDrift:
     log_signal: list[float]
     pixels: int
     notes: list[str]
+    sensor: Optional[SensorDrift]
+    hysteresis_m: Optional[Estimate]
     _handle: _tofsmith.TemperatureDrift = field(repr=False, compare=False)
 
-    def camera(self, camera: CameraLike, *, reference_c: Optional[float] = None) -> Camera:
+    def camera(
+        self,
+        camera: CameraLike,
+        *,
+        reference_c: Optional[float] = None,
+        sensor_reference_c: Optional[float] = None,
+    ) -> Camera:
         """The camera that changes so.
 
         Parameters
@@ -64,9 +88,14 @@ class TemperatureDrift:
         reference_c : float, optional
             Where it was calibrated otherwise, so that nothing changes there [degrees C]; None: the
             mean of the frames.
+        sensor_reference_c : float, optional
+            The same for the temperature of the sensor.
         """
         reference = None if reference_c is None else _check.number(reference_c, "reference_c")
-        return Camera._of(self._handle.camera(camera_of(camera)._handle, reference))
+        sensor_reference = (None if sensor_reference_c is None
+                            else _check.number(sensor_reference_c, "sensor_reference_c"))
+        return Camera._of(
+            self._handle.camera(camera_of(camera)._handle, reference, sensor_reference))
 
     def write_report(
         self, path: Path, *, source: str = "frames", overwrite: bool = False
@@ -83,6 +112,7 @@ def calibrate_temperature(
     code: CodeLike,
     camera: CameraLike,
     *,
+    sensor_temperature_c: Optional[npt.ArrayLike] = None,
     progress: Progress = None,
 ) -> TemperatureDrift:
     """Drift with temperature from frames of a scene that stands still.
@@ -92,11 +122,15 @@ def calibrate_temperature(
     frames : array_like, shape (F, H, W, K)
         At least 5.
     temperature_c : array_like, shape (F,)
-        Of each frame [degrees C].
+        Temperature of each frame [degrees C]: that of the light source if `sensor_temperature_c`
+        is given.
     code : CodeSet, name of a family or file
         That the camera played.
     camera : Camera or its name
         A drift that it has already says nothing.
+    sensor_temperature_c : array_like, shape (F,), optional
+        Temperature of the sensor at each frame [degrees C]. Drifts with both temperatures are
+        fitted together, from at least 6 frames.
     progress : callable, optional
         Called with (fraction, step); False stops.
 
@@ -113,14 +147,25 @@ def calibrate_temperature(
     >>> image = decode(raw, "sinusoid-k4", warm)  # doctest: +SKIP
     """
     camera = camera_of(camera)
-    degrees = np.asarray(temperature_c, float)
-    if degrees.ndim != 1:
-        raise ValueError(f"temperature_c: got {_check.shown(temperature_c)}; needs numbers of shape "
-                         "(F,)")
+    degrees = _degrees(temperature_c, "temperature_c")
+    sensor_degrees = ([] if sensor_temperature_c is None
+                      else _degrees(sensor_temperature_c, "sensor_temperature_c"))
     handle = _tofsmith.calibrate_temperature(
-        _check.frames(frames, "frames"), [float(c) for c in degrees], code_of(code, camera)._handle,
+        _check.frames(frames, "frames"), degrees, sensor_degrees, code_of(code, camera)._handle,
         camera._handle, _check.progress(progress))
-    fields = handle.fields()
-    for name in ("offset_m_per_c", "signal_per_c", "offset_m_per_c2", "signal_per_c2"):
-        fields[name] = Estimate(*fields[name])
+    fields = _with_estimates(handle.fields())
+    if fields["sensor"] is not None:
+        fields["sensor"] = SensorDrift(**_with_estimates(fields["sensor"]))
     return TemperatureDrift(**fields, _handle=handle)
+
+
+def _degrees(temperatures: npt.ArrayLike, name: str) -> list[float]:
+    degrees = np.asarray(temperatures, float)
+    if degrees.ndim != 1:
+        raise ValueError(f"{name}: got {_check.shown(temperatures)}; needs numbers of shape (F,)")
+    return [float(c) for c in degrees]
+
+
+def _with_estimates(fields: dict[str, Any]) -> dict[str, Any]:
+    return {name: Estimate(*value) if isinstance(value, tuple) else value
+            for name, value in fields.items()}

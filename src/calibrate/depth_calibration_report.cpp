@@ -170,6 +170,12 @@ Page temperature_report(const TemperatureDrift& found, const std::string& source
       .columns = {{"key"}, {"per degree", true}, {"95 %", true}, {"unit"}},
       .rows = {row("temperature.offset_m_per_c", found.offset_m_per_c, 1e3, "mm"),
                row("temperature.signal_per_c", found.signal_per_c, 1e2, "%")}};
+  if (found.sensor) {
+    const SensorDrift& sensor = *found.sensor;
+    table.rows.push_back(
+        row("temperature.sensor.offset_m_per_c", sensor.offset_m_per_c, 1e3, "mm"));
+    table.rows.push_back(row("temperature.sensor.signal_per_c", sensor.signal_per_c, 1e2, "%"));
+  }
   Section section{"Drift", {std::move(table)}};
   section.blocks.push_back(drift_figure(
       {.id = "depth-over-temperature",

@@ -205,16 +205,35 @@ void Playback::validate(int taps) const {
           "must be the only one of offset_m, offset_rad and offset_counts");
 }
 
-double Temperature::signal_gain() const { return std::exp(signal_per_c * above_reference_c()); }
+double Temperature::offset_m() const {
+  const double of_sensor_m = sensor ? sensor->offset_m_per_c * sensor->above_reference_c() : 0.0;
+  return offset_m_per_c * above_reference_c() + of_sensor_m;
+}
+
+double Temperature::signal_gain() const {
+  const double of_sensor = sensor ? sensor->signal_per_c * sensor->above_reference_c() : 0.0;
+  return std::exp(signal_per_c * above_reference_c() + of_sensor);
+}
+
+namespace {
+
+/// Rejects a factor of the signal that no camera has.
+void check_signal_gain(const std::string& prefix, const auto& temperature) {
+  const double gain = std::exp(temperature.signal_per_c * temperature.above_reference_c());
+  constexpr double max_gain = 1e3;
+  require(gain <= max_gain && gain >= 1.0 / max_gain, prefix + "signal_per_c",
+          temperature.signal_per_c,
+          fmt::format("makes the signal {:.3g} times that at the reference, {} degrees away; "
+                      "expected a factor from 0.001 to 1000",
+                      gain, temperature.above_reference_c()));
+}
+
+}  // namespace
 
 void Temperature::validate() const {
   check_ranges(*this, "temperature.");
-  constexpr double max_gain = 1e3;
-  require(signal_gain() <= max_gain && signal_gain() >= 1.0 / max_gain, "temperature.signal_per_c",
-          signal_per_c,
-          fmt::format("makes the signal {:.3g} times that at the reference, {} degrees away; "
-                      "expected a factor from 0.001 to 1000",
-                      signal_gain(), above_reference_c()));
+  check_signal_gain("temperature.", *this);
+  if (sensor) check_signal_gain("temperature.sensor.", *sensor);
 }
 
 void Camera::validate() const {

@@ -131,6 +131,22 @@ class Calibrate(BenchRecordsTest):
         self.refuse(["calibrate", "temperature", "raw.npy", "--code", "sinusoid-k4",
                      "--temperatures", "few.txt"], "one for each of the 3 frames")
 
+    def test_temperatures_are_columns_of_one_file(self):
+        np.save(self.path("raw.npy"), np.full((3, 20, 20, 4), 300.0, np.float32))
+        self.write("c.csv", "frame,light,sensor,board\n0,20,21,22\n1,25,24,23\n2,30,26,24\n")
+        calibrate = ["calibrate", "temperature", "raw.npy", "--code", "sinusoid-k4",
+                     "--temperatures", "c.csv"]
+        self.refuse(calibrate, "--light-column")
+        self.refuse([*calibrate, "--sensor-column", "sensor"], "c.csv", "--light-column")
+        self.refuse([*calibrate, "--sensor-column", "lens", "--light-column", "light"],
+                    "no column lens")
+        self.refuse([*calibrate, "--sensor-column", "light", "--light-column", "light"],
+                    "is also the --light-column", code=2)
+        self.refuse([*calibrate, "--sensor-column", "sensor", "--light-column", "light"],
+                    "must be at least 6")
+        self.refuse(["decode", "raw.npy", "--code", "sinusoid-k4", "-o", "d.npy",
+                     "--sensor-temperature", "47"], "has no [temperature.sensor]", code=2)
+
     def test_perturbations_are_reported_separately_and_combined(self):
         arguments = ["evaluate", "hamiltonian-k3", "--trials", "200"]
         report = self.do_json(*arguments, "--perturb", "jitter=50ps,clock=5ns,droop=3%")

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +18,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::ThrowsMessage;
 
 Camera phase_camera() {
@@ -61,8 +64,8 @@ struct Warming {
   TemperatureDrift calibrate() const { return calibrate(temperature_c()); }
   TemperatureDrift calibrate(const std::vector<double>& temperature_c) const {
     const Camera camera = phase_camera();
-    return calibrate_temperature(capture(), temperature_c, build_family("sinusoid-k4", camera),
-                                 camera);
+    return calibrate_temperature(capture(), {.of_camera_c = temperature_c, .of_sensor_c = {}},
+                                 build_family("sinusoid-k4", camera), camera);
   }
 };
 
@@ -167,10 +170,162 @@ TEST(TemperatureDrift, RejectsFramesWithoutLight) {
   const Camera camera = phase_camera();
   EXPECT_THAT(
       [&] {
-        calibrate_temperature(dark, bench.temperature_c(), build_family("sinusoid-k4", camera),
-                              camera);
+        calibrate_temperature(dark, {.of_camera_c = bench.temperature_c(), .of_sensor_c = {}},
+                              build_family("sinusoid-k4", camera), camera);
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("status ok")));
+}
+
+/// A still scene seen by a camera whose light source and sensor have separate temperatures.
+struct TwoTemperatures {
+  double light_m_per_c = 1.2e-3, sensor_m_per_c = -0.5e-3;
+  double light_signal_per_c = -4e-3, sensor_signal_per_c = 1e-3;
+  double hysteresis_m = 0.0;  ///< farther while the light source warms up than while it cools
+  double lag = 0.5;           ///< of the sensor behind the light source; 0: they change together
+  int frames = 16;
+  std::uint64_t seed = 1;
+
+  /// 1 while the light source warms up, -1 while it cools, 0 at the turn.
+  double direction(int frame) const {
+    return 2 * frame == frames ? 0.0 : 2 * frame < frames ? 1.0 : -1.0;
+  }
+  /// Up and down again between 20 and 50 degrees; the sensor follows.
+  FrameTemperatures temperatures() const {
+    FrameTemperatures all;
+    double sensor_c = 20.0;
+    for (int f = 0; f < frames; ++f) {
+      const double part = 2.0 * f / frames;
+      const double light_c = 20.0 + 30.0 * (part < 1.0 ? part : 2.0 - part);
+      sensor_c += (1.0 - lag) * (light_c - sensor_c);
+      all.of_camera_c.push_back(light_c);
+      all.of_sensor_c.push_back(sensor_c);
+    }
+    return all;
+  }
+  RawFrames capture() const {
+    RandomStream random(seed, 9, 0);
+    const FrameTemperatures all = temperatures();
+    const double range_m = phase_camera().range_m();
+    RawFrames raw{.frames = frames, .height = 6, .width = 6, .measurements = 4};
+    for (int f = 0; f < frames; ++f) {
+      const double light_c = all.of_camera_c[static_cast<std::size_t>(f)] - 20.0,
+                   sensor_c = all.of_sensor_c[static_cast<std::size_t>(f)] - 20.0;
+      const double off_m =
+          light_m_per_c * light_c + sensor_m_per_c * sensor_c + 0.5 * direction(f) * hysteresis_m;
+      const double gain = std::exp(light_signal_per_c * light_c + sensor_signal_per_c * sensor_c);
+      for (int i = 0; i < 36; ++i)
+        for (int k = 0; k < 4; ++k)
+          raw.values.push_back(static_cast<float>(
+              2e5 * gain * std::cos(2 * std::numbers::pi * (i / 36.0 + off_m / range_m - k / 4.0)) +
+              450.0 * random.normal()));
+    }
+    return raw;
+  }
+  TemperatureDrift calibrate(const FrameTemperatures& all) const {
+    const Camera camera = phase_camera();
+    return calibrate_temperature(capture(), all, build_family("sinusoid-k4", camera), camera);
+  }
+  TemperatureDrift calibrate() const { return calibrate(temperatures()); }
+};
+
+TEST(TwoTemperatures, IntervalsContainBothDriftsIn500Cameras) {
+  std::array<int, 4> contained{};
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    RandomStream random(seed, 10, 0);
+    const TwoTemperatures bench{.light_m_per_c = 2e-3 * (random.uniform() - 0.5),
+                                .sensor_m_per_c = 2e-3 * (random.uniform() - 0.5),
+                                .light_signal_per_c = 1e-2 * (random.uniform() - 0.5),
+                                .sensor_signal_per_c = 1e-2 * (random.uniform() - 0.5),
+                                .frames = 6 + static_cast<int>(seed % 8),
+                                .seed = seed};
+    const TemperatureDrift found = bench.calibrate();
+    ASSERT_TRUE(found.sensor) << seed;
+    const auto contains = [&](const Estimate& e, double truth) {
+      return std::abs(e.value - truth) <= found.interval_factor * e.standard_error;
+    };
+    contained[0] += contains(found.offset_m_per_c, bench.light_m_per_c);
+    contained[1] += contains(found.sensor->offset_m_per_c, bench.sensor_m_per_c);
+    contained[2] += contains(found.signal_per_c, bench.light_signal_per_c);
+    contained[3] += contains(found.sensor->signal_per_c, bench.sensor_signal_per_c);
+  }
+  EXPECT_THAT(contained, testing::Each(testing::Ge(460)));
+  RecordProperty("least", *std::ranges::min_element(contained));
+}
+
+TEST(TwoTemperatures, ACameraWithBothReadsDepthAsAtTheReferences) {
+  const TwoTemperatures bench;
+  const FrameTemperatures all = bench.temperatures();
+  const CodeSet code = build_family("sinusoid-k4", phase_camera());
+  Camera camera = with_temperature(phase_camera(), bench.calibrate(), 20.0, 20.0);
+  const RawFrames raw = bench.capture();
+  const auto mean_error_m = [&](int frame, bool corrected) {
+    const auto f = static_cast<std::size_t>(frame);
+    camera.temperature->now_c.reset();
+    camera.temperature->sensor->now_c.reset();
+    if (corrected) {
+      camera.temperature->now_c = all.of_camera_c[f];
+      camera.temperature->sensor->now_c = all.of_sensor_c[f];
+    }
+    const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+    const DepthImage image = decoder.decode(raw, frame);
+    double sum = 0.0;
+    for (int i = 0; i < 36; ++i)
+      sum += std::remainder(static_cast<double>(image.depth_m.pixels[static_cast<std::size_t>(i)]) -
+                                camera.range_m() * i / 36.0,
+                            camera.range_m());
+    return sum / 36.0;
+  };
+  for (const int frame : {4, 8, 12}) {
+    EXPECT_GT(std::abs(mean_error_m(frame, false)), 5e-3) << frame;
+    EXPECT_NEAR(mean_error_m(frame, true), 0.0, 1e-3) << frame;
+  }
+}
+
+TEST(TwoTemperatures, ThatChangeTogetherAreReportedAndTheLightSourceIsKept) {
+  const TemperatureDrift found = TwoTemperatures{.lag = 0.0}.calibrate();
+  EXPECT_FALSE(found.sensor);
+  EXPECT_NEAR(found.offset_m_per_c.value, 0.7e-3, 0.05e-3);
+  EXPECT_THAT(found.notes, Contains(HasSubstr("condition number")));
+  EXPECT_THAT(TwoTemperatures{}.calibrate().notes, Not(Contains(HasSubstr("condition number"))));
+}
+
+TEST(TwoTemperatures, HysteresisIsReportedWithItsSize) {
+  const TemperatureDrift found = TwoTemperatures{.hysteresis_m = 4e-3}.calibrate();
+  ASSERT_TRUE(found.hysteresis_m);
+  EXPECT_NEAR(found.hysteresis_m->value, 4e-3, 1e-3);
+  EXPECT_THAT(found.notes, Contains(HasSubstr("hysteresis")));
+  const TemperatureDrift without = TwoTemperatures{}.calibrate();
+  ASSERT_TRUE(without.hysteresis_m);
+  EXPECT_THAT(without.notes, Not(Contains(HasSubstr("hysteresis"))));
+  EXPECT_FALSE(Warming{}.calibrate().hysteresis_m) << "the temperature only rises";
+  // A sensor that lags is hysteresis to the temperature of the light source alone.
+  FrameTemperatures light = TwoTemperatures{}.temperatures();
+  light.of_sensor_c.clear();
+  EXPECT_THAT(TwoTemperatures{.sensor_m_per_c = -2e-3}.calibrate(light).notes,
+              Contains(HasSubstr("hysteresis")));
+}
+
+TEST(TwoTemperatures, RejectsTemperaturesOfTheSensorThatDoNotFit) {
+  const TwoTemperatures bench;
+  const auto rejects = [&](const auto& change, const char* why) {
+    FrameTemperatures all = bench.temperatures();
+    change(all.of_sensor_c);
+    EXPECT_THAT([&] { bench.calibrate(all); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(why)));
+  };
+  rejects([](std::vector<double>& c) { c.pop_back(); }, "sensor_temperatures = 15");
+  rejects([](std::vector<double>& c) { std::ranges::fill(c, 30.0); }, "must not all be the same");
+  EXPECT_THAT([] { TwoTemperatures{.frames = 5}.calibrate(); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("at least 6")));
+  EXPECT_THAT([] { with_temperature(phase_camera(), Warming{}.calibrate(), 20.0, 30.0); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("sensor_reference_c")));
+}
+
+TEST(TwoTemperatures, RejectsFactorsBeyondReason) {
+  Camera camera = phase_camera();
+  camera.temperature = Temperature{.sensor = SensorTemperature{.signal_per_c = 1.0, .now_c = 60.0}};
+  EXPECT_THAT([&] { camera.validate(); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("temperature.sensor.signal_per_c")));
 }
 
 }  // namespace

@@ -172,6 +172,41 @@ def test_drift_equals_the_command(both, cli):
         base.at_temperature(30.0)
 
 
+def test_drift_with_two_temperatures_is_that_of_the_command(both, cli):
+    light = np.array([20, 26, 32, 38, 44, 38, 32, 26, 20.0])
+    sensor = np.array([20, 20, 23, 28, 33, 37, 36, 33, 29.0])
+    truth = base.replace(temperature={
+        "reference_c": 20.0, "offset_m_per_c": 2e-3,
+        "sensor": {"reference_c": 20.0, "offset_m_per_c": -1e-3}})
+    scene = np.linspace(1, 8, 64, dtype=np.float32).reshape(8, 8)
+    frames = np.concatenate([
+        ts.capture(scene, "sinusoid-k4", truth.at_temperature(l, s), signal_e_per_s=1e7,
+                   ambient_e_per_s=0.0, falloff=False, seed=i)[None]
+        for i, (l, s) in enumerate(zip(light, sensor))])
+    ts.write_raw(both[0] / "sweep.npy", frames)
+    rows = "".join(f"{f},{l},{s}\n" for f, (l, s) in enumerate(zip(light, sensor)))
+    (both[0] / "degrees.csv").write_text("frame,light_c,sensor_c\n" + rows)
+    said = printed(cli, both[0], "temperature", "sweep.npy", "--temperatures", "degrees.csv",
+                   "--light-column", "light_c", "--sensor-column", "sensor_c",
+                   "--code", "sinusoid-k4", "--camera", "base.toml", "--reference-c", "20",
+                   "--sensor-reference-c", "20", "-o", "warm.toml", "--report", "drift.html")
+    found = ts.calibrate_temperature(frames, light, "sinusoid-k4", base,
+                                     sensor_temperature_c=sensor)
+    camera = found.camera(base, reference_c=20, sensor_reference_c=20)
+    camera.write(both[1] / "warm.toml")
+    same(both, "warm.toml")
+    found.write_report(both[1] / "drift.html", source="sweep.npy")
+    same_page(both, "drift.html")
+    assert found.sensor.offset_m_per_c == pair(said["sensor"]["offset_m_per_c"])
+    assert found.hysteresis_m == pair(said["hysteresis_m"])
+    for drift, per_c in ((found, 2e-3), (found.sensor, -1e-3)):
+        error = drift.offset_m_per_c.standard_error * found.interval_factor
+        assert abs(drift.offset_m_per_c.value - per_c) < 2 * error
+    assert camera.at_temperature(44, 33).temperature.sensor.now_c == 33
+    with pytest.raises(ValueError, match="no .temperature.sensor."):
+        base.replace(temperature={"offset_m_per_c": 1e-3}).at_temperature(30.0, 30.0)
+
+
 def test_stray_light_equals_the_command(both, cli):
     target = np.full((8, 30, 30, 4), 100.0)
     target[:, 12:16, 12:16] += [900, 500, 200, 700]

@@ -34,13 +34,14 @@ def test_cameras_are_equal_from_names_files_and_keywords(tmp_path):
 
 def test_every_key_of_a_camera_file_is_an_attribute():
     parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback, "raw": ts.RawMarkers, "temperature": ts.Temperature,
+             "temperature.sensor": ts.SensorTemperature,
              "operating": ts.Operating,
              "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
         *path, last = key.split(".")
         if key == "lens.calibration":  # a file that replaces the other keys
             continue
-        owner = parts[path[-1]] if path else ts.Camera
+        owner = parts.get(".".join(path), parts.get(path[-1])) if path else ts.Camera
         known = getattr(owner, "__dataclass_fields__", vars(owner))
         if owner is ts.Lens and last not in known:  # the lens has two parts
             known = ts.LensBlur.__dataclass_fields__

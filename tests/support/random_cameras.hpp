@@ -161,11 +161,17 @@ inline void set_calibration(Camera& camera, RandomStream& random) {
     playback.offset_m = between(random, -1.0, 1.0);
     camera.playback = playback;
   }
-  if (one_in(random, 5))
+  if (one_in(random, 5)) {
     camera.temperature = Temperature{.reference_c = 25.0,
                                      .offset_m_per_c = between(random, -1e-3, 1e-3),
                                      .signal_per_c = between(random, -0.01, 0.01),
                                      .now_c = between(random, -20.0, 80.0)};
+    // Half of the light source's drift, the other way.
+    camera.temperature->sensor =
+        SensorTemperature{.offset_m_per_c = -0.5 * camera.temperature->offset_m_per_c,
+                          .signal_per_c = -0.5 * camera.temperature->signal_per_c,
+                          .now_c = camera.temperature->now_c};
+  }
 }
 
 }  // namespace random_camera_parts

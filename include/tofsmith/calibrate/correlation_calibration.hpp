@@ -213,7 +213,22 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
 /// without the table.
 Camera with_depth(Camera camera, const CalibratedDepth& found);
 
-/// How depth and signal of a camera change with its temperature.
+/// Temperatures of the frames of a recording.
+struct FrameTemperatures {
+  std::vector<double> of_camera_c;  ///< of the camera, or of its light source [degrees C] (F)
+  std::vector<double> of_sensor_c;  ///< of the sensor [degrees C] (F); empty: not measured
+};
+
+/// Part of the drift that follows the temperature of the sensor, as in TemperatureDrift.
+struct SensorDrift {
+  double mean_c = 0.0;
+  Estimate offset_m_per_c;
+  Estimate signal_per_c;
+  std::vector<double> temperature_c;
+};
+
+/// How depth and signal of a camera change with its temperature, or with that of its light source
+/// and that of its sensor.
 struct TemperatureDrift {
   double mean_c = 0.0;           ///< of the frames [degrees C]: where both lines were laid
   Estimate offset_m_per_c;       ///< by how much depth reads farther per degree [m]
@@ -228,28 +243,38 @@ struct TemperatureDrift {
   std::vector<double> log_signal;     ///< of each frame against the mean of all (F)
   std::int64_t pixels = 0;            ///< that decode in every frame
   std::vector<std::string> notes;
+  std::optional<SensorDrift> sensor;  ///< none: a single temperature was fitted
+  /// Offset while the temperature rises, minus the offset while it falls [m]; none if it does not
+  /// do both.
+  std::optional<Estimate> hysteresis_m;
 };
 
 /// Drift with temperature from frames of a scene that stands still.
 ///   1. The code decodes every frame; pixels of status ok in all of them count.
 ///   2. A frame's offset is the median over pixels, weighted by one over the predicted variance, of
 ///      depth less the pixel's own (circular) mean over frames; likewise log(signal).
-///   3. A line over temperature by least squares; errors from how frames scatter around it, with
-///      Student's t of F - 2 degrees of freedom, so that noise and whatever else differs from frame
-///      to frame is in them. Drift with time beside temperature is not told apart.
-/// Notes say where a line is not enough and where temperatures hardly vary.
-/// @param temperature_c  of each frame [degrees C] (F), finite
-/// @param camera         a drift that it has already says nothing
+///   3. A line over each temperature by least squares; errors from how frames scatter around it,
+///      with Student's t of F - 2 degrees of freedom (F - 3 for two temperatures), so that noise
+///      and whatever else differs from frame to frame is in them. Drift with time is not
+///      separated from drift with temperature.
+///   4. Hysteresis: coefficient of the sign of the temperature's change, fitted with the lines.
+/// If the two temperatures are collinear (condition number above 30), only the first is fitted.
+/// Notes report this, a curved dependence, temperatures that hardly vary, and hysteresis.
+/// @param temperatures  finite
+/// @param camera        its own drift is ignored
 /// @throws std::invalid_argument if temperatures are not as many as frames, not finite or all the
-///         same, if there are fewer than 5 frames, or no pixel decodes in all of them
+///         same, if there are fewer than 5 frames (6 for two temperatures), or no pixel decodes in
+///         all of them
 TemperatureDrift calibrate_temperature(const RawFrames& frames,
-                                       const std::vector<double>& temperature_c,
-                                       const CodeSet& code, const Camera& camera,
-                                       const Progress& progress = {});
+                                       const FrameTemperatures& temperatures, const CodeSet& code,
+                                       const Camera& camera, const Progress& progress = {});
 /// The camera that changes so. @param reference_c  where it was calibrated otherwise, so that
 /// nothing changes there [degrees C]; none: the mean of the frames
+/// @param sensor_reference_c  the same of the sensor
+/// @throws std::invalid_argument for a sensor_reference_c without drift of the sensor
 Camera with_temperature(Camera camera, const TemperatureDrift& found,
-                        std::optional<double> reference_c = {});
+                        std::optional<double> reference_c = {},
+                        std::optional<double> sensor_reference_c = {});
 
 /// What a lens scatters, as a bright target before black shows it.
 struct CalibratedStrayLight {

@@ -242,19 +242,34 @@ inline void describe(FieldVisitor& fields, Playback& playback) {
       playback.counts_per_period);
 }
 
+/// Dependence of depth and signal on the temperature of the sensor, as in Temperature.
+struct SensorTemperature {
+  double reference_c = 25.0;
+  double offset_m_per_c = 0.0;
+  double signal_per_c = 0.0;
+  std::optional<double> now_c;
+
+  double above_reference_c() const { return now_c.value_or(reference_c) - reference_c; }
+
+  friend bool operator==(const SensorTemperature&, const SensorTemperature&) = default;
+};
+
 /// Dependence of depth and signal on the temperature of the camera, as a calibration finds it.
-/// Measured tables are valid at the reference temperature.
+/// Measured tables are valid at the reference temperature. With `sensor`, there are two
+/// temperatures, whose changes add up: that of the light source, and that of the sensor.
 struct Temperature {
   double reference_c = 25.0;
   double offset_m_per_c = 0.0;
   double signal_per_c = 0.0;    ///< d log(signal) per degree: 0.01 is about 1 % more
   std::optional<double> now_c;  ///< none: the reference
+  /// Absent if a single temperature is known.
+  std::optional<SensorTemperature> sensor;
 
   /// Degrees above the reference.
   double above_reference_c() const { return now_c.value_or(reference_c) - reference_c; }
-  /// Change of the measured depth [m].
-  double offset_m() const { return offset_m_per_c * above_reference_c(); }
-  /// Signal divided by the signal at the reference.
+  /// Change of the measured depth by all temperatures [m].
+  double offset_m() const;
+  /// Signal divided by the signal at the reference temperatures.
   double signal_gain() const;
 
   /// @throws std::invalid_argument naming the field as temperature.*, value and rule
@@ -263,8 +278,8 @@ struct Temperature {
   friend bool operator==(const Temperature&, const Temperature&) = default;
 };
 
-/// Keys of [temperature].
-inline void describe(FieldVisitor& fields, Temperature& temperature) {
+/// Keys of the dependence on one temperature.
+void describe_one_temperature(FieldVisitor& fields, auto& temperature) {
   fields.value(Key("reference_c", "Temperature at which the camera was calibrated", finite()),
                temperature.reference_c);
   fields.value(Key("offset_m_per_c", "Change of the measured depth per degree", finite()),
@@ -273,6 +288,20 @@ inline void describe(FieldVisitor& fields, Temperature& temperature) {
                temperature.signal_per_c);
   fields.value(Key("now_c", "Present temperature; without it, the reference", finite()),
                temperature.now_c);
+}
+
+/// Keys of [temperature.sensor].
+inline void describe(FieldVisitor& fields, SensorTemperature& sensor) {
+  describe_one_temperature(fields, sensor);
+}
+
+/// Keys of [temperature].
+inline void describe(FieldVisitor& fields, Temperature& temperature) {
+  describe_one_temperature(fields, temperature);
+  fields.table(Key("sensor",
+                   "Dependence on the temperature of the sensor; the other keys then describe the "
+                   "light source"),
+               temperature.sensor);
 }
 
 /// A continuous-wave time-of-flight camera. Field names are the keys of a camera file.
