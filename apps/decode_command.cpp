@@ -131,6 +131,7 @@ void run(DecodeArguments& arguments, Session& session) {
       {"width", result.width},
       {"measurements", result.measurements}};
   if (session.json) add_decode_summary(request, result, document);
+  if (request.sliding) document["sliding"] = true;
   document["notes"] = notes;
   session.print_json(document);
   std::string lines = decode_lines(request, result);
@@ -179,6 +180,7 @@ void add_frame_options(const FieldOptions<DecodeRequest>& request) {
   request.add("average", "--average");
   request.add("hdr", "--hdr")->group(for_experts);
   request.add("averaged", "--averaged")->group(for_experts);
+  request.add("sliding", "--sliding");
   request.add("frame", "--frame")->group(for_experts);
 }
 

@@ -165,6 +165,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.dark_electrons = model.dark_electrons();
   table.constant_variance_e2 = model.constant_variance_e2();
   table.range_m = camera.range_m();
+  table.exposures = model.exposures();
   table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
 
   if (model.has_rows()) whiten_rows(model, camera, table);

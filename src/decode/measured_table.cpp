@@ -172,6 +172,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
       measured.differences ? measured.correlation : raised(measured.correlation, ambient_gain);
   DecodingTable table =
       table_of_rows(correlation * readout.transpose(), measured.range_m.value_or(camera.range_m()));
+  table.exposures = columns / measured.taps;
   table.ambient_gain = readout * ambient_gain;
   table.exposure_s = subtracts ? of_pairs(exposure_s, "exposure_s") : exposure_s;
   table.gain_e_per_raw = subtracts ? of_pairs(gain_e_per_raw, "gain_e_per_raw") : gain_e_per_raw;

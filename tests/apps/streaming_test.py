@@ -57,6 +57,25 @@ class Streaming(CommandLineTest):
         self.assertIn("decoded 3 frames", error.decode())
         self.assertIn("found 100 bytes and the end; expected 7200 of frame 3", error.decode())
 
+    def test_sliding_windows_are_those_of_files(self):
+        raw = self.record()
+        self.decode("--stack", output="frames.npy")
+        document = self.do_json(*self.arguments("--sliding", "--stack", output="windows.npy"))
+        self.assertTrue(document["sliding"])
+        frames, windows = (np.load(self.path(f"{name}.npy")) for name in ("frames", "windows"))
+        np.testing.assert_array_equal(windows[::3], frames)
+        np.save(self.path("planar.npy"), raw.transpose(0, 3, 1, 2))
+        self.decode("--sliding", "--stack", "--layout", "planar", raw="planar.npy",
+                    output="planar-windows.npy")
+        np.testing.assert_array_equal(np.load(self.path("planar-windows.npy")), windows)
+        out = subprocess.run(self.pipe("--sliding"), cwd=self.directory, input=raw.tobytes(),
+                             capture_output=True, check=True, timeout=60)
+        self.assertEqual(out.stdout, windows.astype("<f4").tobytes())
+        self.assertIn("decoded 7 frames", out.stderr.decode())
+        for more in (("--average", "2"), ("--averaged", "2"), ("--hdr", "1,4,16")):
+            self.refuse(self.arguments("--sliding", *more), more[0], "goes without sliding",
+                        code=2)
+
     def test_a_pipe_can_be_interrupted_while_it_waits(self):
         process = subprocess.Popen(self.pipe(), cwd=self.directory, stdin=subprocess.PIPE,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -39,7 +39,7 @@ class DecodeStream : public DecodeRecording {
       const std::size_t frames = at < 3 ? 0 : (at - 3) / (6 * 5 * 4 * sizeof(float));
       const std::size_t waiting =
           request.time_filter ? static_cast<std::size_t>(request.time_filter->look_ahead) : 0;
-      if (request.average == 1) {
+      if (request.average == 1 && !request.sliding) {
         EXPECT_EQ(result.frames, static_cast<std::int64_t>(frames - std::min(frames, waiting)));
       }
       const std::size_t count = std::min(into.size(), bytes - at);
@@ -99,6 +99,52 @@ TEST_F(DecodeStream, GivesTheBytesOfFilesFrameByFrame) {
   DecodeRequest depth;
   depth.outputs = {DecodedPlane::depth};
   EXPECT_EQ(written_, of_files(depth)) << "depth, if nothing is asked for";
+}
+
+TEST_F(DecodeStream, GivesTheBytesOfSlidingWindows) {
+  DecodeRequest request;
+  request.sliding = true;
+  request.outputs = {DecodedPlane::depth, DecodedPlane::status};
+  for (const bool in_time : {false, true}) {
+    if (in_time) request.time_filter = TimeFilterOptions{};
+    EXPECT_EQ(run(request, stream_.size()).frames, 2 * 4 + 1);
+    EXPECT_EQ(written_, of_files(request));
+  }
+}
+
+TEST_F(DecodeStream, GivesAnImageAfterEachExposureOfPlanarFrames) {
+  const std::size_t image = 6 * 5 * sizeof(float);
+  std::vector<std::byte> planar;
+  for (int f = 0; f < 3; ++f)
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t i = 0; i < 6 * 5; ++i) {
+        const auto bytes = std::as_bytes(std::span(raw_.frame(f) + 4 * i + k, 1));
+        planar.insert(planar.end(), bytes.begin(), bytes.end());
+      }
+  std::ofstream(path("p.raw.toml")) << "width = 5\nheight = 6\nmeasurements = 4\nbits = 32\n"
+                                       "numbers = \"float\"\nlayout = \"planar\"\n";
+  DecodeRequest request;
+  request.sliding = true;
+  request.outputs = {DecodedPlane::depth};
+  const std::vector<std::byte> expected = of_files(request);
+  request.raw_format = path("p.raw.toml");
+  std::size_t at = 0;
+  std::vector<std::byte> written;
+  std::vector<std::size_t> images_read;  // before each image that comes out
+  const ReadStream read = [&](std::span<std::byte> into) {
+    const std::size_t count = std::min(into.size(), planar.size() - at);
+    std::copy_n(planar.begin() + static_cast<std::ptrdiff_t>(at), count, into.begin());
+    at += count;
+    return count;
+  };
+  const WriteStream write = [&](std::span<const std::byte> plane) {
+    images_read.push_back(at / image);
+    written.insert(written.end(), plane.begin(), plane.end());
+  };
+  DecodedStream result;
+  decode_stream(request, *backend_, read, write, {}, result);
+  EXPECT_EQ(images_read, (std::vector<std::size_t>{4, 5, 6, 7, 8, 9, 10, 11, 12}));
+  EXPECT_EQ(written, expected);
 }
 
 TEST_F(DecodeStream, SupportsRotatedImagesAndTrailers) {

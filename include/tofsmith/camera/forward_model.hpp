@@ -72,6 +72,7 @@ class ForwardModel {
   int measurements() const { return static_cast<int>(readout_.rows()); }
   int tap_values() const { return static_cast<int>(readout_.cols()); }
   int samples() const { return samples_; }
+  int exposures() const { return has_rows() ? 1 : tap_values() / taps_; }
   /// Whether measurements are rows of one exposure, whose noise is correlated.
   bool has_rows() const { return time_bin_.has_value(); }
 

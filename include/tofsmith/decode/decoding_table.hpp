@@ -154,7 +154,10 @@ struct DecodingTable : MeasurementTable {
   std::optional<DepthCorrection> correction = {};
   /// Error of the table that decoders tolerate at least, see DecodeOptions::model_error_percent.
   double model_error_percent = 0.0;
+  int exposures = 0;  ///< of a frame, with K / exposures measurements each; 0: K exposures
 
+  /// Number of exposures of a frame, each of which takes measurements() / exposure_count() numbers.
+  int exposure_count() const { return exposures > 0 ? exposures : measurements(); }
   /// Whether measurements are rows, of correlated noise.
   bool has_rows() const { return whitening.size() > 0; }
   /// Dark electrons collected [e] (K): shot_dark_electrons, or what stands for them.

@@ -71,6 +71,10 @@ struct DecodeRequest {
   /// The recording holds whole groups, of which merge_exposures() makes frames. Goes without
   /// `average`.
   std::vector<double> hdr;
+  /// F frames of E exposures give (F - 1) E + 1 depth images, in the order of their last
+  /// exposures. A time filter averages windows that share no exposure. Goes without `average`,
+  /// `averaged`, `hdr` and `look_ahead`.
+  bool sliding = false;
   std::filesystem::path stray_light;  ///< image of shares, as StrayLight takes it
   double averaged = 1.0;              ///< multiplied by `average`
   /// Applies to consecutive frames, or means of frames. `frame` also uses the frames before it,
@@ -124,6 +128,10 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"exposure ratios of bracketed frames to the shortest exposure, which is the "
                  "camera's, such as 1,4,16: each group is merged into one frame, without saturated "
                  "samples, by their noise"}),
+      Field("sliding", r.sliding,
+            Help{"decode each new exposure together with the exposures before it, as many as a "
+                 "frame has: one depth image per exposure; pixels that change meanwhile are "
+                 "inconsistent"}),
       Field("stray_light", r.stray_light,
             Help{"light that the lens scatters, of calibrate stray-light (.npy .npz .exr .pfm), "
                  "removed from the raw numbers first"}),

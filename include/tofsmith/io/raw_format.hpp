@@ -98,6 +98,8 @@ struct RawFormat {
   int row_bytes = 0;             ///< from one row to the next; 0: no gap
   bool rows_start_bytes = true;  ///< lsb_first, msb_first: each row at a whole byte
 
+  /// Returns the measurement that a number of a pixel in the file is; -1 if it is skipped.
+  int measurement_of(int number) const;
   /// Measurements that are not skipped.
   int kept_measurements() const;
   /// Numbers per pixel that are returned: the kept measurements, or half as many differences.

@@ -101,12 +101,6 @@ bool is_negated(const RawFormat& f, const FilePlace& place) {
          (f.negate_from_column > 0 && place.column >= f.negate_from_column);
 }
 
-/// The measurement that number j of a pixel is; -1 if it is skipped.
-int measurement_of(const RawFormat& f, int j) {
-  if (f.order.empty()) return j;
-  return static_cast<std::size_t>(j) < f.order.size() ? f.order[static_cast<std::size_t>(j)] : -1;
-}
-
 /// Turns numbers of the file into measurements.
 class Measure {
  public:
@@ -213,7 +207,7 @@ void RawDumpReader::read_block(int frame, int first_row, int rows, Block& block)
         block.pixels.data() + std::ptrdiff_t{line} * (o.transposed ? 1 : width) * kept;
     const std::ptrdiff_t stride = std::ptrdiff_t{o.transposed ? width : 1} * kept;
     for (int j = 0; j < f.measurements; ++j) {
-      const int measurement = measurement_of(f, j);
+      const int measurement = f.measurement_of(j);
       if (side_by_side ? j == 0 : measurement >= 0) {
         const bool planar = f.layout == RawOrder::planar;
         const int row = f.layout == RawOrder::by_rows ? first.row * f.measurements + j : first.row;

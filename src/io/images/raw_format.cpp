@@ -148,6 +148,12 @@ std::uint64_t RawFormat::frame_bytes() const {
   return around_frame + images() * (around_image + image_bytes());
 }
 
+int RawFormat::measurement_of(int number) const {
+  const auto j = static_cast<std::size_t>(number);
+  if (order.empty()) return number;
+  return j < order.size() ? order[j] : -1;
+}
+
 int RawFormat::kept_measurements() const {
   if (order.empty()) return measurements;
   return static_cast<int>(std::ranges::count_if(order, [](int number) { return number >= 0; }));

@@ -65,6 +65,17 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
   return maps;
 }
 
+/// Checks what excludes sliding windows.
+void check_sliding(const DecodeRequest& request) {
+  constexpr const char* rule = "goes without sliding: its windows are of single exposures";
+  require(request.average == 1, "average", request.average, rule);
+  require(request.averaged == 1.0, "averaged", request.averaged, rule);
+  require(request.hdr.empty(), "hdr", fmt::format("{} exposures", request.hdr.size()), rule);
+  const int look_ahead = request.time_filter ? request.time_filter->look_ahead : 0;
+  require(look_ahead == 0, "look_ahead", look_ahead,
+          "goes without sliding: each window is decoded with its last exposure");
+}
+
 }  // namespace
 
 void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
@@ -75,6 +86,7 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
     check_exposures(request.hdr, "hdr");
     require(request.average == 1, "average", request.average, "goes without hdr");
   }
+  if (request.sliding) check_sliding(request);
   if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
   require(!request.undistort || request.lens, "undistort", "true",
@@ -131,7 +143,13 @@ std::optional<Filter> filter_of(const DecodeRequest& request, const DecodingTabl
                         : std::nullopt;
 }
 
-Preparation preparation_of(const DecodeRequest& request, const std::optional<Filter>& filter) {
+int sliding_exposures(const DecodeRequest& request, const DecodingTable& table) {
+  const int exposures = table.exposure_count();
+  return request.sliding && exposures > 1 ? exposures : 0;
+}
+
+Preparation preparation_of(const DecodeRequest& request, const DecodingTable& table,
+                           const std::optional<Filter>& filter) {
   const bool wants_averaged =
       std::ranges::find(request.outputs, DecodedPlane::averaged) != request.outputs.end();
   Preparation preparation{.steps = {.average = request.average,
@@ -142,7 +160,8 @@ Preparation preparation_of(const DecodeRequest& request, const std::optional<Fil
                           .find_mixed = request.mixed.has_value(),
                           .undistort = request.undistort,
                           .stray_kernel = {},
-                          .hdr = request.hdr};
+                          .hdr = request.hdr,
+                          .sliding = sliding_exposures(request, table)};
   if (preparation.steps.time_filter && filter) preparation.steps.time_filter->before_filter = true;
   if (!request.stray_light.empty())
     preparation.stray_kernel = read_stray_light(request.stray_light);

@@ -31,8 +31,12 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request,
 /// The request's spatial filter, if it has one.
 std::optional<Filter> filter_of(const DecodeRequest& request, const DecodingTable& table);
 
+/// Exposures of a sliding window; 0 if whole frames are decoded, as with a single exposure.
+int sliding_exposures(const DecodeRequest& request, const DecodingTable& table);
+
 /// @param filter  of filter_of(); must outlive the result
-Preparation preparation_of(const DecodeRequest& request, const std::optional<Filter>& filter);
+Preparation preparation_of(const DecodeRequest& request, const DecodingTable& table,
+                           const std::optional<Filter>& filter);
 
 /// Corrections of the decoded planes.
 /// @param source  of the frames, for errors

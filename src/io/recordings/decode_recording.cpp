@@ -43,16 +43,17 @@ DecodeTarget target_of(const DecodeRequest& request, const DepthDecoder& decoder
   const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
                                        reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
-  Preparation preparation{.hdr = request.hdr};
+  Preparation preparation{.hdr = request.hdr, .sliding = sliding_exposures(request, table)};
   preparation.steps.average = request.average;
   const int frames = preparation.frames_of(reader.frames());
   require(request.hdr.empty() || reader.frames() % preparation.group() == 0, "hdr",
           fmt::format("{} exposures", request.hdr.size()), fmt::format("{}: not a multiple", held));
   require(!request.frame || *request.frame < frames, "frame", request.frame.value_or(0),
           fmt::format("{}{}, counted from 0", held,
-                      request.average > 1   ? fmt::format(", {} means", frames)
-                      : request.hdr.empty() ? ""
-                                            : fmt::format(", {} of all exposures", frames)));
+                      request.average > 1       ? fmt::format(", {} means", frames)
+                      : preparation.sliding > 0 ? fmt::format(", {} windows", frames)
+                      : request.hdr.empty()     ? ""
+                                                : fmt::format(", {} of all exposures", frames)));
   const PinholeView view =
       view_of_frames(request, request.raw.front().string(), reader.width(), reader.height());
   const PinholeView written = request.undistort ? view.ideal() : view;
@@ -93,20 +94,24 @@ double bytes_of_planes(const DecodeTarget& target, int rows) {
 
 /// Memory of all buffers; `row` is of rows that are read and decoded at a time.
 FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& target,
-                          const Preparation& preparation, const FramePipeline& pipeline) {
+                          const Preparation& preparation,
+                          const std::vector<std::unique_ptr<FramePipeline>>& pipelines) {
   const int height = target.view.height, width = target.view.width;
   const double row_planes = bytes_of_planes(target, 1);
   const bool in_rows = target.in_rows();
   const FrameMemory prepared = preparation.memory(height, width, reader.measurements()),
-                    processed = pipeline.memory(preparation.submitted_of(reader.frames()));
+                    processed =
+                        pipelines.front()->memory(preparation.submitted_of(reader.frames()));
+  const auto pipeline_count = static_cast<double>(pipelines.size());
   const auto of_files = static_cast<double>(
       reader.bytes_in_memory() + target.writing_bytes() + target.pixel_rays.bytes() +
       (target.undistortion ? target.undistortion->bytes() : 0));
   FrameMemory all;
-  all.whole = of_files + prepared.whole + processed.whole + (in_rows ? 0.0 : row_planes * height);
+  all.whole = of_files + prepared.whole + pipeline_count * processed.whole +
+              (in_rows ? 0.0 : row_planes * height);
   all.row = (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
-            2.0 * static_cast<double>(reader.marked_row_bytes()) + prepared.row + processed.row +
-            (in_rows ? row_planes : 0.0);
+            2.0 * static_cast<double>(reader.marked_row_bytes()) + prepared.row +
+            pipeline_count * processed.row + (in_rows ? row_planes : 0.0);
   if (!preparation.needs_frames()) return all;
   return {.whole = all.whole + all.row * height, .row = 0.0};
 }
@@ -175,15 +180,16 @@ class Pace {
 
 /// Decodes the target's frames.
 void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
-                   FramePipeline& pipeline, const PlaneCorrections& corrections,
-                   DecodeOutput& output, const Progress& progress, DecodedRecording& result) {
+                   const std::vector<std::unique_ptr<FramePipeline>>& pipelines,
+                   const PlaneCorrections& corrections, DecodeOutput& output,
+                   const Progress& progress, DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
   DepthImage planes(target.needed_planes(), target.in_rows() ? rows : height, width);
   const std::vector<Band> bands =
       bands_of(target.first_frame, target.first_frame + target.frames, height, rows);
   ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
-  PreparedFrames input([&] { return recorded.next(); }, preparation, pipeline, reader.frames());
+  PreparedFrames input([&] { return recorded.next(); }, preparation, pipelines, reader.frames());
   const Pace pace(progress, target);
   StatusCounts statuses;
   for (const Band& band : bands) {
@@ -242,10 +248,10 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   DecodeOutput output(std::move(asked));
   const DecodeTarget& target = output.target();
   const std::optional<Filter> filter = filter_of(request, table);
-  const Preparation preparation = preparation_of(request, filter);
-  const std::unique_ptr<FramePipeline> pipeline =
-      backend.prepare(preparation.steps, reader.height(), reader.width());
-  const int rows = rows_at_a_time(buffer_memory(reader, target, preparation, *pipeline), target,
+  const Preparation preparation = preparation_of(request, table, filter);
+  const std::vector<std::unique_ptr<FramePipeline>> pipelines =
+      prepare_pipelines(backend, preparation, reader.height(), reader.width());
+  const int rows = rows_at_a_time(buffer_memory(reader, target, preparation, pipelines), target,
                                   preparation, 1e6 * request.memory_mb);
 
   result.height = reader.height();
@@ -255,7 +261,7 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   result.frame_count = target.frames;
   result.outputs = target.planes;
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
-  decode_frames(reader, preparation, rows, *pipeline, corrections, output, progress, result);
+  decode_frames(reader, preparation, rows, pipelines, corrections, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
   if (const auto note = inconsistent_note(result.total())) result.notes.push_back(*note);
 }

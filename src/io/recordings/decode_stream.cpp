@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <numeric>
 
 #include "io/image_limits.hpp"
 #include "io/images/raw_dump_reader.hpp"
@@ -21,29 +22,63 @@ namespace {
 
 constexpr const char* stream_name = "the stream";
 
+/// Number of bytes of a frame that contain its exposures up to each one. An exposure of images is
+/// complete before its frame is.
+std::vector<std::size_t> exposure_ends(const RawFormat& format, int exposures) {
+  const auto frame = static_cast<std::size_t>(format.frame_bytes());
+  std::vector<std::size_t> ends(static_cast<std::size_t>(exposures), frame);
+  if (format.layout != RawOrder::planar) return ends;
+  const std::uint64_t image =
+      format.image_bytes() +
+      static_cast<std::uint64_t>(format.image_header_bytes + format.image_trailer_bytes);
+  const int per_exposure = format.kept_measurements() / exposures;
+  std::fill(ends.begin(), ends.end() - 1, std::size_t{0});
+  for (int j = 0; j < format.measurements; ++j) {
+    const int measurement = format.measurement_of(j);
+    if (measurement < 0) continue;
+    std::size_t& end = ends[static_cast<std::size_t>(measurement / per_exposure)];
+    end = std::max(end, static_cast<std::size_t>(format.frame_header_bytes +
+                                                 static_cast<std::uint64_t>(j + 1) * image));
+  }
+  std::partial_sum(ends.begin(), ends.end(), ends.begin(),
+                   [](std::size_t a, std::size_t b) { return std::max(a, b); });
+  return ends;
+}
+
 /// Frames of a stream, one after another.
 class StreamFrames {
  public:
-  StreamFrames(const ReadStream& read, RawFormat format, const RawMarking& marking)
+  /// @param exposures  number per frame; next() returns the frame once for each exposure, when it
+  ///                   is complete up to this exposure. 1: whole frames
+  StreamFrames(const ReadStream& read, RawFormat format, const RawMarking& marking, int exposures)
       : read_(read),
         header_(static_cast<std::size_t>(format.header_bytes)),
         trailer_bytes_(static_cast<std::size_t>(format.trailer_bytes)),
-        bytes_(format.frame_bytes()) {
+        bytes_(format.frame_bytes()),
+        ends_(exposure_ends(format, exposures)) {
     format.header_bytes = format.trailer_bytes = 0;
     format.frames = 1;
     frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format), marking);
   }
 
-  /// The raw numbers of the next frame, until the call after; none after the last.
+  /// The raw numbers of the next frame or exposure, until the call after; none after the last.
   /// @throws IoError if the stream ends in a frame
   std::optional<RawView> next() {
     if (const std::size_t found = read_(header_); found < header_.size()) fail(found, header_);
     header_.clear();
-    const std::size_t found = read_(bytes_);
-    if (frames_ > 0 && (found == 0 || found == trailer_bytes_)) return std::nullopt;
-    if (found < bytes_.size()) fail(found, bytes_);
-    ++frames_;
-    return frame_->format().needs_doubles() ? numbers(doubles_) : numbers(floats_);
+    if (const std::size_t end = ends_[exposure_]; at_ < end) {
+      const std::size_t found = at_ + read_(std::span(bytes_).subspan(at_, end - at_));
+      const bool is_between_frames = at_ == 0 && frames_ > 0;
+      if (is_between_frames && (found == 0 || found == trailer_bytes_)) return std::nullopt;
+      if (found < end) fail(found, bytes_);
+      at_ = end;
+      view_ = frame_->format().needs_doubles() ? numbers(doubles_) : numbers(floats_);
+    }
+    if (++exposure_ == ends_.size()) {
+      exposure_ = at_ = 0;
+      ++frames_;
+    }
+    return view_;
   }
 
  private:
@@ -77,6 +112,10 @@ class StreamFrames {
   std::vector<std::byte> header_;
   std::size_t trailer_bytes_;
   std::vector<std::byte> bytes_;
+  std::vector<std::size_t> ends_;  // of exposures, in bytes_
+  std::size_t exposure_ = 0;       // the next one
+  std::size_t at_ = 0;             // bytes of the frame that have been read
+  RawView view_;
   std::unique_ptr<RawDumpReader> frame_;
   std::vector<float> floats_;
   std::vector<double> doubles_;
@@ -124,11 +163,12 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
       .undistortion = undistortion_of(request, view)};
 
   check_markers(table.marking.markers, format, source);
-  StreamFrames frames(read, format, table.marking);
   const std::optional<Filter> filter = filter_of(request, table);
-  const Preparation preparation = preparation_of(request, filter);
-  const std::unique_ptr<FramePipeline> pipeline = backend.prepare(preparation.steps, height, width);
-  PreparedFrames input([&] { return frames.next(); }, preparation, *pipeline,
+  Preparation preparation = preparation_of(request, table, filter);
+  preparation.exposures_arrive = true;
+  StreamFrames frames(read, format, table.marking, std::max(preparation.sliding, 1));
+  const auto pipelines = prepare_pipelines(backend, preparation, height, width);
+  PreparedFrames input([&] { return frames.next(); }, preparation, pipelines,
                        std::numeric_limits<int>::max());
   DepthImage planes(target.needed_planes(), height, width);
   const auto start = std::chrono::steady_clock::now();

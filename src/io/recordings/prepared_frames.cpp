@@ -18,6 +18,16 @@ namespace tofsmith {
 
 namespace {
 
+/// Whole frames that windows of exposures need. A time filter needs all windows up to the last.
+std::vector<Band> bands_of_windows(const Preparation& preparation,
+                                   const std::vector<Band>& windows) {
+  if (windows.empty()) return {};
+  const int exposures = preparation.sliding, rows = windows.front().rows,
+            first = preparation.steps.time_filter ? 0 : windows.front().frame,
+            last_exposure = windows.back().frame + exposures - 1;
+  return bands_of(first / exposures, last_exposure / exposures + 1, rows, rows);
+}
+
 /// Frames of the recording that frame `index` of what comes out is made of.
 int frames_of_mean(const Preparation& preparation, int recorded, int index) {
   return std::min(preparation.group(), recorded - index * preparation.group());
@@ -43,6 +53,7 @@ RawFrames copy_of(const RawView& raw) {
 
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands) {
+  if (preparation.sliding > 0) return bands_of_windows(preparation, bands);
   std::vector<Band> needed;
   const std::optional<TimeFilterOptions>& time_filter = preparation.steps.time_filter;
   if (time_filter && !bands.empty()) {
@@ -74,13 +85,24 @@ FrameMemory Preparation::memory(int height, int width, int measurements) const {
     memory.row += width * bytes * ((group() + 1.0) * measurements + 2.0);
   else if (steps.average == 1 && steps.averaged != 1.0)
     memory.row += bytes * width;
+  if (sliding > 0) memory.row += static_cast<double>(sizeof(double)) * width * measurements;
   return memory;
 }
 
-PreparedFrames::PreparedFrames(Input input, const Preparation& preparation, FramePipeline& pipeline,
+std::vector<std::unique_ptr<FramePipeline>> prepare_pipelines(const FrameBackend& backend,
+                                                              const Preparation& preparation,
+                                                              int height, int width) {
+  std::vector<std::unique_ptr<FramePipeline>> pipelines;
+  for (int i = 0; i < preparation.pipelines(); ++i)
+    pipelines.push_back(backend.prepare(preparation.steps, height, width));
+  return pipelines;
+}
+
+PreparedFrames::PreparedFrames(Input input, const Preparation& preparation,
+                               const std::vector<std::unique_ptr<FramePipeline>>& pipelines,
                                int recorded)
     : preparation_(preparation),
-      pipeline_(pipeline),
+      pipelines_(pipelines),
       recorded_(recorded),
       input_(std::move(input)) {
   if (!preparation.stray_kernel.empty()) stray_light_.emplace(preparation.stray_kernel);
@@ -90,7 +112,7 @@ PreparedFrames::PreparedFrames(Input input, const Preparation& preparation, Fram
 std::optional<RawView> PreparedFrames::read() {
   std::optional<RawView> raw = input_();
   if (raw && stray_light_) {
-    stray_light_->remove(*raw, pipeline_.table(), clean_);
+    stray_light_->remove(*raw, pipeline().table(), clean_);
     raw = RawView::interleaved(clean_.values.data(), raw->height, raw->width, raw->measurements);
     raw->is_marked = true;
   }
@@ -122,8 +144,24 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
                   fmt::format("found {} frame{} and the end; expected {}, one of each "
                               "exposure of --hdr",
                               views.size(), views.size() == 1 ? "" : "s", frames));
-  merge_exposures(views, preparation_.hdr, pipeline_.table(), merged_);
+  merge_exposures(views, preparation_.hdr, pipeline().table(), merged_);
   return merged_.view();
+}
+
+/// The numbers of window `index`, which must follow the window of the last call. @return none after
+/// the last
+std::optional<RawView> PreparedFrames::window(int index) {
+  const int exposures = preparation_.sliding;
+  int missing = window_ ? 1 : exposures + index % exposures;
+  if (!window_) window_.emplace(exposures);
+  for (; missing > 0; --missing) {
+    const bool is_first = next_exposure_ == 0;
+    if (is_first || preparation_.exposures_arrive) newest_ = read();
+    if (!newest_) return std::nullopt;
+    window_->take(*newest_, next_exposure_);
+    next_exposure_ = (next_exposure_ + 1) % exposures;
+  }
+  return window_->view();
 }
 
 /// Reads and submits the bands that frame `frame` is made of. @return none after the last, else
@@ -131,7 +169,11 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
 std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& progress) {
   if (!preparation_.hdr.empty()) {
     const std::optional<RawView> merged = bracketed(progress);
-    return merged ? std::optional(pipeline_.submit(*merged)) : std::nullopt;
+    return merged ? std::optional(pipeline().submit(*merged)) : std::nullopt;
+  }
+  if (preparation_.sliding > 0) {
+    const std::optional<RawView> raw = window(frame);
+    return raw ? std::optional(pipeline().submit(*raw)) : std::nullopt;
   }
   const int frames = frames_of_mean(preparation_, recorded_, frame);
   bool is_ready = false;
@@ -140,8 +182,8 @@ std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& prog
       report(progress, static_cast<double>(i) / frames, "averaging");
     const std::optional<RawView> raw = read();
     if (!raw && i == 0) return std::nullopt;
-    if (!raw) return pipeline_.submit_end();
-    is_ready = pipeline_.submit(*raw, i + 1 == frames);
+    if (!raw) return pipeline().submit_end();
+    is_ready = pipeline().submit(*raw, i + 1 == frames);
   }
   return frames > 0 ? std::optional(is_ready) : std::nullopt;
 }
@@ -149,18 +191,19 @@ std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& prog
 /// The time filter may need later frames first, and earlier ones that do not come out.
 bool PreparedFrames::next_in_time(int frame, const Progress& progress) {
   const int ahead = preparation_.steps.time_filter->look_ahead;
-  const int coming = std::min(ahead, recorded_ - 1 - frame) + frame + 1 - frames_read_;
+  const int coming = std::min(ahead, std::max(recorded_ - 1 - frame, 0)) + frame + 1 - frames_read_;
   const auto steps = static_cast<std::size_t>(std::max(coming, 1));
   const ProgressParts parts(progress, steps);
   for (std::size_t step = 0; frames_ready_ <= frame; ++step) {
     const Progress here = parts[std::min(step, steps - 1)];
+    current_ = static_cast<std::size_t>(frames_read_) % pipelines_.size();
     std::optional<bool> is_ready;
     if (!has_ended_) is_ready = submit_group(frames_read_, here);
     if (is_ready) {
       ++frames_read_;
     } else {
       has_ended_ = true;
-      is_ready = pipeline_.submit_end();
+      is_ready = pipeline().submit_end();
       if (!*is_ready) return false;
     }
     if (*is_ready) ++frames_ready_;

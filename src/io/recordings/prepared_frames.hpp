@@ -3,10 +3,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "io/recordings/read_ahead.hpp"
+#include "io/recordings/sliding_window.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/frame_pipeline.hpp"
@@ -22,25 +24,42 @@ struct Preparation {
   bool undistort = false;     ///< last of all, in whole frames
   Image<float> stray_kernel;  ///< of StrayLight, taken off first; empty: none
   std::vector<double> hdr;    ///< exposures of frames that make one; empty: none
+  int sliding = 0;            ///< exposures of a sliding window; 0: whole frames are decoded
+
+  /// With sliding windows, the input gives a frame for each of its exposures, complete up to it.
+  bool exposures_arrive = false;
 
   bool needs_frames() const {
-    return steps.time_filter || steps.filter || find_mixed || undistort || !stray_kernel.empty();
+    return steps.time_filter || steps.filter || find_mixed || undistort || !stray_kernel.empty() ||
+           sliding > 0;
   }
   /// Frames that come out of so many.
-  int frames_of(int recorded) const { return (recorded + group() - 1) / group(); }
+  int frames_of(int recorded) const {
+    return sliding > 0 ? windows_of(recorded, sliding) : (recorded + group() - 1) / group();
+  }
   /// Frames that are submitted to the pipeline, of so many.
-  int submitted_of(int recorded) const { return hdr.empty() ? recorded : frames_of(recorded); }
+  int submitted_of(int recorded) const {
+    return hdr.empty() && sliding == 0 ? recorded : frames_of(recorded);
+  }
+  /// Number of pipelines. A time filter needs one for each group of windows that share no exposure.
+  int pipelines() const { return sliding > 0 && steps.time_filter ? sliding : 1; }
   /// Frames that one of those is made of.
   int group() const { return hdr.empty() ? steps.average : static_cast<int>(hdr.size()); }
   /// Memory in addition to that of the rows that are read and of the pipeline.
   FrameMemory memory(int height, int width, int measurements) const;
 };
 
+/// Makes the pipelines of a preparation.
+std::vector<std::unique_ptr<FramePipeline>> prepare_pipelines(const FrameBackend& backend,
+                                                              const Preparation& preparation,
+                                                              int height, int width);
+
 /// Bands to read for those that come out, of a recording of so many frames.
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands);
 
-/// Submits recorded frames to a pipeline, without stray light and with exposures merged.
+/// Submits recorded frames, or sliding windows of exposures, to pipelines, without stray light and
+/// with exposures merged.
 class PreparedFrames {
  public:
   /// The raw numbers of the next band, until the next call; none after the last.
@@ -48,12 +67,13 @@ class PreparedFrames {
 
   /// @param input     gives bands_to_read(); whole frames if there is a filter; for one in time all
   ///                  frames before the first, too, and those that the last looks ahead to
-  /// @param pipeline  must outlive this
-  /// @param recorded  frames that there are; of a stream the most an int holds
-  PreparedFrames(Input input, const Preparation& preparation, FramePipeline& pipeline,
-                 int recorded);
+  /// @param pipelines  of prepare_pipelines(), used in turn; must outlive this
+  /// @param recorded   frames that there are; of a stream the most an int holds
+  PreparedFrames(Input input, const Preparation& preparation,
+                 const std::vector<std::unique_ptr<FramePipeline>>& pipelines, int recorded);
 
-  FramePipeline& pipeline() const { return pipeline_; }
+  /// The pipeline of the band that is ready.
+  FramePipeline& pipeline() const { return *pipelines_[current_]; }
   /// How long next() takes, and decoding with filters, where decoding alone takes 1: roughly.
   double effort() const {
     const auto& time_filter = preparation_.steps.time_filter;
@@ -71,11 +91,13 @@ class PreparedFrames {
  private:
   std::optional<RawView> read();
   std::optional<RawView> bracketed(const Progress& progress);
+  std::optional<RawView> window(int index);
   std::optional<bool> submit_group(int frame, const Progress& progress);
   bool next_in_time(int frame, const Progress& progress);
 
   Preparation preparation_;
-  FramePipeline& pipeline_;
+  const std::vector<std::unique_ptr<FramePipeline>>& pipelines_;
+  std::size_t current_ = 0;
   int recorded_;
   Input input_;
   std::vector<RawFrames> exposed_;  // of one group, as they were read
@@ -85,6 +107,9 @@ class PreparedFrames {
   std::vector<float> averaged_;             // of numbers that are read, unless of one
   int frames_read_ = 0, frames_ready_ = 0;  // by and from the time filter
   bool has_ended_ = false;
+  std::optional<SlidingWindow> window_;
+  std::optional<RawView> newest_;  // frame of which the window takes exposures
+  int next_exposure_ = 0;          // of the newest frame
 };
 
 }  // namespace tofsmith
