@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -92,14 +93,10 @@ std::vector<double> in_camera_order(std::vector<double> of_code, const Camera& c
   return of_camera;
 }
 
-/// Constant that the camera adds to the depth of each of its exposures [m].
+/// Constant that [playback] adds to the depth of each exposure of the camera [m].
 std::vector<double> offsets_m(const CodeSet& code, const Camera& camera) {
   const Playback playback = camera.playback.value_or(Playback());
-  std::vector<double> offsets =
-      in_camera_order(playback.offsets_of(code, camera.range_m()), camera);
-  for (double& offset_m : offsets)
-    offset_m += camera.temperature ? camera.temperature->offset_m() : 0.0;
-  return offsets;
+  return in_camera_order(playback.offsets_of(code, camera.range_m()), camera);
 }
 
 }  // namespace
@@ -139,7 +136,11 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
   const ActualCode actual = actual_code(code, camera);
-  const std::vector<double> offset_m = offsets_m(code, camera);
+  std::vector<double> offset_m = offsets_m(code, camera);
+  playback_offset_m_ =
+      std::accumulate(offset_m.begin(), offset_m.end(), 0.0) / static_cast<double>(offset_m.size());
+  for (double& offset : offset_m)
+    offset += camera.temperature ? camera.temperature->offset_m() : 0.0;
   const bool reversed = camera.playback && camera.playback->reversed;
   if (camera.temperature) signal_gain_ = camera.temperature->signal_gain();
   const std::vector<Waveform> demodulation = tap_functions(code, actual.demodulation);

@@ -166,6 +166,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.constant_variance_e2 = model.constant_variance_e2();
   table.range_m = camera.range_m();
   table.exposures = model.exposures();
+  table.playback_offset_m = model.playback_offset_m();
   table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
 
   if (model.has_rows()) whiten_rows(model, camera, table);

@@ -73,6 +73,8 @@ class ForwardModel {
   int tap_values() const { return static_cast<int>(readout_.cols()); }
   int samples() const { return samples_; }
   int exposures() const { return has_rows() ? 1 : tap_values() / taps_; }
+  /// Mean over exposures of the constant that [playback] adds to depth [m].
+  double playback_offset_m() const { return playback_offset_m_; }
   /// Whether measurements are rows of one exposure, whose noise is correlated.
   bool has_rows() const { return time_bin_.has_value(); }
 
@@ -135,6 +137,7 @@ class ForwardModel {
   std::vector<double> contrasts_;  // of the exposures
   Eigen::VectorXd sensitivity_;    // of the tap values; 1 but for tap_mismatch
   double signal_gain_ = 1.0;       // by the camera's temperature
+  double playback_offset_m_ = 0.0;
   double tap_dark_e_per_s_ = 0.0;
   double readout_variance_e2_ = 0.0;             // constant, of a tap value or a row
   std::vector<CorrelationFunction> functions_;   // of the tap values, before taps mix; of the rows

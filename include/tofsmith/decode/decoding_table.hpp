@@ -155,6 +155,8 @@ struct DecodingTable : MeasurementTable {
   /// Error of the table that decoders tolerate at least, see DecodeOptions::model_error_percent.
   double model_error_percent = 0.0;
   int exposures = 0;  ///< of a frame, with K / exposures measurements each; 0: K exposures
+  /// Constant that [playback] adds to depth and that the correlation contains [m].
+  double playback_offset_m = 0.0;
 
   /// Number of exposures of a frame, each of which takes measurements() / exposure_count() numbers.
   int exposure_count() const { return exposures > 0 ? exposures : measurements(); }

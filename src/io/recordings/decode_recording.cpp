@@ -261,6 +261,8 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   result.frame_count = target.frames;
   result.outputs = target.planes;
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
+  if (const auto note = repeated_offset_note(table, corrections.maps.delay_offset_m))
+    result.notes.push_back(*note);
   decode_frames(reader, preparation, rows, pipelines, corrections, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
   if (const auto note = inconsistent_note(result.total())) result.notes.push_back(*note);

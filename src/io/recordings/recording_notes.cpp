@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 namespace tofsmith {
@@ -37,6 +38,28 @@ std::optional<std::string> electrons_note(const RawFramesReader& reader,
     return std::nullopt;
   return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
          "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
+}
+
+std::optional<std::string> repeated_offset_note(const DecodingTable& table,
+                                                const Image<float>& offset_m) {
+  if (table.playback_offset_m == 0.0) return std::nullopt;
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  for (const float offset : offset_m.pixels) {
+    if (!std::isfinite(offset)) continue;
+    const auto value = static_cast<double>(offset);
+    ++count;
+    sum += value;
+    squares += value * value;
+  }
+  const double mean_m = count > 0.0 ? sum / count : 0.0;
+  const double spread_m =
+      std::sqrt(std::max(squares / std::max(count, 1.0) - mean_m * mean_m, 0.0));
+  if (!(std::abs(mean_m) > spread_m)) return std::nullopt;
+  return fmt::format(
+      "both the camera's [playback] and the offsets of the pixels contain a constant, {:.4g} m and "
+      "{:.4g} m on average; their sum of {:.4g} m is subtracted from depth. If it is one constant, "
+      "remove it from one of them: --set playback.offset_m=0, or an offset map with mean 0",
+      table.playback_offset_m, mean_m, table.playback_offset_m + mean_m);
 }
 
 std::optional<std::string> no_depth_note(const StatusCounts& statuses) {

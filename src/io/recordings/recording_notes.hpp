@@ -12,6 +12,9 @@ namespace tofsmith {
 /// Whole numbers that nothing was said about.
 std::optional<std::string> electrons_note(const RawFramesReader& reader,
                                           const DecodingTable& table);
+/// Warning if both the table and the pixels' offsets contain a constant, which may be the same one.
+std::optional<std::string> repeated_offset_note(const DecodingTable& table,
+                                                const Image<float>& offset_m);
 /// Where no pixel of any frame has a depth: how many have which status, and what to look at.
 std::optional<std::string> no_depth_note(const StatusCounts& statuses);
 /// Warning if more than 10 % of the pixels of all frames are inconsistent, with likely causes.
