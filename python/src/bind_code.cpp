@@ -135,6 +135,8 @@ void bind_code_set(py::module_& module) {
       .def("renamed", &CodeSet::renamed)
       .def("resampled", &CodeSet::resampled)
       .def("rotated", &CodeSet::rotated)
+      .def("exposure_shares", &CodeSet::exposure_shares)
+      .def("with_exposure_shares", &CodeSet::with_exposure_shares)
       .def("with_two_buckets", &CodeSet::with_two_buckets)
       .def("with_signed_weights", &CodeSet::with_signed_weights)
       .def("provenance", &provenance_of);

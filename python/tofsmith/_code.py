@@ -183,6 +183,11 @@ class CodeSet:
         return self._handle.exposures()
 
     @property
+    def exposure_shares(self) -> tuple[float, ...]:
+        """Share of the total integration time of each exposure (E); empty: all alike."""
+        return tuple(self._handle.exposure_shares())
+
+    @property
     def measurements(self) -> int:
         """K = E x taps, number of measurements."""
         return self._handle.measurements()
@@ -229,6 +234,21 @@ class CodeSet:
         return CodeSet._of(
             self._handle.rotated(_check.whole(rotation_bin, "rotation_bin", -(2**31)))
         )
+
+    def with_exposure_shares(self, shares: Sequence[float]) -> CodeSet:
+        """The same code with exposures of different length.
+
+        Parameters
+        ----------
+        shares : sequence of float, shape (E,)
+            Share of the total time that each exposure takes, > 0, of sum 1; empty: all alike.
+
+        Raises
+        ------
+        ValueError
+            Naming the share and the rule it breaks.
+        """
+        return CodeSet._of(self._handle.with_exposure_shares([float(share) for share in shares]))
 
     def with_signed_weights(self) -> CodeSet:
         """Returns the code for a mixer: every gain d becomes the weight 2 d - 1. Requires taps =

@@ -162,6 +162,25 @@ double ExposureTime::of(int exposure, int exposures) const {
   return each_s.empty() ? total_s / exposures : each_s.at(static_cast<std::size_t>(exposure));
 }
 
+std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera) {
+  require(other_exposures_listed(camera, code.exposures(), " of code " + code.name()));
+  std::vector<double> times_s;
+  for (int e = 0; e < code.exposures(); ++e) {
+    const bool is_ordered = camera.playback && !camera.playback->order.empty();
+    const int of_code = is_ordered ? camera.playback->order[static_cast<std::size_t>(e)] : e;
+    const bool is_split = camera.exposure_s.each_s.empty() && !code.exposure_shares().empty();
+    times_s.push_back(is_split ? camera.exposure_s.total_s *
+                                     code.exposure_shares()[static_cast<std::size_t>(of_code)]
+                               : camera.exposure_s.of(e, code.exposures()));
+  }
+  return times_s;
+}
+
+Camera timed_by(const CodeSet& code, Camera camera) {
+  if (!code.exposure_shares().empty()) camera.exposure_s.each_s = exposure_times_s(code, camera);
+  return camera;
+}
+
 double Camera::range_m() const { return unambiguous_range_m(fundamental_frequency_hz); }
 double Camera::bin_m() const { return range_m() / samples; }
 

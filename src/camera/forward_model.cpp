@@ -147,6 +147,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
   const auto tap_values = static_cast<int>(demodulation.size());
   Eigen::RowVectorXd gain(tap_values);
   tap_exposure_s_.resize(tap_values);
+  const std::vector<double> times_s = exposure_times_s(code, camera);
   for (int i = 0; i < tap_values; ++i) {
     const int exposure = i / taps_;
     const Waveform& d = demodulation[static_cast<std::size_t>(i)];
@@ -156,7 +157,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     const double moved = -offset_m[static_cast<std::size_t>(exposure)] / camera.range_m();
     if (moved != 0.0 || reversed) functions_.back() = functions_.back().moved(moved, reversed);
     gain[i] = d.mean();
-    tap_exposure_s_[i] = camera.exposure_s.of(exposure, code.exposures());
+    tap_exposure_s_[i] = times_s[static_cast<std::size_t>(exposure)];
   }
   if (code.is_rows()) {
     read_rows(code, actual.modulation.front(), transfer, -offset_m.front() / camera.range_m());

@@ -167,6 +167,25 @@ CodeSet CodeSet::rotated(int rotation_bin) const {
   return copy;
 }
 
+CodeSet CodeSet::with_exposure_shares(std::vector<double> shares) const {
+  require(shares.empty() || shares.size() == static_cast<std::size_t>(exposures()),
+          "number of exposure_shares", shares.size(),
+          fmt::format("must equal the {} exposures", exposures()));
+  double sum = 0.0;
+  for (const double share : shares) {
+    require(std::isfinite(share) && share > 0.0, "exposure_shares", share, "must be > 0");
+    sum += share;
+  }
+  require(shares.empty() || std::abs(sum - 1.0) <= tolerance, "sum of exposure_shares", sum,
+          "must be 1");
+  const bool are_alike = std::all_of(shares.begin(), shares.end(), [&](double share) {
+    return std::abs(share - shares.front()) <= tolerance;
+  });
+  CodeSet copy = *this;
+  copy.exposure_shares_ = are_alike ? std::vector<double>() : std::move(shares);
+  return copy;
+}
+
 CodeSet CodeSet::with_two_buckets() const {
   require(taps_ == 1 && !is_signed_, "taps", is_signed_ ? "of a mixer" : fmt::format("{}", taps_),
           "only a code for one tap can be given a second bucket");
@@ -176,6 +195,7 @@ CodeSet CodeSet::with_two_buckets() const {
     demodulation.push_back(d.complement());
   }
   CodeSet code = create(name_, samples_, 2, modulation_, std::move(demodulation));
+  code.exposure_shares_ = exposure_shares_;
   code.provenance = provenance;
   return code;
 }
@@ -205,6 +225,7 @@ CodeSet CodeSet::signed_of_buckets() const {
     drive.push_back(demodulation(i));
   }
   CodeSet code = create(name_, samples_, 1, modulation_, std::move(drive)).with_signed_weights();
+  code.exposure_shares_ = exposure_shares_;
   code.provenance = provenance;
   return code;
 }

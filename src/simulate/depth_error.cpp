@@ -30,11 +30,12 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 
-const std::vector<CameraBounds::Level>& CameraBounds::of(int exposures) {
-  const auto [found, is_new] = levels_.try_emplace(exposures);
+const std::vector<CameraBounds::Level>& CameraBounds::of(const CodeSet& code) {
+  const auto [found, is_new] =
+      levels_.try_emplace(std::pair(code.exposures(), code.exposure_shares()));
   if (!is_new) return found->second;
   const Camera camera = judged_camera(camera_);
-  const ReceiverBound receiver(camera, exposures);
+  const ReceiverBound receiver(timed_by(code, camera), code.exposures());
   const DirectTofBound direct_tof(camera);
   const bool has_rows = camera.sensor.readout == Readout::rows;  // HistogramBound applies instead
   for (const OperatingPoint& point : camera.operating.points())
@@ -56,7 +57,7 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateO
   const CramerRaoBound cramer_rao(model, camera);
   std::optional<HistogramBound> histogram;
   if (model.has_rows()) histogram.emplace(model, camera);
-  const std::vector<CameraBounds::Level>& levels = bounds.of(code.exposures());
+  const std::vector<CameraBounds::Level>& levels = bounds.of(code);
   for (std::size_t i = 0; i < result.points.size(); ++i) {
     PointDepthError& error = result.points[i];
     error.cramer_rao_mae_m = bound_mae_m(cramer_rao, camera, error.point);

@@ -202,7 +202,8 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
     demodulation.push_back(
         on_samples(on_clock(code.demodulation(i), perturbed.clock_s, camera), code.samples()));
   CodeSet changed = CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
-                                    std::move(demodulation));
+                                    std::move(demodulation))
+                        .with_exposure_shares(code.exposure_shares());
   return code.is_signed() ? changed.with_signed_weights() : changed;
 }
 

@@ -80,6 +80,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
                              const Progress& progress) {
   options.validate();
   const ForwardModel model(code, camera);
+  const Camera timed = timed_by(code, camera);
   const LensBlur blur = camera.blur.value_or(LensBlur());
   const int samples = blur.pixel_samples, exposures = code.exposures();
   const MovingView view(scene, setup, samples);
@@ -95,7 +96,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
     for (int exposure = 0; exposure < exposures; ++exposure) {
       report(progress, (frame + static_cast<double>(exposure) / exposures) / options.frames,
              "capture");
-      const StagedScene now = view.at(camera.exposure_middle_s(frame, exposure, exposures));
+      const StagedScene now = view.at(timed.exposure_middle_s(frame, exposure, exposures));
       rays = view.rays_at(now);
       light = light_of(now, rays, setup, samples);
       light.validate(rays, camera);
@@ -105,7 +106,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
     scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
     SharedProgress none({}, height, "capture");
     expose_frame(source, &pixels, frame, result.raw.frame(frame), none);
-    result.truth.push_back(view.centres_at(view.at(camera.frame_middle_s(frame, exposures))));
+    result.truth.push_back(view.centres_at(view.at(timed.frame_middle_s(frame, exposures))));
     result.near_m.push_back(std::move(pixels.near_m));
     result.far_m.push_back(std::move(pixels.far_m));
   }

@@ -83,6 +83,16 @@ TEST(CodeJson, IsReadable) {
 )");
 }
 
+TEST(CodeJson, KeepsTheExposureSharesOfACode) {
+  const std::vector<double> shares{0.4, 0.3, 0.2, 0.1};
+  const CodeSet code = make_family("square-k4", {}).with_exposure_shares(shares);
+  EXPECT_EQ(parse_code_json(code_to_json(code)).exposure_shares(), shares);
+  nlohmann::json document = nlohmann::json::parse(code_to_json(code));
+  document["exposure_shares"] = {0.5, 0.5, 0.5, 0.5};
+  EXPECT_THAT(io_error_of([&] { parse_code_json(document.dump(), "c.json"); }),
+              HasSubstr("sum of exposure_shares = 2; must be 1"));
+}
+
 TEST(CodeJson, ProvenanceIsOptional) {
   EXPECT_EQ(parse_code_json(without("", "provenance").dump()).provenance.method, "");
   const CodeSet code = parse_code_json(without("/provenance", "residuals").dump());

@@ -170,7 +170,8 @@ CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePla
   constexpr std::string_view mark = "-edited";
   const std::string name =
       code.name().ends_with(mark) ? code.name() : code.name() + std::string(mark);
-  CodeSet edited = CodeSet::create(name, code.samples(), code.taps(), light, gates);
+  CodeSet edited = CodeSet::create(name, code.samples(), code.taps(), light, gates)
+                       .with_exposure_shares(code.exposure_shares());
   if (code.is_signed()) edited = edited.with_signed_weights();
   edited.provenance = code.provenance;
   edited.provenance.method = "edited";

@@ -417,6 +417,13 @@ OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 /// @throws std::invalid_argument if the camera is invalid
 Camera judged_camera(const Camera& camera);
 
+/// Integration times of the exposures in the order in which the camera plays them [s]: its list, or
+/// its total, split by the shares of the code.
+/// @throws InvalidArgument if the camera lists times for another number of exposures
+std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera);
+/// The camera with the integration times of a code in its list; unchanged for equal shares.
+Camera timed_by(const CodeSet& code, Camera camera);
+
 /// Why `code` cannot be played and read out on `camera`, a valid one: taps, samples, peak,
 /// exposures, light that no tap takes without a drain, pulses that are too short. None: it can.
 std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera);

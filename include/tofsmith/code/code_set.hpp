@@ -189,6 +189,13 @@ class CodeSet {
   /// Moves the origin of depth: correlation'(z) = correlation(z + rotation_bin), by delaying every
   /// modulation by rotation_bin samples.
   CodeSet rotated(int rotation_bin) const;
+  /// Returns the same code with the share of the total integration time of each exposure.
+  /// @param shares  one per exposure, > 0, of sum 1; empty: equal shares
+  /// @throws InvalidArgument naming share, value and rule
+  CodeSet with_exposure_shares(std::vector<double> shares) const;
+  /// Share of the total integration time of each exposure; empty: equal shares.
+  const std::vector<double>& exposure_shares() const { return exposure_shares_; }
+
   /// Adds the complement of every demodulation, for a two-bucket sensor.
   /// @throws std::invalid_argument unless taps() == 1
   CodeSet with_two_buckets() const;
@@ -211,6 +218,7 @@ class CodeSet {
   bool is_rows_ = false, is_signed_ = false;
   std::vector<Waveform> modulation_;
   std::vector<Waveform> demodulation_;
+  std::vector<double> exposure_shares_;
 };
 
 }  // namespace tofsmith

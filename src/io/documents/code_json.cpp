@@ -163,6 +163,18 @@ void check_format(const JsonReader& json) {
     version.mistyped(fmt::format("{}: a newer tofsmith wrote this file", format_version));
 }
 
+CodeSet with_shares(const JsonReader& json, const CodeSet& code) {
+  std::vector<double> shares;
+  for (const JsonReader& share :
+       json.elements(static_cast<std::size_t>(code.exposures()), "one per exposure"))
+    shares.push_back(share.number());
+  try {
+    return code.with_exposure_shares(std::move(shares));
+  } catch (const InvalidArgument& error) {
+    json.fail(error.what());
+  }
+}
+
 /// Returns the waveform to which a field of CodeSet::create() refers ("demodulation 3 minimum").
 JsonReader place_of_field(const JsonReader& json, std::string_view field) {
   for (const std::string_view list : {"modulation", "demodulation"}) {
@@ -188,6 +200,7 @@ std::string code_to_json(const CodeSet& code) {
     demodulation.push_back(waveform_to_json(code.demodulation(i), code.is_signed()));
   if (code.is_rows()) json["rows"] = true;
   if (code.is_signed()) json["signed"] = true;
+  if (!code.exposure_shares().empty()) json["exposure_shares"] = code.exposure_shares();
   json["modulation"] = std::move(modulation);
   json["demodulation"] = std::move(demodulation);
   json["provenance"] = provenance_to_json(code.provenance);
@@ -199,7 +212,7 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
   const JsonReader json(document, file);
   check_format(json);
   json.only({"format", "version", "name", "samples", "exposures", "taps", "rows", "signed",
-             "modulation", "demodulation", "provenance"});
+             "exposure_shares", "modulation", "demodulation", "provenance"});
   const std::string name = json.member("name").text();
   const int samples = json.member("samples").integer(2, max_samples);
   const int exposures = json.member("exposures").integer(1, max_measurements);
@@ -238,6 +251,8 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
                            : CodeSet::create(name, samples, taps, std::move(modulation),
                                              std::move(demodulation));
     if (is_signed) code = code.with_signed_weights();
+    if (const auto shares = json.optional_member("exposure_shares"))
+      code = with_shares(*shares, code);
     if (const auto provenance = json.optional_member("provenance"))
       code.provenance = read_provenance(*provenance);
     return code;

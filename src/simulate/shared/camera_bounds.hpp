@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
@@ -10,8 +11,8 @@
 
 namespace tofsmith {
 
-/// Bounds at the operating points of a camera that depend only on the number of exposures of a
-/// code; computed once for all codes. Not thread-safe.
+/// Bounds at the operating points of a camera that depend only on the exposures of a code and their
+/// shares of the time; computed once for all codes. Not thread-safe.
 class CameraBounds {
  public:
   struct Level {
@@ -22,11 +23,11 @@ class CameraBounds {
   explicit CameraBounds(const Camera& camera) : camera_(camera) {}
 
   /// Returns bounds in the order of camera.operating.points(); the receiver's is 0 for rows.
-  const std::vector<Level>& of(int exposures);
+  const std::vector<Level>& of(const CodeSet& code);
 
  private:
   const Camera& camera_;
-  std::map<int, std::vector<Level>> levels_;
+  std::map<std::pair<int, std::vector<double>>, std::vector<Level>> levels_;  // and shares
 };
 
 /// As evaluate(), with bounds shared between codes; returns the same values.
