@@ -21,7 +21,7 @@ from typing import Optional, Union
 
 # Tables whose class is not named after the last word of their key.
 CLASS_NAMES = {"raw": "RawMarkers", "operating.multipath": "OperatingMultipath",
-               "lens.pinhole": "Lens", "lens.blur": "LensBlur",
+               "lens.pinhole": "Lens", "lens.blur": "LensBlur", "light.square": "SquareLight",
                "temperature.sensor": "SensorTemperature"}
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",
          "path": "str", "numbers": "tuple[float, ...]", "integers": "tuple[int, ...]",

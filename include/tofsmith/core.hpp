@@ -13,6 +13,7 @@
 #include "tofsmith/camera/lens.hpp"
 #include "tofsmith/camera/operating_range.hpp"
 #include "tofsmith/camera/optics.hpp"
+#include "tofsmith/camera/square_light.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/build_info.hpp"

@@ -40,6 +40,7 @@ from ._camera_fields import (
     RawMarkers,
     Sensor,
     SensorTemperature,
+    SquareLight,
     Temperature,
 )
 from ._code import (
@@ -264,6 +265,7 @@ __all__ = [
     "Sensor",
     "SensorDrift",
     "SensorTemperature",
+    "SquareLight",
     "StagedCapture",
     "Sufficiency",
     "SweepResults",

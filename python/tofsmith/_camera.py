@@ -27,6 +27,7 @@ from ._camera_fields import (
     RawMarkers,
     Sensor,
     SensorTemperature,
+    SquareLight,
     Temperature,
 )
 from ._check import Path
@@ -200,7 +201,16 @@ class Camera:
 
     @cached_property
     def light(self) -> Light:
-        return Light(**_arm(self._fields["light"]))
+        light = self._fields["light"]
+        return Light(**_arm({key: light[key] for key in light if key in Light.__dataclass_fields__}))
+
+    @cached_property
+    def square_light(self) -> Optional[SquareLight]:
+        """Square waves that the chip can generate, if the camera lists them: the other keys of
+        `light`."""
+        light = self._fields["light"]
+        square = {key: light[key] for key in SquareLight.__dataclass_fields__ if key in light}
+        return SquareLight(**_tuples(square)) if square else None
 
     @cached_property
     def sensor(self) -> Sensor:

@@ -100,6 +100,25 @@ Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   return camera;
 }
 
+/// The same with square waves at these frequencies.
+Camera with_frequencies(Camera camera, std::vector<double> frequencies_hz, int phase_steps,
+                        int max_exposures) {
+  SquareLight& square = camera.light.square.emplace();
+  square.frequencies_hz = std::move(frequencies_hz);
+  square.phase_steps = phase_steps;
+  camera.sensor.max_exposures = max_exposures;
+  return camera;
+}
+
+/// The epc660 divides its clock of 96 MHz by 4 and by a further divider.
+Camera epc660() {
+  Camera camera = two_tap_camera(12e6, 4e-3);
+  SquareLight& square = camera.light.square.emplace();
+  square.clock_hz = 24e6;
+  square.dividers = {1, 2, 4, 8, 16, 32};
+  return camera;
+}
+
 struct Entry {
   BuiltInCamera listed;
   Camera camera;
@@ -109,6 +128,7 @@ struct Entry {
 std::vector<Entry> entries() {
   constexpr const char* kinect_pixel =
       "Sell and O'Connor, IEEE Micro 34(2), 2014, by libfreenect2's issue 150: differential";
+  constexpr const char* epc = "epc660 datasheet, as in mlx75027_config's registers";
   constexpr const char* melexis = "Melexis MLX75027 datasheet, as in mlx75027_config's registers";
   return {
       {{std::string(default_camera_name), "typical parts in a room: two buckets, 100 MHz",
@@ -138,24 +158,32 @@ std::vector<Entry> entries() {
         "multifrequency-2x3-10x3-15x3",
         {{"fundamental_frequency_hz",
           "gcd of 16, 80, 120 MHz: Järemo Lawin et al., ECCV 2016; phases: libfreenect2"},
+         {"light.frequencies_hz", "16, 80, 120 MHz: Järemo Lawin et al., ECCV 2016"},
+         {"light.phase_steps", "three phases each: libfreenect2"},
+         {"sensor.max_exposures", "nine raw frames: libfreenect2"},
          {"sensor.taps", kinect_pixel},
          {"sensor.readout", kinect_pixel}}},
-       two_tap_camera(8e6, 9e-3)},
+       with_frequencies(two_tap_camera(8e6, 9e-3), {16e6, 80e6, 120e6}, 3, 9)},
       {{"mlx75027",
         "Melexis MLX75027, VGA: 80 and 100 MHz, four phases each",
         "multifrequency-4x4-5x4",
         {{"fundamental_frequency_hz",
           std::string(melexis) + ": 4 to 100 MHz; that it is these two is assumed"},
          {"exposure_s", std::string(melexis) + ": 1 ms a phase by default"},
+         {"light.frequencies_hz",
+          std::string(melexis) + ": 4 to 100 MHz; listed are the multiples of 20 MHz"},
+         {"light.phase_steps", std::string(melexis) + ": P0_PHASE_SHIFT in eighths"},
+         {"sensor.max_exposures", std::string(melexis) + ": eight raw frames"},
          {"sensor.taps", std::string(melexis) + ": A and B"},
          {"sensor.readout", std::string(melexis) + ": A - B by default"}}},
-       two_tap_camera(20e6, 8e-3)},
+       with_frequencies(two_tap_camera(20e6, 8e-3), {20e6, 40e6, 60e6, 80e6, 100e6}, 8, 8)},
       {{"epc660",
         "ESPROS epc660, QVGA: 12 MHz, four phases",
         "sinusoid-k4",
-        {{"fundamental_frequency_hz",
-          "epc660 datasheet, as in mlx75027_config's registers: 96 MHz / 2 / 4 by default"}}},
-       two_tap_camera(12e6, 4e-3)},
+        {{"fundamental_frequency_hz", std::string(epc) + ": 96 MHz / 2 / 4 by default"},
+         {"light.clock_hz", std::string(epc) + ": 96 MHz / 4"},
+         {"light.dividers", std::string(epc) + ": mod_clk_div + 1; listed are the powers of two"}}},
+       epc660()},
       {{"adsd3100",
         "Analog Devices ADSD3100, 1 megapixel: three frequencies (assumed), three phases each",
         "multifrequency-15x3-18x3-20x3",

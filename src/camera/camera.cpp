@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "camera/distinct_values.hpp"
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/listed_exposures.hpp"
 #include "tofsmith/code/families.hpp"
@@ -74,6 +75,8 @@ void validate_sensor(const Sensor& sensor) {
     require(contrast == 1.0 || sensor.mixes_taps(), "sensor.modulation_contrast", contrast,
             "must be 1 for one tap: contrast mixes taps");
   validate_adc(sensor);
+  if (sensor.integration_times_s)
+    require_distinct("sensor.integration_times_s", *sensor.integration_times_s);
   require(sensor.drain || sensor.mixes_taps(), "sensor.drain", "false",
           "needs sensor.taps >= 2: one tap that is always open measures nothing");
   require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",
@@ -261,6 +264,7 @@ void Camera::validate() const {
   validate_sensor(sensor);
   raw.validate();
   if (light.generator) light.generator->validate("light.generator", fundamental_frequency_hz);
+  if (light.square) light.square->validate();
   if (sensor.generator) sensor.generator->validate("sensor.generator", fundamental_frequency_hz);
   if (lens && !lens->rays.empty()) {
     require(*lens == Lens{.rays = lens->rays}, "lens.rays", lens->rays,

@@ -14,6 +14,7 @@
 #include "tofsmith/camera/lens.hpp"
 #include "tofsmith/camera/operating_range.hpp"
 #include "tofsmith/camera/optics.hpp"
+#include "tofsmith/camera/square_light.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/field_visitor.hpp"
 #include "tofsmith/core/raw_markers.hpp"
@@ -51,6 +52,7 @@ struct LightSource {
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
   std::optional<Generator> generator;  ///< plays the modulation; none: any waveform, exactly
+  std::optional<SquareLight> square;   ///< square waves that designs of frequencies choose from
 
   friend bool operator==(const LightSource&, const LightSource&) = default;
 };
@@ -68,6 +70,7 @@ inline void describe(FieldVisitor& fields, LightSource& light) {
                    at_least(0)),
                light.edge_jitter_s);
   fields.table(Key("generator", "Waveform generator that plays the modulation"), light.generator);
+  fields.part(Key("square", "Square waves that designs of frequencies choose from"), light.square);
 }
 
 /// The demodulating pixel.
@@ -95,6 +98,8 @@ struct Sensor {
   Demodulation demodulation = Demodulation::gain;
   std::optional<double> readout_gap_s;   ///< none: 0
   std::optional<double> frame_period_s;  ///< none: the time that the exposures take
+  std::optional<int> max_exposures;      ///< of a design of frequencies; none: 8
+  std::optional<std::vector<double>> integration_times_s;  ///< of one exposure; none: any
 
   std::vector<double> contrasts_of(const CodeSet& code) const;  ///< of every exposure, if it fits
   bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
@@ -170,6 +175,14 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                    "another",
                    above(0)),
                sensor.frame_period_s);
+  fields.value(
+      Key("max_exposures", "Maximum number of exposures of a design of frequencies", closed(1, 16)),
+      sensor.max_exposures);
+  fields.value(Key("integration_times_s",
+                   "Integration times that one exposure can have, of which a design of "
+                   "frequencies makes up exposure_s; without it, any",
+                   above(0)),
+               sensor.integration_times_s);
 }
 
 /// Integration time: a total that is split evenly between the exposures, or one time per exposure.

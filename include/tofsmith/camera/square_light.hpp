@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/field_visitor.hpp"
+
+namespace tofsmith {
+
+/// Waveform that a light source can generate.
+enum class LightWaveform { square };
+inline constexpr std::array<std::string_view, 1> light_waveforms = {"square"};
+
+/// Square waves that a sensor chip can generate, for the light and for its gates, which are open
+/// for half of the period. Only `design --method frequencies` depends on it.
+struct SquareLight {
+  LightWaveform waveform = LightWaveform::square;
+  double duty = 0.5;
+  std::vector<double> duties;                       ///< that can be set; empty: the above
+  std::optional<std::array<double, 2>> duty_range;  ///< smallest and largest; replaces a list
+  std::optional<std::vector<double>> frequencies_hz;
+  std::optional<double> clock_hz;            ///< limits the frequencies
+  std::optional<std::vector<int>> dividers;  ///< of clock_hz, in place of frequencies_hz
+  int phase_steps = 4;                       ///< phases are multiples of 1 / phase_steps periods
+
+  /// Modulation frequencies, the lowest first: those listed, or clock_hz over each divider.
+  std::vector<double> modulation_frequencies_hz() const;
+
+  /// @throws std::invalid_argument naming the field as light.*, value and rule
+  void validate() const;
+
+  friend bool operator==(const SquareLight&, const SquareLight&) = default;
+};
+
+/// Keys of square waves in [light].
+inline void describe(FieldVisitor& fields, SquareLight& square) {
+  fields.choice(Key("waveform", "Waveform that the chip generates for light and gates"),
+                square.waveform, light_waveforms);
+  fields.value(Key("duty",
+                   "Share of the period in which the square wave of the light is on; a list "
+                   "contains all that can be set",
+                   open(0, 1))
+                   .usually(0.1, 0.5),
+               NumberOrList{square.duty, square.duties});
+  fields.value(Key("duty_range", "Smallest and largest duty, in place of a list", open(0, 1)),
+               square.duty_range);
+  fields.value(Key("frequencies_hz", "Modulation frequencies that can be set", at_least(1e3)),
+               square.frequencies_hz);
+  fields.value(Key("clock_hz", "Clock from which the frequencies are divided, or their upper limit",
+                   at_least(1e3)),
+               square.clock_hz);
+  fields.value(Key("dividers", "Dividers of the clock, in place of frequencies_hz", closed(1, 1e6)),
+               square.dividers);
+  fields.value(
+      Key("phase_steps", "Number of phases that one period of a frequency has", closed(3, 64)),
+      square.phase_steps);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace tofsmith {
+
+/// Resolution to which frequencies must have a common divisor [Hz].
+inline constexpr double common_frequency_resolution_hz = 10.0;
+
+/// Greatest common divisor of frequencies [Hz], by Euclid's algorithm on real numbers; none if it
+/// is below the resolution.
+std::optional<double> common_frequency_hz(std::span<const double> frequencies_hz);
+
+}  // namespace tofsmith

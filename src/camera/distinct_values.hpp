@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+/// @throws InvalidArgument for an empty list and for a value that is listed twice
+template <typename Number>
+void require_distinct(const std::string& field, const std::vector<Number>& values) {
+  require(!values.empty(), field, "[]", "must list at least one value");
+  for (const Number& value : values)
+    require(std::count(values.begin(), values.end(), value) == 1, field, value,
+            "must be listed once");
+}
+
+}  // namespace tofsmith
