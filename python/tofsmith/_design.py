@@ -58,7 +58,7 @@ class Candidate:
     ----------
     code : CodeSet
     method : str
-        family, naive, reference, atlas, factorize, optimize or search.
+        family, naive, reference, atlas, factorize, optimize, search or frequencies.
     ranking_error_m : float
         Ranking criterion [m]: depth error, including robustness and multipath.
     error : DepthErrorReport

@@ -128,6 +128,17 @@ void leave_out(DesignResult& result, const std::string& name, const std::string&
   result.left_out.push_back(name + ending);
 }
 
+double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options) {
+  if (why_no_depth(code, camera)) return infinity;
+  const int trials = trials_per_point(camera);
+  const std::uint64_t seed = search_seed(options);
+  if (camera.operating.error == DepthErrorKind::linear)
+    return first_error_m(code, camera, trials, seed);
+  return geometric_mean_error_m(
+      evaluate(code, camera, {.trials = trials, .seed = seed, .bounds = false}),
+      DepthErrorKind::circular);
+}
+
 Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,
                                std::uint64_t seed) {
   Contenders found;

@@ -10,6 +10,7 @@
 #include "design/baselines.hpp"
 #include "design/chips/searched_code.hpp"
 #include "design/factorize/factorized_code.hpp"
+#include "design/frequencies/frequency_design.hpp"
 #include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
 #include "design/optimize/optimized_code.hpp"
@@ -20,7 +21,7 @@
 namespace tofsmith {
 namespace {
 
-constexpr EnumWords<DesignMethod, 5> method_words("DesignMethod", "method",
+constexpr EnumWords<DesignMethod, 6> method_words("DesignMethod", "method",
                                                   words_of(DesignMethod{}));
 constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
                                                       "converged", "stalled", "iteration_limit");
@@ -165,12 +166,30 @@ void require_exposures(const Camera& camera, const DesignOptions& options) {
                         max_exposure_rows));
 }
 
+/// Square waves at frequencies of the camera's chip, ranked with the baselines that are named.
+DesignResult design_frequencies(const Camera& camera, const DesignOptions& options,
+                                const Progress& progress) {
+  DesignResult result;
+  DesignOptions named = options;
+  named.baselines = options.baselines.value_or(std::vector<std::string>());
+  add_baselines(camera, named, {}, result);
+  const ProgressParts parts(progress, {60, 20, 20});
+  add_frequency_candidates(camera, options, result, parts[0]);
+  judge_candidates(camera, options, result, parts[1]);
+  if (auto price = price_of_frequencies(camera, options, result, parts[2]))
+    result.explanation.push_back(std::move(*price));
+  report(progress, 1.0, "done");
+  return result;
+}
+
 }  // namespace
 
 DesignResult design(const Camera& camera, const DesignOptions& options, const Progress& progress,
                     const DesignStore& store) {
   require_judgeable(camera, options);
   require_exposures(camera, options);
+  if (options.method == DesignMethod::frequencies)
+    return design_frequencies(camera, options, progress);
   DesignResult result;
 
   // 1. Choose the targets of the factorization, and add the baselines.

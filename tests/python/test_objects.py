@@ -160,6 +160,21 @@ def test_the_atlas_provides_codes_without_a_search():
     assert {c.method for c in alone.candidates} == {"family"}
 
 
+def test_frequencies_of_a_chip_are_found():
+    camera = ts.Camera("mlx75027", operating={"working_distance_m": [0.3, 6.0]})
+    assert camera.square_light.frequencies_hz == (20e6, 40e6, 60e6, 80e6, 100e6)
+    assert ts.Camera("paper-10f0").square_light is None
+    found = ts.design(camera, method="frequencies", trials=1000)
+    code = found.winner.code
+    assert found.winner.method == "frequencies" and code.name.startswith("square-")
+    assert not code.exposure_shares or sum(code.exposure_shares) == pytest.approx(1.0)
+    first, *others = [1.0 / code.exposures] * code.exposures
+    split = code.with_exposure_shares([first - 0.05, others[0] + 0.05, *others[1:]])
+    assert ts.CodeSet.from_json(split.to_json()) == split
+    with pytest.raises(ValueError, match="must be listed once"):
+        camera.replace(light={"frequencies_hz": [20e6, 20e6]})
+
+
 def test_a_scalar_is_accepted_as_a_list():
     found = ts.design("paper-10f0", exposures=3, effort=0.01, trials=1000, method="factorize")
     designed = [c for c in found.candidates if c.method == "factorize"]

@@ -64,7 +64,7 @@ auto fields_of(ConstOrNot<SearchRecord> auto& s) {
 /// (design/design.hpp) sets rotation, errors and robustness.
 struct Candidate {
   CodeSet code;
-  /// "family", "naive", "reference", "atlas", "factorize", "optimize" or "search".
+  /// "family", "naive", "reference", "atlas", "factorize", "optimize", "search" or "frequencies".
   std::string method;
   DepthErrorReport error;  ///< by evaluate() with the seed and trials of DesignOptions
   int rotation_bin = 0;    ///< of the origin of depth

@@ -29,14 +29,15 @@ std::string_view name_of(Termination termination);
 
 /// How codes are found.
 enum class DesignMethod {
-  factorize,  ///< waveforms whose correlation functions come close to given ones, as in the paper
-  optimize,   ///< all waveforms together, by depth error itself
-  search,     ///< all codes on the grid of a chip clock, with proof where that is possible
-  best,       ///< all of these that suit the camera
-  atlas,      ///< none: codes of the atlas and standard codes are judged, nothing is searched
+  factorize,    ///< waveforms whose correlation functions come close to given ones, as in the paper
+  optimize,     ///< all waveforms together, by depth error itself
+  search,       ///< all codes on the grid of a chip clock, with proof where that is possible
+  best,         ///< all of these that suit the camera
+  atlas,        ///< none: codes of the atlas and standard codes are judged, nothing is searched
+  frequencies,  ///< square waves at frequencies that the chip can generate
 };
-constexpr std::array<std::string_view, 5> words_of(DesignMethod /*any*/) {
-  return {"factorize", "optimize", "search", "best", "atlas"};
+constexpr std::array<std::string_view, 6> words_of(DesignMethod /*any*/) {
+  return {"factorize", "optimize", "search", "best", "atlas", "frequencies"};
 }
 /// Returns the name of the enumerator.
 std::string_view name_of(DesignMethod method);
@@ -78,7 +79,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
             Help{"factorize: factorize correlation functions; optimize: minimize depth error "
                  "itself; search: all codes on a chip clock, with proof; best: all that suit the "
                  "camera, with every baseline as a competitor; atlas: nothing is searched, codes "
-                 "of the atlas and standard codes are judged"}),
+                 "of the atlas and standard codes are judged; frequencies: square waves at "
+                 "frequencies that the chip of the camera can generate"}),
       Field("exposures", o.exposures, closed(1, 16),
             Help{"numbers of exposures to try (3,4,5), or of rows"},
             IfAbsent{"what suits the camera"}),

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/code/code_set.hpp"
+
+namespace tofsmith {
+
+/// Exposures at one modulation frequency.
+struct SquareTone {
+  int frequency = 1;   ///< multiple of the fundamental
+  int phases = 2;      ///< number of exposures
+  double share = 1.0;  ///< of the total integration time
+};
+
+/// A code of square waves: gates that are open for half of the period, light of one duty.
+struct SquareCode {
+  double duty = 0.5;
+  std::vector<SquareTone> tones;  ///< the highest frequency first
+
+  int exposures() const;
+  /// Number of times that the code repeats in the period of the fundamental frequency.
+  int repetitions() const;
+  /// "square-15x2-10x2": frequencies and their number of phases.
+  std::string name() const;
+};
+
+/// Phases of an exposure series in steps of 1 / phase_steps periods: a quadrature pair for two,
+/// else equally spaced as closely as the steps allow.
+std::vector<int> phases_in_steps(int phases, int phase_steps);
+
+/// Level of the light over average power while it is on.
+double square_level(double duty, double peak_factor);
+
+/// The code for the taps, peak and samples of a camera with light.square.
+CodeSet to_code_set(const SquareCode& code, const Camera& camera);
+
+}  // namespace tofsmith
