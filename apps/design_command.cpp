@@ -188,6 +188,7 @@ void add_design_command(CLI::App& app, Session& session) {
   add_effort(*command, arguments->effort);
   options.add("atlas_cameras", "--atlas-cameras");
   options.add("robust", "--robust");
+  options.add("split_exposures", "--split-exposures");
   arguments->multipath.add_to(*command, arguments->options.optimize);
   options.add("seed", "--seed");
   options.add("trials", "--trials");

@@ -9,6 +9,7 @@
 #include "core/shared/enum_words.hpp"
 #include "design/baselines.hpp"
 #include "design/chips/searched_code.hpp"
+#include "design/exposure_split.hpp"
 #include "design/factorize/factorized_code.hpp"
 #include "design/frequencies/frequency_design.hpp"
 #include "design/judge.hpp"
@@ -205,7 +206,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas.codes, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
-  const ProgressParts parts(progress, {80, 20});
+  const ProgressParts parts(progress, {80, options.split_exposures ? 10.0 : 0.0, 20});
   const ProgressParts of_tasks(parts[0], efforts);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     std::vector<Candidate> made = run_or_load(tasks[i], store, of_tasks[i]);
@@ -213,8 +214,10 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
     std::move(made.begin(), made.end(), std::back_inserter(result.candidates));
   }
 
+  if (options.split_exposures) add_split_exposures(camera, options, result, parts[1]);
+
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
-  judge_candidates(camera, options, result, parts[1]);
+  judge_candidates(camera, options, result, parts[2]);
   if (camera.sensor.readout == Readout::rows)
     if (auto note = dim_light_note(camera, result, options))
       result.explanation.push_back(std::move(*note));

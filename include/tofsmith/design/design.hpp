@@ -65,6 +65,8 @@ struct DesignOptions {
   /// camera; not used by factorize and search.
   int atlas_cameras = 4;
   bool best_rotation = true;
+  /// Codes of optimization and factorization compete with exposures of different length, too.
+  bool split_exposures = false;
   int search_trials = 600;
   int trials = 20000;
   double outlier_threshold_m = default_outlier_threshold_m;
@@ -99,6 +101,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
                  "where searches start; 0: none"}),
       Field("best_rotation", o.best_rotation,
             Help{"give every candidate its best origin of depth"}),
+      Field("split_exposures", o.split_exposures,
+            Help{"also try exposures of different length for optimized and factorized codes"}),
       Field("search_trials", o.search_trials, at_least(100),
             Help{"trials per operating point while pairs are chosen"}),
       Field("trials", o.trials, closed(1000, 1e8),
