@@ -25,7 +25,7 @@ import numpy.typing as npt
 @dataclass(eq=False, repr=False)
 class DecodedPlanes:
     """The planes of a decoded frame, (H, W) or (F, H, W) each; None if not requested. Pixels
-    without depth (invalid, no_return) hold NaN in every plane of floats.
+    without depth (invalid, no_return, too_near, too_far) hold NaN in every plane of floats.
 
     Attributes
     ----------

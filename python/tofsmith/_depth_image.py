@@ -19,7 +19,8 @@ from ._notebook import depth_picture
 
 class PixelStatus(IntEnum):
     """Outcome of a pixel; if several apply, the first of invalid, saturated, no_return, low_signal,
-    inconsistent, ambiguous. mixed occurs only if mixed pixels are searched for."""
+    inconsistent, too_near, too_far, ambiguous. mixed occurs only if mixed pixels are searched for,
+    too_near and too_far only with depth limits."""
 
     ok = 0
     invalid = 1
@@ -29,6 +30,8 @@ class PixelStatus(IntEnum):
     ambiguous = 5
     mixed = 6
     inconsistent = 7
+    too_near = 8
+    too_far = 9
 
 
 class ReturnStatus(IntEnum):

@@ -26,6 +26,10 @@ class DecoderOf final : public DepthDecoder {
               const Progress& progress) const override {
     decoder_.decode(raw, decoded, progress);
   }
+  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress) const override {
+    decoder_.decode_within(raw, parts, decoded, progress);
+  }
   void decode_depth_bins(const float* measurements, std::int64_t pixels,
                          double* depth_bin) const override {
     decoder_.decode_depth_bins(measurements, pixels, depth_bin);

@@ -13,6 +13,7 @@
 #include "decode/output/pixel_output.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/chord_matcher.hpp"
+#include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
@@ -70,6 +71,8 @@ struct Decoder::Plan {
 
   void write(PixelTile& tile, const float* averaged, const NoiseRatios& noise,
              const DecodedView& planes) const;
+  void decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
+                     const RangePart& part, std::size_t at, const DecodedView& planes) const;
   /// Writes the bins of the tile's rows.
   void write_bins(const PixelTile& tile, std::int32_t* bin) const {
     if (bin_of_row.empty()) {
@@ -149,6 +152,17 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
   });
 }
 
+void Decoder::decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                            const Progress& progress) const {
+  decode_frame(MarkedRaw(raw, table().marking).view(), decoded, measurements(), progress,
+               [&](const RawBlock& block, const DecodedView& planes) {
+                 for (std::int64_t i = 0; i < block.pixels; ++i)
+                   plan_->decode_within(block.values + i * measurements(), block.variance_share(i),
+                                        block.noise_of(i), parts[block.first + i],
+                                        static_cast<std::size_t>(i), planes);
+               });
+}
+
 DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
   return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
     decode(view, decoded, progress);
@@ -179,6 +193,37 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRat
                  .noise = noise},
                 planes);
   if (planes.bin && !bin_of_row.empty()) write_bins(tile, planes.bin);
+}
+
+/// One pixel in double arithmetic.
+void Decoder::Plan::decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
+                                  const RangePart& part, std::size_t at,
+                                  const DecodedView& planes) const {
+  std::array<double, max_measurements> electrons, plane, variance_e2;
+  for (int k = 0; k < model.measurements(); ++k) {
+    if (!std::isfinite(raw[k])) return store_invalid(at, planes);
+    electrons[static_cast<std::size_t>(k)] =
+        matcher.bins().exact().electrons(static_cast<double>(raw[k]), k);
+  }
+  model.project(electrons.data(), plane.data());
+  PixelDecoding pixel;
+  if (const std::optional<Position> best = model.best_within(plane.data(), part)) {
+    pixel.depth_row = best->in_rows(table.samples());
+    pixel.estimate =
+        model.estimate(electrons.data(), plane.data(), *best, variance_e2.data(), variance_share);
+  }
+  if (pixel.estimate.signal_e_per_s > 0.0) {
+    for (int k = 0; k < model.measurements(); ++k)
+      variance_e2[static_cast<std::size_t>(k)] *= noise.of_lobes;
+    const std::optional<double> confidence = outputs.posterior().confidence(
+        plane.data(), variance_e2.data(), nearest_bin(pixel.depth_row, table.samples()), &part);
+    if (!confidence) return store_pixel(table, options, raw, {}, at, planes);
+    pixel.confidence = *confidence;
+    pixel.residual = outputs.residuals().residual(electrons.data(), pixel.estimate,
+                                                  Position::at(pixel.depth_row),
+                                                  variance_share * noise.of_residual);
+  }
+  store_pixel(table, options, raw, pixel, at, planes);
 }
 
 }  // namespace tofsmith

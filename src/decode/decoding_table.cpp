@@ -168,6 +168,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.exposures = model.exposures();
   table.playback_offset_m = model.playback_offset_m();
   table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
+  table.working_distance_m = camera.operating.working_distance_m;
 
   if (model.has_rows()) whiten_rows(model, camera, table);
   const Sensor& sensor = camera.sensor;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr EnumWords<PixelStatus, all_pixel_statuses.size()> pixel_status_words(
     "PixelStatus", "status", "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous",
-    "mixed", "inconsistent");
+    "mixed", "inconsistent", "too_near", "too_far");
 
 constexpr EnumWords<DecodedPlane, plane_descriptions.size()> plane_words("DecodedPlane", "plane",
                                                                          words_of(DecodedPlane{}));

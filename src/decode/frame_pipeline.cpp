@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "core/shared/working_threads.hpp"
 #include "decode/shared/frame_accumulator.hpp"
@@ -15,7 +16,7 @@ namespace {
 class CpuPipeline final : public FramePipeline {
  public:
   CpuPipeline(const DepthDecoder& decoder, const FrameSteps& frame_steps, int height, int width)
-      : FramePipeline(decoder.table(), frame_steps, height, width),
+      : FramePipeline(decoder, frame_steps, height, width),
         decoder_(decoder),
         accumulator_(decoder.table(), frame_steps) {}
 
@@ -89,18 +90,45 @@ void keep_averaged(const RawView& raw, float* averaged) {
     std::fill_n(averaged, raw.pixels(), 1.0f);
 }
 
+/// Returns the planes that limits need although nobody wants them, and adds them to `decoded`.
+DepthImage planes_for_limits(std::size_t pixels, DecodedView& decoded) {
+  std::vector<DecodedPlane> planes;
+  for (const DecodedPlane plane :
+       {DecodedPlane::depth, DecodedPlane::confidence, DecodedPlane::status})
+    with_plane(
+        plane,
+        [&](const auto* memory) {
+          if (!memory) planes.push_back(plane);
+        },
+        decoded);
+  DepthImage image(planes, 1, static_cast<int>(pixels));
+  for_each_plane(
+      [](auto*& plane, auto& added) {
+        if (!added.empty()) plane = added.pixels.data();
+      },
+      decoded, image);
+  return image;
+}
+
 /// Filters and decodes once, and corrects the planes.
 void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, std::size_t first,
                  std::size_t pixels, const DecodedView& wanted, const UnfilteredPixels& unfiltered,
                  const Progress& progress) {
   DecodedView decoded = wanted;
   decoded.averaged = nullptr;  // written below
-  pipeline.decode(decoded, progress, unfiltered.mixed);
+  const auto& limits = corrections.limits;
+  const DepthImage unwanted = limits ? planes_for_limits(pixels, decoded) : DepthImage();
+  const ProgressParts parts(progress, {1.0, limits ? 1.0 : 0.0});
+  pipeline.decode(decoded, parts[0], unfiltered.mixed);
+  if (limits)
+    restrict_depths(*limits, pipeline.decoder(), pipeline.numbers(), corrections.maps,
+                    pipeline.width(), first, decoded, parts[1]);
   const DecodingTable& table = pipeline.table();
   if (table.correction)
     apply(*table.correction, table.range_m, decoded, pipeline.height(), pipeline.width(), first,
           pixels);
   apply(corrections.maps, table.range_m, decoded, first, pixels);
+  if (limits) remove_outside(*limits, decoded, pixels);
   if (corrections.mixed)
     mark_mixed_pixels(table, pipeline.numbers(), *corrections.mixed, decoded, corrections.maps, {},
                       unfiltered);

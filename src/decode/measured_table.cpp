@@ -188,6 +188,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   }
   table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
   table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
+  table.working_distance_m = camera.operating.working_distance_m;
   if (camera.temperature) {
     warm(*camera.temperature, table.row_m(), table.correlation);
     if (table.shot_correlation.size() > 0)

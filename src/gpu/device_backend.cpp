@@ -19,9 +19,9 @@ namespace {
 class DevicePipeline final : public FramePipeline {
  public:
   DevicePipeline(const DeviceDecoder& decoder, const DeviceOptions& options,
-                 const DecodingTable& decoding_table, const FrameSteps& frame_steps, int height,
+                 const DepthDecoder& depth_decoder, const FrameSteps& frame_steps, int height,
                  int width)
-      : FramePipeline(decoding_table, frame_steps, height, width), decoder_(decoder) {
+      : FramePipeline(depth_decoder, frame_steps, height, width), decoder_(decoder) {
     if (steps().filter) filter_.emplace(decoder.device(), *steps().filter, options);
     if (!accumulates_on_device()) {
       on_cpu_.emplace(table(), steps());
@@ -118,8 +118,7 @@ class DeviceBackend final : public FrameBackend {
   std::string device() const override { return on_device_.device().info().name; }
   std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
                                          int width) const override {
-    return std::make_unique<DevicePipeline>(on_device_, options_, decoder().table(), steps, height,
-                                            width);
+    return std::make_unique<DevicePipeline>(on_device_, options_, decoder(), steps, height, width);
   }
 
  private:
@@ -147,8 +146,7 @@ class AutomaticBackend final : public FrameBackend {
     const bool is_slow_on_cpu =
         steps.filter && std::int64_t{height} * width >= auto_min_pixels_to_filter;
     if (!is_slow_on_cpu || !has_device()) return cpu_->prepare(steps, height, width);
-    return std::make_unique<DevicePipeline>(*on_device_, options_, decoder().table(), steps, height,
-                                            width);
+    return std::make_unique<DevicePipeline>(*on_device_, options_, decoder(), steps, height, width);
   }
 
  private:

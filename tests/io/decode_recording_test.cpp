@@ -73,7 +73,7 @@ TEST_F(DecodeRecording, FiltersLikeTheFilter) {
 class FailingPipeline final : public FramePipeline {
  public:
   explicit FailingPipeline(std::unique_ptr<FramePipeline> works)
-      : FramePipeline(works->table(), works->steps(), works->height(), works->width()),
+      : FramePipeline(works->decoder(), works->steps(), works->height(), works->width()),
         works_(std::move(works)) {}
 
   FrameMemory memory(int recorded) const override { return works_->memory(recorded); }

@@ -57,6 +57,9 @@ class DepthDecoder {
   /// As Decoder::decode(), decode_depth_bins() and decode_bins().
   virtual void decode(const RawView& raw, const DecodedView& decoded,
                       const Progress& progress = {}) const = 0;
+  /// As Decoder::decode_within().
+  virtual void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                             const Progress& progress = {}) const = 0;
   virtual void decode_depth_bins(const float* measurements, std::int64_t pixels,
                                  double* depth_bin) const = 0;
   virtual void decode_bins(const float* measurements, std::int64_t pixels,

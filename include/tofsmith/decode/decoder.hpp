@@ -10,6 +10,7 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/decode/range_part.hpp"
 
 namespace tofsmith {
 
@@ -97,6 +98,14 @@ class Decoder {
   /// @note the same bits for any number of threads and any layout of the raw numbers, and on every
   ///       processor
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
+  /// As decode(), with only those depths as candidates that lie within the part of the range of
+  /// each pixel. Candidates are maxima of the correlation (minima of other methods' costs), so that
+  /// a depth is never the end of a part. Confidence assumes that depths outside are 100 times less
+  /// frequent. Pixels without candidate have no return, and neither have pixels whose depth lies
+  /// outside with a probability of at least 0.9.
+  /// @param parts  one per pixel, row by row
+  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 

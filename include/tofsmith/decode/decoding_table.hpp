@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -144,6 +145,8 @@ struct DecodingTable : MeasurementTable {
   std::optional<float> lower_saturation_level = {};
   RawMarking marking = {};  ///< rules for saturated and invalid numbers as they are stored
   double range_m = 0.0;     ///< depth of a whole period [m], > 0
+  /// Nearest and farthest depth that the camera works at; see depth_limits(). None: the range.
+  std::optional<std::array<double, 2>> working_distance_m = {};
   /// N of the bins in which depths are reported; the table has as many rows as its correlation
   /// functions need. 0: one bin per row.
   int bins = 0;

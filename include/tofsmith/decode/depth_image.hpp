@@ -20,7 +20,8 @@ struct DecodingTable;
 struct DepthCorrection;
 
 /// Outcome of a pixel. If several apply, the first of invalid, saturated, no_return, low_signal,
-/// inconsistent, ambiguous is reported. Only mark_mixed_pixels() sets mixed.
+/// inconsistent, too_near, too_far, ambiguous is reported. Only mark_mixed_pixels() sets mixed, and
+/// only DepthLimits set too_near and too_far.
 enum class PixelStatus : std::uint8_t {
   ok = 0,
   invalid = 1,     ///< a measurement is NaN or infinite: no depth
@@ -30,14 +31,18 @@ enum class PixelStatus : std::uint8_t {
   ambiguous = 5,   ///< another depth, far from this one, explains the pixel almost as well
   mixed = 6,  ///< sees two surfaces at an edge: the depth is that of neither, or of a neighbour
   inconsistent = 7,  ///< no depth explains the measurements within their noise
+  too_near = 8,      ///< the depth is below the depth limits: no depth
+  too_far = 9,       ///< the depth is above the depth limits: no depth
 };
 
 inline constexpr std::array all_pixel_statuses = {
-    PixelStatus::ok,        PixelStatus::invalid,     PixelStatus::no_return,
-    PixelStatus::saturated, PixelStatus::low_signal,  PixelStatus::ambiguous,
-    PixelStatus::mixed,     PixelStatus::inconsistent};
+    PixelStatus::ok,        PixelStatus::invalid,      PixelStatus::no_return,
+    PixelStatus::saturated, PixelStatus::low_signal,   PixelStatus::ambiguous,
+    PixelStatus::mixed,     PixelStatus::inconsistent, PixelStatus::too_near,
+    PixelStatus::too_far};
 
-/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous", "mixed", "inconsistent".
+/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous", "mixed", "inconsistent",
+/// "too_near", "too_far".
 std::string_view name_of(PixelStatus status);
 
 /// How many returns a pixel shows. It stands beside PixelStatus, which says whether the depth of a
@@ -140,8 +145,8 @@ inline constexpr PixelStatus no_value<PixelStatus> = PixelStatus::invalid;
 template <>
 inline constexpr ReturnStatus no_value<ReturnStatus> = ReturnStatus::none;
 
-/// The planes of a decoded frame, (H, W) each or empty. Pixels without depth (invalid, no_return)
-/// hold NaN in every plane of floats.
+/// The planes of a decoded frame, (H, W) each or empty. Pixels without depth (invalid, no_return,
+/// too_near, too_far) hold NaN in every plane of floats.
 struct DepthImage {
 #define TOFSMITH_PLANE(type, member, word, unit, use, help) Image<type> member;
   TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)

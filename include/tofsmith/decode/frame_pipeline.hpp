@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/depth_limits.hpp"
 #include "tofsmith/decode/filter.hpp"
 #include "tofsmith/decode/time_filter.hpp"
 
@@ -34,13 +35,14 @@ struct FrameMemory {
 /// Not for several threads at once.
 class FramePipeline {
  public:
-  FramePipeline(const DecodingTable& table, const FrameSteps& steps, int height, int width)
-      : table_(table), steps_(steps), height_(height), width_(width) {}
+  FramePipeline(const DepthDecoder& decoder, const FrameSteps& steps, int height, int width)
+      : decoder_(decoder), steps_(steps), height_(height), width_(width) {}
   FramePipeline(const FramePipeline&) = delete;
   FramePipeline& operator=(const FramePipeline&) = delete;
   virtual ~FramePipeline() = default;
 
-  const DecodingTable& table() const { return table_; }
+  const DepthDecoder& decoder() const { return decoder_; }
+  const DecodingTable& table() const { return decoder_.table(); }
   const FrameSteps& steps() const { return steps_; }
   int height() const { return height_; }
   int width() const { return width_; }
@@ -70,7 +72,7 @@ class FramePipeline {
   virtual RawView numbers(const Progress& progress = {}) = 0;
 
  private:
-  const DecodingTable& table_;
+  const DepthDecoder& decoder_;
   FrameSteps steps_;
   int height_, width_;
 };
@@ -100,6 +102,9 @@ std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> de
 struct PlaneCorrections {
   PixelMaps maps;                    ///< of whole frames, beside the table's depth correction
   std::optional<MixedPixels> mixed;  ///< marks mixed pixels, in whole frames; none: not looked for
+  /// Restricts depths (restrict_depths()), which with a spatial filter requires
+  /// FrameSteps::keeps_filtered; none: any depth in the range.
+  std::optional<DepthLimits> limits = {};
 };
 
 /// Decodes the frame that is ready, or rows of it, and corrects its planes; fills the plane

@@ -79,6 +79,9 @@ class UnwrapDecoder {
   ///   confidence: posterior probability of the main lobe around the depth of the chosen wraps,
   ///     from all measurements.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
+  /// As decode(), with only those depths as candidates that lie within `parts`.
+  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 

@@ -42,8 +42,11 @@ struct LikelihoodDecoder::Plan {
     return std::vector<double>(static_cast<std::size_t>(table.samples()));
   }
   double decode_depth_bin(const float* raw, std::vector<double>& fall) const;
+  void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+              const Progress& progress) const;
   void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
-                    std::size_t at, const DecodedView& decoded, std::vector<double>& fall) const;
+                    const RangePart* part, std::size_t at, const DecodedView& decoded,
+                    std::vector<double>& fall) const;
 };
 
 LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& options) {
@@ -74,16 +77,12 @@ void LikelihoodDecoder::decode_bins(const float* measurements, std::int64_t pixe
 
 void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
                                const Progress& progress) const {
-  constexpr std::int64_t block_pixels = usual_block_pixels / 16;
-  decode_frame(
-      MarkedRaw(raw, table().marking).view(), decoded, measurements(), progress,
-      [&](const RawBlock& block, const DecodedView& planes) {
-        std::vector<double> fall = plan_->work_space();
-        for (std::int64_t i = 0; i < block.pixels; ++i)
-          plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),
-                              block.noise_of(i), static_cast<std::size_t>(i), planes, fall);
-      },
-      block_pixels);
+  plan_->decode(raw, nullptr, decoded, progress);
+}
+
+void LikelihoodDecoder::decode_within(const RawView& raw, const RangePart* parts,
+                                      const DecodedView& decoded, const Progress& progress) const {
+  plan_->decode(raw, parts, decoded, progress);
 }
 
 DepthImage LikelihoodDecoder::decode(const RawFrames& raw, int frame,
@@ -91,6 +90,22 @@ DepthImage LikelihoodDecoder::decode(const RawFrames& raw, int frame,
   return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
     decode(view, decoded, progress);
   });
+}
+
+void LikelihoodDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
+                                     const DecodedView& decoded, const Progress& progress) const {
+  constexpr std::int64_t block_pixels = usual_block_pixels / 16;
+  const int count = table.measurements();
+  decode_frame(
+      MarkedRaw(raw, table.marking).view(), decoded, count, progress,
+      [&](const RawBlock& block, const DecodedView& planes) {
+        std::vector<double> fall = work_space();
+        for (std::int64_t i = 0; i < block.pixels; ++i)
+          decode_pixel(block.values + i * count, block.variance_share(i), block.noise_of(i),
+                       parts ? parts + block.first + i : nullptr, static_cast<std::size_t>(i),
+                       planes, fall);
+      },
+      block_pixels);
 }
 
 /// Whitened electrons, of rows. False where a measurement is NaN or infinite.
@@ -120,18 +135,20 @@ double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
 }
 
 void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_share,
-                                           const NoiseRatios& noise, std::size_t at,
-                                           const DecodedView& decoded,
+                                           const NoiseRatios& noise, const RangePart* part,
+                                           std::size_t at, const DecodedView& decoded,
                                            std::vector<double>& fall) const {
   PerMeasurement electrons;
   if (!read(raw, electrons)) return store_invalid(at, decoded);
   const LikelihoodPixel pixel = search.model().pixel(electrons.data(), variance_share);
-  const MostLikely found = search.most_likely(pixel, fall);
+  const MostLikely found = search.most_likely(pixel, fall, part);
   PixelDecoding decoding{search.depth_row(found), search.model().estimate(pixel, found.best)};
   if (decoding.estimate.signal_e_per_s > 0.0) {
     LikelihoodPixel of_lobes = pixel;
     of_lobes.variance_share *= noise.of_lobes;
-    decoding.confidence = search.confidence(of_lobes, found);
+    const std::optional<double> confidence = search.confidence(of_lobes, found, part);
+    if (!confidence) return store_pixel(table, options, raw, {}, at, decoded);
+    decoding.confidence = *confidence;
     if (decoded.residual || decoded.status)
       decoding.residual =
           residuals.residual(electrons.data(), decoding.estimate, Position::at(decoding.depth_row),

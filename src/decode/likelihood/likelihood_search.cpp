@@ -180,8 +180,13 @@ double LikelihoodSearch::squares_beside(const LikelihoodPixel& pixel, std::int32
                               model_.least_squares(pixel, bin, weight).value);
 }
 
+bool LikelihoodSearch::contains(const RangePart* within, double row) const {
+  return !within || within->contains(row / scores_.samples());
+}
+
 LikelihoodSearch::Peaks LikelihoodSearch::peaks(const LikelihoodPixel& pixel, const double* weight,
-                                                const std::vector<double>& fall) const {
+                                                const std::vector<double>& fall,
+                                                const RangePart* within) const {
   Peaks found;
   const std::size_t last = fall.size() - 1;
   for (std::size_t n = 0; n <= last; ++n) {
@@ -189,23 +194,27 @@ LikelihoodSearch::Peaks LikelihoodSearch::peaks(const LikelihoodPixel& pixel, co
     const bool rises = n > 0 ? fall[n] > before : fall[n] >= before;
     if (!rises || fall[n] < after) continue;
     const auto bin = static_cast<std::int32_t>(n);
+    // The most likely depth of a peak is up to one row away from it.
+    if (!contains(within, bin) && !contains(within, bin - 1) && !contains(within, bin + 1))
+      continue;
     found.add({bin, squares_beside(pixel, bin, weight)});
   }
   return found;
 }
 
-MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
-                                         std::vector<double>& fall) const {
+MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall,
+                                         const RangePart* within) const {
   MostLikely result;
   if (!estimate_weights(pixel, result)) return result;
   scores_.weighted_fall(pixel.electrons, result.weight.data(), fall.data());
 
-  const Peaks found = peaks(pixel, result.weight.data(), fall);
+  const Peaks found = peaks(pixel, result.weight.data(), fall, within);
   const double max_squares = squares_ratio * std::max(found.begin()->squares, 0.0) + squares_lead;
   bool is_first = true;
   for (const Peak& peak : found) {
     if (peak.squares > max_squares) break;
     const ChordFit fit = model_.fit_around(pixel, peak.bin, result.weight.data());
+    if (!contains(within, depth_row(fit))) continue;
     const double tie = cost_tie * std::max(1.0, std::abs(result.best.cost));
     const bool is_lower = fit.cost < result.best.cost - tie;
     const bool ties = fit.cost <= result.best.cost + tie;
@@ -213,18 +222,21 @@ MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
       result.best = fit;
     is_first = false;
   }
+  if (is_first) return result;
   result.best = model_.fit_near(pixel, result.best, result.weight.data());
   if (is_smooth_) result.moved = moved_to_curve(pixel, result.best, result.weight.data(), fall);
   return result;
 }
 
-double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLikely& found) const {
+std::optional<double> LikelihoodSearch::confidence(const LikelihoodPixel& pixel,
+                                                   const MostLikely& found,
+                                                   const RangePart* within) const {
   std::array<double, max_measurements> plane, variance_e2;
   correlation_.project(pixel.electrons, plane.data());
   for (int k = 0; k < correlation_.measurements(); ++k)
     variance_e2[static_cast<std::size_t>(k)] = 1.0 / found.weight[static_cast<std::size_t>(k)];
   return posterior_.confidence(plane.data(), variance_e2.data(),
-                               nearest_bin(depth_row(found), scores_.samples()));
+                               nearest_bin(depth_row(found), scores_.samples()), within);
 }
 
 }  // namespace tofsmith

@@ -56,10 +56,14 @@ class LikelihoodSearch {
   double depth_row(const MostLikely& found) const;
 
   /// No signal where ambient light alone explains the pixel.
-  /// @param fall  work space (N); then what every bin explains, DepthScores::weighted_fall
-  MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall) const;
-  /// Posterior probability of the main lobe around the most likely depth.
-  double confidence(const LikelihoodPixel& pixel, const MostLikely& found) const;
+  /// @param fall    work space (N); then what every bin explains, DepthScores::weighted_fall
+  /// @param within  where the depth must lie; null: anywhere. No signal if no peak lies there.
+  MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall,
+                         const RangePart* within = nullptr) const;
+  /// Posterior probability of the main lobe around the most likely depth, by
+  /// LobePosterior::confidence().
+  std::optional<double> confidence(const LikelihoodPixel& pixel, const MostLikely& found,
+                                   const RangePart* within = nullptr) const;
 
  private:
   struct Peak;
@@ -68,8 +72,9 @@ class LikelihoodSearch {
   double squares_beside(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
   double moved_to_curve(const LikelihoodPixel& pixel, const ChordFit& best, const double* weight,
                         const std::vector<double>& fall) const;
-  Peaks peaks(const LikelihoodPixel& pixel, const double* weight,
-              const std::vector<double>& fall) const;
+  bool contains(const RangePart* within, double row) const;
+  Peaks peaks(const LikelihoodPixel& pixel, const double* weight, const std::vector<double>& fall,
+              const RangePart* within) const;
 
   DepthScores scores_;
   PixelModel correlation_;

@@ -69,7 +69,12 @@ const MultipathOptions& MultipathDecoder::options() const { return plan_->engine
 
 void MultipathDecoder::decode(const RawView& raw, const DecodedView& decoded,
                               const Progress& progress) const {
-  plan_->engine.decode(raw, decoded, progress);
+  plan_->engine.decode(raw, nullptr, decoded, progress);
+}
+
+void MultipathDecoder::decode_within(const RawView& raw, const RangePart* parts,
+                                     const DecodedView& decoded, const Progress& progress) const {
+  plan_->engine.decode(raw, parts, decoded, progress);
 }
 
 DepthImage MultipathDecoder::decode(const RawFrames& raw, int frame,

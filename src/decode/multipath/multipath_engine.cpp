@@ -182,11 +182,12 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
   if (options.prior) posterior_.emplace(curve_, *options.prior, known.range_m, delays_);
 }
 
-void MultipathEngine::decode(const RawView& raw, const DecodedView& decoded,
+void MultipathEngine::decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                              const Progress& progress) const {
-  decode_frame(
-      MarkedRaw(raw, table().marking).view(), decoded, table().measurements(), progress,
-      [&](const RawBlock& block, const DecodedView& planes) { decode_block(block, planes); });
+  decode_frame(MarkedRaw(raw, table().marking).view(), decoded, table().measurements(), progress,
+               [&](const RawBlock& block, const DecodedView& planes) {
+                 decode_block(block, parts ? parts + block.first : nullptr, planes);
+               });
 }
 
 void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t pixels,
@@ -196,7 +197,7 @@ void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t 
   for (std::int64_t first = 0; first < pixels; first += most) {
     const std::int64_t count = std::min(most, pixels - first);
     const float* raw = measurements + first * table().measurements();
-    decode_block({raw, count}, {.depth_m = depth_m.data()});
+    decode_block({raw, count}, nullptr, {.depth_m = depth_m.data()});
     std::transform(depth_m.begin(), depth_m.begin() + count, depth_bin + first,
                    [&](float depth) { return depth / table().bin_m(); });
   }
@@ -231,7 +232,20 @@ void MultipathEngine::load(const RawBlock& raw, std::int64_t pixel, float depth_
                                               noise_.floor_variance_e2[k]));
 }
 
-void MultipathEngine::decode_block(const RawBlock& raw, const DecodedView& decoded) const {
+void MultipathEngine::load_part(const RangePart& part, int lane, PixelGroup& group) const {
+  group.excluded_from[lane] = static_cast<float>((part.begin + part.length) * curve_.points);
+  group.excluded_length[lane] =
+      static_cast<float>(std::max(1.0 - part.length, 0.0) * curve_.points);
+}
+
+/// @param position  [fine points]
+bool MultipathEngine::is_within(const PixelGroup& group, double position, int lane) const {
+  const double after = (position - group.excluded_from[lane]) / curve_.points;
+  return (after - std::floor(after)) * curve_.points >= group.excluded_length[lane];
+}
+
+void MultipathEngine::decode_block(const RawBlock& raw, const RangePart* parts,
+                                   const DecodedView& decoded) const {
   const std::int64_t pixels = raw.pixels;
   DecodedView planes = decoded;
   std::vector<float> own_depth;
@@ -244,7 +258,10 @@ void MultipathEngine::decode_block(const RawBlock& raw, const DecodedView& decod
   view.averaged = raw.averaged;
   view.noise = raw.noise;
   view.is_marked = true;
-  single_.decode(view, planes);
+  if (parts)
+    single_.decode_within(view, parts, planes);
+  else
+    single_.decode(view, planes);
 
   PixelGroup group;
   SingleFits fits;
@@ -266,18 +283,20 @@ void MultipathEngine::decode_block(const RawBlock& raw, const DecodedView& decod
       if (!has_depth || is_single(fits.chi2[lane])) continue;
       queue.pixel[static_cast<std::size_t>(queue.count)] = pixel;
       queue.depth_m[static_cast<std::size_t>(queue.count)] = planes.depth_m[pixel];
-      if (++queue.count == pixels_per_group) search(queue, raw, planes);
+      if (++queue.count == pixels_per_group) search(queue, raw, parts, planes);
     }
   }
-  if (queue.count > 0) search(queue, raw, planes);
+  if (queue.count > 0) search(queue, raw, parts, planes);
 }
 
-void MultipathEngine::search(Queue& queue, const RawBlock& raw, const DecodedView& decoded) const {
+void MultipathEngine::search(Queue& queue, const RawBlock& raw, const RangePart* parts,
+                             const DecodedView& decoded) const {
   PixelGroup group;
   PairFits fits;
   for (int lane = 0; lane < pixels_per_group; ++lane) {
     const auto i = static_cast<std::size_t>(std::min(lane, queue.count - 1));
     load(raw, queue.pixel[i], queue.depth_m[i], lane, group);
+    load_part(parts ? parts[queue.pixel[i]] : RangePart(), lane, group);
   }
   fit_pair(curve_, delays_, group, fits);
   for (int lane = 0; lane < queue.count; ++lane)
@@ -324,7 +343,8 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
   const auto at = static_cast<std::size_t>(pixel);
   const double point_m = table().range_m / curve_.points;
   const float drop = fits.single_chi2[lane] - fits.chi2[lane];
-  const bool are_two = drop > static_cast<float>(options_.threshold);
+  const bool are_two =
+      drop > static_cast<float>(options_.threshold) && is_within(group, fits.position[lane], lane);
   const bool is_explained =
       is_single(fits.single_chi2[lane]) || fits.single_chi2[lane] <= unexplained_chi2_;
   if (decoded.returns && !are_two && !is_explained) decoded.returns[at] = ReturnStatus::unresolved;

@@ -51,16 +51,22 @@ class MultipathEngine {
   const DecodingTable& table() const { return single_.table(); }
   const MultipathOptions& options() const { return options_; }
 
-  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress) const;
+  /// @param parts  parts of the range in which the direct returns must lie, one per pixel; null:
+  ///               anywhere
+  void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+              const Progress& progress) const;
   /// As Decoder::decode_depth_bins.
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
 
  private:
   struct Queue;
-  void decode_block(const RawBlock& raw, const DecodedView& decoded) const;
+  void decode_block(const RawBlock& raw, const RangePart* parts, const DecodedView& decoded) const;
   void load(const RawBlock& raw, std::int64_t pixel, float depth_m, int lane,
             PixelGroup& group) const;
-  void search(Queue& queue, const RawBlock& raw, const DecodedView& decoded) const;
+  void load_part(const RangePart& part, int lane, PixelGroup& group) const;
+  void search(Queue& queue, const RawBlock& raw, const RangePart* parts,
+              const DecodedView& decoded) const;
+  bool is_within(const PixelGroup& group, double position, int lane) const;
   void store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits, int lane,
              const DecodedView& decoded) const;
   double ambient_e_per_s(const PixelGroup& group, const PairFits& fits, int lane) const;

@@ -150,16 +150,21 @@ HWY_INLINE void search_lanes(const MultipathCurve& curve, const DelayBounds& del
 
   alignas(64) Row score[max_coarse], lag[max_coarse];
   score_coarse<What, Span>(curve, delays, direct, behind, score, lag);
+  const Vector step = all(static_cast<float>(curve.points) / static_cast<float>(curve.coarse));
+  const Vector excluded_from = hn::Add(load(pixels.excluded_from + lane), step);
+  const Vector excluded_length = hn::Sub(load(pixels.excluded_length + lane), hn::Add(step, step));
   Starts starts;
   for (int j = 0; j < curve.coarse; ++j) {
     const Vector here = load(score[j]);
     const int before = j > 0 ? j - 1 : curve.coarse - 1, after = j + 1 < curve.coarse ? j + 1 : 0;
     const Mask is_top =
         hn::And(hn::Ge(here, load(score[before])), hn::Gt(here, load(score[after])));
-    starts.add(is_top, here, j, load(lag[j]));
+    const Vector place = fine_position(curve, all(static_cast<float>(j)));
+    const Mask is_allowed =
+        hn::Ge(wrapped(hn::Sub(place, excluded_from), curve.points), excluded_length);
+    starts.add(hn::And(is_top, is_allowed), here, j, load(lag[j]));
   }
 
-  const Vector step = all(static_cast<float>(curve.points) / static_cast<float>(curve.coarse));
   const auto start_from = [&](int i) {
     const Vector delay =
         What == Fitted::tail

@@ -304,8 +304,8 @@ bool LobePosterior::is_sure(const float* plane, float score, float least_lead_e2
   return leads_by(coarse_, limit * between);
 }
 
-double LobePosterior::confidence(const double* plane, const double* variance_e2,
-                                 std::int32_t row) const {
+bool LobePosterior::is_certain(const double* plane, const double* variance_e2,
+                               std::int32_t row) const {
   std::array<float, max_measurements> q;
   std::transform(plane, plane + rank_, q.begin(),
                  [](double value) { return static_cast<float>(value); });
@@ -320,39 +320,56 @@ double LobePosterior::confidence(const double* plane, const double* variance_e2,
                                                      variance_e2, noise_basis_.rows()));
   const double across2 = std::max(0.0, square - score * score);
   const double other = score * bound(row).cosine + std::sqrt(across2) * bound(row).sine;
-  if (other < score && score * score - other * other >= least) return 1.0;
-  if (is_sure(q.data(), static_cast<float>(score), static_cast<float>(least), row)) return 1.0;
-  return probability(plane, variance_e2, row);
+  if (other < score && score * score - other * other >= least) return true;
+  return is_sure(q.data(), static_cast<float>(score), static_cast<float>(least), row);
+}
+
+double LobePosterior::confidence(const double* plane, const double* variance_e2,
+                                 std::int32_t row) const {
+  return is_certain(plane, variance_e2, row) ? 1.0 : probability(plane, variance_e2, row);
 }
 
 double LobePosterior::probability(const double* plane, const double* variance_e2,
                                   std::int32_t row) const {
+  return share_of(lobe_window(row), NoiseMetric(noise_basis_, plane, variance_e2));
+}
+
+std::optional<double> LobePosterior::confidence(const double* plane, const double* variance_e2,
+                                                std::int32_t row, const RangePart* part) const {
+  constexpr double surely_outside = 0.9;
+  if (!part || part->is_whole()) return confidence(plane, variance_e2, row);
+  if (is_certain(plane, variance_e2, row)) return 1.0;
   const NoiseMetric noise(noise_basis_, plane, variance_e2);
+  const Window allowed = window_of(*part);
+  const double inside = share_of(allowed, noise), outside = outside_prior * (1.0 - inside);
+  if (outside >= surely_outside * (inside + outside)) return std::nullopt;
+  return std::min(1.0, share_of(lobe_within(row, allowed), noise) / (inside + outside));
+}
+
+double LobePosterior::share_of(const Window& window, const NoiseMetric& noise) const {
   for (const Nodes* nodes : {&coarse_, &fine_})
     if (noise.length() * nodes->step <= max_step_deviations)
-      return sum_over_nodes(*nodes, noise, row);
-  return sum_over_chords(noise, row);
+      return sum_over_nodes(*nodes, noise, window);
+  return sum_over_chords(noise, window);
 }
 
 double LobePosterior::sum_over_nodes(const Nodes& nodes, const NoiseMetric& noise,
-                                     std::int32_t row) const {
+                                     const Window& window) const {
   const SumInput input(noise, rank_);
-  const Lobe& own = lobe(row);
   return HWY_DYNAMIC_DISPATCH(lobe_share)(
       {.nodes = &nodes,
        .rank = rank_,
        .along = input.along.data(),
        .metric = input.metric.data(),
        .samples = static_cast<float>(places_),
-       .centre = static_cast<float>(row * places_per_row_ + 0.5 * (own.right - own.left)),
-       .half_width = static_cast<float>(0.5 * (own.left + own.right + 1))});
+       .centre = static_cast<float>(window.begin + 0.5 * window.length),
+       .half_width = static_cast<float>(0.5 * (window.length + 1))});
 }
 
 /// In bright light the density is that of a few narrow peaks, which lie on chords. Chords are left
 /// out where the signals of nodes, at most half a step away, prove that they are negligible.
-double LobePosterior::sum_over_chords(const NoiseMetric& noise, std::int32_t row) const {
+double LobePosterior::sum_over_chords(const NoiseMetric& noise, const Window& window) const {
   constexpr double negligible = 40.0;
-  const Lobe& own = lobe(row);
   const SumInput input(noise, rank_);
   thread_local std::vector<float> signal;
   signal.resize(static_cast<std::size_t>(coarse_.stride));
@@ -375,8 +392,7 @@ double LobePosterior::sum_over_chords(const NoiseMetric& noise, std::int32_t row
     const double to_length = std::sqrt(noise.product(w, w));
     const double from = from_length > 0.0 ? noise.signal(u) / from_length : 0.0;
     const double to = to_length > 0.0 ? noise.signal(w) / to_length : 0.0;
-    const std::int32_t after = (n - row * places_per_row_ + own.left + places_) % places_;
-    const bool is_inside = after < own.left + own.right;
+    const bool is_inside = (n - window.begin + places_) % places_ < window.length;
     if (std::isinf(turn_rad_[n]))
       mass.add_ends(from, to, is_inside);
     else

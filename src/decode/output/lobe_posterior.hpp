@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "decode/ambient_projection.hpp"
+#include "tofsmith/decode/range_part.hpp"
 
 namespace tofsmith {
 
@@ -72,6 +74,13 @@ class LobePosterior {
   double probability(const double* plane, const double* variance_e2, std::int32_t row) const;
   /// probability(), or 1 where is_sure() proves it.
   double confidence(const double* plane, const double* variance_e2, std::int32_t row) const;
+  /// confidence() of a row in a part of the range in which nearly all depths lie: depths outside
+  /// are less likely a priori by the factor `outside_prior`. None if the depth lies outside with a
+  /// probability of at least 0.9 nevertheless.
+  /// @param part  null: any depth
+  std::optional<double> confidence(const double* plane, const double* variance_e2, std::int32_t row,
+                                   const RangePart* part) const;
+  static constexpr double outside_prior = 0.01;
 
   /// Points of the curve at most `step` radians apart, cut out of the chords between places.
   struct Nodes {
@@ -92,14 +101,24 @@ class LobePosterior {
     std::int32_t left = 0;
     std::int32_t right = 0;
   };
+  /// A run of places, from `begin` to `begin + length`.
+  struct Window {
+    std::int32_t begin = 0;
+    std::int32_t length = 0;
+  };
+  Window lobe_window(std::int32_t row) const;
+  Window window_of(const RangePart& part) const;
+  Window lobe_within(std::int32_t row, const Window& allowed) const;
   double half_way(double from, double to) const;
   const Lobe& lobe(std::int32_t row) const { return lobes_[static_cast<std::size_t>(row)]; }
   float score_beside(const float* plane, float score, std::int32_t row) const;
   void find_lobes();
   void find_bounds();
   void find_bounds(std::int32_t begin, std::int32_t end, Eigen::RowVectorXf& score);
-  double sum_over_nodes(const Nodes& nodes, const NoiseMetric& noise, std::int32_t row) const;
-  double sum_over_chords(const NoiseMetric& noise, std::int32_t row) const;
+  bool is_certain(const double* plane, const double* variance_e2, std::int32_t row) const;
+  double share_of(const Window& window, const NoiseMetric& noise) const;
+  double sum_over_nodes(const Nodes& nodes, const NoiseMetric& noise, const Window& window) const;
+  double sum_over_chords(const NoiseMetric& noise, const Window& window) const;
 
   std::int32_t rows_;
   int rank_;

@@ -62,6 +62,25 @@ MainLobe LobePosterior::main_lobe(std::int32_t row) const {
   return {(lobe(row).left + 0.5) / places_per_row_, (lobe(row).right + 0.5) / places_per_row_};
 }
 
+LobePosterior::Window LobePosterior::lobe_window(std::int32_t row) const {
+  return {row * places_per_row_ - lobe(row).left, lobe(row).left + lobe(row).right};
+}
+
+LobePosterior::Window LobePosterior::window_of(const RangePart& part) const {
+  return {static_cast<std::int32_t>(std::lround(part.begin * places_)),
+          static_cast<std::int32_t>(std::lround(part.length * places_))};
+}
+
+/// The part of a row's main lobe that lies in a window; the row lies in or next to it.
+LobePosterior::Window LobePosterior::lobe_within(std::int32_t row, const Window& allowed) const {
+  const std::int32_t place = row * places_per_row_;
+  std::int32_t after = (place - allowed.begin + places_) % places_;
+  if (after > allowed.length + (places_ - allowed.length) / 2) after -= places_;
+  const std::int32_t left = std::clamp(after, 0, lobe(row).left),
+                     right = std::clamp(allowed.length - after, 0, lobe(row).right);
+  return {place - left, left + right};
+}
+
 /// As many places on either side as the score of the row's own measurements falls.
 void LobePosterior::find_lobes() {
   constexpr double plateau = 1e-9;

@@ -219,11 +219,12 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
     fields[3] = static_cast<float>(
         typical_variance(projection.noise_basis, noise.shot_gated.row(n).transpose()));
   }
-  fill_limits(ResidualModel(table, projection, options), projection);
+  residuals_.emplace(table, projection, options);
+  fill_limits(projection);
 }
 
-void OutputKernel::fill_limits(const ResidualModel& residuals,
-                               const AmbientProjection& projection) {
+void OutputKernel::fill_limits(const AmbientProjection& projection) {
+  const ResidualModel& residuals = *residuals_;
   const RowMajorMatrix off_plane = residuals.off_plane().transpose();
   RowMajorMatrix basis(projection.noise_basis.rows(), projection.rank() + off_plane.rows());
   basis << projection.noise_basis, residuals.off_plane_noise();

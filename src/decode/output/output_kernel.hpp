@@ -51,6 +51,9 @@ class OutputKernel {
   const OutputConstants& constants() const { return constants_; }
   /// One row of LimitLayout per bin.
   const RecordTable& limits() const { return limits_; }
+  /// Models of single pixels in double arithmetic; not with only_positions.
+  const LobePosterior& posterior() const { return *posterior_; }
+  const ResidualModel& residuals() const { return *residuals_; }
 
   /// Which rows of a tile these planes need besides `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
@@ -69,11 +72,12 @@ class OutputKernel {
   void find_positions(const MatchedTile& tile, double* depth_bin) const;
 
  private:
-  void fill_limits(const ResidualModel& residuals, const AmbientProjection& projection);
+  void fill_limits(const AmbientProjection& projection);
 
   BinRecords records_;
   OutputConstants constants_;
   std::optional<LobePosterior> posterior_;  // none: only positions
+  std::optional<ResidualModel> residuals_;  // none: only positions
   RecordTable limits_;
 };
 

@@ -92,6 +92,52 @@ Position PixelModel::refine(const double* plane, std::int32_t bin) const {
   return {bin, after.fraction};
 }
 
+double PixelModel::score_at(const double* plane, std::int32_t row) const {
+  return own_[row] > 0.0 ? along(plane, row) / std::sqrt(own_[row])
+                         : -std::numeric_limits<double>::infinity();
+}
+
+/// On a smooth curve, the score at the nearest row and the integral of its slope.
+double PixelModel::score_at(const double* plane, const Position& position) const {
+  const std::int32_t to = next(position.bin);
+  const double t = position.fraction;
+  if (polynomials_) {
+    const std::int32_t row = t < 0.5 ? position.bin : to;
+    const double from_row = t < 0.5 ? t : t - 1.0;
+    const auto [g, b, c] = rise_at(plane, row);
+    return score_at(plane, row) +
+           std::sqrt(own_[row]) * from_row * (g + from_row * (b / 2 + from_row * c / 3));
+  }
+  const double length2 = (1 - t) * (1 - t) * own_[position.bin] +
+                         2 * t * (1 - t) * with_next_[position.bin] + t * t * own_[to];
+  return ((1 - t) * along(plane, position.bin) + t * along(plane, to)) / std::sqrt(length2);
+}
+
+std::optional<Position> PixelModel::best_within(const double* plane, const RangePart& part) const {
+  // The best position of a row is up to one row away from it.
+  const auto first = static_cast<std::int32_t>(std::floor(part.begin * samples_)) - 1;
+  const auto count =
+      static_cast<std::int32_t>(std::min(1.0 * samples_, std::ceil(part.length * samples_) + 3.0));
+  const auto wrapped = [&](std::int32_t n) { return ((n % samples_) + samples_) % samples_; };
+  std::optional<Position> best;
+  double best_score = -std::numeric_limits<double>::infinity();
+  double before = score_at(plane, wrapped(first - 1)), here = score_at(plane, wrapped(first));
+  for (std::int32_t n = first; n < first + count; ++n) {
+    const double after = score_at(plane, wrapped(n + 1));
+    if (here >= before && here >= after && std::isfinite(here)) {
+      const Position position = refine(plane, wrapped(n));
+      const double score = score_at(plane, position);
+      if (score > best_score && part.contains(position.in_rows(samples_) / samples_)) {
+        best = position;
+        best_score = score;
+      }
+    }
+    before = here;
+    here = after;
+  }
+  return best;
+}
+
 PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
                                    const Position& position, double* variance_e2,
                                    double variance_share) const {

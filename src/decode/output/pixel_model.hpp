@@ -9,6 +9,7 @@
 #include "decode/expected_noise.hpp"
 #include "decode/search/direction_table.hpp"
 #include "decode/search/smooth_curve.hpp"
+#include "tofsmith/decode/range_part.hpp"
 
 namespace tofsmith {
 
@@ -55,6 +56,10 @@ class PixelModel {
   /// On a smooth curve instead the maximum of the pixel's own correlation (DepthPolynomials).
   Position refine(const double* plane, std::int32_t bin) const;
 
+  /// Best position within a part of the range, of those at which the score <q, p> / |p| is higher
+  /// than at the positions next to them. None if the score has no maximum there.
+  std::optional<Position> best_within(const double* plane, const RangePart& part) const;
+
   /// Least squares of electrons - dark (K) on x at the position and on ambient light, without
   /// weights; its deviations from the noise expected there. Also fills the noise, `variance_e2`
   /// (K), of every measurement.
@@ -77,6 +82,8 @@ class PixelModel {
   };
   Rise rise_at(const double* plane, std::int32_t row) const;
   double signal_on_curve(const double* plane, const Position& position) const;
+  double score_at(const double* plane, std::int32_t row) const;
+  double score_at(const double* plane, const Position& position) const;
   ChordPoint best_inside(std::int32_t bin, double at_bin, double at_next) const;
   std::int32_t next(std::int32_t bin) const { return bin + 1 < samples_ ? bin + 1 : 0; }
   std::int32_t previous(std::int32_t bin) const { return bin > 0 ? bin - 1 : samples_ - 1; }

@@ -98,9 +98,9 @@ void decode_frame(
         const std::int64_t pixels = block.end - block.begin;
         std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
         copy_pixels(raw, block.begin, pixels, values.data());
-        decode_block(
-            {values.data(), pixels, raw.averaged ? raw.averaged + block.begin : nullptr, raw.noise},
-            decoded.from(static_cast<std::size_t>(block.begin)));
+        decode_block({values.data(), pixels, raw.averaged ? raw.averaged + block.begin : nullptr,
+                      raw.noise, block.begin},
+                     decoded.from(static_cast<std::size_t>(block.begin)));
       },
       block_pixels);
 }

@@ -51,6 +51,7 @@ struct RawBlock {
   std::int64_t pixels = 0;
   const float* averaged = nullptr;  ///< as in RawView, of the block's first pixel on
   NoiseRatios noise;
+  std::int64_t first = 0;  ///< index in the frame of the block's first pixel
 
   /// The variance of pixel i over that of a single measurement.
   double variance_share(std::int64_t i) const { return averaged ? 1.0 / averaged[i] : 1.0; }

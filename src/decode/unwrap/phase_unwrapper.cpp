@@ -44,11 +44,11 @@ void PhaseUnwrapper::for_each_choice(const double* phase, const Use& use) const 
     }
 }
 
-Wraps PhaseUnwrapper::nearest(const double* phase) const {
+Wraps PhaseUnwrapper::nearest(const double* phase, const RangePart* within) const {
   Wraps best;
   best.distance = std::numeric_limits<double>::infinity();
   for_each_choice(phase, [&](const Wraps& wraps) {
-    if (wraps.distance < best.distance) best = wraps;
+    if (wraps.distance < best.distance && (!within || within->contains(wraps.depth))) best = wraps;
   });
   return best;
 }

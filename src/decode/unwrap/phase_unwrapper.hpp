@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "tofsmith/decode/range_part.hpp"
+
 namespace tofsmith {
 
 /// Most frequencies a code can have: two measurements each.
@@ -28,8 +30,10 @@ class PhaseUnwrapper {
   double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
 
   /// The choice of least weighted distance, of all there are.
-  /// @param phase  (count) [periods of the frequency]
-  Wraps nearest(const double* phase) const;
+  /// @param phase   (count) [periods of the frequency]
+  /// @param within  where the depth must lie; null: anywhere
+  /// @return the distance is infinite if no choice has its depth there
+  Wraps nearest(const double* phase, const RangePart* within = nullptr) const;
 
  private:
   template <typename Use>

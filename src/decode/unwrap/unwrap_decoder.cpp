@@ -84,8 +84,10 @@ struct UnwrapDecoder::Plan {
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double row_of(const Wraps& wraps) const;
+  void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+              const Progress& progress) const;
   void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
-                    std::size_t at, const DecodedView& decoded) const;
+                    const RangePart* part, std::size_t at, const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
 };
@@ -124,18 +126,30 @@ void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
 
 void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,
                            const Progress& progress) const {
-  decode_frame(MarkedRaw(raw, table().marking).view(), decoded, measurements(), progress,
-               [&](const RawBlock& block, const DecodedView& planes) {
-                 for (std::int64_t i = 0; i < block.pixels; ++i)
-                   plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),
-                                       block.noise_of(i), static_cast<std::size_t>(i), planes);
-               });
+  plan_->decode(raw, nullptr, decoded, progress);
+}
+
+void UnwrapDecoder::decode_within(const RawView& raw, const RangePart* parts,
+                                  const DecodedView& decoded, const Progress& progress) const {
+  plan_->decode(raw, parts, decoded, progress);
 }
 
 DepthImage UnwrapDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
   return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
     decode(view, decoded, progress);
   });
+}
+
+void UnwrapDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
+                                 const DecodedView& decoded, const Progress& progress) const {
+  const int count = table.measurements();
+  decode_frame(MarkedRaw(raw, table.marking).view(), decoded, count, progress,
+               [&](const RawBlock& block, const DecodedView& planes) {
+                 for (std::int64_t i = 0; i < block.pixels; ++i)
+                   decode_pixel(block.values + i * count, block.variance_share(i),
+                                block.noise_of(i), parts ? parts + block.first + i : nullptr,
+                                static_cast<std::size_t>(i), planes);
+               });
 }
 
 /// False where a measurement is NaN or infinite.
@@ -162,12 +176,14 @@ double UnwrapDecoder::Plan::row_of(const Wraps& wraps) const {
 }
 
 void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
-                                       const NoiseRatios& noise, std::size_t at,
-                                       const DecodedView& decoded) const {
+                                       const NoiseRatios& noise, const RangePart* part,
+                                       std::size_t at, const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
   if (!read(raw, electrons)) return store_invalid(at, decoded);
   const PerFrequency phase = phases_of(electrons);
-  const Wraps wraps = unwrapper.nearest(phase.data());
+  const Wraps wraps = unwrapper.nearest(phase.data(), part);
+  if (!std::isfinite(wraps.distance))
+    return store_pixel(table, options.status_thresholds, raw, {}, at, decoded);
 
   model.project(electrons.data(), plane.data());
   PixelDecoding pixel{.depth_row = row_of(wraps)};
@@ -179,8 +195,10 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
     pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
     for (int k = 0; k < table.measurements(); ++k)
       variance_e2[static_cast<std::size_t>(k)] *= noise.of_lobes;
-    pixel.confidence = posterior.confidence(plane.data(), variance_e2.data(),
-                                            nearest_bin(pixel.depth_row, table.samples()));
+    const std::optional<double> confidence = posterior.confidence(
+        plane.data(), variance_e2.data(), nearest_bin(pixel.depth_row, table.samples()), part);
+    if (!confidence) return store_pixel(table, options.status_thresholds, raw, {}, at, decoded);
+    pixel.confidence = *confidence;
     if (decoded.residual || decoded.status)
       pixel.residual =
           residuals.residual(electrons.data(), pixel.estimate, Position::at(pixel.depth_row),

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+namespace tofsmith {
+
+/// A part of the unambiguous range, which may continue at the beginning of the range. Positions are
+/// shares of the range.
+struct RangePart {
+  double begin = 0.0;   ///< in [0, 1)
+  double length = 1.0;  ///< 1 or more: the whole range
+
+  bool is_whole() const { return length >= 1.0; }
+  bool contains(double position) const {
+    const double after = position - begin;
+    return after - std::floor(after) <= length;
+  }
+};
+
+}  // namespace tofsmith
