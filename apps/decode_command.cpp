@@ -176,6 +176,8 @@ void add_map_options(const FieldOptions<DecodeRequest>& request) {
 
 /// Options of the frames: which ones, and how they are combined.
 void add_frame_options(const FieldOptions<DecodeRequest>& request) {
+  request.add("min_depth_m", "--min-depth");
+  request.add("max_depth_m", "--max-depth");
   request.add("mixed", "--mixed");
   request.add("average", "--average");
   request.add("hdr", "--hdr")->group(for_experts);

@@ -19,6 +19,9 @@ namespace tofsmith::apps {
 
 UsageError wrong_option(const std::invalid_argument& error) {
   std::string text = error.what();
+  // Options that leave out the unit.
+  for (const std::string_view field : {"min_depth_m ", "max_depth_m "})
+    if (text.starts_with(field)) text.erase(field.size() - 3, 2);
   const auto end = std::find(text.begin(), text.end(), ' ');
   // A key of the camera is none.
   if (std::find(text.begin(), end, '.') != end) return UsageError(text);

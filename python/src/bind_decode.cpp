@@ -86,22 +86,24 @@ PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, cons
 
 void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_planar,
             const py::dict& arrays, const py::object& averaged, const py::object& delay_offset_m,
-            const py::object& gain, const std::string& mixed, const BoundFilter* filter,
+            const py::object& gain, const std::string& mixed, std::optional<double> min_depth_m,
+            std::optional<double> max_depth_m, const BoundFilter* filter,
             const py::object& callback) {
   const DecodingTable& table = backend.decoder().table();
   RawArray raw = view_raw(raw_numbers, is_planar, table.measurements());
   const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
   if (!averaged.is_none()) raw.set_averaged(means);
   const Planes planes(arrays, raw);
-  PlaneCorrections corrections{maps_of(delay_offset_m, gain, raw), std::nullopt};
+  PlaneCorrections corrections{maps_of(delay_offset_m, gain, raw), std::nullopt,
+                               depth_limits(table, min_depth_m, max_depth_m)};
   if (!mixed.empty()) corrections.mixed = parse_mixed_pixels(mixed);
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
-    const std::unique_ptr<FramePipeline> pipeline =
-        backend.prepare({.filter = filter ? &filter->filter() : nullptr,
-                         .keeps_filtered = corrections.mixed || planes.view().averaged},
-                        raw.height, raw.width);
+    const std::unique_ptr<FramePipeline> pipeline = backend.prepare(
+        {.filter = filter ? &filter->filter() : nullptr,
+         .keeps_filtered = corrections.mixed || corrections.limits || planes.view().averaged},
+        raw.height, raw.width);
     std::vector<float> signal;  // where the correction alone needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
       signal.resize(pixels);

@@ -78,6 +78,10 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
+def optional_number(value: Any, name: str) -> Optional[float]:
+    return None if value is None else number(value, name)
+
+
 def numbers(value: Any, name: str) -> Optional[list[float]]:
     """Returns a list of numbers; converts a single number to a list and keeps None."""
     if value is None:

@@ -139,6 +139,8 @@ class Decoder:
         gain: Optional[npt.ArrayLike] = None,
         filter: Optional[FilterLike | Filter] = None,
         mixed: Optional[str] = None,
+        min_depth_m: Optional[float] = None,
+        max_depth_m: Optional[float] = None,
         progress: Progress = None,
     ) -> DepthImage:
         """Decodes one frame or a stack on all threads. Raw numbers with any strides are not copied.
@@ -171,7 +173,11 @@ class Decoder:
             label keeps their depth, snap replaces it by that of the nearest pixel of the brighter
             surface, drop removes it. With `filter`, frames are filtered again without these pixels.
             Requires the planes depth, predicted standard deviation and status. See
-            docs/filtering.md. docs/filtering.md.
+            docs/filtering.md.
+        min_depth_m, max_depth_m : float, optional
+            Smallest and largest radial depth after all corrections [m]: only depths between them
+            are candidates, and other pixels are too_near or too_far. None: the camera's working
+            distance, or the whole range. See docs/decoding.md.
         progress : callable, optional
             Called with (fraction, step); returning False cancels.
 
@@ -204,7 +210,8 @@ class Decoder:
         means = _check.means(averaged, array, is_planar)
         applied = None if filter is None else self._filter(filter)._handle
         self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1],
-                            mixed_word(mixed), applied, callback)
+                            mixed_word(mixed), _check.optional_number(min_depth_m, "min_depth_m"),
+                            _check.optional_number(max_depth_m, "max_depth_m"), applied, callback)
         return image
 
     def _filter(self, filter: FilterLike | Filter) -> Filter:
@@ -400,6 +407,8 @@ def decode(
     planes: Optional[Iterable[str]] = None,
     filter: Optional[FilterLike] = None,
     mixed: Optional[str] = None,
+    min_depth_m: Optional[float] = None,
+    max_depth_m: Optional[float] = None,
     progress: Progress = None,
 ) -> DepthImage:
     """Decodes as Decoder(code, camera, method=method).decode(raw, ...).
@@ -408,4 +417,4 @@ def decode(
     """
     decoder = Decoder(code, camera, method=method)
     return decoder.decode(raw, layout=layout, planes=planes, filter=filter, mixed=mixed,
-                          progress=progress)
+                          min_depth_m=min_depth_m, max_depth_m=max_depth_m, progress=progress)

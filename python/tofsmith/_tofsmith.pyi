@@ -157,7 +157,8 @@ class Decoder:
     def decode(
         self, raw: _Any, is_planar: bool, planes: Mapping[str, _Any], averaged: Optional[_Any],
         delay_offset_m: Optional[_Floats], gain: Optional[_Floats], mixed: str,
-        filter: Optional[Filter], progress: _Progress, /
+        min_depth_m: Optional[float], max_depth_m: Optional[float], filter: Optional[Filter],
+        progress: _Progress, /
     ) -> None: ...
     def decode_recording(
         self, raw: Sequence[str], output: str, lens: Optional[_Dict], options: _Options,

@@ -126,8 +126,8 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
       Key("neighbours", "Pixels of one depth that a filter adds before decoding", closed(1, 10000)),
       range.neighbours);
   fields.value(Key("working_distance_m",
-                   "Nearest and farthest depth; without it, the unambiguous "
-                   "range",
+                   "Nearest and farthest depth, to which decoding is limited; without it, the "
+                   "unambiguous range",
                    at_least(0)),
                range.working_distance_m);
   fields.value(Key("depths",

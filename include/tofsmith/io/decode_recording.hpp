@@ -82,7 +82,9 @@ struct DecodeRequest {
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< after the temporal filter
   std::optional<MixedPixels> mixed;     ///< see mark_mixed_pixels()
-  std::filesystem::path offset_map;     ///< as PixelMaps::delay_offset_m
+  std::optional<double> min_depth_m;    ///< see depth_limits()
+  std::optional<double> max_depth_m;
+  std::filesystem::path offset_map;  ///< as PixelMaps::delay_offset_m
   double offset_m = 0.0;
   std::filesystem::path gain_map;  ///< as PixelMaps::gain
   double memory_mb = 256.0;
@@ -145,6 +147,12 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
                  "depth stays), snap (to the depth of the one that gives more light) or drop (no "
                  "depth)"},
             IfAbsent{"off"}),
+      Field("min_depth_m", r.min_depth_m, at_least(0),
+            Help{"smallest radial depth after all corrections; pixels below it are too_near"},
+            IfAbsent{"the camera's working distance, or 0"}),
+      Field("max_depth_m", r.max_depth_m, above(0),
+            Help{"largest radial depth after all corrections; pixels above it are too_far"},
+            IfAbsent{"the camera's working distance, or the range"}),
       Field("offset_map", r.offset_map,
             Help{"distance by which each pixel decodes too far, in metres (.npy .npz .exr .pfm), "
                  "subtracted from its depth; NaN marks a dead pixel"}),

@@ -87,6 +87,7 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
     require(request.average == 1, "average", request.average, "goes without hdr");
   }
   if (request.sliding) check_sliding(request);
+  depth_limits(decoder.table(), request.min_depth_m, request.max_depth_m);
   if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
   require(!request.undistort || request.lens, "undistort", "true",
@@ -150,18 +151,20 @@ int sliding_exposures(const DecodeRequest& request, const DecodingTable& table) 
 
 Preparation preparation_of(const DecodeRequest& request, const DecodingTable& table,
                            const std::optional<Filter>& filter) {
+  const bool is_limited = depth_limits(table, request.min_depth_m, request.max_depth_m).has_value();
   const bool wants_averaged =
       std::ranges::find(request.outputs, DecodedPlane::averaged) != request.outputs.end();
-  Preparation preparation{.steps = {.average = request.average,
-                                    .averaged = request.averaged,
-                                    .time_filter = request.time_filter,
-                                    .filter = filter ? &*filter : nullptr,
-                                    .keeps_filtered = request.mixed || wants_averaged},
-                          .find_mixed = request.mixed.has_value(),
-                          .undistort = request.undistort,
-                          .stray_kernel = {},
-                          .hdr = request.hdr,
-                          .sliding = sliding_exposures(request, table)};
+  Preparation preparation{
+      .steps = {.average = request.average,
+                .averaged = request.averaged,
+                .time_filter = request.time_filter,
+                .filter = filter ? &*filter : nullptr,
+                .keeps_filtered = request.mixed || wants_averaged || is_limited},
+      .find_mixed = request.mixed.has_value(),
+      .undistort = request.undistort,
+      .stray_kernel = {},
+      .hdr = request.hdr,
+      .sliding = sliding_exposures(request, table)};
   if (preparation.steps.time_filter && filter) preparation.steps.time_filter->before_filter = true;
   if (!request.stray_light.empty())
     preparation.stray_kernel = read_stray_light(request.stray_light);
@@ -170,7 +173,8 @@ Preparation preparation_of(const DecodeRequest& request, const DecodingTable& ta
 
 PlaneCorrections corrections_of(const DecodeRequest& request, const DecodingTable& table,
                                 const std::string& source, int height, int width) {
-  PlaneCorrections corrections{load_maps(request, height, width), request.mixed};
+  PlaneCorrections corrections{load_maps(request, height, width), request.mixed,
+                               depth_limits(table, request.min_depth_m, request.max_depth_m)};
   if (const auto& correction = table.correction)
     if (correction->height != height || correction->width != width)
       throw IoError(source, fmt::format("found frames of {} x {} pixels; expected {} x {}, of "

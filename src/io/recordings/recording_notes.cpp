@@ -22,6 +22,10 @@ std::string_view likely_cause(PixelStatus status) {
     case PixelStatus::saturated:
       return "every pixel has a raw number at the saturation level: expose less, or correct "
              "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
+    case PixelStatus::too_near:
+    case PixelStatus::too_far:
+      return "every depth is outside the limits: check --min-depth and --max-depth, or "
+             "operating.working_distance_m of the camera";
     default:
       return "no signal is in the raw numbers: is the light on, --code the code that the camera "
              "used, "
@@ -64,7 +68,8 @@ std::optional<std::string> repeated_offset_note(const DecodingTable& table,
 
 std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
   constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
-                                        PixelStatus::saturated};
+                                        PixelStatus::saturated, PixelStatus::too_near,
+                                        PixelStatus::too_far};
   std::int64_t without = 0;
   std::string counts;
   for (const PixelStatus status : without_depth) {

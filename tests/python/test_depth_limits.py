@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Depth limits in Python: the same as in recordings, and of the camera."""
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+CODE = "multifrequency-4x4-5x4"
+CAMERA = ts.Camera("paper-30x", fundamental_frequency_hz=20e6)
+LIMITS = {"min_depth_m": 1.0, "max_depth_m": 2.5}
+
+
+@pytest.fixture(scope="module")
+def raw():
+    scene = np.repeat(np.float32([[0.5, 1.2, 2.0, 3.5]]), 6, axis=0)
+    return ts.capture(scene, CODE, CAMERA, signal_e_per_s=1e5, ambient_e_per_s=1e4, falloff=False)
+
+
+@pytest.mark.parametrize("method", ["zncc", "ml", "unwrap"])
+def test_frames_are_decoded_as_recordings_are(raw, method, tmp_path):
+    decoder = ts.Decoder(CODE, CAMERA, method=method)
+    np.save(tmp_path / "raw.npy", raw)
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "depth.npz", **LIMITS)
+    expected = np.load(tmp_path / "depth.npz")
+    found = decoder.decode(raw, **LIMITS)
+    np.testing.assert_array_equal(found.status, expected["status"].squeeze())
+    np.testing.assert_array_equal(found.depth_m, expected["depth"].squeeze())
+    assert (found.status[:, 0] == ts.PixelStatus.too_near).all()
+    assert (found.status[:, 3] == ts.PixelStatus.too_far).all()
+    assert np.isnan(found.depth_m[:, [0, 3]]).all()
+
+
+def test_the_working_distance_of_the_camera_is_the_default(raw):
+    camera = CAMERA.replace(operating={"working_distance_m": [1, 2.5]})
+    limited = ts.Decoder(CODE, CAMERA).decode(raw, **LIMITS)
+    by_camera = ts.Decoder(CODE, camera).decode(raw)
+    np.testing.assert_array_equal(by_camera.status, limited.status)
+    np.testing.assert_array_equal(by_camera.depth_m, limited.depth_m)
+    anywhere = ts.Decoder(CODE, camera).decode(raw, min_depth_m=0, max_depth_m=camera.range_m)
+    assert (anywhere.status == ts.PixelStatus.ok).all()
+
+
+@pytest.mark.parametrize("limits, message", [
+    ({"min_depth_m": "1"}, "min_depth_m: got str '1'; needs a number"),
+    ({"max_depth_m": float("nan")}, "max_depth_m: got nan; needs a finite number"),
+    ({"max_depth_m": 9.0}, "max_depth_m = 9; must be > 0 and at most the unambiguous range"),
+    ({"min_depth_m": 3.0, "max_depth_m": 2.0}, "min_depth_m = 3; must be below"),
+])
+def test_impossible_limits(raw, limits, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        ts.Decoder(CODE, CAMERA).decode(raw, **limits)
