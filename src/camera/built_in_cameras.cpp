@@ -40,9 +40,9 @@ Sources paper_sources() {
   return sources;
 }
 
-/// A camera of typical parts in a room: a laser diode of 1 W and two buckets, both with 100 MHz. The
-/// signals are those of white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from lamps to
-/// 5 klx of sunlight (`evaluate --distance D --klux L` computes both from the optics).
+/// A camera of typical parts in a room: a laser diode of 1 W and two buckets, both with 100 MHz.
+/// The signals are those of white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from
+/// lamps to 5 klx of sunlight (`evaluate --distance D --klux L` computes both from the optics).
 Camera indoor_camera() {
   Camera camera;
   camera.fundamental_frequency_hz = 20e6;
@@ -78,8 +78,7 @@ Camera three_tap_camera() {
   camera.light.peak_factor = 1.0;
   camera.sensor.taps = 3;
   camera.sensor.shortest_pulse_s = chip_s;
-  camera.operating = {.signal_e_per_s = {1.1e6, 1.7e7},
-                      .ambient_e_per_s = {0.0, 8e7}};
+  camera.operating = {.signal_e_per_s = {1.1e6, 1.7e7}, .ambient_e_per_s = {0.0, 8e7}};
   return camera;
 }
 
@@ -95,8 +94,7 @@ Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   camera.sensor.drain = false;
   camera.sensor.readout = Readout::difference;
   camera.sensor.modulation_contrast = 0.7;
-  camera.operating = {.signal_e_per_s = {1e5, 1e6, 1e7},
-                      .ambient_e_per_s = {1e5, 1e6}};
+  camera.operating = {.signal_e_per_s = {1e5, 1e6, 1e7}, .ambient_e_per_s = {1e5, 1e6}};
   return camera;
 }
 
@@ -131,8 +129,10 @@ std::vector<Entry> entries() {
   constexpr const char* epc = "epc660 datasheet, as in mlx75027_config's registers";
   constexpr const char* melexis = "Melexis MLX75027 datasheet, as in mlx75027_config's registers";
   return {
-      {{std::string(default_camera_name), "typical parts in a room: two buckets, 100 MHz",
-        "hamiltonian-k4", {}},
+      {{std::string(default_camera_name),
+        "typical parts in a room: two buckets, 100 MHz",
+        "hamiltonian-k4",
+        {}},
        indoor_camera()},
       {{"paper-30x", "the paper's simulations, peak factor 30, no band limit", "hamiltonian-k4",
         paper_sources()},

@@ -17,9 +17,8 @@ CodeSet square_code(int phase_steps, const FamilyOptions& options) {
   // then has less than the mean power.
   const bool shared = options.taps > 2;
   const double open = shared ? 1.0 / options.taps : 0.5;
-  const Waveform light =
-      shared ? Waveform::binary({{0.0, 0.5}}, std::min(2.0, options.peak_factor))
-             : rectangular_pulse(std::max(0.5, 1.0 / options.peak_factor));
+  const Waveform light = shared ? Waveform::binary({{0.0, 0.5}}, std::min(2.0, options.peak_factor))
+                                : rectangular_pulse(std::max(0.5, 1.0 / options.peak_factor));
   std::vector<Waveform> demodulation;
   for (const int step : steps_by_tap(phase_steps, options.taps)) {
     const double rise = static_cast<double>(step) / phase_steps;
