@@ -214,6 +214,51 @@ TEST(RawFormat, UnpacksMipiAccordingToTheStandard) {
   EXPECT_THAT(pair, testing::ElementsAre(0xabc, 0x123));
 }
 
+/// The error of reading a dump; "" if there is none.
+std::string error_of_dump(const RawFormat& format, const FileBytes& bytes) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "dump.bin";
+  write_file_atomically(path, bytes, OutputPolicy::overwrite);
+  RawReadOptions options;
+  options.format = format;
+  try {
+    RawFramesReader(path, options).read_frame(0);
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RawFormat, RejectsNumbersThatDoNotFitIntoTheirBits) {
+  RawFormat f{.width = 3, .height = 2, .measurements = 2, .bits = 12};
+  const std::vector<double> numbers = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 300, 4095};
+  const FileBytes low = RawPacker(f).pack(numbers, 1);
+  EXPECT_EQ(error_of_dump(f, low), "");
+  f.big_endian = true;
+  EXPECT_THAT(error_of_dump(f, low),
+              AllOf(HasSubstr("dump.bin: frame 0, image 1, row 1, number 1"),
+                    HasSubstr("found 0x2c01 (11265), read as big-endian; expected 12 bits in the "
+                              "low bits"),
+                    HasSubstr("byte_order = \"little\" with align = \"low\" would fit")));
+  f.unused_bits = UnusedBits::ignored;
+  EXPECT_EQ(error_of_dump(f, low), "");
+  f = {.width = 3, .height = 2, .measurements = 2, .bits = 12, .align = RawAlignment::high};
+  const FileBytes high = RawPacker(f).pack(numbers, 1);
+  EXPECT_EQ(error_of_dump(f, high), "");
+  f.align = RawAlignment::low;
+  EXPECT_THAT(error_of_dump(f, high), HasSubstr("with align = \"high\""));
+}
+
+TEST(RawFormat, AcceptsCopiesOfTheSignAboveSignedNumbers) {
+  RawFormat f{.width = 2, .height = 1, .measurements = 1, .bits = 16, .is_signed = true};
+  const FileBytes extended = RawPacker(f).pack({-5, 100}, 1);
+  f.bits = 12;
+  f.container_bits = 16;
+  EXPECT_EQ(error_of_dump(f, extended), "");
+  f.is_signed = false;
+  EXPECT_THAT(error_of_dump(f, extended), HasSubstr("found 0xfffb"));
+}
+
 const char* const described = R"(# 11 bits in a stream, A and B of two subframes
 width = 8
 height = 2

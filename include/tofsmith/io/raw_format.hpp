@@ -43,6 +43,10 @@ inline constexpr std::array<std::string_view, 3> raw_order_words{"planar", "inte
 enum class RawAlignment { low, high };
 inline constexpr std::array<std::string_view, 2> raw_alignment_words{"low", "high"};
 
+/// Bits of a container beyond its number: zero or copies of the sign, or bits with other content.
+enum class UnusedBits { checked, ignored };
+inline constexpr std::array<std::string_view, 2> unused_bits_words{"checked", "ignored"};
+
 /// How signed integers store negative numbers.
 enum class SignEncoding { twos_complement, sign_magnitude };
 inline constexpr std::array<std::string_view, 2> sign_encoding_words{"twos_complement",
@@ -67,8 +71,9 @@ struct RawFormat {
   int bits = 16;           ///< of a number: integers 1 to 32, floats 16, 32 or 64
   int container_bits = 0;  ///< plain: 8, 16 or 32; 0: as few as hold `bits`
   RawPacking packing = RawPacking::plain;
-  RawAlignment align = RawAlignment::low;  ///< plain
-  bool big_endian = false;                 ///< plain, and floats
+  RawAlignment align = RawAlignment::low;        ///< plain
+  UnusedBits unused_bits = UnusedBits::checked;  ///< plain
+  bool big_endian = false;                       ///< plain, and floats
   bool is_signed = false;
   SignEncoding sign_encoding = SignEncoding::twos_complement;  ///< signed
   std::optional<int> sign_bit;  ///< signed: bits above it are ignored; none: the highest
@@ -168,6 +173,10 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                     "Plain packing: a number is in the low or the high bits of its "
                     "container"),
                 f.align, raw_alignment_words);
+  fields.choice(Key("unused_bits",
+                    "Plain packing: bits of a container beyond `bits` must be zero or copies of "
+                    "the sign, or are ignored because they hold something else"),
+                f.unused_bits, unused_bits_words);
   fields.choice(Key("byte_order",
                     "Plain packing and floats: the first byte is the lowest or the "
                     "highest"),
@@ -257,6 +266,17 @@ RawFormat read_raw_format(const std::filesystem::path& path);
 std::string built_in_raw_format_toml(const std::string& camera);
 /// The cameras with such a description.
 std::vector<std::string> built_in_raw_format_names();
+
+/// A container of a plain dump that holds more than its number.
+struct OversizedNumber {
+  std::size_t index;        ///< in the row
+  std::uint64_t container;  ///< as stored
+};
+/// Returns the first number of a row that exceeds `bits`, which indicates a wrong byte order,
+/// alignment or number of bits. None: all fit, or unused bits are ignored.
+/// @param row  bytes from the first number on
+std::optional<OversizedNumber> find_oversized_number(const RawFormat& format,
+                                                     std::span<const std::byte> row);
 
 /// Reads numbers of a row without black level, order and differences.
 /// @param row        bytes from the first one that holds a bit of the row

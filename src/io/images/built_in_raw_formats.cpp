@@ -26,6 +26,7 @@ const std::map<std::string, std::string>& known_formats() {
        "measurements = 4\n"
        "bits = 11\n"
        "container_bits = 16\n"
+       "unused_bits = \"ignored\"\n"
        "signed = true\n"
        "order = [3, 2, 1, 0]\n"
        "flip_rows = true\n"}};

@@ -101,6 +101,33 @@ bool is_negated(const RawFormat& f, const FilePlace& place) {
          (f.negate_from_column > 0 && place.column >= f.negate_from_column);
 }
 
+/// Descriptions of byte order and alignment with which all numbers of a row fit into their bits.
+std::string fitting_changes(const RawFormat& format, std::span<const std::byte> row) {
+  std::string changes;
+  for (const bool big_endian : {format.big_endian, !format.big_endian})
+    for (const RawAlignment align : {RawAlignment::low, RawAlignment::high}) {
+      RawFormat other = format;
+      other.big_endian = big_endian;
+      other.align = align;
+      if (find_oversized_number(other, row)) continue;
+      changes += fmt::format("{}byte_order = \"{}\" with align = \"{}\"",
+                             changes.empty() ? "" : " or ", raw_byte_order_words[big_endian],
+                             raw_alignment_words[static_cast<std::size_t>(align)]);
+    }
+  return changes.empty() ? "check bits, byte_order and align" : changes + " would fit this row";
+}
+
+/// Describes a container that holds more than its number.
+std::string oversized_problem(const RawFormat& format, const OversizedNumber& number,
+                              std::span<const std::byte> row) {
+  const bool high = format.align == RawAlignment::high;
+  return fmt::format(
+      "found {0:#x} ({0}), read as {1}-endian; expected {2} bits in the {3} bits of the container, "
+      "and no others: {4} (unused_bits = \"ignored\" ignores the other bits)",
+      number.container, raw_byte_order_words[format.big_endian], format.bits, high ? "high" : "low",
+      fitting_changes(format, row));
+}
+
 /// Turns numbers of the file into measurements.
 class Measure {
  public:
@@ -131,7 +158,7 @@ class Measure {
 
 RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format,
                              RawMarking marking)
-    : format_(std::move(format)), marking_(std::move(marking)) {
+    : source_(path.string()), format_(std::move(format)), marking_(std::move(marking)) {
   format_.validate();
   const auto file = std::make_shared<InputFile>(path);
   if (!file->size())
@@ -145,7 +172,8 @@ RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format
 }
 
 RawDumpReader::RawDumpReader(std::span<const std::byte> bytes, RawFormat format, RawMarking marking)
-    : read_at_([bytes](std::uint64_t offset, std::span<std::byte> into) {
+    : source_("bytes"),
+      read_at_([bytes](std::uint64_t offset, std::span<std::byte> into) {
         std::ranges::copy(bytes.subspan(offset, into.size()), into.begin());
       }),
       format_(std::move(format)),
@@ -185,6 +213,11 @@ void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
   }
   bytes.resize(size);
   read_at_(at, bytes);
+  if (const auto oversized = find_oversized_number(f, bytes))
+    throw IoError(fmt::format("{}: frame {}, {}row {}, number {}", source_, frame,
+                              f.layout == RawOrder::planar ? fmt::format("image {}, ", image) : "",
+                              row, oversized->index),
+                  oversized_problem(f, *oversized, bytes));
   unpack_numbers(f, bytes, first_bit, numbers);
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tofsmith/io/raw_frames.hpp"
@@ -29,7 +30,7 @@ class RawDumpReader {
   /// Reads rows first_row .. first_row + rows - 1 of the scene, (rows, W, K) numbers, the
   /// measurements of a pixel side by side and in order, with rotation, signs, black level and
   /// differences applied.
-  /// @throws IoError if the file cannot be read or became shorter
+  /// @throws IoError if the file cannot be read or became shorter, or if a number exceeds its bits
   template <typename Number>
   void read_rows(int frame, int first_row, int rows, Number* numbers) const;
 
@@ -46,6 +47,7 @@ class RawDumpReader {
   void read_file_row(int frame, std::size_t image, std::size_t row, std::vector<std::byte>& bytes,
                      std::vector<double>& numbers) const;
 
+  std::string source_;  ///< in errors
   std::function<void(std::uint64_t offset, std::span<std::byte> into)> read_at_;
   RawFormat format_;
   RawMarking marking_;

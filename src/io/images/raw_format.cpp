@@ -40,6 +40,8 @@ void validate_numbers(const RawFormat& f) {
     require(f.container_bits == 0 || f.container_bits == f.bits, "container_bits", f.container_bits,
             "must be the bits of a float");
     require(f.align == RawAlignment::low, "align", "high", "must be low for floats");
+    require(f.unused_bits == UnusedBits::checked, "unused_bits", "ignored",
+            "must be left out for floats");
     return;
   }
   require(f.bits >= 1 && f.bits <= 32, "bits", f.bits, "must be in [1, 32] for integers");
@@ -52,6 +54,8 @@ void validate_numbers(const RawFormat& f) {
   require(f.container_bits == 0, "container_bits", f.container_bits,
           "must be left out unless plain");
   require(f.align == RawAlignment::low, "align", "high", "must be low unless plain");
+  require(f.unused_bits == UnusedBits::checked, "unused_bits", "ignored",
+          "must be left out unless plain");
   require(!f.big_endian, "byte_order", "big", "must be left out unless plain");
   if (f.packing == RawPacking::mipi) {
     require(f.bits == 10 || f.bits == 12 || f.bits == 14, "bits", f.bits,

@@ -32,6 +32,33 @@ Value load(const std::byte* from, bool big_endian) {
   return load_little_endian<Value>(turned.data());
 }
 
+int container_bits_of(const RawFormat& format) {
+  if (format.container_bits > 0) return format.container_bits;
+  return format.bits <= 8 ? 8 : format.bits <= 16 ? 16 : 32;
+}
+
+/// Returns true if the unused bits of a container are zero or, above a signed number, copies of its
+/// sign.
+bool fits(const RawFormat& format, std::uint64_t container, int container_bits) {
+  const int unused = container_bits - format.bits;
+  if (format.align == RawAlignment::high) return (container & mask_of(unused)) == 0;
+  const std::uint64_t above = container >> format.bits;
+  const bool is_negative = (container >> format.sign_bit_index() & 1) != 0;
+  return above == 0 || (format.is_signed && is_negative && above == mask_of(unused));
+}
+
+template <typename Container>
+std::optional<OversizedNumber> find_oversized(const RawFormat& format,
+                                              std::span<const std::byte> row) {
+  for (std::size_t i = 0; (i + 1) * sizeof(Container) <= row.size(); ++i) {
+    const std::uint64_t container =
+        load<Container>(row.data() + i * sizeof(Container), format.big_endian);
+    if (!fits(format, container, 8 * static_cast<int>(sizeof(Container))))
+      return OversizedNumber{i, container};
+  }
+  return std::nullopt;
+}
+
 template <typename Container>
 void unpack_plain(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
   const int container_bits = 8 * static_cast<int>(sizeof(Container));
@@ -105,6 +132,17 @@ void unpack_stream(const RawFormat& format, std::span<const std::byte> row, int 
 
 }  // namespace
 
+std::optional<OversizedNumber> find_oversized_number(const RawFormat& format,
+                                                     std::span<const std::byte> row) {
+  const int container = container_bits_of(format);
+  if (format.numbers == RawNumbers::floats || format.packing != RawPacking::plain ||
+      format.unused_bits == UnusedBits::ignored || container == format.bits)
+    return std::nullopt;
+  if (container == 8) return find_oversized<std::uint8_t>(format, row);
+  if (container == 16) return find_oversized<std::uint16_t>(format, row);
+  return find_oversized<std::uint32_t>(format, row);
+}
+
 void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,
                     std::span<double> numbers) {
   if (format.numbers == RawNumbers::floats && format.bits == 16)
@@ -114,10 +152,7 @@ void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int
                              : unpack_floats<double>(format, row.data(), numbers);
   if (format.packing == RawPacking::mipi) return unpack_mipi(format, row.data(), numbers);
   if (format.packing != RawPacking::plain) return unpack_stream(format, row, first_bit, numbers);
-  const int container = format.container_bits > 0 ? format.container_bits
-                        : format.bits <= 8        ? 8
-                        : format.bits <= 16       ? 16
-                                                  : 32;
+  const int container = container_bits_of(format);
   if (container == 8) return unpack_plain<std::uint8_t>(format, row.data(), numbers);
   if (container == 16) return unpack_plain<std::uint16_t>(format, row.data(), numbers);
   unpack_plain<std::uint32_t>(format, row.data(), numbers);
