@@ -19,6 +19,7 @@
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decode_recording.hpp"
+#include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
@@ -28,7 +29,7 @@ namespace {
 
 struct CorrelationArguments {
   std::vector<std::string> files;
-  std::string raw_format, dataset, shifts, dark, reference, reference_kind = "radial";
+  std::string raw_format, dataset, shifts, dark, reference, reference_kind;
   std::string table, offset_map, gain_map;
   std::string unit = "s", decimal = "auto", axes;
   std::vector<std::string> codes;
@@ -39,6 +40,10 @@ struct CorrelationArguments {
   CalibrateOutput output;
 
   const std::string& file() const { return files.front(); }
+  std::optional<DepthKind> asked_reference_kind() const {
+    if (reference_kind.empty()) return std::nullopt;
+    return parse_depth_kind(reference_kind);
+  }
 };
 
 DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camera) {
@@ -165,7 +170,8 @@ void run(CorrelationArguments& arguments, const Session& session) {
     calibrate_by_reference({{arguments.files.begin(), arguments.files.end()},
                             arguments.raw_format,
                             arguments.dataset,
-                            parse_depth_kind(arguments.reference_kind) == DepthKind::z,
+                            depth_kind_of(arguments.reference, arguments.asked_reference_kind(),
+                                          DepthKind::radial) == DepthKind::z,
                             arguments.reference,
                             arguments.table,
                             arguments.output.camera_path,
@@ -263,10 +269,9 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
   command
       ->add_option("--reference-kind", arguments->reference_kind,
                    "the reference is depth along the ray (radial) or along the axis (z), which the "
-                   "camera's [lens] turns")
+                   "camera's [lens] turns (as the file states, or radial)")
       ->needs(reference)
-      ->check(one_of({"radial", "z"}))
-      ->capture_default_str();
+      ->check(one_of({"radial", "z"}));
   command
       ->add_option("--raw-format", arguments->raw_format,
                    "the frames are a sensor's dump, as this .raw.toml file describes it")

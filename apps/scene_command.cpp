@@ -69,14 +69,20 @@ void write_directory(const fs::path& directory, const LoadedScene& scene, const 
                      const Session& session) {
   const FreshDirectory cleanup(directory);
   make_output_directory(directory);
+  // A depth image without a lens has no view from which z follows.
+  const bool has_view = scene.staged || camera.lens;
   std::vector<fs::path> outputs;
   for (const char* name :
-       {"depth.npy", "z.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.html"})
+       {"depth.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.html"})
     outputs.push_back(directory / name);
+  if (has_view) outputs.insert(outputs.begin() + 1, directory / "z.npy");
   const OutputPolicy policy = session.check_outputs(outputs);
   const SceneImage& image = scene.image;
   write_float_image(directory / "depth.npy", image.depth_m, "depth", policy);
-  write_float_image(directory / "z.npy", z_from_radial(image.depth_m, scene.view), "z", policy);
+  if (has_view)
+    write_float_image(directory / "z.npy", z_from_radial(image.depth_m, scene.view), "z", policy);
+  else
+    session.say("note: no z.npy, because the camera has no [lens]");
   write_float_image(directory / "albedo.npy", image.albedo, "albedo", policy);
   write_float_image(directory / "cosine.npy", image.cosine, "cosine", policy);
   const NpyShape shape{static_cast<std::size_t>(image.height()),
@@ -112,8 +118,7 @@ void print(const LoadedScene& scene, const Camera& camera, const std::string& ou
     session.say(fmt::format("distance: nearest {}, median {}, farthest {}",
                             length_text(extent.nearest_m), length_text(extent.median_m),
                             length_text(extent.farthest_m)));
-  if (extent.beyond_range > 0)
-    session.say(fmt::format("{}: {}", camera.name, beyond_range_remark(extent)));
+  if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
   if (const std::string remark = albedo_remark(scene); !remark.empty()) session.say(remark);
   if (!output.empty()) session.say(fmt::format("wrote {}", output));
 }

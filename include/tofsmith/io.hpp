@@ -13,6 +13,7 @@
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/depth_kind.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"

@@ -52,6 +52,19 @@ class DepthFormat : public testing::TestWithParam<std::string> {
   std::filesystem::path file_ = directory_ / ("depth" + GetParam());
 };
 
+TEST_P(DepthFormat, StatesWhetherDepthIsRadialOrZWhereItCan) {
+  const bool states_kind = GetParam() != ".npy" && GetParam() != ".pfm";
+  for (const DepthKind kind : {DepthKind::radial, DepthKind::z}) {
+    write_depth(file_, image_of(1, 2, {1.0f, 2.0f}), overwrite, kind);
+    EXPECT_EQ(stored_depth_kind(file_), states_kind ? std::optional(kind) : std::nullopt);
+    EXPECT_EQ(depth_kind_of(file_, {}, DepthKind::z), states_kind ? kind : DepthKind::z);
+    EXPECT_EQ(depth_kind_of(file_, kind, DepthKind::z), kind);
+  }
+  if (states_kind)
+    EXPECT_THAT(io_error_of([&] { depth_kind_of(file_, DepthKind::radial, DepthKind::radial); }),
+                HasSubstr("states that its depth is of kind z; expected radial"));
+}
+
 TEST_P(DepthFormat, ReadingUndoesWriting) {
   // Whole millimetres, which every format represents exactly.
   const auto depth_m = image_of(2, 3, {0.001f, 1.0f, 2.5f, 65.535f, nan, 0.125f});

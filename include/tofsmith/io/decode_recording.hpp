@@ -17,23 +17,12 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/frame_pipeline.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/depth_kind.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
-
-/// Which distance is written as depth.
-enum class DepthKind {
-  radial,  ///< along the ray, as the camera measures it
-  z,       ///< along the optical axis
-};
-
-constexpr std::array<std::string_view, 2> words_of(DepthKind /*any*/) { return {"radial", "z"}; }
-/// "radial", "z".
-std::string_view name_of(DepthKind kind);
-/// @throws std::invalid_argument for any other word
-DepthKind parse_depth_kind(std::string_view name);
 
 /// Whether an output of this name holds points: .ply, .pcd.
 bool holds_points(const std::filesystem::path& path);
@@ -59,9 +48,10 @@ struct DecodeRequest {
   std::vector<DecodedPlane> outputs;
   DepthKind kind = DepthKind::radial;
   bool all_points = false;
-  /// Of points and z; none: a view 60 degrees wide. Pixels that see nothing, by a map of rays, are
-  /// invalid.
+  /// Of points and z, which require a lens or `view_deg`. Pixels that see nothing, by a map of
+  /// rays, are invalid.
   std::optional<Lens> lens;
+  std::optional<double> view_deg;
   bool undistort = false;  ///< needs a lens; nothing changes without distortion
   std::optional<int> frame;
   bool stack = false;
@@ -88,6 +78,10 @@ struct DecodeRequest {
   double offset_m = 0.0;
   std::filesystem::path gain_map;  ///< as PixelMaps::gain
   double memory_mb = 256.0;
+  /// Exposures of the code in the order of the decoder's table, as Playback::order, which suggests
+  /// other orders for numbers that do not fit; empty: one per measurement, in the order of the
+  /// code.
+  std::vector<int> order;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };
@@ -113,6 +107,9 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
       Field("all_points", r.all_points,
             Help{"in .ply and .pcd also write points of pixels that are not ok"}),
       Field("lens", r.lens, FieldMark::from_above),
+      Field("view_deg", r.view_deg, open(0, 180),
+            Help{"horizontal angle of view to assume for points and z if the camera has no [lens]"},
+            IfAbsent{"points and z require a lens"}),
       Field("undistort", r.undistort,
             Help{"write planes without the distortion of the camera's lens: each pixel takes the "
                  "values of the nearest one; pixels that the lens does not see are invalid"}),
@@ -164,6 +161,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
       Field("memory_mb", r.memory_mb, left_open(0, 1e9),
             Help{"memory for frames in flight; larger frames are decoded in bands of rows. The "
                  "program itself takes some 50 MB more"}),
+      Field("order", r.order, FieldMark::from_above),
       Field("policy", r.policy, FieldMark::from_above),
       Field("other_inputs", r.other_inputs, FieldMark::from_above));
 }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/depth_kind.hpp"
 #include "tofsmith/simulate/capture.hpp"
 
 namespace tofsmith {
@@ -17,13 +19,26 @@ namespace tofsmith {
 /// @throws IoError if the extension is unknown or the file does not contain a depth image
 Image<float> read_depth(const std::filesystem::path& path);
 
-/// Writes depth [m] by extension. In .png, depth is rounded to millimetres, and pixels that are not
-/// finite become 0; the other formats contain the floats.
+/// Returns the kind of distance that the file states: the array `depth_is_z` of .npz, the attribute
+/// `depthKind` of .exr, the text "Depth kind" of .png. None: .npy, .pfm, and files of other
+/// programs.
+/// @throws IoError if the file is damaged
+std::optional<DepthKind> stored_depth_kind(const std::filesystem::path& path);
+
+/// Returns the kind of distance of a depth image: as the file states, else as asked, else
+/// `fallback`.
+/// @throws IoError if the file states another kind than the one asked for
+DepthKind depth_kind_of(const std::filesystem::path& path, std::optional<DepthKind> asked,
+                        DepthKind fallback);
+
+/// Writes depth [m] by extension, with its kind if the format can state it. In .png, depth is
+/// rounded to millimetres, and pixels that are not finite become 0; the other formats contain the
+/// floats.
 /// @throws std::invalid_argument if the image is empty
 /// @throws IoError as AtomicFile, if the extension is unknown, or if a depth is outside the range
 ///         of .png (-0.0005 m to 65.535 m)
 void write_depth(const std::filesystem::path& path, const Image<float>& depth_m,
-                 OutputPolicy policy);
+                 OutputPolicy policy, DepthKind kind = DepthKind::radial);
 
 /// Reads the multipath returns of a scene from an NPZ with the arrays `first` (H W + 1, integers),
 /// `distance_m` and `ratio` (one number per return). MultipathReturns::validate() checks them

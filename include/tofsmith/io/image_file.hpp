@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -49,6 +50,8 @@ struct PngImage {
   int channels = 1;   ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
   int bit_depth = 8;  ///< 8 or 16
   std::vector<std::uint16_t> values;
+  /// Text "Depth kind" of a depth image; empty: none.
+  std::string depth_kind = {};
 
   /// Returns the value of full white: 255 or 65535.
   int max_value() const { return bit_depth == 16 ? 65535 : 255; }

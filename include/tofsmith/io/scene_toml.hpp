@@ -57,7 +57,7 @@ struct SceneSource {
   std::string scene;
   std::string image;
   std::string ambient_image;
-  DepthKind kind = DepthKind::z;
+  std::optional<DepthKind> kind;
   bool linear_image = false;
   std::optional<int> width;
   std::optional<int> height;
@@ -72,12 +72,13 @@ auto fields_of(ConstOrNot<SceneSource> auto& s) {
       Field("ambient_image", s.ambient_image,
             Help{"ambient light of each pixel, relative to that of the capture (.png .npy .exr "
                  ".pfm)"}),
-      Field("kind", s.kind, Help{"content of a depth image: z along the axis, or radial distance"}),
+      Field("kind", s.kind, Help{"content of a depth image: z along the axis, or radial distance"},
+            IfAbsent{"as the file states, or z"}),
       Field("linear_image", s.linear_image, Help{"take PNG images as linear light, not sRGB"}),
       Field("width", s.width, closed(1, 16384), Help{"columns of a built-in scene or a mesh"},
-            IfAbsent{"320"}),
+            IfAbsent{"as the camera's [lens], or 320"}),
       Field("height", s.height, closed(1, 16384), Help{"rows of a built-in scene or a mesh"},
-            IfAbsent{"240"}),
+            IfAbsent{"as the camera's [lens], or 240"}),
       Field("scale_m", s.scale_m, above(0), Help{"length of one unit of a mesh"}, IfAbsent{"1"}),
       Field("time_s", s.time_s, finite(), Help{"when a scene that moves is looked at"}));
 }
@@ -92,7 +93,8 @@ struct LoadedScene {
 };
 
 /// Reads a depth image with its albedo, or casts the rays of a scene. z-depth is converted to
-/// radial distance through the lens (default: a view 60 degrees wide).
+/// radial distance through the lens (default: a view 60 degrees wide). Built-in scenes and meshes
+/// are seen through the lens; without a lens, or with a map of rays, through the view of the scene.
 /// @throws InvalidArgument for fields that do not apply to the scene
 /// @throws IoError if the scene is unknown or a file has invalid content
 LoadedScene load_scene(const SceneSource& source, const std::optional<Lens>& lens);

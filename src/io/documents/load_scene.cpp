@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -56,12 +57,30 @@ void check_fields_fit(const SceneSource& source, SceneKind kind) {
                                            : "a scene file says its size in [view]");
 }
 
-StagedScene staged_scene(const SceneSource& source, SceneKind kind) {
+/// A side of the images of a lens: as it states, or with the optical axis in the middle.
+int side_of_lens(std::optional<int> stated, double axis_px, int fallback) {
+  constexpr double max_side = 16384;
+  const double side = std::round(2.0 * axis_px + 1.0);
+  return stated.value_or(side >= 1.0 && side <= max_side ? static_cast<int>(side) : fallback);
+}
+
+/// A built-in scene or a mesh, as the camera's lens sees it.
+StagedScene staged_scene(const SceneSource& source, SceneKind kind,
+                         const std::optional<Lens>& lens) {
   if (kind == SceneKind::scene_file) return read_scene_toml(source.scene);
-  const int width = source.width.value_or(default_width);
-  const int height = source.height.value_or(default_height);
-  if (kind == SceneKind::built_in) return built_in_scene(source.scene, width, height);
-  return framed_mesh(read_mesh(source.scene), source.scale_m.value_or(1.0), width, height);
+  const bool has_pinhole = lens && lens->rays.empty() && !lens->frame_modes;
+  const int width = source.width.value_or(
+                has_pinhole ? side_of_lens(lens->width_px, lens->cx_px, default_width)
+                            : default_width),
+            height = source.height.value_or(
+                has_pinhole ? side_of_lens(lens->height_px, lens->cy_px, default_height)
+                            : default_height);
+  StagedScene scene =
+      kind == SceneKind::built_in
+          ? built_in_scene(source.scene, width, height)
+          : framed_mesh(read_mesh(source.scene), source.scale_m.value_or(1.0), width, height);
+  if (lens && lens->rays.empty()) scene.view = view_of(lens, width, height);
+  return scene;
 }
 
 void require_size(const Image<float>& picture, const std::string& file, const SceneImage& scene,
@@ -82,8 +101,9 @@ LoadedScene depth_image(const SceneSource& source, const std::optional<Lens>& le
                     SceneImage(depth_m.height, depth_m.width),
                     view_of(lens, depth_m.width, depth_m.height),
                     {}};
-  scene.image.depth_m =
-      source.kind == DepthKind::z ? radial_from_z(depth_m, rays_of(lens, scene.view)) : depth_m;
+  scene.image.depth_m = depth_kind_of(source.scene, source.kind, DepthKind::z) == DepthKind::z
+                            ? radial_from_z(depth_m, rays_of(lens, scene.view))
+                            : depth_m;
   if (!source.image.empty()) {
     Image<float> picture = read_albedo(source.image, transfer_of(source));
     require_size(picture, source.image, scene.image, source.scene);
@@ -96,7 +116,7 @@ LoadedScene depth_image(const SceneSource& source, const std::optional<Lens>& le
 
 LoadedScene load(const SceneSource& source, SceneKind kind, const std::optional<Lens>& lens) {
   if (kind == SceneKind::depth_image) return depth_image(source, lens);
-  StagedScene staged = staged_scene(source, kind);
+  StagedScene staged = staged_scene(source, kind, lens);
   const StagedScene now = staged.at(source.time_s);
   SceneImage image = ray_cast(now.shapes, now.view, now.camera_to_world, embree_search());
   check_view(now, image);

@@ -15,6 +15,9 @@ namespace tofsmith {
 /// @throws IoError unless the array holds floats, shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
+/// Returns the array (H, W) of an image.
+NpyArray array_from_image(const Image<float>& image);
+
 /// Returns `name` if an array has it, else the name of the only array.
 /// @throws IoError if there is neither
 std::string name_called_or_only(const NpzReader& archive, std::string_view name,

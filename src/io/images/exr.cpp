@@ -8,6 +8,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
@@ -248,15 +249,15 @@ void check(const ExrPlanes& planes) {
   }
 }
 
-}  // namespace
-
-ExrPlanes parse_exr(std::span<const std::byte> content, std::string_view file) {
+/// Returns what `read` finds in an image.
+template <typename Read>
+auto read_from(std::span<const std::byte> content, std::string_view file, const Read& read) {
   check_exr_layout(content, file);
   const std::string name(file);
   try {
     MemoryInput stream(content, name.c_str());
     Imf::InputFile input(stream);
-    return read_planes(input);
+    return read(input);
   } catch (const IoError&) {
     throw;
   } catch (const std::exception& error) {
@@ -264,15 +265,29 @@ ExrPlanes parse_exr(std::span<const std::byte> content, std::string_view file) {
   }
 }
 
+}  // namespace
+
+ExrPlanes parse_exr(std::span<const std::byte> content, std::string_view file) {
+  return read_from(content, file, read_planes);
+}
+
+std::string read_exr_text(const std::filesystem::path& path, const std::string& name) {
+  return read_from(read_binary_file(path), path.string(), [&](Imf::InputFile& input) {
+    const auto* found = input.header().findTypedAttribute<Imf::StringAttribute>(name);
+    return found ? found->value() : std::string();
+  });
+}
+
 ExrPlanes read_exr(const std::filesystem::path& path) {
   return parse_exr(read_binary_file(path), path.string());
 }
 
-std::vector<std::byte> serialize_exr(const ExrPlanes& planes) {
+std::vector<std::byte> serialize_exr(const ExrPlanes& planes, const ExrText& text) {
   check(planes);
   const Image<float>& first = planes.begin()->second;
   Imf::Header header(first.width, first.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  if (!text.name.empty()) header.insert(text.name, Imf::StringAttribute(text.text));
   Imf::FrameBuffer frame;
   for (const auto& [name, plane] : planes) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
@@ -289,9 +304,10 @@ std::vector<std::byte> serialize_exr(const ExrPlanes& planes) {
   return std::move(stream.content);
 }
 
-void write_exr(const std::filesystem::path& path, const ExrPlanes& planes, OutputPolicy policy) {
+void write_exr(const std::filesystem::path& path, const ExrPlanes& planes, OutputPolicy policy,
+               const ExrText& text) {
   AtomicFile file(path, policy);
-  file.write(serialize_exr(planes));
+  file.write(serialize_exr(planes, text));
   file.commit();
 }
 

@@ -25,10 +25,20 @@ using ExrPlanes = std::map<std::string, Image<float>>;
 ExrPlanes parse_exr(std::span<const std::byte> content, std::string_view file);
 ExrPlanes read_exr(const std::filesystem::path& path);
 
+/// Text attribute of an image.
+struct ExrText {
+  std::string name, text;
+};
+/// Returns the text of an attribute; "" if the image has none of this name.
+/// @throws IoError as parse_exr()
+std::string read_exr_text(const std::filesystem::path& path, const std::string& name);
+
 /// Writes float channels with ZIP compression.
+/// @param text  written as an attribute unless its name is empty
 /// @throws std::invalid_argument if there are no planes, a name is empty, or sizes differ
-std::vector<std::byte> serialize_exr(const ExrPlanes& planes);
+std::vector<std::byte> serialize_exr(const ExrPlanes& planes, const ExrText& text = {});
 /// @throws IoError as AtomicFile
-void write_exr(const std::filesystem::path& path, const ExrPlanes& planes, OutputPolicy policy);
+void write_exr(const std::filesystem::path& path, const ExrPlanes& planes, OutputPolicy policy,
+               const ExrText& text = {});
 
 }  // namespace tofsmith

@@ -67,13 +67,8 @@ void write_float_image(const std::filesystem::path& path, const Image<float>& im
                        std::string_view name, OutputPolicy policy) {
   const std::string extension = known_extension(path, {".npy", ".npz", ".exr", ".pfm"});
   require_pixels(image);
-  const auto array = [&image] {
-    return NpyArray::of<float>(
-        {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)},
-        image.pixels);
-  };
-  if (extension == ".npy") write_npy(path, array(), policy);
-  if (extension == ".npz") write_npz(path, {{std::string(name), array()}}, policy);
+  if (extension == ".npy") write_npy(path, array_from_image(image), policy);
+  if (extension == ".npz") write_npz(path, {{std::string(name), array_from_image(image)}}, policy);
   if (extension == ".exr") write_exr(path, {{exr_channel(name), image}}, policy);
   if (extension == ".pfm")
     write_pfm(path, PfmImage{image.height, image.width, 1, 1.0, image.pixels}, policy);

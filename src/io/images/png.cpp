@@ -87,6 +87,18 @@ void check(const PngImage& image) {
           fmt::format("must be <= {} at {} bits", image.max_value(), image.bit_depth));
 }
 
+constexpr const char* depth_kind_key = "Depth kind";
+
+std::string depth_kind_of(png_structp png, png_infop info) {
+  png_textp entries = nullptr;
+  int count = 0;
+  png_get_text(png, info, &entries, &count);
+  for (int i = 0; i < count; ++i)
+    if (std::string_view(entries[i].key) == depth_kind_key && entries[i].text)
+      return entries[i].text;
+  return {};
+}
+
 }  // namespace
 
 PngImage parse_png(std::span<const std::byte> content, std::string_view file) {
@@ -118,6 +130,7 @@ PngImage parse_png(std::span<const std::byte> content, std::string_view file) {
   png_read_image(png, rows.data());
   png_read_end(png, nullptr);
 
+  image.depth_kind = depth_kind_of(png, reader.info());
   if (image.bit_depth == 8) {
     image.values.assign(bytes.begin(), bytes.end());
   } else {  // big endian
@@ -145,6 +158,16 @@ std::vector<std::byte> serialize_png(const PngImage& image) {
   png_set_IHDR(png, writer.info(), static_cast<png_uint_32>(image.width),
                static_cast<png_uint_32>(image.height), image.bit_depth, kinds[image.channels - 1],
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  std::string text = image.depth_kind;
+  if (!text.empty()) {
+    std::string key = depth_kind_key;
+    png_text entry{};
+    entry.compression = PNG_TEXT_COMPRESSION_NONE;
+    entry.key = key.data();
+    entry.text = text.data();
+    entry.text_length = text.size();
+    png_set_text(png, writer.info(), &entry, 1);
+  }
   png_write_info(png, writer.info());
 
   const std::size_t row_values =

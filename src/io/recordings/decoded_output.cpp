@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "io/images/depth_kind_fields.hpp"
 #include "io/images/exr.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -22,8 +23,10 @@ namespace tofsmith {
 
 namespace {
 
-NpzArrays arrays(const DepthImage& decoded, const std::vector<DecodedPlane>& planes) {
+NpzArrays arrays(const DepthImage& decoded, const std::vector<DecodedPlane>& planes,
+                 DepthKind kind) {
   NpzArrays result;
+  if (std::ranges::count(planes, DecodedPlane::depth) > 0) add_depth_kind(kind, result);
   for (const DecodedPlane plane : planes) {
     const auto [height, width] = with_plane(
         plane, [](const auto& image) { return std::pair(image.height, image.width); }, decoded);
@@ -97,11 +100,11 @@ std::size_t writing_bytes_per_pixel(std::string_view extension,
 }  // namespace
 
 void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
-                  const std::vector<DecodedPlane>& planes, const PixelRays& pixel_rays,
-                  bool all_points, OutputPolicy policy) {
+                  const std::vector<DecodedPlane>& planes, DepthKind kind,
+                  const PixelRays& pixel_rays, bool all_points, OutputPolicy policy) {
   const std::string extension = path.extension().string();
   if (extension == ".npz") {
-    write_npz(path, arrays(decoded, planes), policy);
+    write_npz(path, arrays(decoded, planes, kind), policy);
   } else if (extension == ".ply") {
     write_ply(path, cloud(decoded, planes, pixel_rays, all_points, false), policy);
   } else if (extension == ".pcd") {
@@ -112,9 +115,9 @@ void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
     for (const DecodedPlane plane : planes)
       channels[plane == DecodedPlane::depth ? "Z" : std::string(name_of(plane))] =
           floats_of(decoded, plane);
-    write_exr(path, channels, policy);
+    write_exr(path, channels, policy, channels.contains("Z") ? exr_text_of(kind) : ExrText());
   } else {
-    write_depth(path, decoded.depth_m, policy);
+    write_depth(path, decoded.depth_m, policy, kind);
   }
 }
 
@@ -127,8 +130,8 @@ void write_decoded(const std::filesystem::path& path, const DepthImage& image,
       throw std::invalid_argument(
           fmt::format("planes = {}; must be planes that the image has", name_of(plane)));
   check_decoded_output(path, policy);
-  write_planes(path, image, planes, holds_points(path) ? PixelRays(view) : PixelRays(), all_points,
-               policy);
+  write_planes(path, image, planes, DepthKind::radial,
+               holds_points(path) ? PixelRays(view) : PixelRays(), all_points, policy);
 }
 
 bool holds_points(const std::filesystem::path& path) {
@@ -202,7 +205,8 @@ void DecodeOutput::take(int frame, int first_row, int rows, const DepthImage& pl
   const bool first = first_row == 0, last = first_row + rows == target_.view.height;
   if (!target_.in_rows()) {
     if (last)
-      write_planes(target_.frame_path(frame), planes, target_.planes, target_.pixel_rays,
+      write_planes(target_.frame_path(frame), planes, target_.planes,
+                   target_.as_z ? DepthKind::z : DepthKind::radial, target_.pixel_rays,
                    target_.all_points, target_.policy);
     return;
   }

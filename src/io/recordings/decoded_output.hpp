@@ -12,6 +12,7 @@
 #include "io/recordings/decoded_planes.hpp"
 #include "io/recordings/read_ahead.hpp"
 #include "io/recordings/undistortion.hpp"
+#include "tofsmith/io/depth_kind.hpp"
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
@@ -21,11 +22,12 @@ namespace tofsmith {
 /// as scalars.
 /// @param planes      those of `decoded` to write; .npy, .pfm and .png take depth, points need it
 ///                    and status too
+/// @param kind        of the depth
 /// @param pixel_rays  of points; other files need none
 /// @param all_points  though their pixels are not ok
 void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
-                  const std::vector<DecodedPlane>& planes, const PixelRays& pixel_rays,
-                  bool all_points, OutputPolicy policy);
+                  const std::vector<DecodedPlane>& planes, DepthKind kind,
+                  const PixelRays& pixel_rays, bool all_points, OutputPolicy policy);
 
 /// Whether a file of this name holds depth alone: .npy, .pfm, .png.
 bool holds_depth_only(const std::filesystem::path& path);
