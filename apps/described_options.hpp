@@ -74,6 +74,7 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
       } else if constexpr (!is_optional<Value>) {
         added->capture_default_str();
       }
+      added->transform(number_in(field.unit(), std::is_integral_v<Single>));
       if (field.range.is_restricted)
         added->check(number_that(field.range.text(std::is_integral_v<Single>),
                                  [range = field.range](double v) { return range.contains(v); }));

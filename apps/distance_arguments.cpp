@@ -19,18 +19,24 @@ void DistanceArguments::add_to(CLI::App& command) {
                       "points: light from its [optics]")
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->check(positive_number());
+          ->check(positive_number())
+          ->transform(number_in("m"));
   command.add_option("--albedo", albedo_, "of those surfaces")
       ->check(positive_number(1.0))
       ->capture_default_str()
       ->needs(distance);
   command.add_option("--klux", klux_, "sunlight on those surfaces [klx]")
       ->check(number_from_0_on())
+      ->transform(number_in("klx"))
       ->needs(distance);
 }
 
 Camera DistanceArguments::at(const Camera& camera, const Session& session) const {
   if (!is_asked()) return camera;
+  constexpr double brightest_klux = 200.0;  // the sun at noon: 130
+  if (klux_ && *klux_ > brightest_klux)
+    session.say(
+        fmt::format("note: --klux {:g} is brighter than the sun, 130 klx: is it in lux?", *klux_));
   Camera judged = at_distances(camera, distances_m_, albedo_, klux_);
   for (const double distance_m : distances_m_) {
     const OperatingPoint light = judged.optics->light_at(distance_m, albedo_);

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -24,6 +25,7 @@
 #include "printed_text.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -94,6 +96,20 @@ std::vector<std::string> known_words(const CLI::App& app, bool options) {
   return words;
 }
 
+/// The key of a camera that an option names, "sensor.taps" for "--taps"; "" if there is none.
+std::string camera_key_of(std::string option) {
+  option = option.substr(0, option.find('='));
+  option.erase(0, option.find_first_not_of('-'));
+  std::ranges::replace(option, '-', '_');
+  KeyList list;
+  Camera camera;
+  describe(list, camera);
+  for (const KeyDescription& key : list.keys)
+    if (key.type != ValueType::table && key.name.substr(key.name.rfind('.') + 1) == option)
+      return key.name;
+  return "";
+}
+
 /// What is wrong with the arguments, in one sentence.
 std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> rest = app.remaining(true);
@@ -102,6 +118,9 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const bool option = word.size() > 1 && word.front() == '-';
   const bool command = !option && &chosen(app) == &app;
   const std::vector<std::string> known = known_words(app, option);
+  if (option && std::ranges::find(known, "--set") != known.end())
+    if (const std::string key = camera_key_of(word); !key.empty())
+      return fmt::format("unknown option '{}'; it is a key of the camera: --set {}=...", word, key);
   std::string near;
   if (option || command) near = nearest_word(word, known);
   std::string text = fmt::format("{} '{}'",
@@ -184,6 +203,7 @@ int run(int argc, char** argv) {
       [&] { thread_limit = std::make_unique<ThreadLimit>(session.threads); });
 
   add_commands(app, session);
+  add_examples(app);
   refuse_empty_values(app, argc, argv);
   if (app.get_subcommands([](const CLI::App*) { return true; }).size() > 1)
     app.footer("Try: tofsmith demo -o out    tofsmith codes    tofsmith design paper-10f0 -o out");

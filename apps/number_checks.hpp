@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "session.hpp"
+#include "tofsmith/core/unit_text.hpp"
 
 namespace tofsmith::apps {
 
@@ -20,6 +21,26 @@ bool read_number_pair(const std::string& text, char separator, Number& first, Nu
   const std::size_t at = text.find(separator);
   return at != std::string::npos && CLI::detail::lexical_cast(text.substr(0, at), first) &&
          CLI::detail::lexical_cast(text.substr(at + 1), second);
+}
+
+/// Rewrites the value of an option, such as "20MHz", as a number in its unit; of an integer, "1e4"
+/// as "10000".
+inline CLI::Validator number_in(std::string_view unit, bool is_integer = false) {
+  CLI::Validator rewrite;
+  rewrite.operation([unit, is_integer](std::string& text) {
+    constexpr double max_integer = 1e15;
+    double plain = 0.0;
+    if (!is_integer && CLI::detail::lexical_cast(text, plain)) return std::string();
+    const auto number = number_in_unit(text, unit);
+    if (!number && unit.empty()) return std::string();  // the next check reports it
+    if (!number) return fmt::format("found {}; expected {}", text, number_rule(unit));
+    if (!is_integer)
+      text = fmt::format("{}", *number);
+    else if (*number == std::trunc(*number) && std::abs(*number) <= max_integer)
+      text = fmt::format("{:.0f}", *number);
+    return std::string();
+  });
+  return rewrite;
 }
 
 /// Checks the number of an option; what breaks the rule is refused with "found -1; must be > 0".

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "help_pages.hpp"
+#include "number_checks.hpp"
 #include "printed_text.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/unusual_numbers.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith::apps {
@@ -92,6 +94,7 @@ void CameraArguments::add_temperature_to(CLI::App& command) {
       .add_option("--temperature", temperature_c,
                   "of the camera [degrees C]: depth and signal change as its [temperature] "
                   "says (temperature.now_c, or the reference)")
+      ->transform(number_in("degrees C"))
       ->group(for_experts);
   command
       .add_option("--sensor-temperature", sensor_temperature_c,
@@ -116,6 +119,8 @@ std::optional<std::string> CameraArguments::take_that_of(const std::filesystem::
 
 Camera CameraArguments::load() const {
   Camera camera = load_camera(name, settings);
+  for (const std::string& note : unusual_numbers(camera))
+    fmt::print(stderr, "tofsmith: note: {}: {}\n", printed(name), note);
   if (temperature_c) {
     if (!camera.temperature)
       throw UsageError(
@@ -134,6 +139,11 @@ Camera CameraArguments::load() const {
   }
   if (temperature_c || sensor_temperature_c) camera.validate();
   return camera;
+}
+
+std::string marked_note(const std::string& note) {
+  const bool is_marked = note.starts_with("note: ") || note.starts_with("warning: ");
+  return is_marked ? note : "note: " + note;
 }
 
 std::string time_text(double seconds) {

@@ -93,6 +93,9 @@ struct CameraArguments {
 /// Where `simulate` leaves the camera of raw frames: raw.camera.toml beside raw.npy.
 std::filesystem::path camera_beside(const std::filesystem::path& raw);
 
+/// A note with its mark: "note: ...", unless it is a "warning: ..." or has one.
+std::string marked_note(const std::string& note);
+
 /// "13.2 ms", "4.1 s".
 std::string time_text(double seconds);
 

@@ -119,7 +119,8 @@ DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& optio
 CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Camera& camera) {
   // A name that is not a file may be a misspelled family, which load_camera_code() reports.
   const std::string file = resolved(spec, choice.code, is_family(choice.code));
-  const bool is_file = std::filesystem::exists(file);
+  std::error_code ignored;  // such as a name that is too long
+  const bool is_file = std::filesystem::exists(file, ignored);
   CodeSet code = load_camera_code(is_file ? file : choice.code, camera);
   require_fits(code, camera);
   return code;

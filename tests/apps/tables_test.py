@@ -141,7 +141,9 @@ class Tables(CommandLineTest):
         np.save(self.path("t.npy"), self.sweep())
         self.frame()
         decode = ["decode", "raw.npy", "--code", "t.npy", "-o"]
-        for value in ("1e300", "0", "-1", "nan", "inf", "far"):
+        self.refuse([*decode, "d.npy", "--range-m", "far"], "--range-m: found far; expected a number",
+                    code=2)
+        for value in ("1e300", "0", "-1", "nan", "inf"):
             error = self.refuse([*decode, "d.npy", "--range-m", value], "--range-m",
                                 f"found {value}; must be > 0", code=2)
             self.assertLess(len(error), 150)

@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:2:24: sensor.readout_gap_s = -0.001; must be finite and >= 0"},
         BadLine{"sensor.frame_period_s = 0",
                 "c.toml:2:25: sensor.frame_period_s = 0; must be finite and > 0"},
-        BadLine{"samples = 240.0", "c.toml:2:11: samples: found 240.0; expected an integer"},
+        BadLine{"samples = 240.5", "c.toml:2:11: samples: found 240.5; expected an integer"},
         BadLine{"samples = 99999999999",
                 "c.toml:2:11: samples: found 99999999999; expected an integer of at most 32 bits"},
         BadLine{"light = 3", "c.toml:2:9: light: found 3; expected a table"},
@@ -308,6 +308,38 @@ TEST(CameraToml, TooManyDepthWeightsAreRejected) {
 TEST(CameraToml, ReportsWhereInvalidTomlEnds) {
   EXPECT_THAT(refusal("fundamental_frequency_hz = 15e6\n\n[light\n"), HasSubstr("c.toml:3:7: "));
   EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("c.toml:2:"));
+}
+
+TEST(CameraToml, SyntaxErrorsComeWithTheirLikelyCause) {
+  EXPECT_THAT(
+      refusal("fundamental_frequency_hz = 20 MHz\n"),
+      HasSubstr("a number with a unit needs quotes: fundamental_frequency_hz = \"20 MHz\""));
+  EXPECT_THAT(refusal("exposure_s = 0,02\n"), HasSubstr("decimals have a point"));
+  EXPECT_THAT(refusal("name = my camera  # of the lab\n"),
+              HasSubstr("text needs quotes: name = \"my camera\""));
+  EXPECT_THAT(refusal("samples = 240 px\n"), HasSubstr("samples is a plain number"));
+  EXPECT_THAT(refusal(std::string("\x7f"
+                                  "ELF\0\1\2",
+                                  7)),
+              HasSubstr("this is a binary file"));
+}
+
+TEST(CameraToml, NumbersMayHaveTheirUnit) {
+  const Camera camera = parse_camera_toml(
+      "fundamental_frequency_hz = \"20 MHz\"\nexposure_s = \"5ms\"\nsamples = 1.2e2\n", "c.toml",
+      std::vector<std::string>{"sensor.impulse_response={kind=\"lowpass\", cutoff_hz=\"80MHz\"}",
+                               "exposure_s=2 ms"});
+  EXPECT_DOUBLE_EQ(camera.fundamental_frequency_hz, 20e6);
+  EXPECT_DOUBLE_EQ(camera.exposure_s.total_s, 2e-3);
+  EXPECT_EQ(camera.samples, 120);
+  EXPECT_THAT(refusal("fundamental_frequency_hz = \"20 kg\"\n"), HasSubstr("expected a number"));
+}
+
+TEST(CameraToml, UnknownKeysAreNamedBeforeMissingOnes) {
+  EXPECT_THAT(refusal("fundamental_freqency_hz = 15e6\n"),
+              HasSubstr("did you mean fundamental_frequency_hz?"));
+  EXPECT_THAT(refusal("fundamental_frequency_hz = 15e6\nexposure_ms = 20\n"),
+              HasSubstr("did you mean exposure_s, in s?"));
 }
 
 TEST(CameraToml, KeysOfTooManyPartsAreRejected) {

@@ -9,7 +9,7 @@
 namespace tofsmith {
 
 void FieldReader::visit(const Key& key, const Value& value) {
-  if (!key.example.empty()) table().required(key.name, key.example);
+  if (!key.example.empty()) table().required_at_end(key.name, key.example);
   std::visit(Overloaded{
                  [&](WordChoice* choice) {
                    if (const auto index = table().word(key.name, choice->words))

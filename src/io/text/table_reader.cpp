@@ -14,7 +14,10 @@
 #include <sstream>
 
 #include "core/shared/text_numbers.hpp"
+#include "io/text/toml_hints.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/unit_text.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
@@ -74,18 +77,6 @@ void lay_over(toml::table& base, toml::table&& change) {
     base.erase(key.str());  // also erases the key, which stores the old position
     node.visit([&, k = key](auto& value) { base.insert_or_assign(k, std::move(value)); });
   }
-}
-
-/// Converts `key = word` to `key = "word"`.
-std::optional<std::string> with_quotes(const std::string& setting) {
-  const std::size_t begin = setting.find_first_not_of(' ', setting.find('=') + 1);
-  if (setting.find('=') == std::string::npos || begin == std::string::npos) return std::nullopt;
-  const std::string word = setting.substr(begin);
-  const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
-    return is_letter_or_digit(c) || std::string_view("_./-").find(c) != std::string_view::npos;
-  });
-  if (!plain || is_digit(word[0])) return std::nullopt;
-  return fmt::format("{}\"{}\"", setting.substr(0, begin), word);
 }
 
 /// Rejects keys with very many parts. Each part of a dotted key nests one table deeper, and tables
@@ -196,7 +187,9 @@ TomlDocument::TomlDocument(std::string_view text, std::string_view source_name)
   try {
     root_ = toml::parse(text, source_name);
   } catch (const toml::parse_error& error) {
-    throw IoError(place_of(error.source()), error.description());
+    throw IoError(
+        place_of(error.source()),
+        fmt::format("{}{}", error.description(), toml_hint(text, error.source().begin.line)));
   }
 }
 
@@ -259,6 +252,11 @@ void TableReader::fail(std::string_view key, std::string_view problem) const {
 double TableReader::finite_number(const std::string& name, const toml::node& node,
                                   std::string_view expected) const {
   if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+  if (const auto* text = node.as_string()) {
+    const bool has_unit = !number_in(text->get());
+    const auto with_unit = number_in_unit(text->get(), unit_of_key(name.substr(0, name.find('['))));
+    if (has_unit && with_unit) return *with_unit;
+  }
   const auto* number = node.as_floating_point();
   if (!number) mistyped(name, node, expected);
   if (!std::isfinite(number->get())) mistyped(name, node, "a finite number");
@@ -283,8 +281,12 @@ void TableReader::value(std::string_view key, bool& target) {
 void TableReader::value(std::string_view key, int& target) {
   const toml::node* node = find(key);
   if (!node) return;
-  if (!node->is_integer()) mistyped(full(key), *node, "an integer");
-  const std::int64_t number = node->as_integer()->get();
+  const auto* decimal = node->as_floating_point();  // 1e4
+  const bool is_whole =
+      decimal && decimal->get() == std::trunc(decimal->get()) && std::abs(decimal->get()) < 1e15;
+  if (!node->is_integer() && !is_whole) mistyped(full(key), *node, "an integer");
+  const std::int64_t number =
+      is_whole ? static_cast<std::int64_t>(decimal->get()) : node->as_integer()->get();
   if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max())
     mistyped(full(key), *node, "an integer of at most 32 bits");
   target = static_cast<int>(number);
@@ -451,15 +453,24 @@ std::vector<TableReader> TableReader::enter_each(std::string_view key) {
 
 TableReader& TableReader::required(std::string_view key, std::string_view example) {
   if (table_.contains(key)) return *this;
-  const std::string problem =
-      fmt::format("found no {}; expected a line such as `{} = {}`", full(key), key, example);
-  if (prefix_.empty()) throw IoError(document_.source_name(), problem);
-  throw IoError(document_.place_of(table_.source()), problem);
+  throw missing(key, example);
+}
+
+void TableReader::required_at_end(std::string_view key, std::string_view example) {
+  if (!table_.contains(key) && !missing_) missing_ = missing(key, example);
+}
+
+IoError TableReader::missing(std::string_view key, std::string_view example) const {
+  return {prefix_.empty() ? document_.source_name() : document_.place_of(table_.source()),
+          fmt::format("found no {}; expected a line such as `{} = {}`", full(key), key, example)};
 }
 
 void TableReader::refuse(std::initializer_list<std::string_view> keys, std::string_view condition) {
   for (const std::string_view key : keys)
-    if (contains(key)) fail(key, fmt::format("is only valid with {}", condition));
+    if (contains(key)) {
+      if (missing_) throw *missing_;  // perhaps the condition
+      fail(key, fmt::format("is only valid with {}", condition));
+    }
 }
 
 std::filesystem::path TableReader::resolve(std::string_view key, const std::string& path) const {
@@ -474,8 +485,9 @@ void TableReader::finish() const {
     throw IoError(document_.place_of(key.source()),
                   fmt::format("unknown key {}; {}", full(key.str()),
                               near.empty() ? fmt::format("expected {}", fmt::join(known_, ", "))
-                                           : fmt::format("did you mean {}?", full(near))));
+                                           : key_suggestion(key.str(), full(near))));
   }
+  if (missing_) throw *missing_;
 }
 
 }  // namespace tofsmith

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/shared/enum_words.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith {
@@ -135,6 +136,8 @@ class TableReader {
 
   /// Requires the next field. @param example  a value for the error message
   TableReader& required(std::string_view key, std::string_view example);
+  /// As required(), but finish() throws, after it has looked for unknown keys.
+  void required_at_end(std::string_view key, std::string_view example);
   /// Rejects keys that are only valid under a condition that is not met.
   /// @param condition  in the user's syntax, such as `kind = "hann"`
   void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
@@ -148,7 +151,7 @@ class TableReader {
   std::filesystem::path resolve(std::string_view key, const std::string& path) const;
   /// @throws IoError about the value of `key`, or about the table if the key is missing
   [[noreturn]] void fail(std::string_view key, std::string_view problem) const;
-  /// Rejects keys that were not read, with the most similar known one.
+  /// Rejects keys that were not read, with the most similar known one; then reports a missing key.
   void finish() const;
 
  private:
@@ -168,7 +171,10 @@ class TableReader {
   Places& places_;
   const toml::table& table_;
   std::string prefix_;  // "" or "light."
+  IoError missing(std::string_view key, std::string_view example) const;
+
   std::vector<std::string> known_;
+  std::optional<IoError> missing_;
 };
 
 }  // namespace tofsmith

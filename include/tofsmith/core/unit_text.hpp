@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tofsmith {
+
+/// Reads a number that a user may write with its unit, such as "20MHz", "5 mm" or "2".
+/// @param unit  as unit_of_key() returns it; a number without a unit is in this one
+/// @return the number in `unit`; none if the text is not a number, or in another kind of unit
+std::optional<double> number_in_unit(std::string_view text, std::string_view unit);
+
+/// "a number, or one with its unit such as 2GHz" for the unit "Hz"; "a number" without a unit.
+std::string number_rule(std::string_view unit);
+
+}  // namespace tofsmith

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/unusual_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <variant>
+
+#include "core/shared/overloaded.hpp"
+
+namespace tofsmith {
+
+void UnusualNumbers::visit(const Key& key, const Value& value) {
+  constexpr double far = 10.0;
+  if (!(key.usual_high > key.usual_low)) return;
+  const auto check = [&](double number) {
+    if (number == 0.0 || !std::isfinite(number)) return;
+    if (number * far >= key.usual_low && number <= key.usual_high * far) return;
+    const std::string unit(unit_of_key(key.name));
+    notes.push_back(
+        fmt::format("{}{} = {:g}{}{}; most cameras have {:g} to {:g}{}{}: is the unit "
+                    "right?",
+                    prefixes_.back(), key.name, number, unit.empty() ? "" : " ", unit,
+                    key.usual_low, key.usual_high, unit.empty() ? "" : " ", unit));
+  };
+  std::visit(Overloaded{
+                 [&](int* number) { check(*number); },
+                 [&](double* number) { check(*number); },
+                 [&](const NumberOrList& either) {
+                   if (either.list.empty()) check(either.number);
+                 },
+                 [](const auto& /*no_single_number*/) {},
+             },
+             value);
+}
+
+}  // namespace tofsmith
