@@ -16,6 +16,7 @@
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
+#include "recorded_with.hpp"
 #include "session.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
@@ -95,23 +96,29 @@ void run(DecodeArguments& arguments, Session& session) {
   reads_pipe(arguments);  // wrong usage comes before what files hold
   const std::optional<std::string> camera_source =
       arguments.camera.take_that_of(arguments.raw.front());
+  const bool has_recorded_code = arguments.code.empty();
+  if (has_recorded_code) arguments.code = recorded_code(arguments.raw.front());
   const Camera camera = arguments.camera.load();
   const DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
   const std::unique_ptr<FrameBackend> backend = arguments.device.backend(
       make_decoder(arguments.method.method(), source.table, arguments.options,
                    arguments.method.unwrap_weights(), arguments.multipath.options()));
-  const DecodeRequest request = request_of(arguments, camera, session);
+  DecodeRequest request = request_of(arguments, camera, session);
+  request.order = source.order;
   if (reads_pipe(arguments)) {
-    for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", note);
+    for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", marked_note(note));
     return decode_pipe(request, *backend, session);
   }
   const DecodedRecording result = decode_all(request, *backend, session);
-  std::vector<std::string> notes = source.notes;
+  std::vector<std::string> notes = recording_conflicts(arguments.raw.front(), arguments.code,
+                                                       camera, arguments.taps.file_options());
+  notes.insert(notes.end(), source.notes.begin(), source.notes.end());
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
 
   nlohmann::ordered_json document = {
       {"code", source.name},
+      {"code_source", arguments.code},
       {"camera", camera.name},
       {"camera_source", camera_source.value_or(arguments.camera.name)},
       {"range_m", source.table.range_m},
@@ -138,10 +145,11 @@ void run(DecodeArguments& arguments, Session& session) {
   if (backend->device() != "cpu") lines += "\ndevice " + backend->device();
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
+  if (has_recorded_code)
+    lines += fmt::format("\ncode {}, next to {} (--code overrides it)", arguments.code,
+                         arguments.raw.front());
   if (camera_source) lines += "\ncamera " + *camera_source;
-  for (const std::string& note : notes) lines += "\n" + note;
-  if (!request.lens && (holds_points(request.output) || request.kind == DepthKind::z))
-    lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
+  for (const std::string& note : notes) lines += "\n" + marked_note(note);
   session.say(lines);
 }
 
@@ -159,11 +167,10 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
   CLI::Option* const layout = request.add("layout", "--layout");
   CLI::Option* const dataset = request.add("dataset", "--dataset")->group(for_experts);
   request.add("raw_format", "--raw-format")->excludes(layout)->excludes(dataset);
-  command
-      .add_option(
-          "--code", arguments.code,
-          "the code that the camera used: a family or a file; or a measured table (.npz .npy .csv)")
-      ->required();
+  command.add_option(
+      "--code", arguments.code,
+      "the code that the camera used: a family or a file; or a measured table (.npz .npy .csv) "
+      "(the .code.json next to the raw frames)");
 }
 
 /// Options of maps and stray light.
@@ -210,6 +217,7 @@ void add_output_options(CLI::App& command, DecodeArguments& arguments) {
       ->group(for_experts);
   const FieldOptions request(command, arguments.request);
   request.add("all_points", "--all-points")->group(for_experts);
+  request.add("view_deg", "--view-deg")->group(for_experts);
   request.add("undistort", "--undistort")->group(for_experts);
   request.add("stack", "--stack");
   request.add("memory_mb", "--memory-mb")->group(for_experts);

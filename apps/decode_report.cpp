@@ -80,8 +80,8 @@ std::string decode_lines(const DecodeRequest& request, const DecodedRecording& r
 void add_decode_summary(const DecodeRequest& request, const DecodedRecording& result,
                         nlohmann::ordered_json& document) {
   const auto add_status = [](nlohmann::ordered_json& to, const StatusCounts& statuses) {
-    const std::string text = status_text(statuses);
-    if (!text.empty()) to["status"] = text;
+    for (const PixelStatus status : all_pixel_statuses)
+      if (statuses.of(status) > 0) to["status"][std::string(name_of(status))] = statuses.of(status);
   };
   document["frame_count"] = result.frames.size();
   if (result.frames.size() <= max_listed) {

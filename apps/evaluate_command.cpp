@@ -273,7 +273,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   print(session, camera, evaluated, arguments);
   for (const CodeSet& code : codes)
     if (const auto note = ambiguity_note(make_decoding_table(ForwardModel(code, camera), camera)))
-      session.say(fmt::format("{}: {}", code.name(), *note));
+      session.say(fmt::format("note: {}: {}", code.name(), *note));
   if (!arguments.output.empty()) session.say(fmt::format("wrote {}", arguments.output));
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "fresh_directory.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
+#include "recorded_with.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
 #include "simulate_light.hpp"
@@ -248,6 +250,15 @@ bool leaves_camera(const SimulateArguments& arguments) {
                                       ignored);
 }
 
+/// Returns false if the file next to the frames is the code that was named, or holds the same code.
+bool leaves_code(const SimulateArguments& arguments, const CodeSet& code) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(code_beside(arguments.output), arguments.code, ignored))
+    return false;
+  std::ifstream before(code_beside(arguments.output), std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(before), {}) != code_to_json(code);
+}
+
 /// The first line of what is left there, by which it may be replaced.
 std::string camera_heading(const SimulateArguments& arguments) {
   return fmt::format("# of {}, by tofsmith simulate",
@@ -262,9 +273,13 @@ OutputPolicy camera_policy(const SimulateArguments& arguments, const Session& se
                                                         : session.output_policy();
 }
 
-/// Writes the camera, with the lens through which the scene was seen, for those who decode.
+/// Writes the code and the camera, with the lens through which the scene was seen, for those who
+/// decode.
 void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeSet& code,
                   const PinholeView& view, const Session& session) {
+  if (leaves_code(arguments, code))
+    write_file_atomically(code_beside(arguments.output), code_to_json(code),
+                          camera_policy(arguments, session));
   if (!leaves_camera(arguments)) return;
   if (!camera.lens || camera.lens->rays.empty()) camera.lens = lens_of(view);
   write_file_atomically(camera_beside(arguments.output),
@@ -274,16 +289,20 @@ void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeS
 }
 
 /// Before the work: no output is an input, or there already.
-OutputPolicy check_outputs(const SimulateArguments& arguments, const Session& session) {
-  const std::filesystem::path camera = camera_beside(arguments.output);
+OutputPolicy check_outputs(const SimulateArguments& arguments, const CodeSet& played,
+                           const Session& session) {
+  const std::filesystem::path camera = camera_beside(arguments.output),
+                              code = code_beside(arguments.output);
   std::vector<std::filesystem::path> outputs{arguments.output};  // in the order of writing
   if (leaves_camera(arguments)) outputs.push_back(camera);
+  if (leaves_code(arguments, played)) outputs.push_back(code);
   for (const std::string& truth :
        {arguments.truth, arguments.truth_near, arguments.truth_far, arguments.returns.truth()})
     if (!truth.empty()) outputs.emplace_back(truth);
   const OutputPolicy policy = policy_to_go_on(outputs, session.output_policy());
   for (const std::filesystem::path& output : outputs)
-    session.check_output(output, output == camera ? camera_policy(arguments, session) : policy);
+    session.check_output(
+        output, output == camera || output == code ? camera_policy(arguments, session) : policy);
   return policy;
 }
 
@@ -293,7 +312,7 @@ void run(SimulateArguments& arguments, Session& session) {
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
-  const OutputPolicy policy = check_outputs(arguments, session);
+  const OutputPolicy policy = check_outputs(arguments, code, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
@@ -331,7 +350,7 @@ void run(SimulateArguments& arguments, Session& session) {
   if (!(lens_setting(scene.view) ==
         lens_setting(view_of(camera.lens, scene.image.width(), scene.image.height()))))
     session.say(
-        fmt::format("{} says how it was seen; with another --camera, points and z-depth "
+        fmt::format("note: {} contains its lens; with another --camera, points and z-depth "
                     "need --set '{}'",
                     camera_beside(arguments.output).string(), lens_setting(scene.view)));
 }
@@ -350,11 +369,14 @@ void add_simulate_command(CLI::App& app, Session& session) {
   arguments->camera.add_to(*command);
   arguments->camera.add_temperature_to(*command);
   arguments->taps.add_to(*command);
-  command->add_option("--signal", arguments->signal_e_per_s,
-                      "signal of albedo 1 at the reference distance [e/s] (by the camera's "
-                      "[optics], or the middle of "
-                      "its operating points)");
-  command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (likewise)");
+  command
+      ->add_option("--signal", arguments->signal_e_per_s,
+                   "signal of albedo 1 at the reference distance [e/s] (by the camera's "
+                   "[optics], or the middle of "
+                   "its operating points)")
+      ->transform(number_in("e/s"));
+  command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (likewise)")
+      ->transform(number_in("e/s"));
   command
       ->add_option("--signal-range", arguments->signal_range,
                    "a:b, of many scenes: draw --signal of each log-uniformly")

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
@@ -11,11 +13,29 @@
 
 namespace tofsmith::apps {
 
+namespace {
+
+/// Exposures of a table of `measurements` in the order in which the camera takes them.
+std::vector<int> order_of(const std::vector<int>& given, const Camera& camera, int measurements,
+                          const TapArguments& taps) {
+  if (!given.empty()) return given;
+  if (camera.playback && !camera.playback->order.empty()) return camera.playback->order;
+  const bool reads_taps = camera.sensor.readout == Readout::separate && !camera.sensor.is_signed();
+  const int side = reads_taps ? taps.taps.value_or(camera.sensor.taps) : 1;
+  std::vector<int> order(
+      static_cast<std::size_t>(measurements % side == 0 ? measurements / side : measurements));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+}  // namespace
+
 void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--range-m", range_m_,
                   "depth of the period of a measured table in metres (the camera's)")
       ->check(positive_number(1e6))
+      ->transform(number_in("m"))
       ->group(for_experts);
   command
       .add_option("--ambient", ambient_,
@@ -31,12 +51,9 @@ void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--order", order_,
                   "exposures of the code or table in the order in which frames have them: 0,3,2,1")
-      ->delimiter(',')
-      ->group(for_experts);
-  command
-      .add_flag("--reverse", reversed_,
-                "delay runs against what code, camera or table say: near is far")
-      ->group(for_experts);
+      ->delimiter(',');
+  command.add_flag("--reverse", reversed_,
+                   "delay runs against what code, camera or table say: near is far");
   command
       .add_flag("--keep-end-point", keep_end_point_,
                 "keep a measured table's last sample though it equals the first")
@@ -65,7 +82,7 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                .reversed = reversed_};
   if (!ambient_.empty()) options.ambient = parse_measured_ambient(ambient_);
   if (!axes_.empty()) options.axes = parse_table_axes(axes_);
-  DecodingSource source{load_decoding_table(code, camera, options), {}, {}};
+  DecodingSource source{load_decoding_table(code, camera, options), {}, {}, {}};
   if (range_m_)
     source.range_source = "--range-m";
   else if (default_camera)
@@ -75,6 +92,7 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
   else
     source.range_source = fmt::format("of the camera {}", camera.name);
   source.tell_range = source.is_measured || default_camera;
+  source.order = order_of(order_, camera, source.table.measurements(), taps);
   return source;
 }
 

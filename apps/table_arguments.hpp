@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tap_arguments.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
@@ -15,6 +16,7 @@ namespace tofsmith::apps {
 struct DecodingSource : LoadedDecodingTable {
   std::string range_source;  ///< what the range is taken from, for people
   bool tell_range = false;   ///< the range could be another than the user thinks
+  std::vector<int> order;    ///< exposures of the code as the table has them
 };
 
 /// What a measured table's file does not say: `--range-m`, `--ambient`, `--table-axes`,

@@ -101,6 +101,8 @@ class Commands(CommandLineTest):
         self.write("raw.camera.toml", "fundamental_frequency_hz = 15e6\n")
         again = ["simulate", SMALL, "--code", "hamiltonian-k3", "-o", "raw.npy"]
         self.refuse(again, "raw.camera.toml: the file exists already")
+        self.refuse([*again, "--camera", "raw.camera.toml"], "raw.code.json: the file exists already")
+        os.remove(self.path("raw.code.json"))
         self.do(*again, "--camera", "raw.camera.toml")
         self.assertEqual(self.bytes_of("raw.camera.toml"), b"fundamental_frequency_hz = 15e6\n")
 
@@ -165,6 +167,56 @@ class Commands(CommandLineTest):
         self.assertIn("wraps", self.do("scene", "s.toml"))
         self.do("scene", "s.toml", "-o", "depth.npy")
         np.testing.assert_array_equal(np.load(self.path("depth.npy")), depth)
+
+    def test_built_in_scenes_are_seen_through_the_lens(self):
+        self.write("lens.toml", "fundamental_frequency_hz = 15e6\n[lens]\nfx_px = 40\n"
+                   "fy_px = 40\ncx_px = 15.5\ncy_px = 11.5\n")
+        document = self.do_json("scene", "wall", "--camera", "lens.toml", "-o", "wall.npy")
+        self.assertEqual((document["height"], document["width"]), (24, 32))
+        np.testing.assert_allclose(np.load(self.path("wall.npy"))[0, 0],
+                                   0.5 * np.sqrt(1 + (15.5 / 40) ** 2 + (11.5 / 40) ** 2), rtol=1e-5)
+
+    def test_depth_files_state_their_kind(self):
+        self.do("simulate", "wall", "--code", "sinusoid-k4", "--signal", "1e7", "-o", "raw.npy")
+        self.do("decode", "raw.npy", "-o", "radial.npz")
+        self.do("decode", "raw.npy", "--kind", "z", "-o", "z.npz")
+        median = [self.do_json("scene", name, "--camera", "raw.camera.toml")["median_m"]
+                  for name in ("radial.npz", "z.npz")]
+        self.assertAlmostEqual(median[0], median[1], 3)
+        self.refuse(["scene", "radial.npz", "--kind", "z"], "radial.npz", "kind radial")
+
+    def test_points_need_a_lens(self):
+        self.do("simulate", "wall", "--width", "8", "--height", "6", "--code", "sinusoid-k4", "-o",
+                "raw.npy")
+        camera = ("--camera", "paper-10f0", "--code", "sinusoid-k4")
+        self.refuse(["decode", "raw.npy", *camera, "-o", "p.ply"], "--view-deg", "[lens]", code=2)
+        self.do("decode", "raw.npy", *camera, "--view-deg", "60", "-o", "p.ply")
+        self.do("decode", "raw.npy", "-o", "q.ply")
+
+    def test_options_take_units(self):
+        self.do("simulate", "wall", "--width", "8", "--height", "6", "--code", "sinusoid-k4", "-o",
+                "raw.npy")
+        self.do("decode", "raw.npy", "--offset-m", "0.25", "-o", "a.npy")
+        self.do("decode", "raw.npy", "--offset-m", "25cm", "-o", "b.npy")
+        self.assertEqual(self.bytes_of("a.npy"), self.bytes_of("b.npy"))
+        document = self.do_json("evaluate", "sinusoid-k4", "--trials", "1e3", "--set",
+                                "fundamental_frequency_hz=15MHz", "--set", "exposure_s=300ms")
+        self.assertEqual(document, self.do_json("evaluate", "sinusoid-k4", "--trials", "1000"))
+
+    def test_unusual_numbers_are_noted(self):
+        code, _, error = self.run_tool("evaluate", "sinusoid-k4", "--trials", "100", "--set",
+                                       "exposure_s=20")
+        self.assertEqual(code, 0)
+        self.assertIn("note: paper-10f0: exposure_s = 20 s; most cameras have", error)
+
+    def test_help_fits_the_terminal(self):
+        for width in (60, 100):
+            text = self.do("decode", "--help-all", env={**os.environ, "COLUMNS": str(width)})
+            words = [line for line in text.splitlines() if len(line) > width]
+            self.assertLess(len(words), 4, words)  # single long words
+            self.assertIn("Code and camera:", text)
+            self.assertIn("Example: tofsmith decode raw.npy", text)
+            self.assertNotRegex(text, "FLOAT|TEXT|\\{false\\}")
 
     def test_a_mesh_is_a_scene(self):
         self.write("m.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n")

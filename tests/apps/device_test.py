@@ -125,7 +125,7 @@ class Device(CommandLineTest):
             self.assertIn(code, (0, 1, -signal.SIGABRT))
             self.assertEqual(self.bytes_of("a.npy"), expected)
         self.assertEqual([name for name in self.files() if not name.startswith("kernels")],
-                         ["a.npy", "raw.camera.toml", "raw.npy"])
+                         ["a.npy", "raw.camera.toml", "raw.code.json", "raw.npy"])
 
     @needs_device
     def test_processes_share_a_device(self):

@@ -57,11 +57,13 @@ std::unique_ptr<FrameBackend> backend_of(DecodeMethod method, const std::string&
 void decode() {
   const std::unique_ptr<FrameBackend> backend = backend_of(DecodeMethod::zncc, "hamiltonian-k4");
   for (const char* output : {"d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply", "d.pcd"})
-    decode_recording({.raw = {"raw.npy"}, .output = output, .policy = policy}, *backend);
+    decode_recording({.raw = {"raw.npy"}, .output = output, .view_deg = 60.0, .policy = policy},
+                     *backend);
   decode_recording({.raw = {"raw.npy"},
                     .output = "z.npz",
                     .outputs = {DecodedPlane::bin, DecodedPlane::depth, DecodedPlane::deviation},
                     .kind = DepthKind::z,
+                    .view_deg = 60.0,
                     .frame = 1,
                     .policy = policy},
                    *backend);

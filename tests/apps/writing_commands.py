@@ -64,7 +64,7 @@ COMMANDS = (
     _command(f"simulate flat.npy --code sinusoid-k4 {_CAMERA} -o raw.npy --truth t.pfm", "raw.npy",
              "t.pfm"),
     _command(f"simulate flat.npy --code sinusoid-k4 {_CAMERA} --frames 3 -o raw.npz", "raw.npz",
-             "raw.camera.toml"),
+             "raw.code.json", "raw.camera.toml"),
     _command(f"simulate scenes --code sinusoid-k4 {_CAMERA} -o set", "set"),
     _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} -o d.npy --stack "
              "--outputs depth,signal", "d.npy", "d-signal.npy"),
@@ -72,9 +72,10 @@ COMMANDS = (
     _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 -o d.npz", "d.npz"),
     _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 -o d.exr", "d.exr"),
     _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 -o d.png", "d.png"),
-    _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 -o d.ply", "d.ply"),
-    _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 --filter light -o d.pcd",
-             "d.pcd"),
+    _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 --view-deg 60 -o d.ply",
+             "d.ply"),
+    _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 --filter light "
+             "--view-deg 60 -o d.pcd", "d.pcd"),
     _command("export square-k4 --format csv --samples 60 --no-loss -o bench", "bench"),
     _command("export square-k4 --format keysight-arb --samples 60 --no-loss -o bench", "bench",
              name="export keysight-arb"),

@@ -93,8 +93,8 @@ def test_simulate(ways, camera):
                  "--frames", "3", "-o", "raw.npy")
     ts.write_raw("raw.npy", capture(camera))
     ways.cpp("simulate")
-    # Only the command line writes the camera next to the frames, for later decoding.
-    assert ways.same("raw.camera.toml") == ["raw.npy"]
+    # Only the command line writes code and camera next to the frames, for later decoding.
+    assert ways.same("raw.camera.toml", "raw.code.json") == ["raw.npy"]
 
 
 def test_decode(ways, camera):
@@ -117,14 +117,15 @@ def test_decode(ways, camera):
 
     decoder = ts.Decoder("hamiltonian-k4", camera)
     for output in ("d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply", "d.pcd"):
-        command("raw.npy", output)
-        result = decoder.decode_recording("raw.npy", output)
+        command("raw.npy", output, "--view-deg", "60")
+        result = decoder.decode_recording("raw.npy", output, view_deg=60)
         assert [str(file) for file in result.files] == [
             output.replace(".", f"-{frame}.") for frame in range(3)]
 
-    command("raw.npy", "z.npz", "--outputs", "bin,depth,deviation", "--kind", "z", "--frame", "1")
+    command("raw.npy", "z.npz", "--outputs", "bin,depth,deviation", "--kind", "z", "--view-deg",
+            "60", "--frame", "1")
     result = decoder.decode_recording("raw.npy", "z.npz", outputs=["bin", "depth", "deviation"],
-                                      kind="z", frame=1)
+                                      kind="z", view_deg=60, frame=1)
     assert (result.first_frame, result.outputs) == (1, ["bin", "depth", "deviation"])
 
     command("raw.npy", "stack.npy", "--method", "ml", "--outputs", "depth,status", "--stack",

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -94,6 +95,11 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
           "needs a camera with [lens], whose distortion is taken out");
   require(!request.undistort || request.lens->rays.empty(), "undistort", "true",
           "goes without a map of rays");
+  require(
+      request.lens || request.view_deg || !(holds_points(output) || request.kind == DepthKind::z),
+      "view_deg", "none",
+      "points and z need the [lens] of the camera, or this angle of view to assume, such as "
+      "60");
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("goes with a .npy file; the output is {}", output.string()));
@@ -113,6 +119,8 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
 PinholeView view_of_frames(const DecodeRequest& request, const std::string& source, int width,
                            int height) {
   try {
+    if (!request.lens && request.view_deg)
+      return PinholeView::centred(width, height, *request.view_deg * std::numbers::pi / 180.0);
     PinholeView view = view_of(request.lens, width, height);
     if (request.lens) view.validate();
     return view;

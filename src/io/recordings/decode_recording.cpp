@@ -13,6 +13,7 @@
 
 #include "io/recordings/decode_plan.hpp"
 #include "io/recordings/decoded_output.hpp"
+#include "io/recordings/misfit.hpp"
 #include "io/recordings/recording_notes.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -265,7 +266,11 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
     result.notes.push_back(*note);
   decode_frames(reader, preparation, rows, pipelines, corrections, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
-  if (const auto note = inconsistent_note(result.total())) result.notes.push_back(*note);
+  if (const auto note = inconsistent_note(result.total())) {
+    const auto misfit =
+        misfit_note(request, decoder, reader, target.first_frame * preparation.group());
+    result.notes.push_back(misfit ? *misfit : *note);
+  }
 }
 
 DecodedRecording decode_recording(const DecodeRequest& request, const FrameBackend& backend,

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tofsmith/io/decode_recording.hpp"
+
+namespace tofsmith {
+
+/// Note that the raw numbers of a frame do not fit the code of a decoder, with their residual and
+/// the orders of exposures and the byte order that would fit better. Delay that runs backwards does
+/// not show: it gives the measurements of other depths.
+///
+/// Tries other orders on a sample of the pixels with the most contrast: all permutations of up to 6
+/// exposures; of more, permutations of equal groups and within them.
+/// @param frame  recorded frame to sample
+/// @return none if the residual is small, or if the code has no degrees of freedom
+std::optional<std::string> misfit_note(const DecodeRequest& request, const DepthDecoder& decoder,
+                                       const RawFramesReader& reader, int frame);
+
+}  // namespace tofsmith
