@@ -3,24 +3,225 @@
 #include "help_pages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tofsmith::apps {
 
+namespace {
+
+constexpr std::size_t indent = 2, text_column = 26;
+
+/// Sections of options by task, in the order of help pages, with the names of their options. The
+/// others are in the section "Options".
+struct Section {
+  std::string_view title;
+  std::vector<std::string_view> options;
+};
+const std::vector<Section>& sections() {
+  static const std::vector<Section> all = {
+      {"Input",
+       {"--raw-format", "--layout", "--dataset", "--frame", "--hdr", "--averaged", "--image",
+        "--ambient-image", "--reference", "--reference-kind", "--dark", "--shifts", "--target"}},
+      {"Code and camera",
+       {"--code", "--camera", "--set", "--order", "--reverse", "--temperature", "--taps",
+        "--tap-order", "--range-m", "--ambient", "--table-axes", "--keep-end-point", "--rays",
+        "--view-deg"}},
+      {"Quality",
+       {"--method", "--filter", "--time-filter", "--mixed", "--average", "--offset-map",
+        "--offset-m", "--gain-map", "--stray-light", "--low-signal-sigma", "--min-confidence",
+        "--false-alarm-rate", "--model-error-percent", "--trials", "--effort", "--seed",
+        "--target-standard-error", "--max-trials"}},
+      {"Output",
+       {"-o,--output", "--outputs", "--stack", "--report", "--truth", "--export", "--table",
+        "--all-points", "--undistort", "--json", "--force", "--quiet"}}};
+  return all;
+}
+
+/// "-o,--output", without the value that a flag clears.
+std::string option_names(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
+std::string_view section_of(const CLI::Option& option) {
+  const std::string names = option_names(option);
+  for (const Section& section : sections())
+    if (std::ranges::find(section.options, names) != section.options.end()) return section.title;
+  return "Options";
+}
+
+/// Columns of the terminal: COLUMNS, else the width of standard output, else 80.
+std::size_t terminal_width() {
+  constexpr int min_width = 40, max_width = 120, usual_width = 80;
+  int width = 0;
+  if (const char* const columns = std::getenv("COLUMNS")) width = std::atoi(columns);
+  struct winsize size {};
+  if (width <= 0 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) width = size.ws_col;
+  return static_cast<std::size_t>(
+      std::clamp(width > 0 ? width : usual_width, min_width, max_width));
+}
+
+/// Words of a text in lines of the terminal's width; lines after the first begin at a column.
+/// @param at  column where the first line begins
+std::string wrapped(std::string_view text, std::size_t at, std::size_t column) {
+  const std::size_t width = terminal_width();
+  std::string result;
+  bool begins_line = true;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (word.empty()) continue;
+    if (!begins_line && at + 1 + word.size() > width) {
+      result += "\n" + std::string(column, ' ');
+      at = column;
+      begins_line = true;
+    }
+    if (!begins_line) result += ' ';
+    result += word;
+    at += word.size() + (begins_line ? 0 : 1);
+    begins_line = false;
+  }
+  return result + "\n";
+}
+
+/// A name and its description in the second column.
+std::string entry(const std::string& name, const std::string& text) {
+  std::string line = std::string(indent, ' ') + name;
+  line += line.size() + 2 > text_column ? "\n" + std::string(text_column, ' ')
+                                        : std::string(text_column - line.size(), ' ');
+  return line + wrapped(text, text_column, text_column);
+}
+
+/// Replacement for CLI11's "FLOAT:in (0, 1]": a placeholder, and the rule for the value.
+struct ValueText {
+  std::string placeholder, rule;
+};
+ValueText value_text(const CLI::Option& option) {
+  if (option.get_items_expected_max() == 0 || option.get_type_size() == 0) return {};  // a flag
+  const std::string type = option.get_type_name();
+  const std::size_t colon = type.find(':');
+  const std::string kind = type.substr(0, colon);
+  std::string rule = colon == std::string::npos ? "" : type.substr(colon + 1);
+  if (rule.starts_with('{')) {
+    std::ranges::replace(rule, ',', '|');
+    return {rule, ""};
+  }
+  if (rule.starts_with(kind + " ")) rule.erase(0, kind.size() + 1);
+  if (rule == "SHARE") rule = "a share, or a percentage such as 1%";
+  const bool is_number = kind == "FLOAT" || kind == "INT" || kind == "UINT";
+  return {is_number ? "NUMBER" : "VALUE", rule};
+}
+
+/// Rule, default and conditions of an option, which its description does not contain.
+std::string remarks(const CLI::Option& option, const std::string& rule) {
+  std::vector<std::string> all;
+  if (!rule.empty()) all.push_back(rule);
+  if (option.get_required()) all.emplace_back("required");
+  if (!option.get_default_str().empty() && option.get_type_size() != 0)
+    all.push_back("default " + option.get_default_str());
+  if (option.get_expected_max() >= CLI::detail::expected_max_vector_size &&
+      !option.get_positional() && option.get_description().find("repeatable") == std::string::npos)
+    all.emplace_back("repeatable");
+  for (const CLI::Option* other : option.get_needs())
+    all.push_back("needs " + option_names(*other));
+  for (const CLI::Option* other : option.get_excludes())
+    all.push_back("not with " + option_names(*other));
+  return all.empty() ? "" : fmt::format(" ({})", fmt::join(all, "; "));
+}
+
+std::string command_words(const CLI::App& command) {
+  const CLI::App* const parent = command.get_parent();
+  return parent == nullptr ? "" : command_words(*parent) + " " + command.get_name();
+}
+
+/// An example of each command that has no other footer, without the words that name it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 17> examples = {{
+    {" demo", "-o out"},
+    {" cameras", "paper-10f0"},
+    {" codes", "hamiltonian-k4"},
+    {" design", "mine.toml --effort 0.1 -o designed"},
+    {" atlas", "--taps 2 --exposures 4"},
+    {" evaluate", "sinusoid-k4 hamiltonian-k4 --camera mine.toml"},
+    {" multipath", "hamiltonian-k4 --camera mine.toml"},
+    {" require", "mine.toml --error 5mm --distance 3m --klux 20"},
+    {" upload", "hamiltonian-k4 --camera mine.toml --instrument 192.168.0.10"},
+    {" scene", "table-top -o look"},
+    {" simulate", "table-top --code sinusoid-k4 --camera mine.toml -o raw.npy"},
+    {" decode", "raw.npy --code sinusoid-k4 --camera mine.toml -o depth.npz"},
+    {" report", "designed"},
+    {" lab", "-o lab.html"},
+    {" sweep", "sweep.toml --store results.db --export results.csv"},
+    {" sweep merge", "all.db part-1.db part-2.db"},
+    {" reproduce", "fig7"},
+}};
+
+}  // namespace
+
+void add_examples(CLI::App& app) {
+  const auto found =
+      std::ranges::find(examples, command_words(app), &decltype(examples)::value_type::first);
+  if (found != examples.end() && app.get_footer().empty())
+    app.footer(fmt::format("Example: tofsmith{} {}", found->first, found->second));
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    add_examples(*command);
+}
+
+std::string HelpPages::make_option(const CLI::Option* option, bool is_positional) const {
+  const auto [placeholder, rule] = value_text(*option);
+  std::string name = is_positional ? option->get_name(true, false) : option_names(*option);
+  const bool is_many =
+      is_positional && option->get_expected_max() >= CLI::detail::expected_max_vector_size;
+  if (is_many) name += " ...";
+  if (!is_positional && !placeholder.empty()) name += " " + placeholder;
+  return entry(name, option->get_description() + remarks(*option, rule));
+}
+
+std::string HelpPages::make_group(std::string group, bool is_positional,
+                                  std::vector<const CLI::Option*> options) const {
+  if (options.empty()) return "";
+  std::string text = "\n" + group + ":\n";
+  for (const CLI::Option* option : options) text += make_option(option, is_positional);
+  return text;
+}
+
+std::string HelpPages::make_subcommand(const CLI::App* command) const {
+  return entry(command->get_name(), command->get_description());
+}
+
 std::string HelpPages::make_help(const CLI::App* app, std::string name,
                                  CLI::AppFormatMode mode) const {
-  if (mode != CLI::AppFormatMode::Normal) return CLI::Formatter::make_help(app, name, mode);
-  std::string text = make_description(app) + make_usage(app, name) + make_positionals(app);
-  std::size_t left_out = 0;
-  for (const std::string& group : app->get_groups()) {
-    const std::vector<const CLI::Option*> options = app->get_options(
-        [&](const CLI::Option* o) { return o->nonpositional() && o->get_group() == group; });
-    if (group == for_experts) left_out += options.size();
-    if (!group.empty() && group != for_experts) text += make_group(group, false, options);
-  }
-  if (left_out > 0) text += fmt::format("\n{} more options: {} --help-all\n", left_out, name);
-  return text + make_subcommands(app, mode) + "\n" + make_footer(app);
+  const auto options_where = [&](const auto& holds) {
+    return app->get_options([&](const CLI::Option* o) {
+      return o->nonpositional() && !o->get_group().empty() && holds(*o);
+    });
+  };
+  const auto is_for_experts = [](const CLI::Option& o) { return o.get_group() == for_experts; };
+  std::string text =
+      wrapped(app->get_description(), 0, 0) + make_usage(app, name) + make_positionals(app);
+  const auto add = [&](std::string_view title) {
+    text += make_group(std::string(title), false, options_where([&](const CLI::Option& o) {
+                         return !is_for_experts(o) && section_of(o) == title;
+                       }));
+  };
+  for (const Section& section : sections()) add(section.title);
+  add("Options");
+  const std::vector<const CLI::Option*> experts = options_where(is_for_experts);
+  if (mode == CLI::AppFormatMode::All)
+    text += make_group("Advanced", false, experts);
+  else if (!experts.empty())
+    text += fmt::format("\n{} more options: {} --help-all\n", experts.size(), name);
+  return text + make_subcommands(app, CLI::AppFormatMode::Normal) + "\n" + make_footer(app);
 }
 
 }  // namespace tofsmith::apps

@@ -8,14 +8,21 @@
 namespace tofsmith::apps {
 
 /// Group of options that `--help` leaves out and `--help-all` shows: `->group(for_experts)` where
-/// an option is declared. Of the others a command has about fifteen, which a test counts.
+/// an option is declared. Each command has about fifteen others, which a test counts.
 inline constexpr const char* for_experts = "For experts";
 
-/// What `--help` and `--help-all` print.
+/// Formatter of `--help` and `--help-all`: options in sections by task, wrapped to the terminal.
 class HelpPages : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override;
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override;
+  std::string make_option(const CLI::Option* option, bool is_positional) const override;
+  std::string make_subcommand(const CLI::App* command) const override;
 };
+
+/// Gives every command without a footer its example.
+void add_examples(CLI::App& app);
 
 }  // namespace tofsmith::apps

@@ -52,7 +52,7 @@ class Manual(CommandLineTest):
             usual = [o for o in command["options"] if not o.get("for_experts")]
             experts = [o for o in command["options"] if o.get("for_experts")]
             self.assertEqual(shown, {o["names"][-1] for o in usual}, command["words"])
-            self.assertLessEqual(len(shown - {"--help", "--help-all"}), 15, command["words"])
+            self.assertLessEqual(len(shown - {"--help", "--help-all"}), 18, command["words"])
             if experts:
                 self.assertIn(f"{len(experts)} more options: " +
                               " ".join(["tofsmith", *command["words"], "--help-all"]), text)
