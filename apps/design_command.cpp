@@ -138,15 +138,18 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   return options;
 }
 
+/// The first of tofsmith-design, tofsmith-design-2, ... without a finished design.
+std::string default_output() {
+  std::string name = "tofsmith-design";
+  for (int i = 2; std::filesystem::exists(std::filesystem::path(name) / "design.json"); ++i)
+    name = fmt::format("tofsmith-design-{}", i);
+  return name;
+}
+
 void run(const DesignArguments& arguments, const Session& session) {
   Camera camera = arguments.camera.load();
   arguments.multipath.apply_to(camera);
   const DesignOptions options = options_for(arguments, camera);
-  if (arguments.output.empty()) {
-    const DesignResult result = design(camera, options, terminal_progress("designing"));
-    print_design(session, camera, result, options);
-    return;
-  }
   const FreshDirectory cleanup(arguments.output);
   const DesignDirectory directory(arguments.output);
   if (directory.holds_design() && !session.force)
@@ -194,8 +197,10 @@ void add_design_command(CLI::App& app, Session& session) {
   options.add("trials", "--trials");
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command->add_option("-o,--output", arguments->output,
-                      "directory for codes, figures and the report; an interrupted run resumes");
+                      "directory for codes, figures and the report; an interrupted run resumes "
+                      "(tofsmith-design, or the next tofsmith-design-N)");
   command->callback([arguments, &session] {
+    if (arguments->output.empty()) arguments->output = default_output();
     session.directory = arguments->output;
     run(*arguments, session);
   });

@@ -3,6 +3,7 @@
 #include "design/explanation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -24,17 +25,31 @@ const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) 
   return nullptr;
 }
 
-std::string what_it_beats(const Camera& camera, const DesignResult& result, DepthErrorKind kind) {
+/// " of the codes with 2 exposures" if the best code of all has another number.
+std::string among_exposures(const DesignResult& result, DepthErrorKind kind,
+                            const std::vector<int>& exposures) {
+  const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
+  if (exposures.empty() || result.winner().code.is_rows() ||
+      std::ranges::count(exposures, order.front()->code.exposures()) > 0)
+    return "";
+  return fmt::format(" of the codes with {} exposures", fmt::join(exposures, ", "));
+}
+
+std::string what_it_beats(const Camera& camera, const DesignResult& result, DepthErrorKind kind,
+                          const std::vector<int>& exposures) {
   const Candidate& winner = result.winner();
-  std::string text = fmt::format("{} measures depth best{}: {} of {} error", winner.code.name(),
-                                 camera.operating.multipath ? " where multipath counts too" : "",
-                                 length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
+  const std::string among = among_exposures(result, kind, exposures);
+  std::string text =
+      fmt::format("{} measures depth best{}{}: {} of {} error", winner.code.name(), among,
+                  camera.operating.multipath ? " where multipath counts too" : "",
+                  length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
   const Candidate* baseline = best_baseline(result, kind);
   if (baseline) {
     const Estimate gain = gain_over(result, *baseline, kind);
     text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
                         baseline->code.name());
   }
+  if (!among.empty()) return text + ", of any number of exposures.";
   if (winner.is_designed()) return text + (baseline ? ", the best standard code." : ".");
   const bool any_designed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                         [](const Candidate& c) { return c.is_designed(); });
@@ -131,9 +146,10 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
 
 }  // namespace
 
-std::vector<std::string> explain(const Camera& camera, const DesignResult& result) {
+std::vector<std::string> explain(const Camera& camera, const DesignResult& result,
+                                 const std::vector<int>& exposures) {
   const DepthErrorKind kind = camera.operating.error;
-  std::vector<std::string> sentences{what_it_beats(camera, result, kind)};
+  std::vector<std::string> sentences{what_it_beats(camera, result, kind, exposures)};
   if (!result.winner().code.is_rows())
     sentences.push_back(why_so_many_exposures(camera, result, kind));
   sentences.push_back(what_limits_it(result));

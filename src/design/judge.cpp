@@ -123,8 +123,9 @@ std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const C
 }
 
 /// Of the candidates of each name, attempts at one code, only the best stays, in the place of the
-/// first. Finds the winner among them.
-void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& result) {
+/// first. Finds the winner among them: of a requested number of exposures, if there is one.
+void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vector<int>& exposures,
+                            DesignResult& result) {
   std::vector<Candidate> kept;
   std::vector<double> kept_m;
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
@@ -142,8 +143,16 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& 
     }
   }
   result.candidates = std::move(kept);
-  result.best =
-      static_cast<std::size_t>(std::min_element(kept_m.begin(), kept_m.end()) - kept_m.begin());
+  const auto is_requested = [&](const Candidate& c) {
+    return exposures.empty() || std::ranges::count(exposures, c.code.exposures()) > 0;
+  };
+  const bool any_requested = std::ranges::any_of(result.candidates, is_requested);
+  std::size_t best = result.candidates.size();
+  for (std::size_t i = 0; i < kept_m.size(); ++i)
+    if ((!any_requested || is_requested(result.candidates[i])) &&
+        (best == kept_m.size() || kept_m[i] < kept_m[best]))
+      best = i;
+  result.best = best < kept_m.size() ? best : 0;
 }
 
 }  // namespace
@@ -179,10 +188,12 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
     judge_one(result.candidates[i], camera, options, bounds, its[0]);
     if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
   }
-  keep_best_of_each_name(ranking_of(result.candidates, camera, options), result);
+  const bool are_rows = camera.sensor.readout == Readout::rows;  // which exposures count
+  keep_best_of_each_name(ranking_of(result.candidates, camera, options),
+                         are_rows ? std::vector<int>() : options.exposures, result);
   Candidate& winner = result.candidates[result.best];
   if (!winner.robustness) judge_robustness(winner, camera, options, parts[1]);
-  result.explanation = explain(camera, result);
+  result.explanation = explain(camera, result, options.exposures);
 }
 
 double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind) {

@@ -50,6 +50,20 @@ class Design(CommandLineTest):
             for code in codes:
                 self.assertEqual(self.bytes_of("d/codes/" + code), self.bytes_of("e/codes/" + code))
 
+    def test_the_winner_has_a_requested_number_of_exposures(self):
+        document = self.do_json("design", "paper-10f0", "--set", "sensor.taps=2", "--exposures",
+                                "2", *self.FAST)
+        best = next(c for c in document["codes"] if c["name"] == document["best"])
+        self.assertEqual(best["exposures"], 2)
+        self.assertIn("of the codes with 2 exposures", " ".join(document["explanation"]))
+
+    def test_without_a_directory_designs_are_kept_in_a_default_one(self):
+        for directory in ("tofsmith-design", "tofsmith-design-2"):
+            said = self.do("design", "paper-10f0", "--effort", "0", "--method", "best", "--trials",
+                           "1000")
+            self.assertIn(f"wrote {directory}/report.html", said)
+            self.assertIn(f"{directory}/design.json", self.files())
+
     def test_designs_for_two_buckets(self):
         document = self.do_json(*self.ARGUMENTS, "--set", "sensor.taps=2")
         self.assertTrue(all(code["taps"] == 2 for code in document["codes"]))
