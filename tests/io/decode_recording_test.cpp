@@ -421,6 +421,9 @@ TEST_F(DecodeRecording, CloudsContainThePixelsWithStatusOk) {
   raw_.values[40] = std::numeric_limits<float>::quiet_NaN();
   write_raw_frames(path("raw.npy"), raw_, OutputPolicy::overwrite);
   DecodeRequest asked = request("d.ply");
+  EXPECT_THAT([&] { decode_recording(asked, *backend_); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("points and z need the [lens]")));
+  asked.view_deg = 60.0;
   asked.frame = 0;
   asked.outputs = {DecodedPlane::signal};
   const auto points_of = [&] {

@@ -44,7 +44,7 @@ keywords = [
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
     ("DecodeRequest", "io/decode_recording.hpp", ts.Decoder.decode_recording,
-     {"lens", "policy", "other_inputs"}),
+     {"lens", "order", "policy", "other_inputs"}),
     ("TimeFilterOptions", "decode/time_filter.hpp", ts.TimeFilter, set()),
     ("ExportOptions", "waveforms/waveform_export.hpp", ts.export_waveforms, set()),
     ("ResponseRecordOptions", "calibrate/impulse_response.hpp", ts.read_response_record, set()),

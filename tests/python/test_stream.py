@@ -53,7 +53,8 @@ def test_frames_equal_those_of_the_decoder(decoder, layout):
 
 def test_file_objects_receive_the_bytes_of_the_command(decoder, layout, tmp_path):
     (tmp_path / "dump.bin").write_bytes(raw.tobytes())
-    options = {"raw_format": layout, "filter": "normal", "offset_m": 0.25, "kind": "z"}
+    options = {"raw_format": layout, "filter": "normal", "offset_m": 0.25, "kind": "z",
+               "view_deg": 60}
     sink = io.BytesIO()
     decoder.decode_stream(io.BytesIO(raw.tobytes()), sink, **options)
     decoder.decode_recording(tmp_path / "dump.bin", tmp_path / "d.npy", stack=True, **options)
