@@ -167,7 +167,8 @@ std::vector<std::string> suggested_baselines(const Camera& camera, const DesignO
 /// (best_rotation()), with new random numbers (DesignOptions::seed and trials), and keeps the best
 /// of each name. Candidates without decodable depth are listed in DesignResult::left_out.
 /// @param candidates  supported codes with their origin
-/// @return the winner is never worse than any given candidate
+/// @return the winner is never worse than any given candidate with one of DesignOptions::exposures;
+///   without such a candidate, or if no exposures are listed, than any given candidate
 /// @throws std::invalid_argument for invalid options or camera, an unsupported code, or no usable
 ///   candidate; Interrupted
 DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
