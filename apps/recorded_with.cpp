@@ -7,9 +7,11 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 
@@ -53,15 +55,22 @@ std::vector<std::string> differing_keys(const Camera& camera, const Camera& reco
   return differences;
 }
 
-/// Returns true if two codes have different correlation functions on a camera.
+/// Returns true if two codes have different correlation functions on a camera, or if it cannot play
+/// the recorded one.
 bool differs(const std::string& code, const std::string& recorded, const Camera& camera,
              const CodeFileOptions& file_options) {
   constexpr double rounding = 1e-6;
   const DecodingTableOptions options{.file = file_options};
-  const auto here = load_decoding_table(code, camera, options).table.correlation,
-             there = load_decoding_table(recorded, camera).table.correlation;
-  return here.rows() != there.rows() || here.cols() != there.cols() ||
-         (here - there).cwiseAbs().maxCoeff() > rounding * there.cwiseAbs().maxCoeff();
+  try {
+    const auto here = load_decoding_table(code, camera, options).table.correlation,
+               there = load_decoding_table(recorded, camera).table.correlation;
+    return here.rows() != there.rows() || here.cols() != there.cols() ||
+           (here - there).cwiseAbs().maxCoeff() > rounding * there.cwiseAbs().maxCoeff();
+  } catch (const IoError&) {
+    return true;
+  } catch (const std::invalid_argument&) {
+    return true;
+  }
 }
 
 }  // namespace

@@ -180,8 +180,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:2:19: sphere[0].centre_m[2]: found nan; expected a finite number"},
         BadScene{"[[sphere]]\ncenter_m = [0, 0, 2]\nradius_m = 1",
                  "s.toml:1:1: found no sphere[0].centre_m"},
-        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\nradius_mm = 5",
-                 "s.toml:4:1: unknown key sphere[0].radius_mm; did you mean sphere[0].radius_m, in m?"},
+        BadScene{
+            "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\nradius_mm = 5",
+            "s.toml:4:1: unknown key sphere[0].radius_mm; did you mean sphere[0].radius_m, in m?"},
         BadScene{"[[shpere]]\ncentre_m = [0, 0, 2]",
                  "s.toml:1:3: unknown key shpere; did you "
                  "mean sphere?"},
