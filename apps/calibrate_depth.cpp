@@ -44,8 +44,9 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
           {"known_share", found.known_share},
           {"mean_error_m", found.mean_error_m},
           {"rms_before_m", found.rms_before_m},
-          {"rms_m", found.rms_m},
-          {"far_rms_m", found.far_rms_m},
+          {"rms_m", number_json(found.rms_m.value_or(NAN))},
+          {"far_rms_m", number_json(found.far_rms_m.value_or(NAN))},
+          {"skipped_folds", found.skipped_folds},
           {"outlier_share", found.outlier_share},
           {"model_error_percent", number_json(found.model_error_percent.value_or(NAN))},
           {"terms", terms},
@@ -54,10 +55,7 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
 }
 
 std::string lines_of(const CalibratedDepth& found) {
-  std::string lines = fmt::format(
-      "{} pixels: depth is {:+.4g} m off in the mean, {} rms around it; {} on blocks held out once "
-      "corrected\n",
-      found.pixels, found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m));
+  std::string lines = fmt::format("{} pixels: {}\n", found.pixels, depth_error_text(found));
   const auto frequencies = frequency_rows(found);
   for (std::size_t i = 1; i < frequencies.size(); ++i) {
     const auto& row = frequencies[i];
@@ -74,8 +72,8 @@ std::string lines_of(const CalibratedDepth& found) {
   lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
     lines += fmt::format("; beyond, by {}", fmt::join(found.far_terms, ", "));
-  if (found.known_share < 0.999 && found.far_rms_m > 0.0)
-    lines += fmt::format(": {} on parts of the range held out", length_text(found.far_rms_m));
+  if (found.known_share < 0.999 && found.far_rms_m)
+    lines += fmt::format(": {} on parts of the range held out", length_text(*found.far_rms_m));
   return lines + "\n" + note_lines(found.notes);
 }
 

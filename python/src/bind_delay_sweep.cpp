@@ -201,6 +201,7 @@ py::dict depth_dict(const CalibratedDepth& found) {
   dict["rms_before_m"] = found.rms_before_m;
   dict["rms_m"] = found.rms_m;
   dict["far_rms_m"] = found.far_rms_m;
+  dict["skipped_folds"] = found.skipped_folds;
   dict["outlier_share"] = found.outlier_share;
   dict["model_error_percent"] = found.model_error_percent;
   dict["pixels"] = found.pixels;

@@ -63,9 +63,13 @@ class CalibratedDepth:
         Share of the range that the reference covers.
     mean_error_m : float
         Mean error of the nominal depth, in [-range / 2, range / 2].
-    rms_before_m, rms_m, far_rms_m : float
-        Root mean square error [m]: before the correction, without the mean; after it, on held-out
-        blocks of pixels; and with the far terms, on held-out parts of the range.
+    rms_before_m : float
+        Root mean square of this error around its mean, before the correction [m].
+    rms_m, far_rms_m : float, optional
+        Root mean square error after the correction on held-out blocks of pixels, and with the far
+        terms on held-out parts of the range [m]. None: nothing could be held out.
+    skipped_folds : int
+        Number of the 2 folds of blocks and 4 of the range without data inside or outside.
     outlier_share : float
         Share of the pixels, which are ignored.
     model_error_percent : float, optional
@@ -84,8 +88,9 @@ class CalibratedDepth:
     known_share: float
     mean_error_m: float
     rms_before_m: float
-    rms_m: float
-    far_rms_m: float
+    rms_m: Optional[float]
+    far_rms_m: Optional[float]
+    skipped_folds: int
     outlier_share: float
     model_error_percent: Optional[float]
     pixels: int

@@ -249,7 +249,8 @@ void turn_backwards(MeasuredTable& table, std::vector<ReferenceSample>& samples,
 }
 
 void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
-               const Eigen::VectorXd& fitted_m, double covered, CalibratedDepth& result) {
+               const Eigen::VectorXd& fitted_m, double covered, const Chosen& chosen,
+               CalibratedDepth& result) {
   if (result.reversed) result.notes.push_back("delay runs backwards: the table written does, too");
   const auto [nearest, farthest] =
       std::ranges::minmax(each(fit.samples, [](const auto& s) { return s.reference_m; }));
@@ -282,6 +283,15 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
         "known from the reference: {:.0f} % of the range; in the rest the correction is the "
         "model's word, of {} terms",
         100.0 * result.known_share, result.far_terms.size()));
+  if (!result.rms_m)
+    result.notes.push_back(
+        "pixels that count are too few to hold some out: only the smallest set of terms was used, "
+        "and the error it leaves is not known");
+  if (result.far_rms_m && result.known_share < 0.999 && chosen.skipped_parts > 0)
+    result.notes.push_back(fmt::format(
+        "{} of 4 quarters of the reference's range have no depths of their own to hold out: terms "
+        "beyond the known range were chosen by the others",
+        chosen.skipped_parts));
   if (result.outlier_share > 0.3)
     result.notes.push_back(fmt::format("{:.0f} % of the pixels fit nothing and were left out",
                                        100.0 * result.outlier_share));
@@ -405,6 +415,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.known_share = correction.known_share.mean();
   result.rms_m = chosen.known_rms_m;
   result.far_rms_m = chosen.beyond_rms_m;
+  result.skipped_folds = chosen.skipped_blocks + chosen.skipped_parts;
   result.outlier_share =
       static_cast<double>((fit.weight.array() == 0.0).count()) / static_cast<double>(fit.size());
   result.table.correction = correction;
@@ -413,7 +424,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.table.model_error_percent = result.model_error_percent.value_or(0.0);
   result.picture =
       picture_of(fit, fitted_m, wrapped_difference_m(error.mean_m - fit.start_m, range_m));
-  add_notes(fit, reference, fitted_m, covered, result);
+  add_notes(fit, reference, fitted_m, covered, chosen, result);
   return result;
 }
 

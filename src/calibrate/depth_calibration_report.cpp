@@ -125,12 +125,17 @@ std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& foun
   return rows;
 }
 
+std::string depth_error_text(const CalibratedDepth& found) {
+  return fmt::format("depth is {:+.4g} m off in the mean, {} rms around it; {}", found.mean_error_m,
+                     length_text(found.rms_before_m),
+                     found.rms_m ? length_text(*found.rms_m) + " on blocks held out once corrected"
+                                 : "once corrected, not known");
+}
+
 Page depth_report(const CalibratedDepth& found, const std::string& source,
                   const std::string& command_line) {
   Page page{.title = fmt::format("Depth of {} against a reference", source),
-            .subtitle = fmt::format(
-                "{:+.4g} m off in the mean, {} rms around it; {} on blocks held out once corrected",
-                found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m))};
+            .subtitle = depth_error_text(found)};
   const auto image = [&](const std::string& id, const std::string& title,
                          const std::string& caption) {
     return image_figure(

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace tofsmith {
 
@@ -13,40 +17,96 @@ namespace {
 
 constexpr int slabs = 4, checkers = 2;
 
-/// Assigns samples to cells for cross-validation: colour of a checkerboard and quarter of the
-/// range.
+/// Columns of the blocks of pixels that have data, by frame and row.
+using BlocksWithData = std::map<int, std::map<int, std::set<int>>>;
+
+int block_count(const BlocksWithData& blocks) {
+  int count = 0;
+  for (const auto& [frame, rows] : blocks)
+    for (const auto& [row, columns] : rows) count += static_cast<int>(columns.size());
+  return count;
+}
+
+/// Number of keys before one of an ordered container.
+template <typename Keys, typename Key>
+int rank_of(const Keys& keys, const Key& key) {
+  return static_cast<int>(std::distance(keys.begin(), keys.find(key)));
+}
+
+/// Colours of a checkerboard that follows the data: blocks without data are left out when blocks
+/// are numbered, so that both colours have data wherever two blocks have. Blocks are an eighth of
+/// the image, or smaller if few of those have data. Samples without weight have any colour.
+std::vector<int> colours_of(const DepthFit& fit) {
+  constexpr int enough_blocks = 8;
+  int block_rows = 0, block_columns = 0;
+  BlocksWithData blocks;
+  for (int divisions = 8; block_rows * block_columns != 1; divisions *= 2) {
+    block_rows = std::max(1, fit.height / divisions);
+    block_columns = std::max(1, fit.width / divisions);
+    blocks.clear();
+    for (std::size_t i = 0; i < fit.samples.size(); ++i)
+      if (const ReferenceSample& s = fit.samples[i]; fit.weight[static_cast<Eigen::Index>(i)] > 0.0)
+        blocks[s.frame][s.row / block_rows].insert(s.column / block_columns);
+    if (block_count(blocks) >= enough_blocks) break;
+  }
+  std::vector<int> colours;
+  colours.reserve(fit.samples.size());
+  for (const ReferenceSample& s : fit.samples) {
+    const auto rows = blocks.find(s.frame);
+    if (rows == blocks.end() || !rows->second.contains(s.row / block_rows)) {
+      colours.push_back(0);
+      continue;
+    }
+    const std::set<int>& columns = rows->second.at(s.row / block_rows);
+    const int ranks = rank_of(blocks, s.frame) + rank_of(rows->second, s.row / block_rows) +
+                      rank_of(columns, s.column / block_columns);
+    colours.push_back(ranks % checkers);
+  }
+  return colours;
+}
+
+/// Cells of held-out samples: the colour of a checkerboard of blocks, and a quarter of the range.
 std::vector<int> cells_of(const DepthFit& fit) {
   const auto at_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
   std::array<double, slabs - 1> border_m{};
   for (int q = 1; q < slabs; ++q)
     border_m[static_cast<std::size_t>(q - 1)] = quantile_of(at_m, static_cast<double>(q) / slabs);
-  const int block_rows = std::max(1, fit.height / 8), block_columns = std::max(1, fit.width / 8);
-  std::vector<int> cell;
-  for (const ReferenceSample& s : fit.samples) {
-    const int slab = static_cast<int>(
-        std::ranges::count_if(border_m, [&](double border) { return s.reference_m > border; }));
-    const int colour = (s.row / block_rows + s.column / block_columns + s.frame) % checkers;
-    cell.push_back(slab * checkers + colour);
-  }
+  std::vector<int> cell = colours_of(fit);
+  for (std::size_t i = 0; i < cell.size(); ++i)
+    cell[i] += checkers * static_cast<int>(std::ranges::count_if(
+                              border_m, [&](double border) { return at_m[i] > border; }));
   return cell;
 }
 
-/// rms that a choice leaves on folds of cells held out in turn.
-double held_out_rms_m(const std::vector<NormalSums>& sums, const TermChoice& choice,
-                      bool by_range) {
-  const std::vector<int> columns = choice.columns();
-  double left = 0.0, weight = 0.0;
+/// Sums of the samples that each fold holds out, and of the others.
+struct Fold {
+  NormalSums out, kept;
+};
+
+/// Folds that have samples in and out.
+std::vector<Fold> folds_of(const std::vector<NormalSums>& sums, bool by_range) {
+  std::vector<Fold> folds;
   for (int fold = 0; fold < (by_range ? slabs : checkers); ++fold) {
-    NormalSums kept, out;
+    Fold parts;
     for (std::size_t c = 0; c < sums.size(); ++c) {
       const int its = static_cast<int>(c);
-      (((by_range ? its / checkers : its % checkers) == fold) ? out : kept).add(sums[c]);
+      ((by_range ? its / checkers : its % checkers) == fold ? parts.out : parts.kept).add(sums[c]);
     }
-    if (!(out.weight > 0.0) || !(kept.weight > 0.0)) continue;
-    left += out.left(columns, kept.solve(columns));
-    weight += out.weight;
+    if (parts.out.weight > 0.0 && parts.kept.weight > 0.0) folds.push_back(std::move(parts));
   }
-  return std::sqrt(left / std::max(1e-300, weight));
+  return folds;
+}
+
+/// rms that a choice leaves on samples held out; none without folds.
+std::optional<double> held_out_rms_m(const std::vector<Fold>& folds, const TermChoice& choice) {
+  if (folds.empty()) return {};
+  const std::vector<int> columns = choice.columns();
+  double left = 0.0, weight = 0.0;
+  for (const Fold& fold : folds) {
+    left += fold.out.left(columns, fold.kept.solve(columns));
+    weight += fold.out.weight;
+  }
+  return std::sqrt(left / weight);
 }
 
 /// Returns true if the terms are as small as depth errors can be. Terms that the depths of the
@@ -105,14 +165,15 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool pr
   NormalSums all;
   for (const NormalSums& cell : sums) all.add(cell);
   const int max_signal = signal_varies(all, highest_harmonic, max_degree) ? max_error_signal : 0;
+  const std::vector<Fold> near_folds = folds_of(sums, false), far_folds = folds_of(sums, true);
   std::vector<Candidate> candidates;
   for (const unsigned harmonics : harmonic_sets(highest_harmonic))
     for (int degree = 0; degree <= max_degree; ++degree)
       for (int signal = 0; signal <= max_signal; ++signal) {
         const TermChoice choice{harmonics, degree, signal};
         if (choice.size() > 1 && !is_plausible(all, choice, fit.range_m)) continue;
-        candidates.push_back(
-            {choice, held_out_rms_m(sums, choice, false), held_out_rms_m(sums, choice, true)});
+        candidates.push_back({choice, held_out_rms_m(near_folds, choice).value_or(0.0),
+                              held_out_rms_m(far_folds, choice).value_or(0.0)});
       }
   const auto& near = *std::ranges::min_element(candidates, {}, &Candidate::near_m);
   const auto& far = *std::ranges::min_element(candidates, {}, &Candidate::far_m);
@@ -125,13 +186,19 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool pr
   double least_m = std::numeric_limits<double>::infinity();
   for (const Candidate& c : candidates)
     if (c.choice.signal == signal) least_m = std::min(least_m, c.near_m);
+  const bool is_few = prefer_few || near_folds.empty();
   const Candidate* best = nullptr;
   for (const Candidate& c : candidates)
     if (c.choice.signal == signal && c.near_m <= as_well * least_m &&
-        (!best || (prefer_few ? c.choice.size() < best->choice.size()
-                              : c.choice.size() > best->choice.size())))
+        (!best ||
+         (is_few ? c.choice.size() < best->choice.size() : c.choice.size() > best->choice.size())))
       best = &c;
-  return {best->choice, far.choice, best->near_m, far.far_m};
+  return {.known = best->choice,
+          .beyond = far.choice,
+          .known_rms_m = held_out_rms_m(near_folds, best->choice),
+          .beyond_rms_m = held_out_rms_m(far_folds, far.choice),
+          .skipped_blocks = checkers - static_cast<int>(near_folds.size()),
+          .skipped_parts = slabs - static_cast<int>(far_folds.size())};
 }
 
 }  // namespace tofsmith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "calibrate/depth_error_fit.hpp"
@@ -38,14 +39,16 @@ std::vector<double> each(const std::vector<ReferenceSample>& samples, const Get&
 }
 
 /// Terms used within and beyond the depths of the reference, with their residuals on held-out
-/// samples [m].
+/// samples [m]; none if no samples could be held out.
 struct Chosen {
   TermChoice known, beyond;
-  double known_rms_m = 0.0, beyond_rms_m = 0.0;
+  std::optional<double> known_rms_m, beyond_rms_m;
+  int skipped_blocks = 0;  ///< folds of blocks without samples in or out
+  int skipped_parts = 0;   ///< likewise quarters of the range
 };
 
-/// Selects terms by cross-validation on blocks of a checkerboard and on quarters of the reference's
-/// range.
+/// Selects terms by cross-validation on alternate blocks with data and on quarters of the
+/// reference's range. Without samples to hold out, selects the smallest set.
 /// @param prefer_few  select the smallest of sets that predict equally well, for tables with
 ///         calibrated harmonics, which leave few terms; otherwise the largest
 Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool prefer_few);

@@ -288,7 +288,7 @@ TEST(DepthCalibration, DepthAlongTheAxisIsConvertedWithTheLens) {
   for (Image<float>& depth_m : z.depth_m) depth_m = z_from_radial(depth_m, view);
   const CalibratedDepth found = calibrate_depth(bench.raw, z, code, camera);
   EXPECT_NEAR(found.mean_error_m, radial.mean_error_m, 1e-5);
-  EXPECT_NEAR(found.rms_m, radial.rms_m, 1e-5);
+  EXPECT_NEAR(found.rms_m.value(), radial.rms_m.value(), 1e-5);
   camera.lens.reset();
   EXPECT_THAT([&] { calibrate_depth(bench.raw, z, code, camera); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("lens = none")));
@@ -401,6 +401,45 @@ TEST(DepthCalibration, ThePictureShowsErrorsBeforeAndAfter) {
   EXPECT_EQ(picture.after_image_m.height, bench.height);
   EXPECT_EQ(picture.after_image_m.width, bench.width);
   for (const float left_m : picture.after_image_m.pixels) EXPECT_NEAR(left_m, 0.0, 0.02);
+}
+
+/// Keeps the reference where a predicate of row and column is true.
+template <typename Predicate>
+void keep_reference(Bench& bench, const Predicate& is_kept) {
+  for (Image<float>& depth_m : bench.reference.depth_m)
+    for (int row = 0; row < bench.height; ++row)
+      for (int column = 0; column < bench.width; ++column)
+        if (!is_kept(row, column)) depth_m(row, column) = NAN;
+}
+
+TEST(DepthCalibration, HoldsOutBlocksWhereverTheReferenceIs) {
+  const auto parts = std::to_array<bool (*)(int, int)>({
+      [](int row, int column) { return (row / 8 + column / 10) % 2 == 0; },  // same checkerboard
+      [](int row, int column) { return row / 16 % 2 == 0 && column / 20 % 2 == 1; },
+      [](int row, int column) { return row < 8 && column < 10; },  // one block
+      [](int row, int column) { return row == column; },
+  });
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Bench bench{.height = 64, .width = 80, .wrong_share = 0.0, .truth = wiggle()};
+    bench.run();
+    keep_reference(bench, parts[i]);
+    const CalibratedDepth found = bench.calibrate();
+    EXPECT_EQ(found.skipped_folds, 0) << i;
+    ASSERT_TRUE(found.rms_m.has_value()) << i;
+    EXPECT_GT(*found.rms_m, 1e-4) << i;  // noise of depth
+    EXPECT_LT(*found.rms_m, 0.5 * found.rms_before_m) << i;
+  }
+}
+
+TEST(DepthCalibration, AReferenceAtOneDistanceHasNoErrorBeyondIt) {
+  Bench bench{.frames = 1, .first_share = 0.4, .last_share = 0.4, .wrong_share = 0.0};
+  bench.run();
+  for (Image<float>& depth_m : bench.reference.depth_m)
+    depth_m = Image<float>(1, 1, static_cast<float>(0.4 * bench.range_m));
+  const CalibratedDepth found = bench.calibrate();
+  EXPECT_TRUE(found.rms_m.has_value());
+  EXPECT_FALSE(found.far_rms_m.has_value());
+  EXPECT_EQ(found.skipped_folds, 4);
 }
 
 TEST(DepthCalibration, LeavesSmallerErrorsThanPublishedModelsOnARealCamera) {

@@ -22,6 +22,9 @@ std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& fou
 std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& found);
 std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
 
+/// Returns mean and spread of the nominal depth error, and the remaining error, as a phrase.
+std::string depth_error_text(const CalibratedDepth& found);
+
 /// Return pages with the results of calibrations as tables and figures, and with notes.
 /// @param source        name of the data, e.g. the file of a record
 /// @param command_line  the user's command, shown on the page; may be empty

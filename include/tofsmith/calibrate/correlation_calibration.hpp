@@ -179,8 +179,11 @@ struct CalibratedDepth {
   double known_share = 0.0;            ///< of the range in which the reference had depths
   double mean_error_m = 0.0;           ///< of the nominal depth, in [-range / 2, range / 2]
   double rms_before_m = 0.0;           ///< of its error, but for the mean
-  double rms_m = 0.0;                  ///< left over on blocks of pixels held out
-  double far_rms_m = 0.0;      ///< left over by the terms beyond, on parts of the range held out
+  std::optional<double> rms_m;  ///< left over on blocks of pixels held out; none: none had data
+  /// Left over by the terms beyond, on parts of the range held out; none: the reference is at one
+  /// distance.
+  std::optional<double> far_rms_m;
+  int skipped_folds = 0;       ///< of 2 of blocks and 4 of the range, without data in or out
   double outlier_share = 0.0;  ///< of the pixels, which count for nothing
   /// As DecodeOptions::model_error_percent, within 20 %; none: the code has no degrees of freedom.
   std::optional<double> model_error_percent;
@@ -197,8 +200,8 @@ struct CalibratedDepth {
 ///      the signal, by least squares with Tukey's biweight (flying pixels and wrong references have
 ///      no weight), at the phase that the reference predicts, so that noise of the depth is not
 ///      taken for an error that depends on it.
-///   3. Which terms: by blocks of a checkerboard held out in turn. Beyond the depths that the
-///      reference had, those count that predict parts of the range held out.
+///   3. Which terms: by alternate blocks, among those with data, held out in turn. Beyond the
+///      depths that the reference had, those count that predict parts of the range held out.
 ///   4. Standard errors from tiles of pixels, whose errors may be alike.
 ///   5. The model error with which at most 1 % of the pixels with the right depth are inconsistent.
 ///      Errors below the noise of the frames are not found.
