@@ -4,9 +4,12 @@
 
     scripts/packages.sh benchmark
     /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith --quick
+    /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith --empty
     /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith \\
         --optimized OUT/codes/optimized-k5.code.json --data DIRECTORY
 
+--empty measures only how many pixels without a surface have status ok, by their distance from the
+nearest surface, and how many pixels of surfaces do.
 OUT is what `tofsmith demo -o OUT` has written. With --data DIRECTORY there are RGB-D images and
 meshes as well; what is not there is named and left out.
 
@@ -26,6 +29,7 @@ import time
 from collections import defaultdict
 from pathlib import Path
 
+import cv2
 import numpy as np
 
 import picture_anchors as anchors
@@ -38,6 +42,9 @@ PLANES = ("table-top", "room", "corner", "wall")
 CLEARANCES_PX = (13, 24)
 OURS = ("light", "normal", "strong")
 BUILT_IN = ("table-top", "hand", "room", "corner")
+EMPTY_SCENES = ("hand", "moving-hand", "ball")
+EMPTY_LEVELS_E_PER_S = (1e3, 3e3, 5e3, 1e4, 3e4, 1e5, 1e7)
+EMPTY_DISTANCES_PX = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 12), (13, 10**6))
 # Depth and image of each below --data; images in sRGB are .png, those in linear light .npy.
 RGB_D = {
     "bottles": ("pcl_tabletop/bottles_floor_depth_m.npy", "pcl_tabletop/bottles_floor_rgb.png"),
@@ -76,6 +83,12 @@ class Camera:
         depth = self.directory / "depth.npy"
         self.run("decode", raw, "--code", code, "-o", depth, *options)
         return np.load(depth).squeeze()
+
+    def is_ok(self, raw, code, *options):
+        """Whether pixels have status ok."""
+        self.run("decode", raw, "--code", code, "-o", self.directory / "depth.npy", "--outputs",
+                 "depth,status", *options)
+        return np.load(self.directory / "depth-status.npy").squeeze() == 0
 
     def table(self, code, samples=1000):
         """What one electron per second of signal at each depth of the range measures, (N, K)."""
@@ -187,6 +200,47 @@ def plane_bias(camera, code, name, signal, frames):
     return found
 
 
+def with_holes(camera, directory):
+    """A depth image of a wall with holes of 3 to 60 pixels and gaps of 4 to 24."""
+    depth = np.full((240, 320), 1.5, np.float32)
+    y, x = np.mgrid[:240, :320]
+    for row, radius in ((50, 1), (50, 4), (50, 10), (50, 30)):
+        depth[(y - row) ** 2 + (x - 8 * radius - 20) ** 2 <= radius ** 2] = np.nan
+    for left, width in ((20, 4), (60, 8), (110, 12), (170, 24)):
+        depth[120:220, left:left + width] = np.nan
+    file = directory / "holes.npy"
+    np.save(file, depth)
+    return (file, "--kind", "radial")
+
+
+def empty_report(camera, code, frames):
+    """Share of ok pixels of single pixels and filters, by distance from the nearest surface."""
+    near = [f"{a}" if a == b else f"{a}-{b}" if b < 1000 else f"{a} on" for a, b in
+            EMPTY_DISTANCES_PX]
+    print(f"\nok pixels in %, {label(code)}, {frames} frames\n")
+    print("| scene | S (e/s) | filter | all empty | " + " | ".join(f"{n} px" for n in near) +
+          " | surface |")
+    print("|---" * (5 + len(near)) + "|")
+    scenes = {name: (name, "--width", 320, "--height", 240) for name in EMPTY_SCENES}
+    scenes["holes"] = with_holes(camera, camera.directory)
+    for name, scene in scenes.items():
+        for signal in EMPTY_LEVELS_E_PER_S:
+            shares = defaultdict(list)
+            for seed in range(1, frames + 1):
+                raw, truth = camera.lit(name, scene, code, signal, "--seed", seed)
+                empty = np.isnan(truth)
+                away = cv2.distanceTransform(empty.astype(np.uint8), cv2.DIST_C, 3)
+                parts = [empty] + [(away >= a) & (away <= b) for a, b in EMPTY_DISTANCES_PX]
+                for strength in ("alone", *OURS):
+                    options = ("--filter", strength) if strength != "alone" else ()
+                    ok = camera.is_ok(raw, code, *options)
+                    shares[strength].append([ok[part].mean() if part.any() else math.nan
+                                             for part in (*parts, ~empty)])
+            for strength, found in shares.items():
+                shown = " | ".join(f"{100 * share:.2f}" for share in np.mean(found, 0))
+                print(f"| {name} | {signal:g} | {strength} | {shown} |", flush=True)
+
+
 def measured(camera, code, name, scene, signal, lens, shifts):
     """Error [mm] (mean, median) of every method in one cell."""
     raw, truth = camera.lit(name, scene, code, signal, *(LENS if lens else ()))
@@ -292,7 +346,14 @@ def main():
                         help="file of the code optimized-k5 of `tofsmith demo`")
     parser.add_argument("--data", type=Path, help="directory of RGB-D images and meshes")
     parser.add_argument("--quick", action="store_true", help="table-top alone at one level, small")
+    parser.add_argument("--empty", action="store_true", help="only pixels without a surface")
+    parser.add_argument("--frames", type=int, default=4, help="with --empty: frames of each scene")
     arguments = parser.parse_args()
+    if arguments.empty:
+        with tempfile.TemporaryDirectory() as folder:
+            code = str(arguments.optimized or "hamiltonian-k4")
+            empty_report(Camera(arguments.program, Path(folder)), code, arguments.frames)
+        return
     codes = [str(arguments.optimized)] if arguments.optimized else []
     codes += list(anchors.HARMONICS)
     levels = LEVELS_E_PER_S[1:2] if arguments.quick else LEVELS_E_PER_S

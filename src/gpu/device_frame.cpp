@@ -38,6 +38,7 @@ DeviceFrame::DeviceFrame(const Device& device, const Filter::Plan& plan, bool us
   keep_bright_ = kernel("keep_bright");
   find_own_light_ = kernel("find_own_light");
   leave_dark_ = kernel("leave_dark");
+  find_own_amplitude_ = kernel("find_own_amplitude");
   add_slope_noise_ = kernel("add_slope_noise");
   write_filtered_ = kernel("write_filtered");
   queue().upload(tables_.words.data(), words_.bytes, words_);
@@ -50,7 +51,8 @@ int DeviceFrame::reach(const FilterOptions& options) {
     similar += of_window + (window == 0 ? patch_reach : patch_reach - 1);
     along_slopes += of_window + (window == 0 ? 0 : std::max(compared_reach, line_reach));
   }
-  return patch_reach + similar + options.slope_rounds * along_slopes + own_light_reach;
+  return patch_reach + similar + options.slope_rounds * along_slopes +
+         std::max(own_light_reach, lit_reach);
 }
 
 std::int64_t DeviceFrame::bytes(int rows, int width) const {
@@ -94,6 +96,7 @@ ResultParameters DeviceFrame::result(int set, int measured) const {
   return {.light = light(set),
           .measured = light(measured),
           .last_variance = plan_.last_variance(),
+          .amplitude = FilterPlanes::signal_next,
           .first_row = 0,
           .rows = parameters_.height};
 }
@@ -130,6 +133,7 @@ void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
     add_slope_noise(round);
   }
   read(to, FilterPlanes::usable, false);
+  run(find_own_amplitude_, parameters_, result(from, to), &planes_, int{FilterPlanes::signal_next});
   result_ = from;
 }
 

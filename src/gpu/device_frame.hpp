@@ -60,7 +60,8 @@ class DeviceFrame {
   DeviceTile tile_;  // decodes the depths that guide slopes
   DeviceKernel read_light_, find_hidden_noise_, find_energy_, weigh_similar_, add_similar_,
       write_raw_, take_depth_, find_slopes_, split_, add_along_slopes_, compare_sums_, keep_near_,
-      keep_bright_, find_own_light_, leave_dark_, add_slope_noise_, write_filtered_;
+      keep_bright_, find_own_light_, leave_dark_, find_own_amplitude_, add_slope_noise_,
+      write_filtered_;
   FilterParameters parameters_;
   DeviceMemory words_, planes_, weights_, left_out_;
   bool has_left_out_ = false;

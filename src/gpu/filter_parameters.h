@@ -58,6 +58,7 @@ struct ResultParameters {
   int light;          ///< first plane of the light set with the result
   int measured;       ///< first plane of the light set as measured
   int last_variance;
+  int amplitude;      ///< how much light each pixel shows
   int first_row, rows;
 };
 

@@ -32,6 +32,31 @@ class Constants {
         fmt::format("constant int {0}_rows[] = {{{1}}};\nconstant int {0}_columns[] = {{{2}}};\n",
                     name, rows, columns);
   }
+  /// The bars of find_lit_share().
+  void add_bars() {
+    std::string lengths, depths, most, enough, scales;
+    for (const LitBar& bar : lit_bars) {
+      lengths += fmt::format("{}, ", bar.length);
+      depths += fmt::format("{}, ", bar.depth);
+      most += fmt::format("{:.9e}f, ", bar.max_added_sigma);
+      enough += fmt::format("{:.9e}f, ", bar.enough_share / lit_bar_scale(bar, bar.depth));
+      for (int rows = 1; rows <= bar.depth; ++rows)
+        scales += fmt::format("{:.9e}f, ", lit_bar_scale(bar, rows));
+    }
+    text_ += fmt::format(
+        "constant int lit_lengths[] = {{{}}};\nconstant int lit_depths[] = {{{}}};\n"
+        "constant float lit_max_added[] = {{{}}};\nconstant float lit_enough[] = {{{}}};\n"
+        "constant float lit_scales[] = {{{}}};\n",
+        lengths, depths, most, enough, scales);
+    add_steps("lit_point", lit_bar_points());
+    add("LIT_BARS", static_cast<int>(lit_bars.size()));
+    add("LIT_DIRECTIONS", lit_directions);
+    add("LIT_PIXEL_SIGMA", lit_pixel_sigma);
+    add("LIT_BAR_SIGMA", lit_bar_sigma);
+    add("LIT_BAR_SHARE", lit_bar_share);
+    add("LIT_AROUND_SIGMA", lit_around_sigma);
+    add("LIT_EXCESS_SIGMA", lit_excess_sigma);
+  }
   const std::string& text() const { return text_; }
 
  private:
@@ -89,6 +114,7 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("OWN_LIGHT_SHARE", own_light_share);
   c.add("OWN_LIGHT_BELOW_MEAN", own_light_below_mean);
   c.add("OWN_LIGHT_NOISE", own_light_noise);
+  c.add_bars();
   return c.text();
 }
 

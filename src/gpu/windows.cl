@@ -303,15 +303,22 @@ float along_added(const struct FilterParameters* p, const struct ResultParameter
   return sum;
 }
 
-/// Returns true if the filtered light of a pixel can be its own, as find_own_light().
-bool is_own_light(const struct FilterParameters* p, const struct ResultParameters* r,
-                  global float* planes, int at) {
-  const float mean_noise = OWN_LIGHT_NOISE / (float)(2 * OWN_LIGHT_REACH + 1);
+/// Returns the square of the light added to a pixel.
+float added_square(const struct FilterParameters* p, const struct ResultParameters* r,
+                   global float* planes, int at) {
   float square = 0.0f;
   for (int j = 0; j < RANK; ++j) {
     const float u = plane_of(p, planes, r->light + j)[at];
     square = product_plus(u, u, square);
   }
+  return square;
+}
+
+/// Whether what was added to a pixel can be its own light, as find_own_light().
+bool is_own_light(const struct FilterParameters* p, const struct ResultParameters* r,
+                  global float* planes, int at) {
+  const float mean_noise = OWN_LIGHT_NOISE / (float)(2 * OWN_LIGHT_REACH + 1);
+  const float square = added_square(p, r, planes, at);
   const Plane usable = plane_of(p, planes, PLANE_USABLE);
   if (!(square > 0.0f && usable[at] > 0.5f)) return false;
   const float added = sqrt(square), sigma = sqrt(plane_of(p, planes, PLANE_VARIANCE)[at]);
@@ -350,8 +357,70 @@ kernel void leave_dark(const struct FilterParameters p, global float* planes, co
   plane_of(&p, planes, PLANE_USABLE)[at] = plane_of(&p, planes, is_own)[at];
 }
 
-/// Writes filtered raw numbers of some rows; pixels that fail is_own_light() keep their measured
-/// numbers.
+/// Computes the light in the measurements of each pixel, as find_own_amplitude().
+kernel void find_own_amplitude(const struct FilterParameters p, const struct ResultParameters r,
+                               global float* planes, const int to) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  const float square = added_square(&p, &r, planes, at);
+  const bool is_known = square > 0.0f && plane_of(&p, planes, PLANE_USABLE)[at] > 0.5f;
+  const float length = sqrt(square) * sqrt(plane_of(&p, planes, PLANE_VARIANCE)[at]);
+  plane_of(&p, planes, to)[at] = is_known ? along_added(&p, &r, planes, at, at) / length : 0.0f;
+}
+
+/// Returns the smallest light of the bars in all directions, as least_of_bars().
+/// @param point, scale  first point and scale of the bar
+float least_of_bars(const struct FilterParameters* p, Plane amplitude, int at, int bar, int point,
+                    int scale, float most) {
+  float least = 1e30f;
+  for (int direction = 0; direction < LIT_DIRECTIONS; ++direction) {
+    float sum = 0.0f, shown = -1e30f;
+    for (int row = 0; row < lit_depths[bar]; ++row) {
+      for (int i = 0; i < lit_lengths[bar]; ++i, ++point) {
+        const float light =
+            amplitude[at + lit_point_rows[point] * p->stride + lit_point_columns[point]];
+        sum += SMALLER(light, most);
+      }
+      const float of_rows = sum * lit_scales[scale + row];
+      shown = LARGER(shown, of_rows);
+    }
+    least = SMALLER(least, shown);
+  }
+  return least;
+}
+
+/// Returns 1 for lit pixels, as find_lit_share().
+float lit_share(const struct FilterParameters* p, const struct ResultParameters* r,
+                global float* planes, int at) {
+  const Plane amplitude = plane_of(p, planes, r->amplitude);
+  if (!(plane_of(p, planes, PLANE_USABLE)[at] > 0.5f) || amplitude[at] >= LIT_PIXEL_SIGMA)
+    return 1.0f;
+  const float square = added_square(p, r, planes, at);
+  const float added = sqrt(square) / sqrt(plane_of(p, planes, PLANE_VARIANCE)[at]);
+  const float most = added + LIT_EXCESS_SIGMA;
+  float around = 0.0f;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) around += amplitude[at + dy * p->stride + dx];
+  const bool is_lit_around =
+      added <= LIT_AROUND_SIGMA || around * (1.0f / 9.0f) >= added * LIT_BAR_SHARE;
+  int point = 0, scale = 0;
+  for (int bar = 0; bar < LIT_BARS; ++bar) {
+    if (is_lit_around && added <= lit_max_added[bar]) {
+      const float of_added = added * (LIT_BAR_SHARE / lit_scales[scale]);
+      const float least = least_of_bars(p, amplitude, at, bar, point, scale, most);
+      const float enough = added * lit_enough[bar];
+      const float of_bar = SMALLER(LIT_BAR_SIGMA, enough);
+      if (least >= LARGER(of_bar, of_added)) return 1.0f;
+    }
+    point += LIT_DIRECTIONS * lit_depths[bar] * lit_lengths[bar];
+    scale += lit_depths[bar];
+  }
+  const float variance = plane_of(p, planes, r->last_variance)[at];
+  return variance / (variance + square);
+}
+
+/// Writes filtered raw numbers of some rows; pixels without additions keep their measured numbers.
 kernel void write_filtered(const struct FilterParameters p, const struct ResultParameters r,
                            const struct TileParameters tile, Floats tables,
                            global const uchar* raw_numbers, Floats averaged_before,
@@ -363,6 +432,7 @@ kernel void write_filtered(const struct FilterParameters p, const struct ResultP
   const float before = averaged_before ? averaged_before[measured] : 1.0f;
   float numbers[MEASUREMENTS];
   float n = raw_of_light(&p, &r, tables, before, planes, at, numbers);
+  n *= lit_share(&p, &r, planes, at);
   if (!is_own_light(&p, &r, planes, at)) {
     n = before;
     for (int k = 0; k < MEASUREMENTS; ++k)

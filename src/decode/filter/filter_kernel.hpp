@@ -30,8 +30,11 @@ struct FilterGrid {
   }
 };
 inline constexpr int slope_reach = 12;  ///< of the pixels that tell a slope
+/// Farthest row or column of pixels that tell whether a pixel is lit; of lit_bars.
+inline constexpr int lit_reach = 11;
 /// Rows that windows of a frame reach beyond it, and columns, with room for a whole vector.
 constexpr int margin_rows(int largest_step) { return std::max(2 * largest_step + 2, slope_reach); }
+static_assert(lit_reach <= slope_reach);
 constexpr int margin_columns(int largest_step) {
   return whole_vectors(margin_rows(largest_step)) + widest_vector;
 }

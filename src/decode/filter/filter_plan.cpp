@@ -315,12 +315,25 @@ void Filter::Plan::leave_dark(const RawView& raw, FilterPlanes& frame, int set, 
 void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int other) const {
   read_again(raw, frame, other, FilterPlanes::usable);
   const OwnLightTest test = own_light_test(frame, set, other);
+  float* const amplitude = frame.scalar(FilterPlanes::signal_next);
+  for_each_row(frame, [&](int row) {
+    float* const here = amplitude + row * frame.grid.stride;
+    find_own_amplitude(test, frame.grid, row, here);
+    std::fill(here + frame.grid.width, here + frame.grid.stride, 0.0f);
+  });
+  const LitTest lit{.light = &test,
+                    .amplitude = amplitude,
+                    .variance = frame.scalar(last_variance()),
+                    .points = frame.lit_points.data()};
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t start = row * frame.grid.stride;
     float* const is_filtered = frame.scalar(FilterPlanes::signal) + start;
+    float* const share = frame.scalar(FilterPlanes::shift) + start;
     find_own_light(test, frame.grid, row, is_filtered);
+    find_lit_share(lit, frame.grid, row, share);
     float* const averaged = &frame.averaged(row, 0);
     write_raw_row(raw, frame, set, set, row, averaged);
+    for (int x = 0; x < frame.grid.width; ++x) averaged[x] *= share[x];
     const float* const measured = averaged_of(raw, row, 0);
     for_each_run(raw, std::int64_t{row} * raw.width, raw.width,
                  [&](const auto* pixel, std::int64_t length, std::int64_t) {

@@ -6,6 +6,7 @@
 
 #include "decode/filter/filter_planes.hpp"
 #include "decode/filter/hidden_signal.hpp"
+#include "decode/filter/lit_kernel.hpp"
 #include "decode/filter/slope_kernel.hpp"
 #include "decode/raw_scale.hpp"
 #include "tofsmith/core/parallel.hpp"

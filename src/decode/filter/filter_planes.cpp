@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "decode/filter/lit_kernel.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -56,6 +58,9 @@ void FilterPlanes::resize(int height, int width, int measurements_, int largest_
   // Margins stay 0.
   storage.assign(floats(grid, measurements), 0.0f);
   averaged = Image<float>(height, width, 1.0f);
+  lit_points.clear();
+  for (const WindowStep& step : lit_bar_points())
+    lit_points.push_back(step.rows * grid.stride + step.columns);
 }
 
 FilteredFrame::FilteredFrame() : planes_(std::make_unique<FilterPlanes>()) {}

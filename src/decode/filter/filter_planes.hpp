@@ -55,8 +55,9 @@ struct FilterPlanes {
   int measurements = 0;
   std::vector<float> storage;
   Image<float>
-      averaged;       ///< along slopes: variance of a coordinate that depth was found from [e^2]
-  NoiseRatios noise;  ///< of the filtered numbers
+      averaged;  ///< along slopes: variance of a coordinate that depth was found from [e^2]
+  std::vector<std::ptrdiff_t> lit_points;  ///< lit_bar_points() in the grid [floats]
+  NoiseRatios noise;                       ///< of the filtered numbers
   const std::uint8_t* left_out = nullptr;  ///< of the frame under way, (H, W), or null
   int result = 0;                          ///< the set of `light` that holds raw numbers at the end
   StripBufferPool buffers;

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/filter/lit_kernel.hpp"
+
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "decode/filter/lit_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own header after foreach_target.
+#include <hwy/highway.h>
+
+#include "decode/filter/pair_weight-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// Square of the light that was added to the pixels from `at` on.
+HWY_INLINE Vector added_square(const OwnLightTest& test, std::ptrdiff_t at) {
+  Vector square = hn::Zero(Floats());
+  for (int j = 0; j < test.rank; ++j) {
+    const Vector u = load(test.added.data()[j] + at);
+    square = hn::MulAdd(u, u, square);
+  }
+  return square;
+}
+
+void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
+                        float* amplitude) {
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t at = row * grid.stride + x;
+    const Vector square = added_square(test, at);
+    Vector along = hn::Zero(Floats());
+    for (int j = 0; j < test.rank; ++j)
+      along =
+          hn::MulAdd(load(test.added.data()[j] + at), load(test.measured.data()[j] + at), along);
+    const Mask is_known =
+        hn::And(hn::Gt(square, hn::Zero(Floats())), hn::Gt(load(test.usable + at), all(0.5f)));
+    const Vector length = hn::Mul(hn::Sqrt(square), hn::Sqrt(load(test.variance + at)));
+    store(hn::IfThenElseZero(is_known, hn::Div(along, length)), amplitude + x);
+  }
+}
+
+/// The least light of the bars of all directions, each with the rows that show the most of it.
+HWY_INLINE Vector least_of_bars(const float* amplitude, const std::ptrdiff_t* points,
+                                const LitBar& bar, const float* scale, Vector most) {
+  Vector least = all(1e30f);
+  for (int direction = 0; direction < lit_directions; ++direction) {
+    Vector sum = hn::Zero(Floats()), shown = all(-1e30f);
+    for (int r = 0; r < bar.depth; ++r) {
+      for (int i = 0; i < bar.length; ++i)
+        sum = hn::Add(sum, hn::Min(load(amplitude + *points++), most));
+      shown = hn::Max(shown, hn::Mul(sum, all(scale[r])));
+    }
+    least = hn::Min(least, shown);
+  }
+  return least;
+}
+
+/// Mean of 3 x 3 pixels.
+HWY_INLINE Vector mean_around(const float* amplitude, std::ptrdiff_t stride) {
+  Vector sum = hn::Zero(Floats());
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) sum = hn::Add(sum, load(amplitude + dy * stride + dx));
+  return hn::Mul(sum, all(1.0f / 9.0f));
+}
+
+void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share) {
+  const Vector one = all(1.0f);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t at = row * grid.stride + x;
+    const Vector square = added_square(*test.light, at);
+    const Vector added = hn::Div(hn::Sqrt(square), hn::Sqrt(load(test.light->variance + at)));
+    const Vector most = hn::Add(added, all(lit_excess_sigma));
+    const Mask is_usable = hn::Gt(load(test.light->usable + at), all(0.5f));
+    Mask is_lit =
+        hn::Or(hn::Not(is_usable), hn::Ge(load(test.amplitude + at), all(lit_pixel_sigma)));
+    const Mask is_lit_around = hn::Or(
+        hn::Le(added, all(lit_around_sigma)),
+        hn::Ge(mean_around(test.amplitude + at, grid.stride), hn::Mul(added, all(lit_bar_share))));
+    const std::ptrdiff_t* points = test.points;
+    for (const LitBar& bar : lit_bars) {
+      const Mask is_open =
+          hn::And(hn::AndNot(is_lit, is_lit_around), hn::Le(added, all(bar.max_added_sigma)));
+      if (!hn::AllFalse(Floats(), is_open)) {
+        std::array<float, lit_reach> scale{};
+        for (int r = 0; r < bar.depth; ++r) scale.data()[r] = lit_bar_scale(bar, r + 1);
+        const Vector least = least_of_bars(test.amplitude + at, points, bar, scale.data(), most);
+        const Vector of_added = hn::Mul(added, all(lit_bar_share / scale.data()[0]));
+        const Vector enough = hn::Mul(added, all(bar.enough_share / scale.data()[bar.depth - 1]));
+        const Vector wanted = hn::Max(hn::Min(all(lit_bar_sigma), enough), of_added);
+        is_lit = hn::Or(is_lit, hn::And(is_open, hn::Ge(least, wanted)));
+      }
+      points += lit_directions * bar.depth * bar.length;
+    }
+    const Vector variance = load(test.variance + at);
+    store(hn::IfThenElse(is_lit, one, hn::Div(variance, hn::Add(variance, square))), share + x);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith {
+
+HWY_EXPORT(find_own_amplitude);
+HWY_EXPORT(find_lit_share);
+
+namespace {
+/// Where place i of row r of a bar is that points along (down, right).
+WindowStep bar_point(int down, int right, int r, int i) {
+  if (down == 0 || right == 0) return {r * down - i * right, r * right + i * down};
+  const int along = i + (r + 1) / 2;  // rows of diagonals are half a step apart
+  return {down * along, right * (r - along)};
+}
+}  // namespace
+
+std::vector<WindowStep> lit_bar_points() {
+  constexpr std::array<WindowStep, lit_directions> directions = {
+      {{0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}}};
+  std::vector<WindowStep> points;
+  for (const LitBar& bar : lit_bars)
+    for (const WindowStep& d : directions)
+      for (int r = 0; r < bar.depth; ++r)
+        for (int i = -(bar.length / 2); i <= bar.length / 2; ++i)
+          points.push_back(bar_point(d.rows, d.columns, r, i));
+  return points;
+}
+
+float lit_bar_scale(const LitBar& bar, int rows) {
+  return 1.0f / std::sqrt(static_cast<float>(bar.length * rows));
+}
+
+void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
+                        float* amplitude) {
+  HWY_DYNAMIC_DISPATCH(find_own_amplitude)(test, grid, row, amplitude);
+}
+
+void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share) {
+  HWY_DYNAMIC_DISPATCH(find_lit_share)(test, grid, row, share);
+}
+
+}  // namespace tofsmith
+#endif
