@@ -465,5 +465,23 @@ TEST_F(DecodeRecording, CloudsContainThePixelsWithStatusOk) {
   EXPECT_EQ(points, ok);
 }
 
+TEST_F(DecodeRecording, NotesThatAFilteredFrameHasOtherNoiseThanTheCamera) {
+  RawFrames calm{.frames = 1, .height = 64, .width = 64, .measurements = 4, .values = {}};
+  for (int i = 0; i < 64 * 64 * 4; ++i)
+    calm.values.push_back(1000.0F + 300.0F * static_cast<float>(i % 4) +
+                          static_cast<float>(i * 7919 % 101 - 50) / 25.0F);
+  write_raw_frames(path("calm.npy"), calm, OutputPolicy::refuse_existing);
+  DecodeRequest filtered{.raw = {path("calm.npy")},
+                         .output = path("filtered.npy"),
+                         .filter = FilterOptions::of(FilterStrength::light)};
+  EXPECT_THAT(decode_recording(filtered, *backend_).notes,
+              testing::Contains(testing::AllOf(testing::HasSubstr("times the noise"),
+                                               testing::HasSubstr("calibrate noise"))));
+  filtered.filter.reset();
+  filtered.output = path("alone.npy");
+  EXPECT_THAT(decode_recording(filtered, *backend_).notes,
+              testing::Not(testing::Contains(testing::HasSubstr("times the noise"))));
+}
+
 }  // namespace
 }  // namespace tofsmith

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "decode/filter/shared/measured_noise.hpp"
 #include "io/recordings/decode_plan.hpp"
 #include "io/recordings/decoded_output.hpp"
 #include "io/recordings/misfit.hpp"
@@ -179,6 +180,14 @@ class Pace {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Compares the noise of the frame that was filtered with the camera's.
+void add_noise_note(FramePipeline& pipeline, const Band& band, DecodedRecording& result) {
+  const FrameSteps& steps = pipeline.steps();
+  if (const auto ratio = measured_noise_ratio(*steps.filter, pipeline.measured()))
+    if (const auto note = noise_note(*ratio, band.frame, steps.averaged))
+      result.notes.push_back(*note);
+}
+
 /// Decodes the target's frames.
 void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
                    const std::vector<std::unique_ptr<FramePipeline>>& pipelines,
@@ -197,6 +206,7 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
     decode_next(input, corrections, band, target, planes, here);
+    if (preparation.steps.filter && result.frames.empty()) add_noise_note(pipeline, band, result);
     if (target.undistortion) undistort(planes, *target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)

@@ -19,5 +19,9 @@ std::optional<std::string> repeated_offset_note(const DecodingTable& table,
 std::optional<std::string> no_depth_note(const StatusCounts& statuses);
 /// Warning if more than 10 % of the pixels of all frames are inconsistent, with likely causes.
 std::optional<std::string> inconsistent_note(const StatusCounts& statuses);
+/// Warning if a filtered frame has more than 1.5 times, or less than 1 / 1.5 of, the noise that the
+/// camera's keys predict. @param ratio  of the standard deviations
+/// @param averaged  DecodeRequest::averaged
+std::optional<std::string> noise_note(double ratio, int frame, double averaged);
 
 }  // namespace tofsmith
