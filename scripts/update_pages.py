@@ -110,6 +110,7 @@ def main():
     images = ROOT / "docs" / "images"
     with tempfile.TemporaryDirectory() as directory:
         update(ROOT / "README.md", directory)
+        run(["bash", "-e"], directory, "tofsmith demo")
         draw_demo(Path(directory) / "tofsmith-demo" / "scene", images / "demo.png")
     with tempfile.TemporaryDirectory() as directory:
         update(ROOT / "docs/tutorial.md", directory)

@@ -39,10 +39,11 @@ void expect_best_wins(const Camera& camera, const DesignResult& result, const st
   ASSERT_NE(result.find(naive), nullptr) << naive;
   const DepthErrorKind kind = camera.operating.error;
   for (const Candidate& c : result.candidates) {
-    if (c.code.exposures() == result.winner().code.exposures())
+    if (c.code.exposures() == result.winner().code.exposures()) {
       EXPECT_LE(geometric_mean_error_m(result.winner().error, kind),
                 geometric_mean_error_m(c.error, kind))
           << c.code.name();
+    }
     EXPECT_NO_THROW(require_fits(c.code, camera));
     EXPECT_EQ(c.error.code, c.code.name());
     EXPECT_EQ(c.code.provenance.depth_error_m, geometric_mean_error_m(c.error, kind));

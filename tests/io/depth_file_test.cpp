@@ -60,9 +60,10 @@ TEST_P(DepthFormat, StatesWhetherDepthIsRadialOrZWhereItCan) {
     EXPECT_EQ(depth_kind_of(file_, {}, DepthKind::z), states_kind ? kind : DepthKind::z);
     EXPECT_EQ(depth_kind_of(file_, kind, DepthKind::z), kind);
   }
-  if (states_kind)
+  if (states_kind) {
     EXPECT_THAT(io_error_of([&] { depth_kind_of(file_, DepthKind::radial, DepthKind::radial); }),
                 HasSubstr("states that its depth is of kind z; expected radial"));
+  }
 }
 
 TEST_P(DepthFormat, ReadingUndoesWriting) {

@@ -10,7 +10,7 @@ export const firstState = () => ({
   trials: 20000,
   seed: 1,
   curve_ambient: null,  // index of the ambient level of the curves; null: the middle one
-  scene: {name: 'table-top', filter: 'normal', width: 160, signal: 1e5, ambient: 1e4},
+  scene: {name: 'table-top', filter: 'normal', width: 160, signal: 1e7, ambient: 1e6},
 });
 
 /** Maximum number of codes. */

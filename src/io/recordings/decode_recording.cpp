@@ -206,7 +206,8 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
     decode_next(input, corrections, band, target, planes, here);
-    if (preparation.steps.filter && result.frames.empty()) add_noise_note(pipeline, band, result);
+    if (preparation.steps.filter && result.frames.empty())
+      add_noise_note(*pipelines.front(), band, result);
     if (target.undistortion) undistort(planes, *target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)

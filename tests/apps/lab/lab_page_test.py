@@ -113,7 +113,7 @@ class Page(LabTest):
         self.run_script("byId('theme').click();")
         self.assertIn(self.driver.execute_script("return document.documentElement.dataset.theme"), ["light", "dark"])
         self.run_script("enter(byId('design-effort'), '1'); byId('fresh').click(); await settled();")
-        self.assertEqual(self.state()["camera"]["built_in"], "paper-10f0")
+        self.assertEqual(self.state()["camera"]["built_in"], "indoor")
 
     def test_at_most_four_codes_are_shown_side_by_side(self):
         self.run_script("for (let i = 0; i < 5; ++i) { byId('add-code')?.click(); await settled(); }")
