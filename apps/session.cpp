@@ -114,7 +114,7 @@ std::optional<std::string> CameraArguments::take_that_of(const std::filesystem::
     return std::nullopt;
   name = beside.string();
   stood_beside_ = true;
-  return fmt::format("{}, which stands beside {}; --camera says otherwise", name, raw.string());
+  return fmt::format("{}, next to {} (--camera overrides it)", name, raw.string());
 }
 
 Camera CameraArguments::load() const {

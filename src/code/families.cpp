@@ -130,10 +130,10 @@ BrokenRule unknown_family(std::string_view name) {
 std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                                     const FamilyOptions& options) {
   if (options.taps > 2 && !member.has_phase_steps)
-    return broken("code", name,
-                  fmt::format("is for one tap or two buckets; for {} taps there are "
-                              "sinusoid-k{} and square-k{}",
-                              options.taps, options.taps, options.taps));
+    return broken("taps", options.taps,
+                  fmt::format("the family is for one tap or two buckets; for {0} taps there are "
+                              "sinusoid-k{0} and square-k{0}",
+                              options.taps));
   const std::optional<BrokenRule> misfit = member.misfit(options);
   if (!misfit) return std::nullopt;
   return broken("code", name,

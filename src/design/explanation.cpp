@@ -30,7 +30,7 @@ std::string among_exposures(const DesignResult& result, DepthErrorKind kind,
                             const std::vector<int>& exposures) {
   const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
   if (exposures.empty() || result.winner().code.is_rows() ||
-      std::ranges::count(exposures, order.front()->code.exposures()) > 0)
+      std::count(exposures.begin(), exposures.end(), order.front()->code.exposures()) > 0)
     return "";
   return fmt::format(" of the codes with {} exposures", fmt::join(exposures, ", "));
 }

@@ -136,6 +136,19 @@ std::string figure_id(const std::string& prefix, const std::string& name) {
   return id;
 }
 
+namespace {
+
+/// Returns true if the second bucket of each exposure is open exactly while the first is not.
+bool has_complementary_buckets(const CodeSet& code) {
+  if (code.taps() != 2 || code.is_rows()) return false;
+  const Eigen::MatrixXd gains = code.demodulation_samples();
+  for (int e = 0; e < code.exposures(); ++e)
+    if ((gains.col(2 * e) + gains.col(2 * e + 1)).minCoeff() < 1.0 - 1e-9) return false;
+  return true;
+}
+
+}  // namespace
+
 Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,
                        const Eigen::MatrixXd& target) {
   ColourAssignment colours;
@@ -148,8 +161,11 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                                                  : model.tap_correlation_table(curve_points);
   const double range_m = camera.range_m();
 
+  const bool omits_complements = has_complementary_buckets(code);
+  if (omits_complements)
+    text.caption += " The other bucket of each exposure, not shown, collects the rest of the light.";
   std::vector<PanelRow> rows;
-  for (int i = 0; i < code.measurements(); ++i) {
+  for (int i = 0; i < code.measurements(); i += omits_complements ? 2 : 1) {
     std::vector<Series> correlations{
         correlation_series("correlation function", table.col(i), range_m, correlation)};
     const int target_column = code.exposure_of(i);

@@ -46,8 +46,11 @@ class CommandLineTest(unittest.TestCase):
         the raw frames names a camera: numbers in tests are those of this camera."""
         if not self.adds_camera or not arguments or "--camera" in arguments:
             return arguments
-        recorded = os.path.splitext(arguments[1])[0] + ".camera.toml" if arguments[1:] else ""
-        if arguments[0] in ("evaluate", "export", "multipath", "require", "simulate") or (
+        raw = os.fsdecode(arguments[1]) if arguments[1:] else ""
+        recorded = os.path.splitext(raw)[0] + ".camera.toml"
+        names_codes = arguments[0] == "codes" and raw and not raw.startswith("-")
+        if names_codes or arguments[0] in ("calibrate", "evaluate", "export", "multipath",
+                                           "require", "simulate", "upload") or (
                 arguments[0] == "decode" and not os.path.exists(self.path(recorded))):
             return (*arguments, "--camera", "paper-10f0")
         return arguments

@@ -82,7 +82,7 @@ class Commands(CommandLineTest):
         self.simulate(*far)
         found = self.decode()
         self.assertEqual(found["camera_source"],
-                         "raw.camera.toml, which stands beside raw.npy; --camera says otherwise")
+                         "raw.camera.toml, next to raw.npy (--camera overrides it)")
         self.assertLess(np.abs(np.load(self.path("depth.npy")) - truth).max(), 0.05)
         self.decode(*far, "--camera", "paper-10f0", output="same.npy")
         self.assertEqual(self.bytes_of("depth.npy"), self.bytes_of("same.npy"))

@@ -52,7 +52,7 @@ class Manual(CommandLineTest):
             usual = [o for o in command["options"] if not o.get("for_experts")]
             experts = [o for o in command["options"] if o.get("for_experts")]
             self.assertEqual(shown, {o["names"][-1] for o in usual}, command["words"])
-            self.assertLessEqual(len(shown - {"--help", "--help-all"}), 18, command["words"])
+            self.assertLessEqual(len(shown - {"--help", "--help-all"}), 20, command["words"])
             if experts:
                 self.assertIn(f"{len(experts)} more options: " +
                               " ".join(["tofsmith", *command["words"], "--help-all"]), text)
@@ -114,7 +114,7 @@ class Bash(CommandLineTest):
                               "tofsmith design --method = o", "tofsmith evaluate --camera pap",
                               "tofsmith evaluate hamil", "tofsmith simulate table",
                               "tofsmith decode x.npy --method=z")
-        self.assertEqual(found[0], {"factorize", "optimize", "search", "best", "atlas"})
+        self.assertEqual(found[0], {"factorize", "optimize", "search", "frequencies", "best", "atlas"})
         self.assertEqual(found[1:3], [{"search"}, {"optimize"}])
         self.assertIn("paper-10f0", found[3])
         self.assertIn("hamiltonian-k4", found[4])

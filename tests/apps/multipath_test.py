@@ -49,7 +49,7 @@ class Multipath(CommandLineTest):
                 ("ratio=.5:.1", "operating.multipath.ratio = [0.5, 0.1]; must be"),
                 ("ratio=-.1:.5", "operating.multipath.ratio[0] = -0.1; must be"),
                 ("delta=0:1", "operating.multipath.delay_m[0] = 0; must be"),
-                ("delta=1:11", "below the unambiguous range, 9.993 m")):
+                ("delta=1:11", "below the unambiguous range, 7.495 m")):
             self.refuse(["design", "--multipath", value], "--multipath " + value, words,
                         code=2)
         self.refuse(["design", "--multipath-weight", ".2"], "found no multipath", code=2)

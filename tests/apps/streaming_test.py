@@ -34,7 +34,7 @@ class Streaming(CommandLineTest):
         self.write("s.raw.toml", 'width = 40\nheight = 30\nmeasurements = 3\nbits = 16\n'
                    'layout = "interleaved"\n')
         return [command_line.TOOL, "decode", "-", "--raw-format", "s.raw.toml", "--code",
-                "hamiltonian-k3", *more, "-o", "-"]
+                "hamiltonian-k3", "--camera", "paper-10f0", *more, "-o", "-"]
 
     def test_frames_pass_through_a_pipe_one_by_one(self):
         raw = self.record()

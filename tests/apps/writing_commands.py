@@ -51,10 +51,10 @@ def _command(line, *outputs, name=None, **more):
 
 _CAMERA = "--camera camera.toml"
 COMMANDS = (
-    _command("codes sinusoid-k4 -o c.code.json", "c.code.json"),
-    _command("codes sinusoid-k4 -o c.npz", "c.npz"),
-    _command("codes square-k4 -o c.csv", "c.csv"),
-    _command("codes square-k4 -o c.html", "c.html"),
+    _command(f"codes sinusoid-k4 {_CAMERA} -o c.code.json", "c.code.json"),
+    _command(f"codes sinusoid-k4 {_CAMERA} -o c.npz", "c.npz"),
+    _command(f"codes square-k4 {_CAMERA} -o c.csv", "c.csv"),
+    _command(f"codes square-k4 {_CAMERA} -o c.html", "c.html"),
     _command(f"evaluate sinusoid-k4 {_CAMERA} --trials 10 -o e.csv", "e.csv"),
     _command(f"evaluate sinusoid-k4 {_CAMERA} --trials 10 -o e.json", "e.json"),
     _command(f"evaluate sinusoid-k4 {_CAMERA} --trials 10 -o e.html", "e.html"),
@@ -76,10 +76,10 @@ COMMANDS = (
              "d.ply"),
     _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} --frame 0 --filter light "
              "--view-deg 60 -o d.pcd", "d.pcd"),
-    _command("export square-k4 --format csv --samples 60 --no-loss -o bench", "bench"),
-    _command("export square-k4 --format keysight-arb --samples 60 --no-loss -o bench", "bench",
-             name="export keysight-arb"),
-    _command("export square-k4 --format c-header --samples 60 --no-loss -o w.h", "w.h"),
+    _command(f"export square-k4 {_CAMERA} --format csv --samples 60 --no-loss -o bench", "bench"),
+    _command(f"export square-k4 {_CAMERA} --format keysight-arb --samples 60 --no-loss -o bench",
+             "bench", name="export keysight-arb"),
+    _command(f"export square-k4 {_CAMERA} --format c-header --samples 60 --no-loss -o w.h", "w.h"),
     _command("sweep sweep.toml --store s.sqlite --export s.csv --export s.npz --report s.html",
              "s.sqlite", "s.csv", "s.npz", "s.html", timed=("s.html",)),
     _command("sweep merge both.sqlite one.sqlite two.sqlite", "both.sqlite"),

@@ -88,10 +88,10 @@ TEST(DesignMethods, UnsuitableMethodsAreRejectedIfRequestedAndNotedOtherwise) {
 
 TEST(DesignMethods, SharedReasonsAreReportedOnce) {
   DesignOptions options = quick(DesignMethod::search, {1});
-  options.baselines = {"sinusoid-k3", "square-k4"};
+  options.baselines = {"gray-k4", "hamiltonian-k4"};
   const DesignResult result = design(clocked(), options);
   EXPECT_THAT(result.left_out,
-              Contains(HasSubstr("sinusoid-k3, square-k4: sensor.taps = 3; built-in families")));
+              Contains(HasSubstr("gray-k4, hamiltonian-k4: taps = 3; the family is for")));
 }
 
 TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
@@ -142,7 +142,9 @@ TEST(GainOver, IsTheRatioOfChosenErrorsWithItsStandardError) {
   EXPECT_EQ(gain_over(result, result.winner(), DepthErrorKind::linear).value, 1.0);
   for (const Candidate& c : result.candidates) {
     const Estimate gain = gain_over(result, c, DepthErrorKind::linear);
-    EXPECT_GE(gain.value, 1.0);
+    if (c.code.exposures() == result.winner().code.exposures()) {
+      EXPECT_GE(gain.value, 1.0);
+    }
     EXPECT_GT(gain.standard_error, 0.0);
     EXPECT_DOUBLE_EQ(gain.value,
                      geometric_mean_error_m(c.error, DepthErrorKind::linear) /

@@ -197,7 +197,9 @@ TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
     for (const std::string& name : names)
       if (const CodeSet code = build_family(name, camera); !why_no_depth(code, camera))
         all.push_back({.code = code, .method = "family"});
-    const std::string best = judge(camera, all, small_options()).winner().code.name();
+    DesignOptions options = small_options();
+    options.exposures = {};  // the winner may have any number
+    const std::string best = judge(camera, all, options).winner().code.name();
     const Contenders contenders = contending_families(names, camera, 2);
     EXPECT_LE(contenders.codes.size(), 8u);
     EXPECT_TRUE(std::any_of(contenders.codes.begin(), contenders.codes.end(),

@@ -33,7 +33,7 @@ TEST(CameraToml, RejectsInvalidGenerators) {
             "c.toml:2:35: sensor.generator.amplitude_bits = 0; must be in [1, 24]");
   EXPECT_EQ(refusal("light.generator.amplitude_bit = 8"),
             "c.toml:2:17: unknown key light.generator.amplitude_bit; did you mean "
-            "light.generator.amplitude_bits?");
+            "light.generator.amplitude_bits, in bits?");
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ TEST(CameraToml, OnlyTheFrequencyHasNoDefault) {
   Camera expected;
   expected.name = "c";
   expected.fundamental_frequency_hz = 20e6;
-  expected.operating = paper_operating_range();
+  expected.operating = default_operating_range();
   EXPECT_EQ(parse_camera_toml(shortest, "c.toml"), expected);
   EXPECT_EQ(refusal("samples = 240\n"),
             "c.toml: found no fundamental_frequency_hz; expected a line such as "

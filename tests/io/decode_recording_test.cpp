@@ -480,7 +480,7 @@ TEST_F(DecodeRecording, NotesThatAFilteredFrameHasOtherNoiseThanTheCamera) {
   filtered.filter.reset();
   filtered.output = path("alone.npy");
   EXPECT_THAT(decode_recording(filtered, *backend_).notes,
-              testing::Not(testing::Contains(testing::HasSubstr("times the noise"))));
+              testing::Not(testing::Contains(testing::HasSubstr("calibrate noise"))));
 }
 
 }  // namespace

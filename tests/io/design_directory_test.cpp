@@ -112,6 +112,7 @@ TEST(DesignDirectory, KeepsMultipathErrors) {
   two_buckets.operating.multipath.emplace();
   DesignOptions options = small_options();
   options.baselines = {"sinusoid-k4", "hamiltonian-k5"};
+  options.exposures = {5};
   options.trials = 1000;
   const DesignResult result = design(two_buckets, options);
   EXPECT_EQ(result.winner().code.name(), "hamiltonian-k5") << "others cannot tell two returns";

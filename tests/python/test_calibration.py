@@ -189,14 +189,14 @@ def test_drift_with_two_temperatures_is_that_of_the_command(both, cli):
     said = printed(cli, both[0], "temperature", "sweep.npy", "--temperatures", "degrees.csv",
                    "--light-column", "light_c", "--sensor-column", "sensor_c",
                    "--code", "sinusoid-k4", "--camera", "base.toml", "--reference-c", "20",
-                   "--sensor-reference-c", "20", "-o", "warm.toml", "--report", "drift.html")
+                   "--sensor-reference-c", "20", "-o", "warms.toml", "--report", "drifts.html")
     found = ts.calibrate_temperature(frames, light, "sinusoid-k4", base,
                                      sensor_temperature_c=sensor)
     camera = found.camera(base, reference_c=20, sensor_reference_c=20)
-    camera.write(both[1] / "warm.toml")
-    same(both, "warm.toml")
-    found.write_report(both[1] / "drift.html", source="sweep.npy")
-    same_page(both, "drift.html")
+    camera.write(both[1] / "warms.toml")
+    same(both, "warms.toml")
+    found.write_report(both[1] / "drifts.html", source="sweep.npy")
+    same_page(both, "drifts.html")
     assert found.sensor.offset_m_per_c == pair(said["sensor"]["offset_m_per_c"])
     assert found.hysteresis_m == pair(said["hysteresis_m"])
     for drift, per_c in ((found, 2e-3), (found.sensor, -1e-3)):

@@ -338,7 +338,7 @@ def test_addresses_become_visa_resource_names():
 
 def test_upload_script_equals_the_command(cli):
     more = {"exposure": 2, "tables": {"samples": 12, "low_v": 0, "high_v": 2}}
-    options = ["--exposure", "2", "--samples", "12", "--volts", "0,2"]
+    options = ["--camera", TARGET[1], "--exposure", "2", "--samples", "12", "--volts", "0,2"]
     for model in ("SDG2042X", "33522", "AFG3252"):
         done = subprocess.run([cli, "upload", TARGET[0], "--dry-run", "--model", model, *options],
                               capture_output=True, text=True, check=True)

@@ -33,7 +33,8 @@ def test_trials_continue_until_the_target(small, cli):
     assert report.points_short_of_target == 0 and report.point_trials[0] > 100
     assert report.linear_se_m[0] <= 0.05 * report.linear_mde_m[0]
     assert report.trials == report.point_trials.max() and report.point_trials.dtype == np.int64
-    sets = [word for setting in settings for word in ("--set", setting)]
+    sets = ["--camera", "paper-10f0",
+            *(word for setting in settings for word in ("--set", setting))]
     said = json.loads(run(cli, "evaluate", "hamiltonian-k4", *sets, "--trials", 100,
                           "--target-standard-error", "5%", "--json"))["codes"][0]["points"][0]
     assert said["trials"] == report.point_trials[0]
@@ -51,11 +52,11 @@ def test_multipath_captures_equal_the_command(cli, tmp_path):
     for option, words, keywords in (
             ("--multipath", ["delta=0.8,ratio=0.3"], {"returns": [(0.8, 0.3)]}),
             ("--tail", [0.5, "--tail-ratio", 0.4], {"tail": ts.ExponentialTail(0.5, 0.4)})):
-        run(cli, "simulate", "wall", "--width", 8, "--height", 6, "--code", code, "--signal", 1e6,
+        run(cli, "simulate", "wall", "--width", 8, "--height", 6, "--code", code, "--camera", "paper-10f0", "--signal", 1e6,
             "--ambient", 1e3, option, *words, "-o", file, "--force")
         raw = ts.capture(scene, code, "paper-10f0", **light, **keywords)
         assert np.array_equal(raw, np.load(file)) and raw.sum() > direct.sum()
-    run(cli, "simulate", "corner", "--width", 8, "--height", 6, "--code", code, "--signal", 1e6,
+    run(cli, "simulate", "corner", "--width", 8, "--height", 6, "--code", code, "--camera", "paper-10f0", "--signal", 1e6,
         "--ambient", 1e3, "--bounces", 1, "--bounce-rays", 32, "-o", file, "--force")
     bounced = ts.capture_staged("corner", code, "paper-10f0", width=8, height=6, bounces=1,
                                 bounce_rays=32, **light)

@@ -13,7 +13,7 @@ import pytest
 
 import tofsmith as ts
 
-SMALL = ("--set", "samples=120")
+SMALL = ("--camera", "paper-10f0", "--set", "samples=120")
 
 
 @pytest.fixture(scope="module")
@@ -251,7 +251,7 @@ def test_evaluate_at_distances(ways):
 
 
 def test_design(ways, camera):
-    ways.command("design", "paper-10f0", *SMALL, "--method", "factorize", "--exposures", "3",
+    ways.command("design", *SMALL, "--method", "factorize", "--exposures", "3",
                  "--effort", "0.01", "--trials", "1000", "-o", "design")
     ts.design(camera, method="factorize", exposures=3, effort=0.01, trials=1000).write("design")
     ways.cpp("design")

@@ -137,7 +137,7 @@ TEST(DesignReport, ShowsMultipathErrorsEvenIfNoCodeSeparatesTwoReturns) {
   Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
   camera.operating.multipath = OperatingMultipath{{0.25, 0.5}, {1.0, 2.0}};
   const Page page = design_report(camera, design(camera, small_options()), std::nullopt, "");
-  expect_sound(page, 5);
+  expect_sound(page, 4);
   const std::string html = page_document(page);
   for (const char* words : {"Second returns", "ratio 0.25 to 0.5", "as two returns (mm)", "cannot",
                             "And with multipath?", "too few independent means"})
@@ -151,7 +151,7 @@ TEST(DesignReport, SupportsInfiniteBounds) {
     for (PointDepthError& p : c.error.points)
       p.cramer_rao_mae_m = p.receiver_bound_mae_m = p.direct_tof_bound_mae_m =
           std::numeric_limits<double>::infinity();
-  expect_sound(design_report(camera, result, std::nullopt, ""), 5);
+  expect_sound(design_report(camera, result, std::nullopt, ""), 4);
 }
 
 TEST(DesignReport, ShiftsTheTargetOfARotatedCode) {

@@ -25,7 +25,7 @@ std::string_view line_of(std::string_view text, std::size_t line) {
 }
 
 bool is_binary(std::string_view text) {
-  return std::ranges::any_of(text, [](char c) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte < 0x20 && c != '\n' && c != '\r' && c != '\t';
   });
@@ -33,7 +33,7 @@ bool is_binary(std::string_view text) {
 
 /// A word or a file's name, not a number.
 bool is_word(std::string_view text) {
-  return !text.empty() && !is_digit(text.front()) && std::ranges::all_of(text, [](char c) {
+  return !text.empty() && !is_digit(text.front()) && std::all_of(text.begin(), text.end(), [](char c) {
     return is_letter_or_digit(c) || std::string_view("_-./ ").find(c) != std::string_view::npos;
   });
 }
