@@ -163,7 +163,7 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
 
   const bool omits_complements = has_complementary_buckets(code);
   if (omits_complements)
-    text.caption += " The other bucket of each exposure, not shown, collects the rest of the light.";
+    text.caption += " Second buckets are not shown.";
   std::vector<PanelRow> rows;
   for (int i = 0; i < code.measurements(); i += omits_complements ? 2 : 1) {
     std::vector<Series> correlations{

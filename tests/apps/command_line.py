@@ -15,8 +15,6 @@ TOOL = os.path.abspath(sys.argv.pop(1))
 class CommandLineTest(unittest.TestCase):
     """Every test has its own directory, to which file names are relative."""
 
-    adds_camera = True  # see with_camera()
-
     def setUp(self):
         directory = tempfile.TemporaryDirectory(prefix="tofsmith-test-")
         self.addCleanup(directory.cleanup)
@@ -44,7 +42,7 @@ class CommandLineTest(unittest.TestCase):
     def with_camera(self, arguments):
         """Adds the camera of the paper to commands for which neither an option nor a file next to
         the raw frames names a camera: numbers in tests are those of this camera."""
-        if not self.adds_camera or not arguments or "--camera" in arguments:
+        if not arguments or "--camera" in arguments:
             return arguments
         raw = os.fsdecode(arguments[1]) if arguments[1:] else ""
         recorded = os.path.splitext(raw)[0] + ".camera.toml"

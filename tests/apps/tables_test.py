@@ -42,7 +42,6 @@ class Tables(CommandLineTest):
         self.frame()
         os.remove(self.path("raw.camera.toml"))
         self.write("c.toml", "fundamental_frequency_hz = 30e6\n")
-        self.adds_camera = False
 
         def range_lines(code, *more):
             arguments = ["decode", "raw.npy", "--code", code, "-o", "d.npy", "--force", *more]
@@ -50,10 +49,9 @@ class Tables(CommandLineTest):
             document = self.do_json(*arguments)
             return lines, document["range_m"], document["range_source"]
         line, range_m, source = range_lines("t.npy")
-        self.assertEqual(line, ["range 7.495 m (of the default camera indoor; --range-m or "
-                                "--camera say otherwise)"])
-        self.assertAlmostEqual(range_m, 0.75 * RANGE_M)
-        self.assertIn("default camera indoor", source)
+        self.assertEqual(line, ["range 9.993 m (of the camera paper-10f0)"])
+        self.assertAlmostEqual(range_m, RANGE_M)
+        self.assertIn("camera paper-10f0", source)
         self.assertEqual(range_lines("t.npy", "--range-m", "3"), (["range 3 m (--range-m)"], 3,
                                                            "--range-m"))
         line, range_m, _ = range_lines("t.npy", "--camera", "c.toml")

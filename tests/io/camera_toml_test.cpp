@@ -444,7 +444,7 @@ TEST(LoadCamera, AcceptsABuiltInNameOrAFile) {
   EXPECT_EQ(load_camera("paper-10f0", settings).samples, 64);
   EXPECT_THAT(io_error_of([] { load_camera("paper-10fo"); }),
               AllOf(HasSubstr("paper-10fo: there is no such file and no built-in camera of that "
-                              "name (paper-30x, "),
+                              "name (indoor, paper-30x, "),
                     HasSubstr("did you mean paper-10f0?")));
 }
 
