@@ -195,7 +195,7 @@ class Streaming(CommandLineTest):
         self.assertEqual(len(self.do(*self.arguments()).splitlines()), 4)
         np.save(self.path("raw.npy"), np.repeat(raw, 15, axis=0))
         lines = self.do(*self.arguments(output="m.npy")).splitlines()
-        self.assertEqual(len(lines), 7)
+        self.assertEqual(len(lines), 6)
         self.assertIn("m-00.npy", lines[0])
         self.assertIn("27 more, to m-29.npy", lines[3])
         self.assertRegex(lines[4], r"^30 frames of 30 x 40 in .* frames/s, .* Mpixel/s: ok ")

@@ -57,8 +57,6 @@ class Tables(CommandLineTest):
         line, range_m, _ = range_lines("t.npy", "--camera", "c.toml")
         self.assertEqual(line, ["range 4.997 m (of the camera c)"])
         self.assertAlmostEqual(range_m, RANGE_M / 2)
-        self.assertEqual(range_lines("hamiltonian-k3")[0], ["range 9.993 m (of the default camera "
-                                                     "paper-10f0; --camera says otherwise)"])
         self.assertEqual(range_lines("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
 
     def test_peculiarities_are_reported(self):
