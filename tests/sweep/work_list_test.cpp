@@ -60,8 +60,7 @@ TEST(WorkList, AKeyDependsOnEverythingThatAffectsTheResult) {
 }
 
 TEST(WorkList, TheKeyOfADesignedCodeDependsOnAllDesignSettings) {
-  const std::string designed =
-      "camera = \"paper-10f0\"\nset = [\"samples=24\"]\ntrials = 1000\n";
+  const std::string designed = "camera = \"paper-10f0\"\nset = [\"samples=24\"]\ntrials = 1000\n";
   const std::vector<std::string> texts = {
       "code = \"optimized-k3\"\n",
       "code = \"optimized-k4\"\n",
