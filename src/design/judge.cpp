@@ -147,7 +147,8 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vec
     return exposures.empty() ||
            std::find(exposures.begin(), exposures.end(), c.code.exposures()) != exposures.end();
   };
-  const bool any_requested = std::any_of(result.candidates.begin(), result.candidates.end(), is_requested);
+  const bool any_requested =
+      std::any_of(result.candidates.begin(), result.candidates.end(), is_requested);
   std::size_t best = result.candidates.size();
   for (std::size_t i = 0; i < kept_m.size(); ++i)
     if ((!any_requested || is_requested(result.candidates[i])) &&

@@ -162,8 +162,7 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
   const double range_m = camera.range_m();
 
   const bool omits_complements = has_complementary_buckets(code);
-  if (omits_complements)
-    text.caption += " Second buckets are not shown.";
+  if (omits_complements) text.caption += " Second buckets are not shown.";
   std::vector<PanelRow> rows;
   for (int i = 0; i < code.measurements(); i += omits_complements ? 2 : 1) {
     std::vector<Series> correlations{

@@ -9,7 +9,8 @@ int main() {
   const Camera camera = built_in_camera("indoor");
   const DesignResult result = design(camera, {.exposures = {4}, .trials = 5000});
   const CodeSet& code = result.winner().code;
-  std::cout << code.name() << ": " << result.winner().error.circular.geometric_mean_m.value << " m\n";
+  std::cout << code.name() << ": " << result.winner().error.circular.geometric_mean_m.value
+            << " m\n";
 
   const ForwardModel model(code, camera);  // expected measurements of a pixel at bin 123.4
   const Return light{.signal_e_per_s = 3e6, .depth_bin = 123.4};

@@ -33,9 +33,11 @@ bool is_binary(std::string_view text) {
 
 /// A word or a file's name, not a number.
 bool is_word(std::string_view text) {
-  return !text.empty() && !is_digit(text.front()) && std::all_of(text.begin(), text.end(), [](char c) {
-    return is_letter_or_digit(c) || std::string_view("_-./ ").find(c) != std::string_view::npos;
-  });
+  return !text.empty() && !is_digit(text.front()) &&
+         std::all_of(text.begin(), text.end(), [](char c) {
+           return is_letter_or_digit(c) ||
+                  std::string_view("_-./ ").find(c) != std::string_view::npos;
+         });
 }
 
 }  // namespace
