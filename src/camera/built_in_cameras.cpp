@@ -40,7 +40,8 @@ Sources paper_sources() {
   return sources;
 }
 
-/// A camera of typical parts in a room: a laser diode of 1 W and two buckets, both with 100 MHz.
+/// A camera of typical parts in a room: a laser diode of 1 W and a pixel, both with 100 MHz. It has
+/// one tap and no saturation, because it also decodes raw frames whose camera nobody names.
 /// The signals are those of white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from
 /// lamps to 5 klx of sunlight (`evaluate --distance D --klux L` computes both from the optics).
 Camera indoor_camera() {
@@ -52,8 +53,6 @@ Camera indoor_camera() {
   response.kind = ImpulseResponse::Kind::lowpass;
   response.cutoff_hz = 100e6;
   camera.light.impulse_response = camera.sensor.impulse_response = response;
-  camera.sensor.taps = 2;
-  camera.sensor.full_well_e = 1e5;
   camera.optics = Optics{.source_power_w = 1.0,
                          .wavelength_m = 940e-9,
                          .field_of_view_deg = {70.0, 55.0},
@@ -130,7 +129,7 @@ std::vector<Entry> entries() {
   constexpr const char* melexis = "Melexis MLX75027 datasheet, as in mlx75027_config's registers";
   return {
       {{std::string(default_camera_name),
-        "typical parts in a room: two buckets, 100 MHz",
+        "typical parts in a room: 1 W, 100 MHz",
         "hamiltonian-k4",
         {}},
        indoor_camera()},
