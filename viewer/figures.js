@@ -94,7 +94,7 @@ function drawLines(block, body) {
     };
   });
   const isFront = Boolean(body.closest('.front'));  // one screen has little room
-  const rowHeight = Math.max(42, Math.min(84, (isFront ? 200 : 320) / rows.length));
+  const rowHeight = Math.max(isFront ? 33 : 42, Math.min(84, (isFront ? 200 : 320) / rows.length));
   rows.forEach((row, r) => columns.forEach((column, c) => {
     const plot = new LinePlot(), {x, y} = axes[c], isLast = r === rows.length - 1;
     const title = r === 0 && column.title ?
