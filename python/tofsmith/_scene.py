@@ -380,7 +380,7 @@ def bounced_light(
     width, height : int, optional
         For a built-in scene or a mesh [px] (320 x 240).
     rays : int, optional
-        Rays per pixel, 16 .. 65536.
+        Rays per pixel, in [16, 65536].
     progress : callable, optional
 
     Examples

@@ -63,11 +63,11 @@ class CodePool {
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
-  /// Exposures of the best code on a camera, and up to `beside` fewer and more.
-  std::vector<int> exposures_near(const Camera& camera, int beside) const {
+  /// Exposures of the best code on a camera, and up to `difference` fewer and more.
+  std::vector<int> exposures_near(const Camera& camera, int difference) const {
     const int best = best_on(camera, all()).code->exposures();
     std::vector<int> near;
-    for (int exposures = best - beside; exposures <= best + beside; ++exposures)
+    for (int exposures = best - difference; exposures <= best + difference; ++exposures)
       if (!why_not_optimizable(camera, exposures)) near.push_back(exposures);
     return near;
   }
@@ -201,9 +201,9 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   const ProgressParts parts(progress, static_cast<std::size_t>(most_steps + end_designs));
   const auto on = [&](double factor) { return with_scaled(camera, quantity, factor); };
   const auto suffices = [&](double factor) { return pool.suffice_on(on(factor), pool.all()); };
-  const auto design_at = [&](double factor, int beside, std::size_t part, int again = 0) {
+  const auto design_at = [&](double factor, int difference, std::size_t part, int again = 0) {
     const Camera there = on(factor);
-    pool.design_for(there, pool.exposures_near(there, beside), parts[part], again);
+    pool.design_for(there, pool.exposures_near(there, difference), parts[part], again);
   };
   const auto least_within = [&](double low, double high) {
     const Codes codes = pool.contenders(on(low), on(high));

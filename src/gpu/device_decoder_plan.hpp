@@ -30,7 +30,7 @@ struct DeviceDecoder::Plan {
 
   /// Decodes the remaining pixels of a frame in parts; the upload of one part overlaps the kernels
   /// of the previous one.
-  /// @param done  progress so far; valid even if this throws
+  /// @param done  steps already done; valid even if this throws
   void decode_from(FrameDone& done, const FrameSource& frame, const DecodedView& planes,
                    const Progress& progress);
   /// Decodes a frame, in smaller parts if the device lacks memory.

@@ -86,7 +86,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
               (ahead.difference - behind.difference) * 0.5f);
   }
   float2 slopes = slopes_of(&pairs);
-  // then all neighbours consistent with the plane found so far.
+  // then all neighbours consistent with this plane.
   struct SlopeSums singles = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   float chi2 = 0.0f, count = 0.0f;
   for (int i = 0; i < 2 * HALF_RINGS; ++i) {

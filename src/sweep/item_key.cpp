@@ -59,8 +59,8 @@ void append(std::string& text, std::string_view name, std::span<const double> nu
   text += '\n';
 }
 
-/// Returns the fields of EvaluateOptions that differ from their defaults, except those that
-/// item_key() always includes.
+/// Returns the fields of EvaluateOptions that differ from their defaults, except for the fields
+/// that item_key() always includes.
 std::string other_options(const EvaluateOptions& options) {
   static constexpr std::array<std::string_view, 7> always = {
       "trials",    "seed",           "outlier_threshold_m",

@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-// Not in the unnamed namespace, like options: fields_of() is found by its argument.
+// Outside the unnamed namespace, like options: fields_of() is found by its argument.
 enum class Heat { top, bottom, both };
 constexpr std::array<std::string_view, 3> words_of(Heat /*any*/) {
   return {"top", "bottom", "both"};

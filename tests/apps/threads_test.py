@@ -76,7 +76,7 @@ COMMANDS = {
                               "--code", "sinusoid-k4", *CAMERA, "-o", "warm.toml"),
     "export": ("export", "hamiltonian-k3", "--format", "csv", "--samples", "64", "-o", "export"),
 }
-# Not compared, because it contains times, processes and machines.
+# Stores are not compared, because they contain times, processes and machines.
 IGNORED = re.compile(r"\.sqlite")
 
 

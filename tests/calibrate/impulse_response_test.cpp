@@ -82,7 +82,7 @@ TEST_P(Recovers, TheBandwidthWithinTwoPercentAt40Decibels) {
     EXPECT_NEAR(fitted.value, true_hz, 0.02 * true_hz);
     EXPECT_NEAR(fitted.value, true_hz, 4 * fitted.standard_error);
     EXPECT_LT(fitted.standard_error, 0.01 * true_hz);
-    // Also without assuming a kind of response.
+    // The bandwidth does not depend on an assumed kind of response.
     EXPECT_NEAR(result.bandwidth_hz.value, true_hz, 0.05 * true_hz);
     EXPECT_NEAR(bandwidth_hz(result.response), true_hz, 0.06 * true_hz);
     EXPECT_EQ(result.peaks.size(), 1u);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Updates lengths and checksums after mutations. Otherwise almost all mutations of a PNG would be
-// rejected by the checksum of a chunk, and those of an .npz by that of an entry.
+// rejected by the checksum of a chunk, and mutations of an .npz by the checksum of an entry.
 #include <zlib.h>
 
 #include <cstring>

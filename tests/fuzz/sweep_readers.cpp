@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> keys = {"aa", "bb", "cc"};
 
-/// Also removes files that an earlier input left next to the store.
+/// Returns the path of a store after removing all files of earlier inputs next to it.
 fs::path fresh_store() {
   const fs::path path = scratch_file("s.sqlite");
   for (const char* const end : {"", "-wal", "-shm", "-journal"}) fs::remove(path.string() + end);

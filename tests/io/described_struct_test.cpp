@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-// Not in the unnamed namespace, like described structs: describe() is found by its argument.
+// Outside the unnamed namespace, like described structs: describe() is found by its argument.
 struct Fan {
   int blades = 5;
   friend bool operator==(const Fan&, const Fan&) = default;

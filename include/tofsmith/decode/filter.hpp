@@ -136,7 +136,7 @@ class Filter {
   /// @param raw  electrons or counts with the measurements of the table; may be averages, as
   ///   specified by `averaged`
   /// @param left_out  (H, W) or empty: pixels with nonzero values keep their raw values and have no
-  ///   weight (e.g. those of mark_mixed_pixels())
+  ///   weight (e.g. mixed pixels of mark_mixed_pixels())
   /// @throws std::invalid_argument if measurements or sizes differ; Interrupted if `progress`
   ///   requests it
   /// @note the same bits for any number of threads and any memory layout

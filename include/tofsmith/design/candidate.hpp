@@ -38,7 +38,7 @@ auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
 /// Progress of a search.
 struct SearchStep {
   double work = 0.0;     ///< in SearchRecord::work_unit
-  double error_m = 0.0;  ///< smallest error so far
+  double error_m = 0.0;  ///< smallest error yet
 };
 /// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SearchStep> auto& s) {

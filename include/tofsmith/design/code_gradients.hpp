@@ -49,7 +49,7 @@ struct SoftDecoding {
 /// Differentiable steps from waveforms to depth, each with its adjoint, for learning codes: tables,
 /// electrons, soft decoding and the Cramer-Rao bound of waveforms constant within N cells.
 /// optimize() uses the same tables and soft decoder. Waveforms may have any real values, even
-/// unsupported ones. Impulse responses, contrast, readout, dark current and exposures are those of
+/// unsupported ones. Impulse responses, contrast, readout, dark current and exposures come from
 /// the camera. Variances ignore clipping.
 /// @note thread-safe; bit-identical for any number of threads
 class CodeGradients {

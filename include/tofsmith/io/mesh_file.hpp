@@ -35,7 +35,7 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 /// Returns a mesh search for RayCaster, ray_cast and bounced_light. It finds triangles with
 /// Embree's bounding volume hierarchy and then intersects them in double precision.
 ///
-/// Results are the same as those of testing every triangle, except for rays within about 1e-6 of
+/// Results are the same as from testing every triangle, except for rays within about 1e-6 of
 /// the mesh's (not the scene's) size of an edge, which may hit the adjacent triangle. The search
 /// that it creates throws std::runtime_error or std::bad_alloc if a hierarchy cannot be built.
 MeshSearchMaker embree_search();

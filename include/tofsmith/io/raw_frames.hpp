@@ -82,7 +82,7 @@ class RawFramesReader {
   ///         marker
   explicit RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options = {});
   /// Opens one file per measurement, in the order of the measurements: arrays (H, W) or (F, H, W),
-  /// or dumps of one measurement. A single file contains all measurements; `layout` applies to it
+  /// or dumps with one measurement. A single file contains all measurements; `layout` applies to it
   /// only.
   /// @throws IoError as above; naming the file if its type or shape differs from the first
   explicit RawFramesReader(const std::vector<std::filesystem::path>& files,

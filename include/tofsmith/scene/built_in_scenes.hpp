@@ -13,7 +13,7 @@
 namespace tofsmith {
 
 /// A uniform motion: a rigid body rotates about a centre that moves in a straight line. Axes are
-/// those of the world.
+/// world axes.
 struct Motion {
   Eigen::Vector3d velocity_m_per_s = Eigen::Vector3d::Zero();  ///< of the centre [m/s]
   /// Axis of rotation by the right-hand rule; its length is the rate [rad/s].

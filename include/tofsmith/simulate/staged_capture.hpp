@@ -39,7 +39,7 @@ struct StagedCapture {
 /// pixel is blurred and summed over pixels, and noise is drawn once per pixel. If something moves,
 /// each exposure with all its taps sees the scene at the middle of the exposure
 /// (Camera::exposure_middle_s); there is no motion blur within an exposure. Without lens blur and
-/// motion, frames have the same bits as those of the other capture().
+/// motion, frames are bit-identical to the other capture().
 /// @throws std::invalid_argument as capture() and ray_cast(), if a disc of confusion is wider than
 ///         128 pixels, motions or times do not fit (StagedScene::at, Camera::frame_period_s), or
 ///         the size of ambient_scale differs from the view's; Interrupted if `progress` cancels

@@ -109,7 +109,7 @@ enum class GeneratorFamily {
   tektronix_afg3000,  ///< AFG3000, AFG3000B and AFG3000C
 };
 
-/// Capabilities of a generator; docs/instruments.md lists the sources. Limits are those of the
+/// Capabilities of a generator; docs/instruments.md lists the sources. Limits apply to the
 /// smallest version; the instrument's answers take precedence.
 struct GeneratorModel {
   std::string name;    ///< "SDG2042X"

@@ -17,7 +17,7 @@ struct TrialStreams {
 };
 
 /// Computes words 4 block to 4 block + 3 of every stream by vectorized Philox4x32-10, equal to
-/// those of RandomStream (the first operator() call returns word 0).
+/// the words of RandomStream (the first operator() call returns word 0).
 /// @param trials  1 to trials_per_tile; up to a multiple of 16 more are written
 /// @param words   [4][trials_per_tile], 64-byte aligned
 void draw_words(const TrialStreams& streams, std::uint32_t block, int trials, std::uint32_t* words);
@@ -29,7 +29,7 @@ void normals_of(const std::uint32_t* radius, const std::uint32_t* angle, int tri
                 float* second);
 
 /// Draws exact Poisson counts, one per stream and `draw`: by inversion for means below 10, else by
-/// transformed rejection, whose words are apart from those of blocks below 2^30.
+/// transformed rejection, whose words are disjoint from the words of blocks below 2^30.
 /// @param draw   0 to 4095
 /// @param mean   [trials_per_tile], finite; the count is 0 if <= 0
 /// @param count  [trials_per_tile]

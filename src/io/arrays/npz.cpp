@@ -19,7 +19,7 @@
 
 namespace tofsmith {
 
-/// Not in the unnamed namespace, because NpzReader::State has a member of this type.
+/// Outside the unnamed namespace, because NpzReader::State has a member of this type.
 struct DiscardNpzArchive {
   void operator()(zip_t* archive) const { zip_discard(archive); }
 };

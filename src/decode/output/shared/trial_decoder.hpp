@@ -19,8 +19,8 @@ struct PlaneMap {
 };
 
 /// Decoder for Monte Carlo loops, for any method. It computes positions only, no status or other
-/// planes. ZNCC can also decode projected measurements. Positions equal those of the method's
-/// decoder up to rounding errors to single precision between bins.
+/// planes. ZNCC can also decode projected measurements. Positions equal the results of the
+/// method's decoder, except for rounding to single precision between bins.
 class TrialDecoder {
  public:
   /// @param trials  approximate number of decoded trials
