@@ -8,8 +8,8 @@
     /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith \\
         --optimized OUT/codes/optimized-k5.code.json --data DIRECTORY
 
---empty measures only how many pixels without a surface have status ok, by their distance from the
-nearest surface, and how many pixels of surfaces do.
+--empty measures only the shares of pixels with status ok: of pixels without a surface, by their
+distance from the nearest surface, and of pixels with one.
 OUT is what `tofsmith demo -o OUT` has written. With --data DIRECTORY there are RGB-D images and
 meshes as well; what is not there is named and left out.
 
@@ -85,7 +85,7 @@ class Camera:
         return np.load(depth).squeeze()
 
     def is_ok(self, raw, code, *options):
-        """Whether pixels have status ok."""
+        """Return the mask of pixels with status ok."""
         self.run("decode", raw, "--code", code, "-o", self.directory / "depth.npy", "--outputs",
                  "depth,status", *options)
         return np.load(self.directory / "depth-status.npy").squeeze() == 0
@@ -201,7 +201,7 @@ def plane_bias(camera, code, name, signal, frames):
 
 
 def with_holes(camera, directory):
-    """A depth image of a wall with holes of 3 to 60 pixels and gaps of 4 to 24."""
+    """Write a depth image of a wall with holes of 3 to 60 pixels and gaps of 4 to 24."""
     depth = np.full((240, 320), 1.5, np.float32)
     y, x = np.mgrid[:240, :320]
     for row, radius in ((50, 1), (50, 4), (50, 10), (50, 30)):
@@ -214,7 +214,7 @@ def with_holes(camera, directory):
 
 
 def empty_report(camera, code, frames):
-    """Share of ok pixels of single pixels and filters, by distance from the nearest surface."""
+    """Print the shares of ok pixels without and with filters, by distance from a surface."""
     near = [f"{a}" if a == b else f"{a}-{b}" if b < 1000 else f"{a} on" for a, b in
             EMPTY_DISTANCES_PX]
     print(f"\nok pixels in %, {label(code)}, {frames} frames\n")

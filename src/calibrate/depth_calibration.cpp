@@ -14,6 +14,7 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
@@ -285,12 +286,12 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
         100.0 * result.known_share, result.far_terms.size()));
   if (!result.rms_m)
     result.notes.push_back(
-        "pixels that count are too few to hold some out: only the smallest set of terms was used, "
-        "and the error it leaves is not known");
+        "too few pixels have weight to hold some of them out: only the smallest set of terms was "
+        "used, and the remaining error is not known");
   if (result.far_rms_m && result.known_share < 0.999 && chosen.skipped_parts > 0)
     result.notes.push_back(fmt::format(
-        "{} of 4 quarters of the reference's range have no depths of their own to hold out: terms "
-        "beyond the known range were chosen by the others",
+        "{} of the 4 quarters of the reference's range contain no depths to hold out: terms beyond "
+        "the known range were chosen with the other quarters",
         chosen.skipped_parts));
   if (result.outlier_share > 0.3)
     result.notes.push_back(fmt::format("{:.0f} % of the pixels fit nothing and were left out",

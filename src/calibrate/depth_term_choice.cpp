@@ -11,6 +11,8 @@
 #include <set>
 #include <utility>
 
+#include "tofsmith/core/statistics.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -27,15 +29,16 @@ int block_count(const BlocksWithData& blocks) {
   return count;
 }
 
-/// Number of keys before one of an ordered container.
+/// Returns the number of keys before a key of an ordered container.
 template <typename Keys, typename Key>
 int rank_of(const Keys& keys, const Key& key) {
   return static_cast<int>(std::distance(keys.begin(), keys.find(key)));
 }
 
-/// Colours of a checkerboard that follows the data: blocks without data are left out when blocks
-/// are numbered, so that both colours have data wherever two blocks have. Blocks are an eighth of
-/// the image, or smaller if few of those have data. Samples without weight have any colour.
+/// Returns the colour of each sample on a checkerboard of blocks. Only blocks with data are
+/// numbered, so that both colours have data if two blocks have. Blocks are an eighth of the image
+/// high and wide, or smaller if few of these have data. The colour of samples without weight is
+/// arbitrary.
 std::vector<int> colours_of(const DepthFit& fit) {
   constexpr int enough_blocks = 8;
   int block_rows = 0, block_columns = 0;
@@ -65,7 +68,7 @@ std::vector<int> colours_of(const DepthFit& fit) {
   return colours;
 }
 
-/// Cells of held-out samples: the colour of a checkerboard of blocks, and a quarter of the range.
+/// Returns the cell of each sample: its colour on the checkerboard, and its quarter of the range.
 std::vector<int> cells_of(const DepthFit& fit) {
   const auto at_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
   std::array<double, slabs - 1> border_m{};
@@ -78,12 +81,12 @@ std::vector<int> cells_of(const DepthFit& fit) {
   return cell;
 }
 
-/// Sums of the samples that each fold holds out, and of the others.
+/// Sums of the samples that a fold holds out, and of the others.
 struct Fold {
   NormalSums out, kept;
 };
 
-/// Folds that have samples in and out.
+/// Returns the folds with samples that are held out and samples that are kept.
 std::vector<Fold> folds_of(const std::vector<NormalSums>& sums, bool by_range) {
   std::vector<Fold> folds;
   for (int fold = 0; fold < (by_range ? slabs : checkers); ++fold) {
@@ -97,7 +100,7 @@ std::vector<Fold> folds_of(const std::vector<NormalSums>& sums, bool by_range) {
   return folds;
 }
 
-/// rms that a choice leaves on samples held out; none without folds.
+/// Returns the rms error of a choice on held-out samples; none without folds.
 std::optional<double> held_out_rms_m(const std::vector<Fold>& folds, const TermChoice& choice) {
   if (folds.empty()) return {};
   const std::vector<int> columns = choice.columns();
@@ -147,13 +150,6 @@ std::vector<unsigned> harmonic_sets(int highest) {
 }
 
 }  // namespace
-
-double quantile_of(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool prefer_few) {
   const std::vector<NormalSums> sums =

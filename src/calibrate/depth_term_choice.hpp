@@ -27,9 +27,6 @@ struct DepthFit {
   Eigen::Index size() const { return static_cast<Eigen::Index>(samples.size()); }
 };
 
-/// Returns a quantile of a list; share in [0, 1].
-double quantile_of(std::vector<double> values, double share);
-
 template <typename Get>
 std::vector<double> each(const std::vector<ReferenceSample>& samples, const Get& get) {
   std::vector<double> values;

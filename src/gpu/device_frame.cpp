@@ -96,7 +96,6 @@ ResultParameters DeviceFrame::result(int set, int measured) const {
   return {.light = light(set),
           .measured = light(measured),
           .last_variance = plan_.last_variance(),
-          .amplitude = FilterPlanes::signal_next,
           .first_row = 0,
           .rows = parameters_.height};
 }
@@ -133,7 +132,7 @@ void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
     add_slope_noise(round);
   }
   read(to, FilterPlanes::usable, false);
-  run(find_own_amplitude_, parameters_, result(from, to), &planes_, int{FilterPlanes::signal_next});
+  run(find_own_amplitude_, parameters_, result(from, to), &planes_);
   result_ = from;
 }
 

@@ -16,13 +16,13 @@ struct FilterParameters {
   int plane_floats;  ///< between planes
   int origin;        ///< offset of the first pixel in a plane
 
-  int to_coordinates, to_measurements, curve;      ///< (K, K), (K, K), (samples, K)
+  int to_coordinates, to_measurements, curve;       ///< (K, K), (K, K), (samples, K)
   int squares;                                      ///< of LightBalance (samples, 2)
   int dark_e, gain_e_per_raw, dark_raw, raw_per_e;  ///< per measurement, as in the filter
   int shot_share;                                   ///< per measurement
   int samples;
   float bins_per_m;
-  float lowest, highest;  ///< see SaturationLevels
+  float lowest, highest;                                        ///< see SaturationLevels
   float floor_variance_e2, shot_per_signal, mean_curve_square;  ///< see HiddenSignal
   int has_own_shot_noise;
   float inverse_max_difference, same_depth_sigma2, own_light_sigma;
@@ -55,10 +55,9 @@ struct SlopeNoiseParameters {
 
 /// Output pixels: rows of a frame in the layout of a decoder, measurement by measurement.
 struct ResultParameters {
-  int light;          ///< first plane of the light set with the result
-  int measured;       ///< first plane of the light set as measured
+  int light;     ///< first plane of the light set with the result
+  int measured;  ///< first plane of the light set as measured
   int last_variance;
-  int amplitude;      ///< how much light each pixel shows
   int first_row, rows;
 };
 

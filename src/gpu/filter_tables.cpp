@@ -32,7 +32,7 @@ class Constants {
         fmt::format("constant int {0}_rows[] = {{{1}}};\nconstant int {0}_columns[] = {{{2}}};\n",
                     name, rows, columns);
   }
-  /// The bars of find_lit_share().
+  /// Bars and limits of find_lit_share().
   void add_bars() {
     std::string lengths, depths, most, enough, scales;
     for (const LitBar& bar : lit_bars) {
@@ -78,6 +78,7 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("PLANE_DEPTH_VARIANCE", FilterPlanes::depth_variance);
   c.add("PLANE_SIGNAL", FilterPlanes::signal);
   c.add("PLANE_SIGNAL_NEXT", FilterPlanes::signal_next);
+  c.add("PLANE_AMPLITUDE", FilterPlanes::signal_next);
   c.add("PLANE_SHIFT", FilterPlanes::shift);
   c.add("PLANE_BEFORE", before_plane(plan.measurements));
   c.add("PATCH_REACH", patch_reach);

@@ -314,7 +314,7 @@ float added_square(const struct FilterParameters* p, const struct ResultParamete
   return square;
 }
 
-/// Whether what was added to a pixel can be its own light, as find_own_light().
+/// Returns true if the light added to a pixel can be its own, as find_own_light() on the CPU.
 bool is_own_light(const struct FilterParameters* p, const struct ResultParameters* r,
                   global float* planes, int at) {
   const float mean_noise = OWN_LIGHT_NOISE / (float)(2 * OWN_LIGHT_REACH + 1);
@@ -357,20 +357,21 @@ kernel void leave_dark(const struct FilterParameters p, global float* planes, co
   plane_of(&p, planes, PLANE_USABLE)[at] = plane_of(&p, planes, is_own)[at];
 }
 
-/// Computes the light in the measurements of each pixel, as find_own_amplitude().
+/// Writes the amplitude of the measured light of each pixel, as find_own_amplitude() on the CPU.
 kernel void find_own_amplitude(const struct FilterParameters p, const struct ResultParameters r,
-                               global float* planes, const int to) {
+                               global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int at = y * p.stride + x;
   const float square = added_square(&p, &r, planes, at);
   const bool is_known = square > 0.0f && plane_of(&p, planes, PLANE_USABLE)[at] > 0.5f;
   const float length = sqrt(square) * sqrt(plane_of(&p, planes, PLANE_VARIANCE)[at]);
-  plane_of(&p, planes, to)[at] = is_known ? along_added(&p, &r, planes, at, at) / length : 0.0f;
+  plane_of(&p, planes, PLANE_AMPLITUDE)[at] =
+      is_known ? along_added(&p, &r, planes, at, at) / length : 0.0f;
 }
 
-/// Returns the smallest light of the bars in all directions, as least_of_bars().
-/// @param point, scale  first point and scale of the bar
+/// Returns the light of the darkest bar over all directions, as least_of_bars() on the CPU.
+/// @param point, scale  index of the first point and of the first scale of the bar
 float least_of_bars(const struct FilterParameters* p, Plane amplitude, int at, int bar, int point,
                     int scale, float most) {
   float least = 1e30f;
@@ -390,10 +391,10 @@ float least_of_bars(const struct FilterParameters* p, Plane amplitude, int at, i
   return least;
 }
 
-/// Returns 1 for lit pixels, as find_lit_share().
+/// Returns 1 for lit pixels, else v / (v + |u|^2), as find_lit_share().
 float lit_share(const struct FilterParameters* p, const struct ResultParameters* r,
                 global float* planes, int at) {
-  const Plane amplitude = plane_of(p, planes, r->amplitude);
+  const Plane amplitude = plane_of(p, planes, PLANE_AMPLITUDE);
   if (!(plane_of(p, planes, PLANE_USABLE)[at] > 0.5f) || amplitude[at] >= LIT_PIXEL_SIGMA)
     return 1.0f;
   const float square = added_square(p, r, planes, at);
@@ -432,8 +433,9 @@ kernel void write_filtered(const struct FilterParameters p, const struct ResultP
   const float before = averaged_before ? averaged_before[measured] : 1.0f;
   float numbers[MEASUREMENTS];
   float n = raw_of_light(&p, &r, tables, before, planes, at, numbers);
-  n *= lit_share(&p, &r, planes, at);
-  if (!is_own_light(&p, &r, planes, at)) {
+  if (is_own_light(&p, &r, planes, at)) {
+    n *= lit_share(&p, &r, planes, at);
+  } else {
     n = before;
     for (int k = 0; k < MEASUREMENTS; ++k)
       numbers[k] = raw_number(&tile, raw_numbers, measured, k);

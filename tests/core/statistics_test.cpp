@@ -33,6 +33,13 @@ TEST(MedianOf, IsTheMiddle) {
   EXPECT_EQ(median_of({9.0, 1.0, 2.0, 4.0}), 3.0);
 }
 
+TEST(QuantileOf, IsAValueOfTheList) {
+  EXPECT_EQ(quantile_of({4.0}, 0.7), 4.0);
+  EXPECT_EQ(quantile_of({9.0, 1.0, 2.0, 4.0}, 0.0), 1.0);
+  EXPECT_EQ(quantile_of({9.0, 1.0, 2.0, 4.0}, 0.5), 2.0);
+  EXPECT_EQ(quantile_of({9.0, 1.0, 2.0, 4.0}, 1.0), 9.0);
+}
+
 TEST(RunningStatistics, AgreesWithTwoPassesFarFromZero) {
   RunningStatistics statistics;
   RandomStream random(1, 1);

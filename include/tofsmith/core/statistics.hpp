@@ -38,6 +38,11 @@ class RunningStatistics {
 /// Median; the mean of the middle two for an even number; 0 if empty.
 double median_of(std::vector<double> values);
 
+/// Returns the value at index floor(share (n - 1)) in ascending order.
+/// @param values  not empty
+/// @param share   in [0, 1]
+double quantile_of(std::vector<double> values, double share);
+
 /// Arithmetic mean of independent estimates with error propagation.
 Estimate mean_of(std::span<const Estimate> estimates);
 

@@ -13,6 +13,7 @@
 // Must follow foreach_target.h.
 #include <hwy/highway.h>
 
+#include "decode/filter/own_light-inl.hpp"
 #include "decode/filter/pair_weight-inl.hpp"
 #include "decode/filter/row_pairs-inl.hpp"
 
@@ -212,16 +213,6 @@ void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const Filter
   }
 }
 
-/// Returns the scalar product of the measured light of one pixel and the added light of another.
-HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
-                              std::ptrdiff_t measured) {
-  Vector sum = hn::Zero(Floats());
-  for (int j = 0; j < test.rank; ++j)
-    sum = hn::MulAdd(load(test.added.data()[j] + added), load(test.measured.data()[j] + measured),
-                     sum);
-  return sum;
-}
-
 /// Returns true if at most own_light_share of the usable pixels around measured less than `least`.
 HWY_INLINE Mask is_light_around(const OwnLightTest& test, const FilterGrid& grid, std::ptrdiff_t at,
                                 Vector least) {
@@ -241,18 +232,14 @@ bool fuses() { return HWY_NATIVE_FMA != 0; }
 
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own) {
   constexpr float mean_noise = own_light_noise / own_light_side;  // standard deviations of a pixel
-  const Vector zero = hn::Zero(Floats());
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
-    Vector square = zero;
-    for (int j = 0; j < test.rank; ++j) {
-      const Vector u = load(test.added.data()[j] + at);
-      square = hn::MulAdd(u, u, square);
-    }
+    const Vector square = added_square(test, at);
     const Vector added = hn::Sqrt(square), sigma = hn::Sqrt(load(test.variance + at));
     const Vector limit = hn::Mul(all(test.limit_sigma * mean_noise), sigma);
     const Vector evident = hn::Mul(hn::Mul(all(evident_sigma), sigma), added);
-    const Mask is_lit = hn::And(hn::Gt(square, zero), hn::Gt(load(test.usable + at), all(0.5f)));
+    const Mask is_lit =
+        hn::And(hn::Gt(square, hn::Zero(Floats())), hn::Gt(load(test.usable + at), all(0.5f)));
     const Mask is_evident =
         hn::Or(hn::Le(added, limit), hn::Ge(along_added(test, at, at), evident));
     Mask own = hn::And(is_lit, is_evident);

@@ -30,11 +30,8 @@ struct FilterGrid {
   }
 };
 inline constexpr int slope_reach = 12;  ///< of the pixels that tell a slope
-/// Farthest row or column of pixels that tell whether a pixel is lit; of lit_bars.
-inline constexpr int lit_reach = 11;
 /// Rows that windows of a frame reach beyond it, and columns, with room for a whole vector.
 constexpr int margin_rows(int largest_step) { return std::max(2 * largest_step + 2, slope_reach); }
-static_assert(lit_reach <= slope_reach);
 constexpr int margin_columns(int largest_step) {
   return whole_vectors(margin_rows(largest_step)) + widest_vector;
 }
@@ -163,29 +160,30 @@ void find_energy(const std::array<const float*, max_measurements>& u, int rank,
                  const FilterGrid& grid, int first_row, int rows, float* energy,
                  float* inverse_sigma);
 
-/// Light of a single pixel of so many standard deviations needs no other proof.
+/// Light of a single pixel from which the pixels around it are not tested [standard deviations].
 inline constexpr float evident_sigma = 3.0f;
 inline constexpr int own_light_reach = 3, own_light_side = 2 * own_light_reach + 1;
-/// Light around a pixel is its own from so many deviations of its error, and from this share of
-/// what was added, on.
+/// Least light of the pixels around a pixel, in standard deviations of its error and relative to
+/// the added light.
 inline constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
-/// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
-/// deviations below the mean, with so many times its error.
+/// Largest share of the pixels around that may be darker: fewer than half of them are on the far
+/// side of a straight edge. This quantile of normal noise is own_light_below_mean standard
+/// deviations below the mean, and its error is own_light_noise times that of the mean.
 inline constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f;
 inline constexpr float own_light_noise = 1.28f;
 
-/// Whether what was added to a pixel can be its own light.
+/// Test whether the light added to a pixel can be its own.
 struct OwnLightTest {
   std::array<const float*, max_measurements> added{};     ///< (rank) planes
-  std::array<const float*, max_measurements> measured{};  ///< the same of the light as measured
+  std::array<const float*, max_measurements> measured{};  ///< (rank) planes of measured light
   int rank = 0;
   const float* usable = nullptr;    ///< 1 or 0
   const float* variance = nullptr;  ///< of a coordinate, as measured
   float limit_sigma = 0.0f;         ///< FilterOptions::own_light_sigma
 };
-/// 1 where it can, 0 where it cannot or a pixel is not usable. It cannot where the pixels around it
-/// show none, and less than was added: beside an edge of light, dark pixels are given none of it.
-/// Writes a row, whole vectors.
+/// Writes for a row 1 if the added light can be the pixel's own, 0 if not or if the pixel is not
+/// usable. It cannot be if the pixels around have no light, or less than was added, so that dark
+/// pixels next to an edge get no light from its other side. Writes whole vectors.
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own);
 
 }  // namespace tofsmith

@@ -57,8 +57,8 @@ struct Filter::Plan {
                   FilterPlanes::Scalar usable) const;
   /// One window of the round that adds neighbours whose vectors are parallel.
   void add_similar(FilterPlanes& frame, int from, int to, int window) const;
-  /// Pixels that have none of the light that a set gives them are usable no more: that tells no
-  /// slope. The other set is needed for that.
+  /// Marks pixels that fail find_own_light() as unusable, because they do not determine slopes.
+  /// Overwrites the other set.
   void leave_dark(const RawView& raw, FilterPlanes& frame, int set, int other) const;
   /// Depth of a set of light, by way of raw numbers in another set.
   void find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const;
@@ -67,8 +67,8 @@ struct Filter::Plan {
   void add_along_slopes(FilterPlanes& frame, int light, int rest, int to, int window) const;
   /// What the noise of slopes adds to the variance of the sums of a round.
   void add_slope_noise(FilterPlanes& frame, int round) const;
-  /// Turns a set of light into raw numbers, as measured where nothing was to be added; the other
-  /// set is needed for that.
+  /// Converts a set of light to raw numbers. Pixels that fail find_own_light() keep their
+  /// measurements, and `averaged` is multiplied by find_lit_share(). Overwrites the other set.
   void finish(const RawView& raw, FilterPlanes& frame, int set, int other) const;
 
  private:

@@ -43,9 +43,9 @@ struct FilterPlanes {
     inverse_sigma,  ///< of SimilarityTest; then slope_y
     depth,          ///< found before [bin]
     depth_variance,
-    signal,  ///< along the depth found before [e/s]
-    signal_next,
-    shift,  ///< of signal_next beyond the slope [e/s bin]
+    signal,       ///< along the depth found before [e/s]; at the end, of find_own_light()
+    signal_next,  ///< at the end, of find_own_amplitude()
+    shift,        ///< of signal_next beyond the slope [e/s bin]; at the end, of find_lit_share()
     scalars
   };
 
@@ -56,7 +56,7 @@ struct FilterPlanes {
   std::vector<float> storage;
   Image<float>
       averaged;  ///< along slopes: variance of a coordinate that depth was found from [e^2]
-  std::vector<std::ptrdiff_t> lit_points;  ///< lit_bar_points() in the grid [floats]
+  std::vector<std::ptrdiff_t> lit_points;  ///< lit_bar_points() as offsets in the grid [floats]
   NoiseRatios noise;                       ///< of the filtered numbers
   const std::uint8_t* left_out = nullptr;  ///< of the frame under way, (H, W), or null
   int result = 0;                          ///< the set of `light` that holds raw numbers at the end

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/filter/lit_kernel.hpp"
 
+#include <array>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/lit_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own header after foreach_target.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
+#include "decode/filter/own_light-inl.hpp"
 #include "decode/filter/pair_weight-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,33 +19,20 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Square of the light that was added to the pixels from `at` on.
-HWY_INLINE Vector added_square(const OwnLightTest& test, std::ptrdiff_t at) {
-  Vector square = hn::Zero(Floats());
-  for (int j = 0; j < test.rank; ++j) {
-    const Vector u = load(test.added.data()[j] + at);
-    square = hn::MulAdd(u, u, square);
-  }
-  return square;
-}
-
 void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
                         float* amplitude) {
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
     const Vector square = added_square(test, at);
-    Vector along = hn::Zero(Floats());
-    for (int j = 0; j < test.rank; ++j)
-      along =
-          hn::MulAdd(load(test.added.data()[j] + at), load(test.measured.data()[j] + at), along);
     const Mask is_known =
         hn::And(hn::Gt(square, hn::Zero(Floats())), hn::Gt(load(test.usable + at), all(0.5f)));
     const Vector length = hn::Mul(hn::Sqrt(square), hn::Sqrt(load(test.variance + at)));
-    store(hn::IfThenElseZero(is_known, hn::Div(along, length)), amplitude + x);
+    store(hn::IfThenElseZero(is_known, hn::Div(along_added(test, at, at), length)), amplitude + x);
   }
 }
 
-/// The least light of the bars of all directions, each with the rows that show the most of it.
+/// Returns the light of the darkest bar over all directions. The light of a bar is that of its
+/// first rows, as many as give the largest value.
 HWY_INLINE Vector least_of_bars(const float* amplitude, const std::ptrdiff_t* points,
                                 const LitBar& bar, const float* scale, Vector most) {
   Vector least = all(1e30f);
@@ -59,7 +48,7 @@ HWY_INLINE Vector least_of_bars(const float* amplitude, const std::ptrdiff_t* po
   return least;
 }
 
-/// Mean of 3 x 3 pixels.
+/// Returns the mean of the 3 x 3 pixels around each pixel.
 HWY_INLINE Vector mean_around(const float* amplitude, std::ptrdiff_t stride) {
   Vector sum = hn::Zero(Floats());
   for (int dy = -1; dy <= 1; ++dy)
@@ -67,31 +56,53 @@ HWY_INLINE Vector mean_around(const float* amplitude, std::ptrdiff_t stride) {
   return hn::Mul(sum, all(1.0f / 9.0f));
 }
 
+using LitScales = std::array<std::array<float, lit_reach + 1>, lit_bars.size()>;
+
+/// Returns lit_bar_scale() of each bar for 1 to `depth` rows.
+LitScales lit_scales() {
+  LitScales scales{};
+  for (std::size_t b = 0; b < lit_bars.size(); ++b)
+    for (int r = 0; r < lit_bars.data()[b].depth; ++r)
+      scales.data()[b].data()[r] = lit_bar_scale(lit_bars.data()[b], r + 1);
+  return scales;
+}
+
+/// Returns whether the bars of one size have enough light in all directions.
+HWY_INLINE Mask is_lit_by_bars(const float* amplitude, const std::ptrdiff_t* points,
+                               const LitBar& bar, const float* scale, Vector added) {
+  const Vector most = hn::Add(added, all(lit_excess_sigma));
+  const Vector least = least_of_bars(amplitude, points, bar, scale, most);
+  const Vector of_added = hn::Mul(added, all(lit_bar_share / scale[0]));
+  const Vector enough = hn::Mul(added, all(bar.enough_share / scale[bar.depth - 1]));
+  return hn::Ge(least, hn::Max(hn::Min(all(lit_bar_sigma), enough), of_added));
+}
+
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share) {
+  const LitScales scales = lit_scales();
   const Vector one = all(1.0f);
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
+    const float* const amplitude = test.amplitude + at;
+    const Mask is_usable = hn::Gt(load(test.light->usable + at), all(0.5f));
+    Mask is_lit = hn::Or(hn::Not(is_usable), hn::Ge(load(amplitude), all(lit_pixel_sigma)));
+    if (hn::AllTrue(Floats(), is_lit)) {
+      store(one, share + x);
+      continue;
+    }
     const Vector square = added_square(*test.light, at);
     const Vector added = hn::Div(hn::Sqrt(square), hn::Sqrt(load(test.light->variance + at)));
-    const Vector most = hn::Add(added, all(lit_excess_sigma));
-    const Mask is_usable = hn::Gt(load(test.light->usable + at), all(0.5f));
-    Mask is_lit =
-        hn::Or(hn::Not(is_usable), hn::Ge(load(test.amplitude + at), all(lit_pixel_sigma)));
-    const Mask is_lit_around = hn::Or(
-        hn::Le(added, all(lit_around_sigma)),
-        hn::Ge(mean_around(test.amplitude + at, grid.stride), hn::Mul(added, all(lit_bar_share))));
+    const Mask is_lit_around =
+        hn::Or(hn::Le(added, all(lit_around_sigma)),
+               hn::Ge(mean_around(amplitude, grid.stride), hn::Mul(added, all(lit_bar_share))));
     const std::ptrdiff_t* points = test.points;
-    for (const LitBar& bar : lit_bars) {
+    for (std::size_t b = 0; b < lit_bars.size(); ++b) {
+      const LitBar& bar = lit_bars.data()[b];
       const Mask is_open =
           hn::And(hn::AndNot(is_lit, is_lit_around), hn::Le(added, all(bar.max_added_sigma)));
       if (!hn::AllFalse(Floats(), is_open)) {
-        std::array<float, lit_reach> scale{};
-        for (int r = 0; r < bar.depth; ++r) scale.data()[r] = lit_bar_scale(bar, r + 1);
-        const Vector least = least_of_bars(test.amplitude + at, points, bar, scale.data(), most);
-        const Vector of_added = hn::Mul(added, all(lit_bar_share / scale.data()[0]));
-        const Vector enough = hn::Mul(added, all(bar.enough_share / scale.data()[bar.depth - 1]));
-        const Vector wanted = hn::Max(hn::Min(all(lit_bar_sigma), enough), of_added);
-        is_lit = hn::Or(is_lit, hn::And(is_open, hn::Ge(least, wanted)));
+        const Mask is_lit_here =
+            is_lit_by_bars(amplitude, points, bar, scales.data()[b].data(), added);
+        is_lit = hn::Or(is_lit, hn::And(is_open, is_lit_here));
       }
       points += lit_directions * bar.depth * bar.length;
     }
@@ -112,7 +123,7 @@ HWY_EXPORT(find_own_amplitude);
 HWY_EXPORT(find_lit_share);
 
 namespace {
-/// Where place i of row r of a bar is that points along (down, right).
+/// Returns place i of row r of the bar in direction (down, right), relative to its pixel.
 WindowStep bar_point(int down, int right, int r, int i) {
   if (down == 0 || right == 0) return {r * down - i * right, r * right + i * down};
   const int along = i + (r + 1) / 2;  // rows of diagonals are half a step apart

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -10,53 +11,63 @@
 
 namespace tofsmith {
 
-/// A bar of pixels at one side of a pixel, which is the middle of its first row.
+/// A bar of pixels at one side of a pixel, which is the middle of the first row of the bar.
 struct LitBar {
   int length = 1;
   int depth = 1;                 ///< rows
-  float max_added_sigma = 0.0f;  ///< only for pixels that were given no more light than this
-  /// Its light is enough if it has this share of the light given, too, however dim.
+  float max_added_sigma = 0.0f;  ///< the bar applies to pixels with at most this added light
+  /// This share of the added light is enough, even below lit_bar_sigma.
   float enough_share = 1e30f;
 };
-/// Larger bars show less light. They are only for dim pixels, because they bridge narrow gaps.
+/// Larger bars detect dimmer light. They apply to dim pixels only, because they bridge narrow gaps.
 inline constexpr std::array<LitBar, 4> lit_bars = {
     {{3, 2, 1e30f}, {5, 3, 3.0f}, {9, 5, 1.8f}, {13, 11, 0.9f, 0.75f}}};
 inline constexpr int lit_directions = 8;
-/// Amplitude from which a pixel's own measurements show its light [standard deviations].
+/// Largest distance of a pixel of a bar from its pixel, in rows or columns.
+inline constexpr int lit_reach = [] {
+  int reach = 0;
+  for (const LitBar& bar : lit_bars)  // straight and diagonal bars
+    reach = std::max({reach, bar.depth - 1, bar.length / 2 + bar.depth / 2});
+  return reach;
+}();
+static_assert(lit_reach <= slope_reach, "bars must end within the margins of planes");
+/// Amplitude from which a pixel's own measurements prove its light [standard deviations].
 inline constexpr float lit_pixel_sigma = 3.5f;
-/// The same of bars.
+/// Amplitude from which a bar proves light [standard deviations].
 inline constexpr float lit_bar_sigma = 4.0f;
-/// Least share of the light that was given to a pixel that its bars must have, and likewise the
-/// mean of the 3 x 3 pixels around it.
+/// Least light of each bar, and of the mean of the 3 x 3 pixels around a pixel, relative to the
+/// light added to the pixel.
 inline constexpr float lit_bar_share = 0.6f;
-/// The 3 x 3 pixels are compared only where more light than this was given [standard deviations].
+/// The 3 x 3 pixels are only tested for more added light than this [standard deviations].
 inline constexpr float lit_around_sigma = 1.4f;
-/// A pixel of a bar counts as at most the light given plus this [standard deviations].
+/// The amplitude of a pixel in a bar counts as at most that of the added light plus this [standard
+/// deviations].
 inline constexpr float lit_excess_sigma = 2.0f;
 
-/// Pixels of all bars relative to their pixel: by bar, direction, row of the bar and place in it.
+/// Returns the pixels of all bars relative to their pixel, ordered by bar, direction, row of the
+/// bar and place in the row.
 std::vector<WindowStep> lit_bar_points();
-/// One over the standard deviation of the sum of the first rows of a bar of independent pixels.
+/// Returns 1 / the standard deviation of the sum of the first rows of a bar of independent pixels.
 float lit_bar_scale(const LitBar& bar, int rows);
 
-/// Writes for a row how much light the measurements of each pixel show along the light that the
-/// filter gave to it [standard deviations]; 0 for pixels that are not usable. Writes whole vectors.
+/// Writes for a row the amplitude of each pixel's measured light in the direction of the light that
+/// was added to it [standard deviations]; 0 for unusable pixels. Writes whole vectors.
 void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
                         float* amplitude);
 
-/// The test whether pixels have light at all.
+/// Test whether pixels have any light.
 struct LitTest {
   const OwnLightTest* light = nullptr;
-  const float* amplitude = nullptr;  ///< of find_own_amplitude(), with margins of 0
+  const float* amplitude = nullptr;  ///< from find_own_amplitude(), with margins of 0
   const float* variance = nullptr;   ///< of a coordinate of the added light
-  /// lit_bar_points() in the grid [floats].
+  /// lit_bar_points() as offsets in the grid [floats].
   const std::ptrdiff_t* points = nullptr;
 };
-/// Writes for a row 1 where a pixel is lit or not usable, elsewhere v / (v + |u|^2), u the light
-/// that was added and v its variance: that light may be all of neighbours, so that it is its own
-/// error. A pixel is lit if its own measurements show it, or if all bars around it have light in
-/// some of their first rows: beside the edge of an object, the bar that points away from it has
-/// none.
+/// Writes for a row 1 if a pixel is lit or not usable, else v / (v + |u|^2) with the added light u
+/// and its variance v: all of u may be light of neighbours, so that u is its own error. A pixel is
+/// lit if its own measurements prove it, or if the bars in all directions have light in some of
+/// their first rows. Next to an object, the bar that points away from the object has none. Writes
+/// whole vectors.
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share);
 
 }  // namespace tofsmith

@@ -10,6 +10,7 @@
 
 #include "decode/filter/shared/filter_parts.hpp"
 #include "decode/shared/marked_raw.hpp"
+#include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {
 
@@ -18,21 +19,14 @@ namespace {
 constexpr int block_side = 8;
 constexpr std::size_t min_blocks = 16;
 constexpr double flattest_share = 0.25;
-constexpr double median_of_normal = 0.6745;  // of its absolute value
+constexpr double median_of_normal = 0.6745;  // median of |x| of a standard normal variable
 
-double quantile_of(std::vector<double>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-/// Second differences of a coordinate, of one direction in a block, in standard deviations.
+/// Second differences of the coordinates along one direction of a block, in standard deviations.
 class Differences {
  public:
   Differences(FilterPlanes& frame, int rank) : frame_(frame), rank_(rank) {}
 
-  /// Median of their absolute values; none if fewer than half of them are known.
+  /// Returns the median of their absolute values; none if fewer than half of them are known.
   std::optional<double> median_of(int first_row, int first_column, std::ptrdiff_t step) {
     found_.clear();
     for (int row = first_row; row < first_row + block_side; ++row)
@@ -59,7 +53,7 @@ class Differences {
   std::vector<double> found_;
 };
 
-/// The rows in the middle of a frame, few enough to take little memory.
+/// Returns at most 128 rows in the middle of a frame, to limit the memory.
 RawView middle_rows(RawView raw) {
   constexpr int max_rows = 128;
   const int rows = std::min(raw.height, max_rows), first = (raw.height - rows) / 2;

@@ -8,11 +8,12 @@
 
 namespace tofsmith {
 
-/// Returns the standard deviation of a frame's measurements relative to the one that the filter
-/// takes from the camera: second differences of neighbours, which slopes leave 0, along the flatter
-/// of rows and columns, in the flattest quarter of blocks of 8 x 8 pixels, among the 128 rows in
-/// the middle. None if fewer than 16 blocks have enough usable pixels.
-/// @throws std::invalid_argument if the measurements differ from the filter's
+/// Returns the standard deviation of a frame's measurements, divided by the one that the filter
+/// expects from the camera. It follows from the second differences of neighbouring pixels, which
+/// are 0 on slopes. Of the blocks of 8 x 8 pixels in the 128 middle rows, the flattest quarter
+/// counts, each along the flatter of rows and columns.
+/// @return none if fewer than 16 blocks have enough usable pixels
+/// @throws std::invalid_argument if the measurements differ from those of the filter
 std::optional<double> measured_noise_ratio(const Filter& filter, const RawView& raw);
 
 }  // namespace tofsmith
