@@ -72,7 +72,8 @@ struct ReadTemperatures {
   std::vector<std::string> notes;
 };
 
-/// Reads the only column, or the named ones. The light source's is the only other one by default.
+/// Reads the only column, or the named ones. The column of the light source is by default the only
+/// other one.
 ReadTemperatures read_temperatures(const TemperatureArguments& arguments) {
   const std::string& file = arguments.temperatures;
   if (arguments.light_column.empty() && arguments.sensor_column.empty()) {
@@ -96,8 +97,7 @@ ReadTemperatures read_temperatures(const TemperatureArguments& arguments) {
       arguments.light_column.empty() ? 1 - *sensor : table.column_of(arguments.light_column, file);
   if (light == sensor)
     throw UsageError(
-        fmt::format("--sensor-column: {} is also the --light-column; expected "
-                    "another one",
+        fmt::format("--sensor-column: {} is also the --light-column; expected another one",
                     arguments.sensor_column));
   result.of_frames.of_camera_c = column(table, light);
   return result;
@@ -105,7 +105,7 @@ ReadTemperatures read_temperatures(const TemperatureArguments& arguments) {
 
 Camera camera_of(const Camera& camera, const TemperatureDrift& found,
                  const TemperatureArguments& arguments) {
-  // Without a drift of the sensor, its reference has no use.
+  // Without a drift of the sensor, its reference is not valid.
   return with_temperature(camera, found, arguments.reference_c,
                           found.sensor ? arguments.sensor_reference_c : std::nullopt);
 }

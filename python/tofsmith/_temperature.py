@@ -49,8 +49,8 @@ class TemperatureDrift:
         That decode in every frame.
     notes : list of str
     sensor : SensorDrift or None
-        Drift with the temperature of the sensor, if it was fitted; the other attributes then are of
-        the temperature of the light source.
+        Drift with the temperature of the sensor, if it was fitted. The other attributes then refer
+        to the temperature of the light source.
     hysteresis_m : Estimate or None
         Offset while the temperature rises, minus the offset while it falls [m]; None if it does not
         do both.
@@ -80,13 +80,13 @@ class TemperatureDrift:
         reference_c: Optional[float] = None,
         sensor_reference_c: Optional[float] = None,
     ) -> Camera:
-        """The camera that changes so.
+        """Return the camera with this drift.
 
         Parameters
         ----------
         camera : Camera or its name
         reference_c : float, optional
-            Where it was calibrated otherwise, so that nothing changes there [degrees C]; None: the
+            Temperature of the other calibrations, at which nothing changes [degrees C]; None: the
             mean of the frames.
         sensor_reference_c : float, optional
             The same for the temperature of the sensor.
@@ -115,7 +115,7 @@ def calibrate_temperature(
     sensor_temperature_c: Optional[npt.ArrayLike] = None,
     progress: Progress = None,
 ) -> TemperatureDrift:
-    """Drift with temperature from frames of a scene that stands still.
+    """Determine the drift with temperature from frames of a static scene.
 
     Parameters
     ----------
@@ -125,9 +125,9 @@ def calibrate_temperature(
         Temperature of each frame [degrees C]: that of the light source if `sensor_temperature_c`
         is given.
     code : CodeSet, name of a family or file
-        That the camera played.
+        Code of the frames.
     camera : Camera or its name
-        A drift that it has already says nothing.
+        Its own drift is ignored.
     sensor_temperature_c : array_like, shape (F,), optional
         Temperature of the sensor at each frame [degrees C]. Drifts with both temperatures are
         fitted together, from at least 6 frames.

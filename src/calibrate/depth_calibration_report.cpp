@@ -129,7 +129,7 @@ std::string depth_error_text(const CalibratedDepth& found) {
   return fmt::format("depth is {:+.4g} m off in the mean, {} rms around it; {}", found.mean_error_m,
                      length_text(found.rms_before_m),
                      found.rms_m ? length_text(*found.rms_m) + " on blocks held out once corrected"
-                                 : "once corrected, not known");
+                                 : "remaining error not known");
 }
 
 Page depth_report(const CalibratedDepth& found, const std::string& source,

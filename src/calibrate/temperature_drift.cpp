@@ -66,7 +66,7 @@ double weighted_median(std::vector<Weighted> items) {
   return items.back().value;
 }
 
-/// Coefficients of the columns of a least-squares fit, and the scatter around it.
+/// Coefficients of the columns of a least-squares fit, and the rms residual.
 struct LinearFit {
   std::vector<Estimate> coefficients;
   double rms = 0.0;
@@ -103,14 +103,15 @@ Eigen::VectorXd from_mean(const std::vector<double>& values, double mean) {
   return all.array() - mean;
 }
 
-/// Condition number of two columns without means, scaled to equal norms: infinite if they are
+/// Returns the condition number of two centred columns scaled to equal norms; infinite if they are
 /// proportional.
 double condition_number(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const double correlation = std::abs(a.dot(b)) / (a.norm() * b.norm());
   return std::sqrt((1.0 + correlation) / std::max(1.0 - correlation, 0.0));
 }
 
-/// Sign of the temperature's change at each frame; 0 where it changes by less than 1 % of its span.
+/// Returns the sign of the temperature's change at each frame; 0 for changes of at most 1 % of the
+/// span.
 Eigen::VectorXd directions(const std::vector<double>& temperature_c) {
   constexpr double still = 0.01;
   const auto [least, most] = std::ranges::minmax_element(temperature_c);
@@ -125,7 +126,8 @@ Eigen::VectorXd directions(const std::vector<double>& temperature_c) {
   return signs;
 }
 
-/// Offset of rising minus that of falling temperatures, if at least three frames show each.
+/// Returns the offset at rising minus the offset at falling temperatures; none unless at least
+/// three frames have each.
 std::optional<Estimate> hysteresis_of(std::vector<Eigen::VectorXd> columns,
                                       const TemperatureDrift& drift) {
   constexpr Eigen::Index min_branch = 3;
@@ -175,7 +177,7 @@ void compare_frames(const std::vector<DepthImage>& images, double range_m,
   }
 }
 
-/// Fits lines over the temperatures, then adds a second-order term, and hysteresis.
+/// Fits lines over the temperatures, then hysteresis and a second-order term in addition to them.
 void fit_lines(const FrameTemperatures& temperatures, TemperatureDrift& result) {
   const std::vector<double>& camera_c = temperatures.of_camera_c;
   const std::vector<double>& sensor_c = temperatures.of_sensor_c;
@@ -238,7 +240,7 @@ void note_lines(bool has_sensor, TemperatureDrift& result) {
        {std::pair("offset", result.offset_m_per_c2), std::pair("signal", result.signal_per_c2)})
     if (is_significant(second))
       result.notes.push_back(
-          fmt::format("{} bends over temperature: a line is not enough of it", what));
+          fmt::format("{} is curved over temperature: a line does not describe it", what));
   if (result.hysteresis_m && is_significant(*result.hysteresis_m))
     result.notes.push_back(fmt::format(
         "hysteresis: at the same temperature, depth is {:+.3g} ± {:.2g} mm farther while "

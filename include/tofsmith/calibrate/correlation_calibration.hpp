@@ -164,7 +164,7 @@ struct DepthErrorPicture {
   Image<float> after_image_m;
 };
 
-/// What reference depth says of a camera.
+/// Result of calibrate_depth().
 struct CalibratedDepth {
   MeasuredTable table;    ///< the nominal functions, with the correction
   bool reversed = false;  ///< delay runs backwards; the table does too
@@ -179,12 +179,14 @@ struct CalibratedDepth {
   double known_share = 0.0;            ///< of the range in which the reference had depths
   double mean_error_m = 0.0;           ///< of the nominal depth, in [-range / 2, range / 2]
   double rms_before_m = 0.0;           ///< of its error, but for the mean
-  std::optional<double> rms_m;  ///< left over on blocks of pixels held out; none: none had data
-  /// Left over by the terms beyond, on parts of the range held out; none: the reference is at one
+  /// Remaining error on held-out blocks of pixels; none if too few pixels have weight.
+  std::optional<double> rms_m;
+  /// Remaining error of far_terms on held-out parts of the range; none if the reference is at one
   /// distance.
   std::optional<double> far_rms_m;
-  int skipped_folds = 0;       ///< of 2 of blocks and 4 of the range, without data in or out
-  double outlier_share = 0.0;  ///< of the pixels, which count for nothing
+  /// Number of folds without data to hold out or to keep, of 2 folds of blocks and 4 of the range.
+  int skipped_folds = 0;
+  double outlier_share = 0.0;  ///< share of pixels without weight
   /// As DecodeOptions::model_error_percent, within 20 %; none: the code has no degrees of freedom.
   std::optional<double> model_error_percent;
   std::int64_t pixels = 0;  ///< that were compared
@@ -192,27 +194,27 @@ struct CalibratedDepth {
   std::vector<std::string> notes;
 };
 
-/// The depth error of a nominal code against reference depth, on any part of the range.
-///   1. Of codes of several frequencies: offset, contrast and harmonics of each frequency, which
-///      become part of the table.
-///   2. The code decodes the frames; delay that runs backwards is turned. Offset, harmonics 1 to 8
-///      of the phase, a field over rows and columns of degree 0 to 4 and terms in the logarithm of
-///      the signal, by least squares with Tukey's biweight (flying pixels and wrong references have
-///      no weight), at the phase that the reference predicts, so that noise of the depth is not
-///      taken for an error that depends on it.
-///   3. Which terms: by alternate blocks, among those with data, held out in turn. Beyond the
-///      depths that the reference had, those count that predict parts of the range held out.
-///   4. Standard errors from tiles of pixels, whose errors may be alike.
-///   5. The model error with which at most 1 % of the pixels with the right depth are inconsistent.
-///      Errors below the noise of the frames are not found.
-/// @param camera  its model of the code is what is nominal
+/// Determines the depth error of a nominal code from reference depth on any part of the range.
+///   1. For codes of several frequencies, fit offset, contrast and harmonics of each frequency.
+///      They become part of the table.
+///   2. Decode the frames, and reverse delay that runs backwards. Fit an offset, harmonics 1 to 8
+///      of the phase, a field of degree 0 to 4 over rows and columns, and terms in the logarithm of
+///      the signal by least squares with Tukey's biweight (flying pixels and wrong references have
+///      no weight). Use the phase predicted from the reference, so that noise of the depth does not
+///      appear as an error that depends on depth.
+///   3. Choose terms by cross-validation: hold out alternate blocks among those with data. Beyond
+///      the depths of the reference, use the terms that best predict held-out parts of the range.
+///   4. Compute standard errors from tiles of pixels, whose errors may be correlated.
+///   5. Find the model error with which at most 1 % of the pixels with the right depth are
+///      inconsistent. Errors below the noise of the frames are not found.
+/// @param camera  provides the nominal model of the code
 /// @throws std::invalid_argument if sizes disagree, fewer than 100 pixels can be compared, or the
 ///         reference is in another unit, flipped, or of something else
 CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& reference,
                                 const CodeSet& code, const Camera& camera,
                                 const Progress& progress = {});
 
-/// The camera with the offset and the direction of delay that were found, for its code to decode
+/// Returns the camera with the calibrated offset and direction of delay, for decoding its code
 /// without the table.
 Camera with_depth(Camera camera, const CalibratedDepth& found);
 
@@ -230,15 +232,15 @@ struct SensorDrift {
   std::vector<double> temperature_c;
 };
 
-/// How depth and signal of a camera change with its temperature, or with that of its light source
-/// and that of its sensor.
+/// Change of depth and signal of a camera with its temperature, or with the temperatures of light
+/// source and sensor.
 struct TemperatureDrift {
-  double mean_c = 0.0;           ///< of the frames [degrees C]: where both lines were laid
-  Estimate offset_m_per_c;       ///< by how much depth reads farther per degree [m]
+  double mean_c = 0.0;           ///< mean of the frames [degrees C], origin of both lines
+  Estimate offset_m_per_c;       ///< change of the measured depth per degree [m]
   Estimate signal_per_c;         ///< d log(signal) per degree: 0.01 is about 1 % more
-  Estimate offset_m_per_c2;      ///< second-order term, beside the line: 0 where it is straight
-  Estimate signal_per_c2;        ///< likewise of log(signal)
-  double interval_factor = 0.0;  ///< 95 % intervals of the slopes are +- so many standard errors
+  Estimate offset_m_per_c2;      ///< second-order term, in addition to the line
+  Estimate signal_per_c2;        ///< second-order term of log(signal)
+  double interval_factor = 0.0;  ///< half width of 95 % intervals of the slopes [standard errors]
   double offset_rms_m = 0.0;     ///< of the frames around the line [m]
   double signal_rms = 0.0;       ///< of the frames' log(signal) around the line
   std::vector<double> temperature_c;  ///< of each frame [degrees C] (F)
@@ -252,15 +254,16 @@ struct TemperatureDrift {
   std::optional<Estimate> hysteresis_m;
 };
 
-/// Drift with temperature from frames of a scene that stands still.
-///   1. The code decodes every frame; pixels of status ok in all of them count.
-///   2. A frame's offset is the median over pixels, weighted by one over the predicted variance, of
-///      depth less the pixel's own (circular) mean over frames; likewise log(signal).
-///   3. A line over each temperature by least squares; errors from how frames scatter around it,
-///      with Student's t of F - 2 degrees of freedom (F - 3 for two temperatures), so that noise
-///      and whatever else differs from frame to frame is in them. Drift with time is not
-///      separated from drift with temperature.
-///   4. Hysteresis: coefficient of the sign of the temperature's change, fitted with the lines.
+/// Determines the drift with temperature from frames of a static scene.
+///   1. Decode all frames, and use the pixels with status ok in all of them.
+///   2. Compute the offset of each frame: the median over pixels, weighted by one over the
+///   predicted
+///      variance, of depth minus the pixel's (circular) mean over frames. The same for log(signal).
+///   3. Fit a line over each temperature by least squares. Standard errors follow from the scatter
+///      of the frames around it, with Student's t of F - 2 degrees of freedom (F - 3 for two
+///      temperatures). They thus include noise and other differences between frames. Drift with
+///      time cannot be distinguished from drift with temperature.
+///   4. Fit hysteresis, the coefficient of the sign of the temperature's change, with the lines.
 /// If the two temperatures are collinear (condition number above 30), only the first is fitted.
 /// Notes report this, a curved dependence, temperatures that hardly vary, and hysteresis.
 /// @param temperatures  finite
@@ -271,9 +274,10 @@ struct TemperatureDrift {
 TemperatureDrift calibrate_temperature(const RawFrames& frames,
                                        const FrameTemperatures& temperatures, const CodeSet& code,
                                        const Camera& camera, const Progress& progress = {});
-/// The camera that changes so. @param reference_c  where it was calibrated otherwise, so that
-/// nothing changes there [degrees C]; none: the mean of the frames
-/// @param sensor_reference_c  the same of the sensor
+/// Returns the camera with this drift.
+/// @param reference_c  temperature of the other calibrations, at which nothing changes [degrees C];
+///   none: the mean of the frames
+/// @param sensor_reference_c  the same for the sensor
 /// @throws std::invalid_argument for a sensor_reference_c without drift of the sensor
 Camera with_temperature(Camera camera, const TemperatureDrift& found,
                         std::optional<double> reference_c = {},

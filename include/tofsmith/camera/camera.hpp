@@ -214,7 +214,7 @@ struct Playback {
   bool has_list() const {
     return !offsets_m.empty() || !offset_rad.empty() || !offset_counts.empty();
   }
-  /// Replaces all kinds of offset. @param list  as offsets_m
+  /// Replaces all offsets. @param list  as offsets_m
   void set_offsets_m(std::vector<double> list) {
     offset_m = 0.0;
     offsets_m = std::move(list);
