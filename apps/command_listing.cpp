@@ -39,10 +39,7 @@ Words choices_of(const std::string& type) {
 
 Words names_of(const CLI::Option& option) {
   if (option.get_positional()) return {option.get_single_name()};
-  Words names;
-  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-  return names;
+  return dashed_names(option);
 }
 
 /// Returns the long names of the options, sorted.

@@ -138,7 +138,7 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   return options;
 }
 
-/// The first of tofsmith-design, tofsmith-design-2, ... without a finished design.
+/// Returns the first of tofsmith-design, tofsmith-design-2, ... without a finished design.
 std::string default_output() {
   std::string name = "tofsmith-design";
   for (int i = 2; std::filesystem::exists(std::filesystem::path(name) / "design.json"); ++i)

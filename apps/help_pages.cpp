@@ -20,12 +20,13 @@ namespace {
 
 constexpr std::size_t indent = 2, text_column = 26;
 
-/// Sections of options by task, in the order of help pages, with the names of their options. The
-/// others are in the section "Options".
+/// Section of options by task, with the names of its options. All other options are in the section
+/// "Options".
 struct Section {
   std::string_view title;
   std::vector<std::string_view> options;
 };
+/// Returns the sections in the order of help pages.
 const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
       {"Input",
@@ -46,12 +47,9 @@ const std::vector<Section>& sections() {
   return all;
 }
 
-/// "-o,--output", without the value that a flag clears.
+/// Returns "-o,--output", without the value of a flag that CLI11 adds.
 std::string option_names(const CLI::Option& option) {
-  std::vector<std::string> names;
-  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-  return fmt::format("{}", fmt::join(names, ","));
+  return fmt::format("{}", fmt::join(dashed_names(option), ","));
 }
 
 std::string_view section_of(const CLI::Option& option) {
@@ -61,7 +59,7 @@ std::string_view section_of(const CLI::Option& option) {
   return "Options";
 }
 
-/// Columns of the terminal: COLUMNS, else the width of standard output, else 80.
+/// Returns the columns of the terminal: COLUMNS, else the width of standard output, else 80.
 std::size_t terminal_width() {
   constexpr int min_width = 40, max_width = 120, usual_width = 80;
   int width = 0;
@@ -72,8 +70,9 @@ std::size_t terminal_width() {
       std::clamp(width > 0 ? width : usual_width, min_width, max_width));
 }
 
-/// Words of a text in lines of the terminal's width; lines after the first begin at a column.
-/// @param at  column where the first line begins
+/// Breaks a text into lines of the terminal's width.
+/// @param at      column at which the first line begins
+/// @param column  column at which the other lines begin
 std::string wrapped(std::string_view text, std::size_t at, std::size_t column) {
   const std::size_t width = terminal_width();
   std::string result;
@@ -95,7 +94,7 @@ std::string wrapped(std::string_view text, std::size_t at, std::size_t column) {
   return result + "\n";
 }
 
-/// A name and its description in the second column.
+/// Returns a name with its description in the second column.
 std::string entry(const std::string& name, const std::string& text) {
   std::string line = std::string(indent, ' ') + name;
   line += line.size() + 2 > text_column ? "\n" + std::string(text_column, ' ')
@@ -123,7 +122,7 @@ ValueText value_text(const CLI::Option& option) {
   return {is_number ? "NUMBER" : "VALUE", rule};
 }
 
-/// Rule, default and conditions of an option, which its description does not contain.
+/// Returns rule, default and conditions of an option, which are not part of its description.
 std::string remarks(const CLI::Option& option, const std::string& rule) {
   std::vector<std::string> all;
   if (!rule.empty()) all.push_back(rule);
@@ -145,7 +144,7 @@ std::string command_words(const CLI::App& command) {
   return parent == nullptr ? "" : command_words(*parent) + " " + command.get_name();
 }
 
-/// An example of each command that has no other footer, without the words that name it.
+/// Arguments of an example by the words of the command, for commands that set no footer.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 17> examples = {{
     {" demo", "-o out"},
     {" cameras", "paper-10f0"},
@@ -167,6 +166,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> examples
 }};
 
 }  // namespace
+
+std::vector<std::string> dashed_names(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
 
 void add_examples(CLI::App& app) {
   const auto found =

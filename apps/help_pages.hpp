@@ -22,7 +22,10 @@ class HelpPages : public CLI::Formatter {
   std::string make_subcommand(const CLI::App* command) const override;
 };
 
-/// Gives every command without a footer its example.
+/// Sets the example of every command without a footer.
 void add_examples(CLI::App& app);
+
+/// Returns the names of an option with their dashes: "-o", "--output". Positionals have none.
+std::vector<std::string> dashed_names(const CLI::Option& option);
 
 }  // namespace tofsmith::apps

@@ -25,10 +25,10 @@
 #include "printed_text.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 
 namespace {
 
@@ -62,8 +62,8 @@ std::string words_of(const CLI::App& command) {
 void add_options_with_values(const CLI::App& app, std::set<std::string>& names) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_type_size() == 0) continue;
-    for (const std::string& name : option->get_snames()) names.insert("-" + name);
-    for (const std::string& name : option->get_lnames()) names.insert("--" + name);
+    const std::vector<std::string> dashed = dashed_names(*option);
+    names.insert(dashed.begin(), dashed.end());
   }
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     add_options_with_values(*command, names);
@@ -96,15 +96,13 @@ std::vector<std::string> known_words(const CLI::App& app, bool options) {
   return words;
 }
 
-/// The key of a camera that an option names, "sensor.taps" for "--taps"; "" if there is none.
+/// Returns the camera key with the name of an option, "sensor.taps" for "--taps"; "" if there is
+/// none.
 std::string camera_key_of(std::string option) {
   option = option.substr(0, option.find('='));
   option.erase(0, option.find_first_not_of('-'));
   std::ranges::replace(option, '-', '_');
-  KeyList list;
-  Camera camera;
-  describe(list, camera);
-  for (const KeyDescription& key : list.keys)
+  for (const KeyDescription& key : describe_camera_keys(Camera()))
     if (key.type != ValueType::table && key.name.substr(key.name.rfind('.') + 1) == option)
       return key.name;
   return "";

@@ -69,7 +69,7 @@ void write_directory(const fs::path& directory, const LoadedScene& scene, const 
                      const Session& session) {
   const FreshDirectory cleanup(directory);
   make_output_directory(directory);
-  // A depth image without a lens has no view from which z follows.
+  // z is unknown for a depth image without a lens.
   const bool has_view = scene.staged || camera.lens;
   std::vector<fs::path> outputs;
   for (const char* name :

@@ -21,7 +21,7 @@ namespace tofsmith::apps {
 
 UsageError wrong_option(const std::invalid_argument& error) {
   std::string text = error.what();
-  // Options that leave out the unit.
+  // The names of these options omit the unit of the field.
   for (const std::string_view field : {"min_depth_m ", "max_depth_m "})
     if (text.starts_with(field)) text.erase(field.size() - 3, 2);
   const auto end = std::find(text.begin(), text.end(), ' ');

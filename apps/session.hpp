@@ -66,10 +66,10 @@ struct CameraArguments {
   std::optional<double> temperature_c, sensor_temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
-  /// Takes the camera that `simulate` left beside raw frames, if there is one and nobody names
-  /// another. @return what to say of it
+  /// Uses the camera file that `simulate` wrote next to raw frames, if there is one and no option
+  /// names a camera. @return a note about it
   std::optional<std::string> take_that_of(const std::filesystem::path& raw);
-  /// Whether nobody said which camera it is, nor how far it sees.
+  /// Returns true if the user chose neither a camera nor its frequency.
   bool is_default() const {
     return option != nullptr && option->count() == 0 && !stood_beside_ &&
            std::ranges::none_of(settings, [](const std::string& setting) {
@@ -81,28 +81,30 @@ struct CameraArguments {
   void add_to(CLI::App& command);
   /// Adds `--temperature` and `--sensor-temperature`, too.
   void add_temperature_to(CLI::App& command);
-  /// Adds a positional CAMERA beside them.
+  /// Adds a positional CAMERA.
   void add_positional(CLI::App& command);
-  /// @throws IoError, UsageError for a temperature that the camera says nothing of
+  /// @throws IoError; UsageError for a temperature without the keys for it in the camera
   Camera load() const;
 
  private:
   bool stood_beside_ = false;
 };
 
-/// Where `simulate` leaves the camera of raw frames: raw.camera.toml beside raw.npy.
+/// Returns the file to which `simulate` writes the camera of raw frames: raw.camera.toml next to
+/// raw.npy.
 std::filesystem::path camera_beside(const std::filesystem::path& raw);
 
-/// A note with its mark: "note: ...", unless it is a "warning: ..." or has one.
+/// Returns a note with the prefix "note: ", unless it already begins with it or with "warning: ".
 std::string marked_note(const std::string& note);
 
 /// "13.2 ms", "4.1 s".
 std::string time_text(double seconds);
 
-/// A rate to three digits, never as a power of ten: "8.53", "1204".
+/// Returns a rate with three digits and no exponent: "8.53", "1204".
 std::string rate_text(double per_second);
 
-/// A table of text with a header, columns padded, numbers (all columns but the first) to the right.
+/// Returns a table of text with a header. The first column is left-aligned, the others to the
+/// right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace tofsmith::apps

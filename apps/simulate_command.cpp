@@ -214,9 +214,7 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
   if (arguments.returns.is_used())
     throw UsageError(
         "--multipath, --tail, --multipath-file, --transient, --bounces, --truth-multipath: found "
-        "many "
-        "scenes; "
-        "expected one");
+        "many scenes; expected one");
   if (!arguments.stray_light.empty())
     throw UsageError("--stray-light: found many scenes; expected one");
   const Camera camera = arguments.camera.load();
@@ -234,7 +232,7 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
       load_camera_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
 }
 
-/// What only many scenes have.
+/// Rejects options that need many scenes.
 void check_is_of_one_scene(const SimulateArguments& arguments) {
   for (const auto& [option, value] : {std::pair("--signal-range", arguments.signal_range),
                                       std::pair("--ambient-range", arguments.ambient_range),
@@ -243,7 +241,7 @@ void check_is_of_one_scene(const SimulateArguments& arguments) {
       throw UsageError(fmt::format("{}: needs a folder, a list (.txt) or several scenes", option));
 }
 
-/// Not where that is the camera that was named.
+/// Returns false if the file next to the frames is the camera that was named.
 bool leaves_camera(const SimulateArguments& arguments) {
   std::error_code ignored;
   return !std::filesystem::equivalent(camera_beside(arguments.output), arguments.camera.name,
@@ -259,12 +257,14 @@ bool leaves_code(const SimulateArguments& arguments, const CodeSet& code) {
   return std::string(std::istreambuf_iterator<char>(before), {}) != code_to_json(code);
 }
 
-/// The first line of what is left there, by which it may be replaced.
+/// Returns the beginning of the camera file next to the frames. A file that begins so may be
+/// replaced.
 std::string camera_heading(const SimulateArguments& arguments) {
   return fmt::format("# of {}, by tofsmith simulate",
                      std::filesystem::path(arguments.output).filename().string());
 }
 
+/// Returns the policy for the camera and code files next to the frames.
 OutputPolicy camera_policy(const SimulateArguments& arguments, const Session& session) {
   std::ifstream before(camera_beside(arguments.output));
   std::string heading;
@@ -273,8 +273,7 @@ OutputPolicy camera_policy(const SimulateArguments& arguments, const Session& se
                                                         : session.output_policy();
 }
 
-/// Writes the code and the camera, with the lens through which the scene was seen, for those who
-/// decode.
+/// Writes the code and the camera for decoding, with the lens through which the scene was seen.
 void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeSet& code,
                   const PinholeView& view, const Session& session) {
   if (leaves_code(arguments, code))
@@ -288,14 +287,14 @@ void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeS
                         camera_policy(arguments, session));
 }
 
-/// Before the work: no output is an input, or there already.
-OutputPolicy check_outputs(const SimulateArguments& arguments, const CodeSet& played,
+/// Checks that no output is an input or exists already.
+OutputPolicy check_outputs(const SimulateArguments& arguments, const CodeSet& recorded,
                            const Session& session) {
   const std::filesystem::path camera = camera_beside(arguments.output),
                               code = code_beside(arguments.output);
   std::vector<std::filesystem::path> outputs{arguments.output};  // in the order of writing
   if (leaves_camera(arguments)) outputs.push_back(camera);
-  if (leaves_code(arguments, played)) outputs.push_back(code);
+  if (leaves_code(arguments, recorded)) outputs.push_back(code);
   for (const std::string& truth :
        {arguments.truth, arguments.truth_near, arguments.truth_far, arguments.returns.truth()})
     if (!truth.empty()) outputs.emplace_back(truth);
@@ -372,10 +371,9 @@ void add_simulate_command(CLI::App& app, Session& session) {
   command
       ->add_option("--signal", arguments->signal_e_per_s,
                    "signal of albedo 1 at the reference distance [e/s] (by the camera's "
-                   "[optics], or the middle of "
-                   "its operating points)")
+                   "[optics], or the middle of its operating points)")
       ->transform(number_in("e/s"));
-  command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (likewise)")
+  command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (as --signal)")
       ->transform(number_in("e/s"));
   command
       ->add_option("--signal-range", arguments->signal_range,

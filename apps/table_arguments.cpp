@@ -15,7 +15,7 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Exposures of a table of `measurements` in the order in which the camera takes them.
+/// Returns the exposures of a table with `measurements` columns, in the order of the camera.
 std::vector<int> order_of(const std::vector<int>& given, const Camera& camera, int measurements,
                           const TapArguments& taps) {
   if (!given.empty()) return given;
@@ -88,7 +88,7 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
   else if (default_camera)
     source.range_source = fmt::format(
         "of the default camera {}; {}", camera.name,
-        source.is_measured ? "--range-m or --camera say otherwise" : "--camera says otherwise");
+        source.is_measured ? "--range-m or --camera override it" : "--camera overrides it");
   else
     source.range_source = fmt::format("of the camera {}", camera.name);
   source.tell_range = source.is_measured || default_camera;

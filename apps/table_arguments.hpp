@@ -12,11 +12,11 @@
 
 namespace tofsmith::apps {
 
-/// What a decoder decodes with, and where its range is from.
+/// Table for a decoder, with the source of its range.
 struct DecodingSource : LoadedDecodingTable {
-  std::string range_source;  ///< what the range is taken from, for people
-  bool tell_range = false;   ///< the range could be another than the user thinks
-  std::vector<int> order;    ///< exposures of the code as the table has them
+  std::string range_source;  ///< source of the range, as text
+  bool tell_range = false;   ///< the range may not be the one that the user expects
+  std::vector<int> order;    ///< exposures of the code in the order of the table
 };
 
 /// What a measured table's file does not say: `--range-m`, `--ambient`, `--table-axes`,

@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs missing packages, builds `tofsmith demo` and runs it: designs codes for a camera, captures
-# and decodes a scene, and writes a report.
+# Installs missing packages, builds `tofsmith demo` and runs it, which designs codes for a camera,
+# captures and decodes a scene, and writes a report.
 #
-#   scripts/demo.sh [-o DIR] [--camera FILE] [--depth FILE --image FILE] [options of `tofsmith demo`]
+#   scripts/demo.sh [-o DIR] [--camera FILE] [--depth FILE --image FILE] [OPTIONS of tofsmith demo]
 #
 # Results are written to ./tofsmith-demo, or to the directory of -o.
 set -euo pipefail

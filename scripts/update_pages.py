@@ -5,10 +5,10 @@
 
     scripts/update_pages.py TOFSMITH      the program; PYTHONPATH contains the Python package
 
-Blocks marked as `console` contain commands ("$ ...") and their results; blocks marked as `text` contain
-the result of the Python block before them. A line "..." in a result stands for omitted lines: the
-number of lines above and below it is kept. The commands of a page run in one directory. Needs
-matplotlib; takes about two minutes.
+Blocks marked as `console` contain commands ("$ ...") and their results; blocks marked as `text`
+contain the result of the preceding Python block. A line "..." in a result stands for omitted lines:
+the number of lines above and below it is kept. The commands of a page run in one directory.
+Requires matplotlib and takes about two minutes.
 """
 
 import json
@@ -34,7 +34,7 @@ def run(command, directory, text=None):
 
 
 def shortened(lines, shown):
-    """As many of the first and last lines as `shown` has above and below its "..."."""
+    """Returns as many of the first and last lines as `shown` has above and below its "..."."""
     if "..." not in shown:
         return lines
     above = shown.index("...")
@@ -43,7 +43,7 @@ def shortened(lines, shown):
 
 
 def console(text, directory):
-    """The block with new results."""
+    """Runs the commands of a block and returns the block with their results."""
     parts = re.split(r"^(\$ (?:.*\\\n)*.*\n)", text, flags=re.M)
     written = parts[0]
     for command, shown in zip(parts[1::2], parts[2::2], strict=True):
@@ -55,7 +55,7 @@ def console(text, directory):
 
 
 def update(page, directory):
-    """Runs the blocks of a page in their order and writes the results of `console` into it."""
+    """Runs the blocks of a page in order and updates the results in it."""
     printed = ""
 
     def block(match):

@@ -286,13 +286,14 @@ class Camera:
         42.0
         """
         if self.temperature is None:
-            raise ValueError("temperature_c: the camera has no [temperature]; needs what "
-                             "calibrate_temperature() finds")
+            raise ValueError("temperature_c: the camera has no [temperature]; needs the "
+                             "result of calibrate_temperature()")
         now = {"temperature.now_c": _check.number(temperature_c, "temperature_c")}
         if sensor_temperature_c is not None:
             if self.temperature.sensor is None:
-                raise ValueError("sensor_temperature_c: the camera has no [temperature.sensor]; needs "
-                                 "what calibrate_temperature() finds with sensor_temperature_c")
+                raise ValueError("sensor_temperature_c: the camera has no [temperature.sensor]; "
+                                 "needs the result of calibrate_temperature() with "
+                                 "sensor_temperature_c")
             now["temperature.sensor.now_c"] = _check.number(
                 sensor_temperature_c, "sensor_temperature_c")
         return self.replace(**now)
@@ -330,7 +331,7 @@ class Camera:
         310600
         """
         distances = np.atleast_1d(np.asarray(distances_m, dtype=np.float64)).ravel().tolist()
-        sun = None if klux is None else _check.number(klux, "klux")
+        sun = _check.optional_number(klux, "klux")
         return Camera._of(
             self._handle.at_distances(distances, _check.number(albedo, "albedo"), sun)
         )

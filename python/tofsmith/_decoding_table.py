@@ -172,7 +172,7 @@ class DecodingTable:
             plain._made = ("of_measured", (table,), {"range_m": metres})
             return plain
         camera = camera_of(camera)
-        depth_m = None if range_m is None else _check.number(range_m, "range_m")
+        depth_m = _check.optional_number(range_m, "range_m")
         measured = cls._of(_tofsmith.DecodingTable.of_measured(
             table, camera._handle, {"taps": taps, "ambient": ambient, "range_m": depth_m}))
         measured._made = ("of_measured", (table, camera),

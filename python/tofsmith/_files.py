@@ -157,5 +157,5 @@ def read_impulse_response(
     >>> response = {"kind": "file", "samples": samples, "time_step_s": step}  # doctest: +SKIP
     >>> camera = camera.replace(light={"impulse_response": response})  # doctest: +SKIP
     """
-    step = None if time_step_s is None else _check.number(time_step_s, "time_step_s")
+    step = _check.optional_number(time_step_s, "time_step_s")
     return _tofsmith.read_impulse_response(_check.path(path), step)

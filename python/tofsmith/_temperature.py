@@ -91,9 +91,8 @@ class TemperatureDrift:
         sensor_reference_c : float, optional
             The same for the temperature of the sensor.
         """
-        reference = None if reference_c is None else _check.number(reference_c, "reference_c")
-        sensor_reference = (None if sensor_reference_c is None
-                            else _check.number(sensor_reference_c, "sensor_reference_c"))
+        reference = _check.optional_number(reference_c, "reference_c")
+        sensor_reference = _check.optional_number(sensor_reference_c, "sensor_reference_c")
         return Camera._of(
             self._handle.camera(camera_of(camera)._handle, reference, sensor_reference))
 

@@ -59,7 +59,7 @@ bool KeyList::enter_part(const Key& key, std::span<const std::string> /*names*/,
 void RangeCheck::visit(const Key& key, const Value& value) {
   const auto check = [&](double number, bool is_integer, const std::string& index = "") {
     if (key.range.contains(number)) return;
-    reject(prefixes_.back() + std::string(key.name) + index, detail::describe(number),
+    reject(prefix() + std::string(key.name) + index, detail::describe(number),
            fmt::format("must be {}{}{}", key.range.text(is_integer), key.reason.empty() ? "" : ": ",
                        key.reason));
   };

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// A unit with a prefix: `factor` of `base`.
+/// A unit with a prefix, such as "klx": `factor` times `base`.
 struct PrefixedUnit {
   double factor;
   std::string_view base;
@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// The unit as unit_of_key() spells it.
+/// Returns the spelling of unit_of_key().
 std::string_view spelling(std::string_view unit) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> others = {
       {{"lux", "lx"},
@@ -42,13 +42,14 @@ std::string_view spelling(std::string_view unit) {
   return unit;
 }
 
-/// Units whose own names begin with a prefix.
+/// Splits a unit whose name begins with a prefix.
 PrefixedUnit base_of(std::string_view unit) {
   if (unit == "klx") return {1e3, "lx"};
   if (unit == "MB") return {1e6, "B"};
   return {1.0, unit};
 }
 
+/// Returns the factor that converts from `written` to `unit`; none if the base units differ.
 std::optional<double> factor_of(std::string_view written, const PrefixedUnit& unit) {
   constexpr std::array<std::pair<std::string_view, double>, 11> prefixes = {{{"", 1.0},
                                                                              {"f", 1e-15},
@@ -78,8 +79,8 @@ std::optional<double> number_in_unit(std::string_view text, std::string_view uni
   if (written.empty() || written == unit) return number;
   if (unit.empty()) return std::nullopt;
   const auto factor = factor_of(written, base_of(unit));
-  // Division by a power of ten is exact where multiplication by its inverse is not.
   if (!factor) return std::nullopt;
+  // Division by a power of ten is exact where multiplication by its inverse is not.
   return *factor < 1.0 ? *number / (1.0 / *factor) : *number * *factor;
 }
 

@@ -17,12 +17,11 @@ void UnusualNumbers::visit(const Key& key, const Value& value) {
   const auto check = [&](double number) {
     if (number == 0.0 || !std::isfinite(number)) return;
     if (number * far >= key.usual_low && number <= key.usual_high * far) return;
-    const std::string unit(unit_of_key(key.name));
+    std::string unit(unit_of_key(key.name));
+    if (!unit.empty()) unit.insert(0, " ");
     notes.push_back(
-        fmt::format("{}{} = {:g}{}{}; most cameras have {:g} to {:g}{}{}: is the unit "
-                    "right?",
-                    prefixes_.back(), key.name, number, unit.empty() ? "" : " ", unit,
-                    key.usual_low, key.usual_high, unit.empty() ? "" : " ", unit));
+        fmt::format("{}{} = {:g}{}; most cameras have {:g} to {:g}{}: is the unit right?", prefix(),
+                    key.name, number, unit, key.usual_low, key.usual_high, unit));
   };
   std::visit(Overloaded{
                  [&](int* number) { check(*number); },
@@ -30,7 +29,7 @@ void UnusualNumbers::visit(const Key& key, const Value& value) {
                  [&](const NumberOrList& either) {
                    if (either.list.empty()) check(either.number);
                  },
-                 [](const auto& /*no_single_number*/) {},
+                 [](const auto& /*not_one_number*/) {},
              },
              value);
 }

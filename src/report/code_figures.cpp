@@ -124,6 +124,15 @@ std::string generator_text(const std::optional<Generator>& generator, double fre
                      generator->points_per_period(frequency_hz));
 }
 
+/// Returns true if the second bucket of each exposure is open exactly while the first is not.
+bool has_complementary_buckets(const CodeSet& code) {
+  if (code.taps() != 2 || code.is_rows()) return false;
+  const Eigen::MatrixXd gains = code.demodulation_samples();
+  for (int e = 0; e < code.exposures(); ++e)
+    if ((gains.col(2 * e) + gains.col(2 * e + 1)).minCoeff() < 1.0 - 1e-9) return false;
+  return true;
+}
+
 }  // namespace
 
 std::string figure_id(const std::string& prefix, const std::string& name) {
@@ -135,19 +144,6 @@ std::string figure_id(const std::string& prefix, const std::string& name) {
   }
   return id;
 }
-
-namespace {
-
-/// Returns true if the second bucket of each exposure is open exactly while the first is not.
-bool has_complementary_buckets(const CodeSet& code) {
-  if (code.taps() != 2 || code.is_rows()) return false;
-  const Eigen::MatrixXd gains = code.demodulation_samples();
-  for (int e = 0; e < code.exposures(); ++e)
-    if ((gains.col(2 * e) + gains.col(2 * e + 1)).minCoeff() < 1.0 - 1e-9) return false;
-  return true;
-}
-
-}  // namespace
 
 Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,
                        const Eigen::MatrixXd& target) {

@@ -40,18 +40,20 @@ class CommandLineTest(unittest.TestCase):
             return file.read()
 
     def with_camera(self, arguments):
-        """Adds the camera of the paper to commands for which neither an option nor a file next to
-        the raw frames names a camera: numbers in tests are those of this camera."""
+        """Adds the camera of the paper, for which the numbers in tests are valid, unless an option
+        or a file next to the raw frames specifies a camera."""
         if not arguments or "--camera" in arguments:
             return arguments
-        raw = os.fsdecode(arguments[1]) if arguments[1:] else ""
-        recorded = os.path.splitext(raw)[0] + ".camera.toml"
-        names_codes = arguments[0] == "codes" and raw and not raw.startswith("-")
-        if names_codes or arguments[0] in ("calibrate", "evaluate", "export", "multipath",
-                                           "require", "simulate", "upload") or (
-                arguments[0] == "decode" and not os.path.exists(self.path(recorded))):
-            return (*arguments, "--camera", "paper-10f0")
-        return arguments
+        command, first = arguments[0], os.fsdecode(arguments[1]) if arguments[1:] else ""
+        if command == "decode":
+            recorded = os.path.splitext(first)[0] + ".camera.toml"
+            needs_camera = not os.path.exists(self.path(recorded))
+        elif command == "codes":
+            needs_camera = first and not first.startswith("-")
+        else:
+            needs_camera = command in ("calibrate", "evaluate", "export", "multipath", "require",
+                                       "simulate", "upload")
+        return (*arguments, "--camera", "paper-10f0") if needs_camera else arguments
 
     def start(self, *arguments, **options):
         """Runs without progress output, which depends on the speed of the machine."""

@@ -212,8 +212,8 @@ class Commands(CommandLineTest):
     def test_help_fits_the_terminal(self):
         for width in (60, 100):
             text = self.do("decode", "--help-all", env={**os.environ, "COLUMNS": str(width)})
-            words = [line for line in text.splitlines() if len(line) > width]
-            self.assertLess(len(words), 4, words)  # single long words
+            long_lines = [line for line in text.splitlines() if len(line) > width]
+            self.assertLess(len(long_lines), 4, long_lines)  # single long words
             self.assertIn("Code and camera:", text)
             self.assertIn("Example: tofsmith decode raw.npy", text)
             self.assertNotRegex(text, "FLOAT|TEXT|\\{false\\}")

@@ -20,8 +20,8 @@ class DepthLimits(CommandLineTest):
         self.do("simulate", "truth.npy", "--code", CODE, *CAMERA, "--signal", "1e6", "-o",
                 "raw.npy")
 
-    def decode(self, *options, code=CODE):
-        document = self.do_json("decode", "raw.npy", "--code", code, *CAMERA, *options, "-o",
+    def decode(self, *options):
+        document = self.do_json("decode", "raw.npy", "--code", CODE, *CAMERA, *options, "-o",
                                 "out.npz", "--force")
         planes = np.load(self.path("out.npz"))
         # The corners are farther away than the middle row.

@@ -236,14 +236,13 @@ class KeyList : public FieldVisitor {
   bool is_optional_ = false;  ///< for the next key
 };
 
-class RangeCheck : public FieldVisitor {
+/// Visits the keys that are present and apply, with the prefixes of their full names.
+class PresentKeyVisitor : public FieldVisitor {
  public:
-  /// @param prefix  prepended to keys in errors: "light."
-  explicit RangeCheck(std::string prefix = "") : prefixes_{std::move(prefix)} {}
+  /// @param prefix  prepended to all names: "light."
+  explicit PresentKeyVisitor(std::string prefix = "") : prefixes_{std::move(prefix)} {}
 
  protected:
-  /// @throws InvalidArgument "light.peak_factor = 0; must be finite and >= 1"
-  void visit(const Key& key, const Value& value) override;
   bool wants(const Key& /*key*/, bool is_there) override { return is_there; }
   void refuse(const Key& /*key*/, const Value& /*value*/) override {}
   bool enter(const Key& key) override {
@@ -254,9 +253,20 @@ class RangeCheck : public FieldVisitor {
   bool enter_part(const Key&, std::span<const std::string>, bool is_there) override {
     return is_there;
   }
+  /// Prefix of the key that is visited: "light.impulse_response.".
+  const std::string& prefix() const { return prefixes_.back(); }
 
  private:
   std::vector<std::string> prefixes_;
+};
+
+class RangeCheck : public PresentKeyVisitor {
+ public:
+  using PresentKeyVisitor::PresentKeyVisitor;
+
+ protected:
+  /// @throws InvalidArgument "light.peak_factor = 0; must be finite and >= 1"
+  void visit(const Key& key, const Value& value) override;
 };
 
 /// Checks the range of every number of a described struct.

@@ -9,11 +9,12 @@
 namespace tofsmith {
 
 /// Reads a number that a user may write with its unit, such as "20MHz", "5 mm" or "2".
-/// @param unit  as unit_of_key() returns it; a number without a unit is in this one
-/// @return the number in `unit`; none if the text is not a number, or in another kind of unit
+/// @param unit  as returned by unit_of_key(); also the unit of a number without one
+/// @return the number in `unit`; none if the text is not a number or its unit is of another kind
 std::optional<double> number_in_unit(std::string_view text, std::string_view unit);
 
-/// "a number, or one with its unit such as 2GHz" for the unit "Hz"; "a number" without a unit.
+/// Returns "a number, or one with its unit such as 2MHz" for the unit "Hz"; "a number" without a
+/// unit.
 std::string number_rule(std::string_view unit);
 
 }  // namespace tofsmith

@@ -19,16 +19,16 @@ namespace tofsmith {
 /// @throws IoError if the extension is unknown or the file does not contain a depth image
 Image<float> read_depth(const std::filesystem::path& path);
 
-/// Returns the kind of distance that the file states: the array `depth_is_z` of .npz, the attribute
-/// `depthKind` of .exr, the text "Depth kind" of .png. None: .npy, .pfm, and files of other
+/// Returns the kind of distance stated by the file: the array `depth_is_z` of .npz, the attribute
+/// `depthKind` of .exr, the text "Depth kind" of .png. None for .npy, .pfm and files of other
 /// programs.
 /// @throws IoError if the file is damaged
 std::optional<DepthKind> stored_depth_kind(const std::filesystem::path& path);
 
-/// Returns the kind of distance of a depth image: as the file states, else as asked, else
+/// Returns the kind of distance of a depth image: as stated by the file, else as requested, else
 /// `fallback`.
-/// @throws IoError if the file states another kind than the one asked for
-DepthKind depth_kind_of(const std::filesystem::path& path, std::optional<DepthKind> asked,
+/// @throws IoError if the file states another kind than the requested one
+DepthKind depth_kind_of(const std::filesystem::path& path, std::optional<DepthKind> requested,
                         DepthKind fallback);
 
 /// Writes depth [m] by extension, with its kind if the format can state it. In .png, depth is

@@ -103,7 +103,7 @@ struct RawFormat {
   int row_bytes = 0;             ///< from one row to the next; 0: no gap
   bool rows_start_bytes = true;  ///< lsb_first, msb_first: each row at a whole byte
 
-  /// Returns the measurement that a number of a pixel in the file is; -1 if it is skipped.
+  /// Returns the measurement stored as the given number of a pixel in the file; -1 if skipped.
   int measurement_of(int number) const;
   /// Measurements that are not skipped.
   int kept_measurements() const;
@@ -267,9 +267,9 @@ std::string built_in_raw_format_toml(const std::string& camera);
 /// The cameras with such a description.
 std::vector<std::string> built_in_raw_format_names();
 
-/// A container of a plain dump that holds more than its number.
+/// A container of a plain dump with a number that exceeds its bits.
 struct OversizedNumber {
-  std::size_t index;        ///< in the row
+  std::size_t index;        ///< of the number in the row
   std::uint64_t container;  ///< as stored
 };
 /// Returns the first number of a row that exceeds `bits`, which indicates a wrong byte order,

@@ -40,7 +40,7 @@ Image<float> depth_from_png(const PngImage& png, const std::string& file) {
 constexpr const char* array_of_kind = "depth_is_z";
 constexpr const char* exr_attribute_of_kind = "depthKind";
 
-/// The kind that a word of a file names; none for other words.
+/// Returns the kind named by a word in a file; none for other words.
 std::optional<DepthKind> kind_of_word(std::string_view word) {
   constexpr auto words = words_of(DepthKind{});
   const auto found = std::ranges::find(words, word);
@@ -92,15 +92,15 @@ std::optional<DepthKind> stored_depth_kind(const std::filesystem::path& path) {
   return !is_z.empty() && is_z.front() != 0.0 ? DepthKind::z : DepthKind::radial;
 }
 
-DepthKind depth_kind_of(const std::filesystem::path& path, std::optional<DepthKind> asked,
+DepthKind depth_kind_of(const std::filesystem::path& path, std::optional<DepthKind> requested,
                         DepthKind fallback) {
   const std::optional<DepthKind> stored = stored_depth_kind(path);
-  if (stored && asked && *stored != *asked)
+  if (stored && requested && *stored != *requested)
     throw IoError(path.string(),
-                  fmt::format("states that its depth is of kind {}; expected {}, as was asked for "
-                              "(leave the kind out to use the file's)",
-                              name_of(*stored), name_of(*asked)));
-  return stored.value_or(asked.value_or(fallback));
+                  fmt::format("states that its depth is of kind {}; expected {}, as requested "
+                              "(omit the kind to use that of the file)",
+                              name_of(*stored), name_of(*requested)));
+  return stored.value_or(requested.value_or(fallback));
 }
 
 void add_depth_kind(DepthKind kind, NpzArrays& arrays) {

@@ -8,11 +8,11 @@
 
 namespace tofsmith {
 
-// How files state whether depth is radial or z. stored_depth_kind() reads it.
+// Fields of files that state whether depth is radial or z. stored_depth_kind() reads them.
 
-/// Adds the array that states the kind of `depth` to the arrays of an .npz.
+/// Adds the array with the kind of `depth` to the arrays of an .npz.
 void add_depth_kind(DepthKind kind, NpzArrays& arrays);
-/// Returns the attribute of an .exr that states the kind of its channel Z.
+/// Returns the attribute of an .exr with the kind of its channel Z.
 ExrText exr_text_of(DepthKind kind);
 
 }  // namespace tofsmith

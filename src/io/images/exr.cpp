@@ -249,7 +249,7 @@ void check(const ExrPlanes& planes) {
   }
 }
 
-/// Returns what `read` finds in an image.
+/// Checks and opens an image, and returns the result of `read`.
 template <typename Read>
 auto read_from(std::span<const std::byte> content, std::string_view file, const Read& read) {
   check_exr_layout(content, file);

@@ -16,12 +16,12 @@ namespace tofsmith {
 
 namespace {
 
-/// Bytes of a file outside of its frames.
+/// Returns the bytes of a file before and after its frames.
 std::uint64_t bytes_around_frames(const RawFormat& format) {
   return static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
 }
 
-/// Bytes of the frames of a file with this many bytes.
+/// Returns the bytes of the frames in a file of `found` bytes.
 std::uint64_t bytes_of_frames(std::uint64_t found, const RawFormat& format) {
   return found - std::min(found, bytes_around_frames(format));
 }
@@ -101,7 +101,7 @@ bool is_negated(const RawFormat& f, const FilePlace& place) {
          (f.negate_from_column > 0 && place.column >= f.negate_from_column);
 }
 
-/// Descriptions of byte order and alignment with which all numbers of a row fit into their bits.
+/// Describes each byte order and alignment with which all numbers of a row fit into their bits.
 std::string fitting_changes(const RawFormat& format, std::span<const std::byte> row) {
   std::string changes;
   for (const bool big_endian : {format.big_endian, !format.big_endian})
@@ -117,7 +117,7 @@ std::string fitting_changes(const RawFormat& format, std::span<const std::byte> 
   return changes.empty() ? "check bits, byte_order and align" : changes + " would fit this row";
 }
 
-/// Describes a container that holds more than its number.
+/// Describes a number that exceeds its bits.
 std::string oversized_problem(const RawFormat& format, const OversizedNumber& number,
                               std::span<const std::byte> row) {
   const bool high = format.align == RawAlignment::high;

@@ -113,7 +113,7 @@ toml::table parse_setting(const std::string& setting) {
   } catch (const toml::parse_error& error) {
     if (const auto quoted = with_quotes(setting)) try {
         return toml::parse(*quoted, describe_setting(setting));
-      } catch (const toml::parse_error&) {  // report the first error, of the user's text
+      } catch (const toml::parse_error&) {  // report the error in the user's text
       }
     throw IoError(describe_setting(setting),
                   fmt::format("{}; expected key = value", error.description()));
@@ -252,11 +252,11 @@ void TableReader::fail(std::string_view key, std::string_view problem) const {
 double TableReader::finite_number(const std::string& name, const toml::node& node,
                                   std::string_view expected) const {
   if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
-  if (const auto* text = node.as_string()) {
-    const bool has_unit = !number_in(text->get());
-    const auto with_unit = number_in_unit(text->get(), unit_of_key(name.substr(0, name.find('['))));
-    if (has_unit && with_unit) return *with_unit;
-  }
+  // "20 MHz" is a number with its unit; "20" is text.
+  if (const auto* text = node.as_string(); text && !number_in(text->get()))
+    if (const auto number =
+            number_in_unit(text->get(), unit_of_key(name.substr(0, name.find('[')))))
+      return *number;
   const auto* number = node.as_floating_point();
   if (!number) mistyped(name, node, expected);
   if (!std::isfinite(number->get())) mistyped(name, node, "a finite number");
@@ -468,7 +468,7 @@ IoError TableReader::missing(std::string_view key, std::string_view example) con
 void TableReader::refuse(std::initializer_list<std::string_view> keys, std::string_view condition) {
   for (const std::string_view key : keys)
     if (contains(key)) {
-      if (missing_) throw *missing_;  // perhaps the condition
+      if (missing_) throw *missing_;  // the missing key may be the condition
       fail(key, fmt::format("is only valid with {}", condition));
     }
 }

@@ -31,7 +31,7 @@ bool is_binary(std::string_view text) {
   });
 }
 
-/// A word or a file's name, not a number.
+/// Returns true for words and file names, but not for numbers.
 bool is_word(std::string_view text) {
   return !text.empty() && !is_digit(text.front()) &&
          std::all_of(text.begin(), text.end(), [](char c) {
@@ -62,8 +62,10 @@ std::string toml_hint(std::string_view text, std::size_t line) {
 }
 
 std::optional<std::string> with_quotes(const std::string& setting) {
-  const std::size_t begin = setting.find_first_not_of(' ', setting.find('=') + 1);
-  if (setting.find('=') == std::string::npos || begin == std::string::npos) return std::nullopt;
+  const std::size_t sign = setting.find('=');
+  if (sign == std::string::npos) return std::nullopt;
+  const std::size_t begin = setting.find_first_not_of(' ', sign + 1);
+  if (begin == std::string::npos) return std::nullopt;
   const std::string value = setting.substr(begin);
   std::string_view word = value;
   take_number(word);  // 20 of "20 MHz"
@@ -72,7 +74,6 @@ std::optional<std::string> with_quotes(const std::string& setting) {
 }
 
 std::string key_suggestion(std::string_view unknown, std::string_view near) {
-  if (near.empty()) return "";
   const std::string_view unit = unit_of_key(near);
   const std::string_view name = near.substr(near.rfind('.') + 1);
   if (unit.empty() || unit == unit_of_key(unknown) || name == unknown)
