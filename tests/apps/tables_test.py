@@ -3,10 +3,12 @@
 """Decoding with measured tables and with per-pixel maps."""
 
 import os
+import subprocess
 import unittest
 
 import numpy as np
 
+import command_line
 from command_line import CommandLineTest
 
 RANGE_M = 299792458 / 2 / 15e6
@@ -58,6 +60,17 @@ class Tables(CommandLineTest):
         self.assertEqual(line, ["range 4.997 m (of the camera c)"])
         self.assertAlmostEqual(range_m, RANGE_M / 2)
         self.assertEqual(range_lines("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
+
+    def test_the_default_camera_is_reported_and_has_one_tap(self):
+        np.save(self.path("t.npy"), self.sweep())
+        self.frame()
+        os.remove(self.path("raw.camera.toml"))
+        for code, advice in (("t.npy", "--range-m or --camera override it"),
+                             ("hamiltonian-k3", "--camera overrides it")):
+            done = subprocess.run([command_line.TOOL, "--quiet", "decode", "raw.npy", "--code", code,
+                                   "-o", "d.npy", "--force"], cwd=self.directory, text=True,
+                                  capture_output=True, check=True)
+            self.assertIn(f"range 7.495 m (of the default camera indoor; {advice})", done.stdout)
 
     def test_peculiarities_are_reported(self):
         table = self.sweep()
