@@ -20,14 +20,15 @@ namespace {
 
 using namespace tofsmith;
 
-/// Sets of commercial cameras, of their software and of the built-in families, as multiples of the
-/// fundamental frequency.
+/// Frequencies that commercial cameras, their software and the built-in families use, as multiples
+/// of the fundamental frequency.
 const std::vector<std::vector<int>> named_sets = {
     {15, 10, 2}, {5, 4},  {20, 18, 15}, {7, 1}, {3, 1},     {4, 1},     {6, 5},    {10, 9},
     {10, 1},     {5, 1},  {8, 7},       {2, 1}, {1},        {12, 1},    {3, 2},    {4, 3},
     {24, 12},    {24, 8}, {8, 1},       {6, 1}, {24, 8, 1}, {12, 4, 1}, {8, 6, 1}, {24, 12, 1}};
 
-/// The named sets that the sensor can generate, each with 2 to 4 phases as far as they fit.
+/// Returns the named sets that the sensor can generate, each with 2 to 4 phases within the limit of
+/// exposures.
 std::vector<SquareCode> named_codes(const FrequencyChoice& choice) {
   std::vector<SquareCode> codes;
   for (const std::vector<int>& set : named_sets) {
@@ -53,7 +54,7 @@ struct Peer {
   double error_m = INFINITY, standard_error_m = 0.0;
 };
 
-/// The best of codes by fresh trials.
+/// Returns the best code by new trials.
 Peer best_of(const std::vector<SquareCode>& codes, const Camera& camera,
              const EvaluateOptions& fresh) {
   Peer best;

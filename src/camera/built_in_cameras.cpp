@@ -41,9 +41,9 @@ Sources paper_sources() {
 }
 
 /// A camera of typical parts in a room: a laser diode of 1 W and a pixel, both with 100 MHz. It has
-/// one tap and no saturation, because it also decodes raw frames whose camera nobody names.
-/// The signals are those of white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from
-/// lamps to 5 klx of sunlight (`evaluate --distance D --klux L` computes both from the optics).
+/// one tap and no saturation because it is also the default for decoding raw frames. The signals
+/// correspond to white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from lamps to 5 klx
+/// of sunlight (`evaluate --distance D --klux L` computes both from the optics).
 Camera indoor_camera() {
   Camera camera;
   camera.fundamental_frequency_hz = 20e6;
@@ -97,7 +97,7 @@ Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   return camera;
 }
 
-/// The same with square waves at these frequencies.
+/// Returns a camera that can generate square waves at these frequencies.
 Camera with_frequencies(Camera camera, std::vector<double> frequencies_hz, int phase_steps,
                         int max_exposures) {
   SquareLight& square = camera.light.square.emplace();
@@ -107,7 +107,7 @@ Camera with_frequencies(Camera camera, std::vector<double> frequencies_hz, int p
   return camera;
 }
 
-/// The epc660 divides its clock of 96 MHz by 4 and by a further divider.
+/// Its modulation frequencies are a clock of 96 MHz divided by 4 and by a second divider.
 Camera epc660() {
   Camera camera = two_tap_camera(12e6, 4e-3);
   SquareLight& square = camera.light.square.emplace();

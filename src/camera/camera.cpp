@@ -167,16 +167,13 @@ double ExposureTime::of(int exposure, int exposures) const {
 
 std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera) {
   require(other_exposures_listed(camera, code.exposures(), " of code " + code.name()));
+  if (!camera.exposure_s.each_s.empty()) return camera.exposure_s.each_s;
+  const double total_s = camera.exposure_s.total_s;
   std::vector<double> times_s;
-  for (int e = 0; e < code.exposures(); ++e) {
-    const bool is_ordered = camera.playback && !camera.playback->order.empty();
-    const int of_code = is_ordered ? camera.playback->order[static_cast<std::size_t>(e)] : e;
-    const bool is_split = camera.exposure_s.each_s.empty() && !code.exposure_shares().empty();
-    times_s.push_back(is_split ? camera.exposure_s.total_s *
-                                     code.exposure_shares()[static_cast<std::size_t>(of_code)]
-                               : camera.exposure_s.of(e, code.exposures()));
-  }
-  return times_s;
+  for (const double share : code.exposure_shares()) times_s.push_back(total_s * share);
+  if (times_s.empty())
+    times_s.assign(static_cast<std::size_t>(code.exposures()), total_s / code.exposures());
+  return in_camera_order(std::move(times_s), camera);
 }
 
 Camera timed_by(const CodeSet& code, Camera camera) {
@@ -239,7 +236,7 @@ double Temperature::signal_gain() const {
 
 namespace {
 
-/// Rejects a factor of the signal that no camera has.
+/// Rejects an implausible factor of the signal.
 void check_signal_gain(const std::string& prefix, const auto& temperature) {
   const double gain = std::exp(temperature.signal_per_c * temperature.above_reference_c());
   constexpr double max_gain = 1e3;

@@ -11,6 +11,7 @@
 
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/ambient_leak.hpp"
+#include "camera/shared/listed_exposures.hpp"
 #include "core/shared/periodic.hpp"
 
 namespace tofsmith {
@@ -82,15 +83,6 @@ std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> d
   for (const Waveform& drive : demodulation)
     for (Waveform& tap : taps_of_weight(drive)) taps.push_back(std::move(tap));
   return taps;
-}
-
-/// Values of the code's exposures in the order of the camera's exposures.
-std::vector<double> in_camera_order(std::vector<double> of_code, const Camera& camera) {
-  if (!camera.playback || camera.playback->order.size() != of_code.size()) return of_code;
-  std::vector<double> of_camera;
-  for (const int exposure : camera.playback->order)
-    of_camera.push_back(of_code[static_cast<std::size_t>(exposure)]);
-  return of_camera;
 }
 
 /// Constant that [playback] adds to the depth of each exposure of the camera [m].

@@ -3,19 +3,19 @@
 #include "tofsmith/camera/square_light.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "camera/common_frequency.hpp"
 #include "camera/distinct_values.hpp"
+#include "core/shared/list_text.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 std::optional<double> common_frequency_hz(std::span<const double> frequencies_hz) {
-  // Quotients of a clock are not exact; Euclid's remainders multiply their rounding errors.
+  // Quotients of a clock are rounded, and the remainders of the algorithm multiply rounding errors.
   constexpr double rounding_hz = 0.1;
   double common_hz = 0.0;
   for (double other_hz : frequencies_hz) {
@@ -57,19 +57,18 @@ void SquareLight::validate() const {
   require(frequencies_hz || dividers, "light.frequencies_hz", "none",
           "must list the modulation frequencies; or give light.clock_hz and light.dividers");
   if (frequencies_hz) require_distinct("light.frequencies_hz", *frequencies_hz);
-  if (dividers) require_distinct("light.dividers", *dividers);
-  if (frequencies_hz && dividers)
-    reject("light.dividers", fmt::format("[{}]", fmt::join(*dividers, ", ")),
-           "must not be given together with light.frequencies_hz");
-  if (dividers)
-    require(clock_hz.has_value(), "light.dividers", fmt::format("[{}]", fmt::join(*dividers, ", ")),
+  if (dividers) {
+    require_distinct("light.dividers", *dividers);
+    require(!frequencies_hz, "light.dividers", list_text(*dividers),
+            "must not be given together with light.frequencies_hz");
+    require(clock_hz.has_value(), "light.dividers", list_text(*dividers),
             "requires light.clock_hz, which they divide");
+  }
   const std::vector<double> all_hz = modulation_frequencies_hz();
   if (clock_hz)
     require(all_hz.back() <= *clock_hz, "light.frequencies_hz", all_hz.back(),
             fmt::format("must be at most light.clock_hz = {:.9g}", *clock_hz));
-  require(common_frequency_hz(all_hz).has_value(), "light.frequencies_hz",
-          fmt::format("[{}]", fmt::join(all_hz, ", ")),
+  require(common_frequency_hz(all_hz).has_value(), "light.frequencies_hz", list_text(all_hz),
           fmt::format("must have a common divisor of at least {} Hz; quotients of a clock are "
                       "given exactly by light.clock_hz and light.dividers",
                       common_frequency_resolution_hz));

@@ -119,6 +119,12 @@ CodeSet CodeSet::create_signed(std::string name, std::vector<Waveform> modulatio
       .with_signed_weights();
 }
 
+bool CodeSet::is_binary() const {
+  const auto binary = [](const Waveform& waveform) { return waveform.is_binary(); };
+  return std::all_of(modulation_.begin(), modulation_.end(), binary) &&
+         std::all_of(demodulation_.begin(), demodulation_.end(), binary);
+}
+
 double CodeSet::peak() const {
   double peak = 0.0;
   for (const Waveform& m : modulation_) peak = std::max(peak, m.peak());

@@ -23,7 +23,7 @@ namespace {
 struct Member {
   std::function<std::optional<BrokenRule>(const FamilyOptions&)> misfit;
   std::function<CodeSet(const FamilyOptions&)> build;
-  bool has_phase_steps = false;  ///< which three and more taps can share
+  bool has_phase_steps = false;  ///< that three and more taps can share
 };
 
 std::optional<int> integer(std::string_view text) {
@@ -141,12 +141,13 @@ std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                             nearest_word(name, examples())));
 }
 
-/// The brightest sinusoid within the peak: of mean 1, or with less light where that is better and
-/// taps share it.
+/// Returns a sinusoid within the peak factor: of mean 1, or, for taps that share the exposure,
+/// fully modulated, even if the mean is then below 1.
 Waveform sinusoid_light(int frequency, const FamilyOptions& options) {
-  const double amplitude = options.taps > 2 ? std::min(1.0, options.peak_factor / 2)
-                                            : std::min(1.0, options.peak_factor - 1.0);
-  return Waveform::cosine(frequency, options.taps > 2 ? amplitude : 1.0, amplitude, 0.0);
+  if (options.taps <= 2)
+    return Waveform::cosine(frequency, 1.0, std::min(1.0, options.peak_factor - 1.0), 0.0);
+  const double mean = std::min(1.0, options.peak_factor / 2);
+  return Waveform::cosine(frequency, mean, mean, 0.0);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace tofsmith {
 
 CodeSet square_code(int phase_steps, const FamilyOptions& options) {
   require(square_misfit(phase_steps, options));
-  // Taps that share an exposure split the period, and the light may be on for half of it even if it
-  // then has less than the mean power.
+  // Taps that share an exposure split the period. Their light is on for half of the period, even if
+  // the peak factor then limits its mean to less than 1.
   const bool shared = options.taps > 2;
   const double open = shared ? 1.0 / options.taps : 0.5;
   const Waveform light = shared ? Waveform::binary({{0.0, 0.5}}, std::min(2.0, options.peak_factor))

@@ -38,10 +38,13 @@ int trials_per_point(const Camera& camera) {
   return std::max(min_trials_per_point, trials_of_all_points / std::max(1, points));
 }
 
+double circular_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options) {
+  return geometric_mean_error_m(evaluate(code, camera, options), DepthErrorKind::circular);
+}
+
 double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
   const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
-  if (!rotates(camera, {}))
-    return geometric_mean_error_m(evaluate(code, camera, options), DepthErrorKind::circular);
+  if (!rotates(camera, {})) return circular_error_m(code, camera, options);
   const std::vector<double> of_rotation =
       best_rotation(code, camera, options).linear_geometric_mean_m;
   return *std::min_element(of_rotation.begin(), of_rotation.end());
@@ -134,9 +137,7 @@ double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOpti
   const std::uint64_t seed = search_seed(options);
   if (camera.operating.error == DepthErrorKind::linear)
     return first_error_m(code, camera, trials, seed);
-  return geometric_mean_error_m(
-      evaluate(code, camera, {.trials = trials, .seed = seed, .bounds = false}),
-      DepthErrorKind::circular);
+  return circular_error_m(code, camera, {.trials = trials, .seed = seed, .bounds = false});
 }
 
 Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,

@@ -23,8 +23,8 @@ void add_baselines(const Camera& camera, const DesignOptions& options,
 /// frequencies within the bandwidth, at most 30 f0. Empty for three or more taps.
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options);
 
-/// Error of a code by few trials with the random numbers of searches [m]: circular, or linear at
-/// the best origin, by the camera's choice; infinite if no depth can be decoded with it.
+/// Returns the error of a code by few trials with the random numbers of searches [m]: circular, or
+/// linear at the best origin, as selected by the camera; infinite if the code determines no depth.
 double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options);
 
 /// Codes that may be the best on a camera, and why others are not among them.

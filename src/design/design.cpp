@@ -167,7 +167,8 @@ void require_exposures(const Camera& camera, const DesignOptions& options) {
                         max_exposure_rows));
 }
 
-/// Square waves at frequencies of the camera's chip, ranked with the baselines that are named.
+/// Designs square waves at frequencies of the camera's chip and ranks them with the requested
+/// baselines.
 DesignResult design_frequencies(const Camera& camera, const DesignOptions& options,
                                 const Progress& progress) {
   DesignResult result;

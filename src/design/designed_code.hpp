@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// Smallest share of the integration time that a design gives an exposure.
+/// Smallest share of the integration time that designs assign to an exposure.
 inline constexpr double min_exposure_share = 0.01;
 
 /// Returns the code with its provenance.

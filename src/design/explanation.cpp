@@ -25,11 +25,11 @@ const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) 
   return nullptr;
 }
 
-/// " of the codes with 2 exposures" if the best code of all has another number.
+/// " of the codes with 2 exposures" if the best of all codes has another number of exposures.
 std::string among_exposures(const DesignResult& result, DepthErrorKind kind,
                             const std::vector<int>& exposures) {
   const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
-  if (exposures.empty() || result.winner().code.is_rows() ||
+  if (exposures.empty() ||
       std::count(exposures.begin(), exposures.end(), order.front()->code.exposures()) > 0)
     return "";
   return fmt::format(" of the codes with {} exposures", fmt::join(exposures, ", "));

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Shares that sum to 1 in spite of rounding.
+/// Removes the rounding error of the sum, which is 1.
 std::vector<double> normalized(std::vector<double> shares) {
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   for (double& share : shares) share /= sum;

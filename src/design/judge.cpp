@@ -122,8 +122,8 @@ std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const C
   return ranking_m;
 }
 
-/// Of the candidates of each name, attempts at one code, only the best stays, in the place of the
-/// first. Finds the winner among them: of a requested number of exposures, if there is one.
+/// Keeps only the best of the candidates with the same name, in the place of the first. Then finds
+/// the winner, with a requested number of exposures if there is such a candidate.
 void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vector<int>& exposures,
                             DesignResult& result) {
   std::vector<Candidate> kept;
@@ -190,12 +190,12 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
     judge_one(result.candidates[i], camera, options, bounds, its[0]);
     if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
   }
-  const bool are_rows = camera.sensor.readout == Readout::rows;  // which exposures count
-  keep_best_of_each_name(ranking_of(result.candidates, camera, options),
-                         are_rows ? std::vector<int>() : options.exposures, result);
+  std::vector<int> requested;  // any, for rows: DesignOptions::exposures is their number
+  if (camera.sensor.readout != Readout::rows) requested = options.exposures;
+  keep_best_of_each_name(ranking_of(result.candidates, camera, options), requested, result);
   Candidate& winner = result.candidates[result.best];
   if (!winner.robustness) judge_robustness(winner, camera, options, parts[1]);
-  result.explanation = explain(camera, result, options.exposures);
+  result.explanation = explain(camera, result, requested);
 }
 
 double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind) {

@@ -85,14 +85,6 @@ Generator generator_of(const ExportOptions& options, const WaveformFormat& forma
   return generator;
 }
 
-bool is_binary(const CodeSet& code) {
-  for (int e = 0; e < code.exposures(); ++e)
-    if (!code.modulation(e).is_binary()) return false;
-  for (int i = 0; i < code.measurements(); ++i)
-    if (!code.demodulation(i).is_binary()) return false;
-  return true;
-}
-
 std::int32_t levels_of(const WaveformFormat& format, int variant, int bits) {
   if (format.name == "tek-tfw" && variant == 1) return format.levels + 1;
   return format.levels > 0 ? format.levels : 1 << bits;
@@ -192,7 +184,7 @@ Camera exporting_camera(const CodeSet& code, const Camera& camera, const ExportO
   variant_index(format, options.variant);
   check_options(options, format);
   require_fits(code, camera);
-  const bool binary = is_binary(code);
+  const bool binary = code.is_binary();
   if (format.content == FormatContent::words && !binary)
     require(options.bits.value_or(8) >= 2, "bits", 1,
             fmt::format("must be >= 2: not all waveforms of {} are binary", code.name()));

@@ -20,7 +20,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// A chip with five frequencies, two taps and room for four exposures.
+/// A chip with five frequencies, two taps and at most six exposures.
 Camera small_sensor() {
   Camera camera;
   camera.name = "small";

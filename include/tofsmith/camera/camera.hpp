@@ -185,7 +185,7 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                sensor.integration_times_s);
 }
 
-/// Integration time: a total that is split evenly between the exposures, or one time per exposure.
+/// Integration time: a total that is split between the exposures, or one time per exposure.
 struct ExposureTime {
   double total_s = 0.3;        ///< [s]; used if `each_s` is empty
   std::vector<double> each_s;  ///< [s]; must match the number of exposures of the code
@@ -381,8 +381,8 @@ inline void describe(FieldVisitor& fields, Camera& camera) {
                    .usually(1e6, 3e8),
                camera.fundamental_frequency_hz);
   fields.value(Key("exposure_s",
-                   "Total integration time, split evenly between the exposures; a list "
-                   "contains one time per exposure",
+                   "Total integration time, split between the exposures, evenly unless the code "
+                   "contains exposure_shares; a list contains one time per exposure",
                    above(0))
                    .usually(1e-5, 1.0),
                NumberOrList{camera.exposure_s.total_s, camera.exposure_s.each_s});
@@ -430,11 +430,11 @@ OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 /// @throws std::invalid_argument if the camera is invalid
 Camera judged_camera(const Camera& camera);
 
-/// Integration times of the exposures in the order in which the camera plays them [s]: its list, or
-/// its total, split by the shares of the code.
+/// Returns the integration times of the exposures in the order of the camera [s]: its list, or its
+/// total, split by the shares of the code.
 /// @throws InvalidArgument if the camera lists times for another number of exposures
 std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera);
-/// The camera with the integration times of a code in its list; unchanged for equal shares.
+/// Returns the camera with a list of the integration times of a code; unchanged for equal shares.
 Camera timed_by(const CodeSet& code, Camera camera);
 
 /// Why `code` cannot be played and read out on `camera`, a valid one: taps, samples, peak,
@@ -476,7 +476,7 @@ struct BuiltInCamera {
   std::string source_of(std::string_view key) const;
 };
 
-/// Built-in camera of commands that are given none.
+/// Built-in camera that commands use by default.
 inline constexpr std::string_view default_camera_name = "indoor";
 
 /// All of them; built_in_camera() builds each. built_in_camera_toml() writes one with its sources.

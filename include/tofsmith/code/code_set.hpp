@@ -176,6 +176,8 @@ class CodeSet {
     return modulation(exposure_of(measurement));
   }
 
+  /// Returns true if all waveforms are binary.
+  bool is_binary() const;
   /// Largest modulation value of all exposures, i.e. the peak factor that the code requires.
   double peak() const;
   /// Cell averages of the modulation functions, (N, E).
@@ -191,7 +193,7 @@ class CodeSet {
   CodeSet rotated(int rotation_bin) const;
   /// Returns the same code with the share of the total integration time of each exposure.
   /// @param shares  one per exposure, > 0, of sum 1; empty: equal shares
-  /// @throws InvalidArgument naming share, value and rule
+  /// @throws InvalidArgument naming the share and the violated rule
   CodeSet with_exposure_shares(std::vector<double> shares) const;
   /// Share of the total integration time of each exposure; empty: equal shares.
   const std::vector<double>& exposure_shares() const { return exposure_shares_; }

@@ -27,4 +27,13 @@ inline std::optional<BrokenRule> other_exposures_listed(const Camera& camera, in
   return std::nullopt;
 }
 
+/// Returns values of the code's exposures in the order of the camera's exposures.
+inline std::vector<double> in_camera_order(std::vector<double> of_code, const Camera& camera) {
+  if (!camera.playback || camera.playback->order.size() != of_code.size()) return of_code;
+  std::vector<double> of_camera;
+  for (const int exposure : camera.playback->order)
+    of_camera.push_back(of_code[static_cast<std::size_t>(exposure)]);
+  return of_camera;
+}
+
 }  // namespace tofsmith

@@ -26,7 +26,7 @@ std::optional<BrokenRule> hamiltonian_misfit(int measurements, const FamilyOptio
 /// e + t steps / taps.
 std::vector<int> steps_by_tap(int steps, int taps);
 
-/// For the walk alone.
+/// Returns the rule that the walk of a Hamiltonian code violates.
 std::optional<BrokenRule> walk_misfit(int measurements);
 
 std::string pulsed_multi_frequency_name(int low_steps, int high_frequency);

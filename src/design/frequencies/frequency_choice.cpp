@@ -3,11 +3,12 @@
 #include "design/frequencies/frequency_choice.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "core/shared/list_text.hpp"
 
 namespace tofsmith {
 
@@ -27,7 +28,7 @@ std::vector<double> duties_of(const SquareLight& square) {
   return duties;
 }
 
-/// The multiple of the fundamental that a frequency is; 0: none.
+/// Returns n for a frequency of n times the fundamental; 0: not a multiple.
 int multiple_of(double frequency_hz, double fundamental_hz) {
   constexpr double tolerance = 1e-6;
   const double ratio = frequency_hz / fundamental_hz;
@@ -35,7 +36,7 @@ int multiple_of(double frequency_hz, double fundamental_hz) {
   return std::abs(ratio - nearest) <= tolerance * nearest ? static_cast<int>(nearest) : 0;
 }
 
-/// Returns true if gates and light of that frequency have no pulse or gap that is too short.
+/// Returns true if no pulse or gap of gates and light at a frequency is too short.
 bool keeps_shortest_pulse(double frequency_hz, const std::vector<double>& duties,
                           const Camera& camera) {
   if (!camera.sensor.shortest_pulse_s) return true;
@@ -69,12 +70,11 @@ std::optional<BrokenRule> why_wrong_camera(const Camera& camera) {
                   "light.clock_hz and light.dividers");
   if (camera.sensor.readout == Readout::rows)
     return broken("sensor.readout", "rows",
-                  "must be \"separate\" or \"difference\" for square "
-                  "waves");
+                  "must be \"separate\" or \"difference\" for square waves");
   if (camera.sensor.taps > 2)
     return broken("sensor.taps", camera.sensor.taps, "must be 1 or 2 for square waves");
   if (!camera.exposure_s.each_s.empty())
-    return broken("exposure_s", fmt::format("[{}]", fmt::join(camera.exposure_s.each_s, ", ")),
+    return broken("exposure_s", list_text(camera.exposure_s.each_s),
                   "must be one total, which the design splits between the exposures");
   return std::nullopt;
 }
@@ -116,16 +116,17 @@ std::optional<BrokenRule> why_no_frequencies(const Camera& camera, const DesignO
   const FrequencyChoice choice = choice_for(camera, options);
   if (choice.frequencies.empty())
     return broken(
-        "light.frequencies_hz", fmt::format("[{}]", fmt::join(choice.left_out_hz, ", ")),
+        "light.frequencies_hz", list_text(choice.left_out_hz),
         fmt::format(
             "must contain multiples of fundamental_frequency_hz = {:.9g}{}",
             camera.fundamental_frequency_hz,
             camera.sensor.shortest_pulse_s ? " whose pulses keep sensor.shortest_pulse_s" : ""));
   if (choice.exposures_of(1).empty())
-    return broken("sensor.max_exposures",
-                  camera.sensor.max_exposures.value_or(default_max_exposures),
-                  fmt::format("must allow {} exposures, and --exposures one of such numbers",
-                              choice.first_phases));
+    return broken(
+        "sensor.max_exposures", camera.sensor.max_exposures.value_or(default_max_exposures),
+        fmt::format(
+            "must allow {0} exposures, and --exposures, if given, must list a number >= {0}",
+            choice.first_phases));
   return std::nullopt;
 }
 

@@ -14,16 +14,16 @@ namespace tofsmith {
 /// Square-wave codes that a camera and the options of a design allow.
 struct FrequencyChoice {
   std::vector<int> frequencies;     ///< multiples of the fundamental, the highest first
-  std::vector<double> left_out_hz;  ///< frequencies that are not, or have too short pulses
+  std::vector<double> left_out_hz;  ///< unusable: no multiples, or too short pulses
   std::vector<double> duties;
   std::vector<int> exposures;       ///< numbers of exposures, the smallest first
-  int max_frequencies = 1;          ///< of a code
-  int min_phases = 2;               ///< of a frequency
-  int first_phases = 2;             ///< of one of them: 3 for one tap, which sees ambient light
-  int max_repetitions = 1;          ///< within the fundamental period, by the working distance
+  int max_frequencies = 1;          ///< in one code
+  int min_phases = 2;               ///< per frequency
+  int first_phases = 2;             ///< of the first frequency: 3 if it measures ambient light
+  int max_repetitions = 1;          ///< per fundamental period, limited by the working distance
   std::vector<double> time_shares;  ///< of one exposure; empty: any
 
-  /// The numbers of exposures that a code with a number of frequencies can have, the smallest
+  /// Returns the possible numbers of exposures of a code with a number of frequencies, the smallest
   /// first.
   std::vector<int> exposures_of(int frequencies_of_code) const;
   /// Returns true if the unambiguous range of a code covers the working distance.
@@ -32,20 +32,20 @@ struct FrequencyChoice {
   }
 };
 
-/// Reason why a camera has no such codes.
+/// Reason why a camera supports no square-wave code.
 std::optional<BrokenRule> why_no_frequencies(const Camera& camera, const DesignOptions& options);
 
 /// @throws InvalidArgument with why_no_frequencies(), if there is a reason
 FrequencyChoice frequency_choice(const Camera& camera, const DesignOptions& options);
 
-/// The code with a number of exposures, shared out evenly, the highest frequencies first, all of
-/// the same length.
+/// Returns the code with a number of exposures of equal length. They are distributed evenly to the
+/// frequencies; the highest frequencies get the remaining ones.
 SquareCode with_exposures(SquareCode code, const FrequencyChoice& choice, int exposures);
 
-/// First choice of the usual rule of thumb: the two frequencies with the largest sum whose common
-/// unambiguous range covers the working distance, with four phases each or as many as fit, and
-/// equal times. Without such a pair the highest single frequency that does; none: there is none
-/// either.
+/// Returns the first choice of the usual rule of thumb: the two frequencies with the largest sum
+/// whose common unambiguous range covers the working distance, with four phases each or as many as
+/// fit, and equal times. Without such a pair, the highest single frequency whose range covers it;
+/// none: no frequency does.
 std::optional<SquareCode> rule_of_thumb(const FrequencyChoice& choice);
 
 }  // namespace tofsmith

@@ -8,28 +8,22 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/shared/list_text.hpp"
 #include "design/baselines.hpp"
 #include "design/designed_code.hpp"
 #include "design/frequencies/frequency_search.hpp"
 #include "design/judge.hpp"
-#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr std::size_t estimated = 32;  ///< codes of the smallest estimates that are tried
-constexpr std::size_t varied = 6;      ///< of them, codes with other numbers of phases
+constexpr std::size_t estimated = 32;  ///< codes with the smallest estimates, which are tried
+constexpr std::size_t varied = 6;      ///< best of these, which are tried with more phases
 constexpr std::size_t finalists = 3;   ///< codes that are judged
 constexpr int max_phases = 4;
 
-/// A code with its error by trials [m].
-struct TriedCode {
-  SquareCode code;
-  double error_m = infinity;
-};
-
-/// Tries codes with the random numbers of searches.
+/// Evaluates codes by trials with the random numbers of searches.
 class Trials {
  public:
   Trials(const Camera& camera, const DesignOptions& options) : camera_(camera), options_(options) {}
@@ -38,16 +32,16 @@ class Trials {
   double error_m(const SquareCode& code) const {
     return tried_error_m(to_code_set(code, camera_), camera_, options_);
   }
-  /// The codes with their errors, the smallest first.
-  std::vector<TriedCode> sorted(const std::vector<SquareCode>& codes) const {
-    std::vector<TriedCode> tried;
+  /// Returns the codes with their errors, the smallest first.
+  std::vector<RatedCode> sorted(const std::vector<SquareCode>& codes) const {
+    std::vector<RatedCode> tried;
     for (const SquareCode& code : codes) tried.push_back({code, error_m(code)});
     sort(tried);
     return tried;
   }
-  static void sort(std::vector<TriedCode>& tried) {
+  static void sort(std::vector<RatedCode>& tried) {
     std::stable_sort(tried.begin(), tried.end(),
-                     [](const TriedCode& a, const TriedCode& b) { return a.error_m < b.error_m; });
+                     [](const RatedCode& a, const RatedCode& b) { return a.error_m < b.error_m; });
   }
 
  private:
@@ -61,7 +55,8 @@ bool have_same_frequencies(const SquareCode& a, const SquareCode& b) {
       [](const SquareTone& x, const SquareTone& y) { return x.frequency == y.frequency; });
 }
 
-/// The code with more phases of one frequency or of all, as far as the exposures allow.
+/// Returns the code with more phases of one frequency or of all, within the allowed numbers of
+/// exposures.
 std::vector<SquareCode> with_more_phases(const SquareCode& code, const FrequencyChoice& choice) {
   std::vector<SquareCode> all;
   const auto add = [&](const SquareCode& changed) {
@@ -84,51 +79,40 @@ std::vector<SquareCode> with_more_phases(const SquareCode& code, const Frequency
 
 /// Adds variants of the best codes with more phases.
 void try_more_phases(const Camera& camera, const FrequencyChoice& choice, const Trials& trials,
-                     std::vector<TriedCode>& tried) {
+                     std::vector<RatedCode>& tried) {
   const std::size_t count = std::min(varied, tried.size());
   for (std::size_t i = 0; i < count; ++i) {
     const SquareErrorEstimate estimate(camera, tried[i].code.duty, choice.frequencies.front());
     for (const SquareCode& code : with_more_phases(tried[i].code, choice)) {
-      const EstimatedCode split = with_best_split(code, choice, estimate);
+      const RatedCode split = with_best_split(code, choice, estimate);
       if (split.error_m < infinity) tried.push_back({split.code, trials.error_m(split.code)});
     }
   }
   Trials::sort(tried);
 }
 
-/// Moves time between the frequencies of a code as long as trials improve by it.
-TriedCode with_tried_split(TriedCode its, const Trials& trials) {
+/// Moves time between the frequencies of a code if trials find a smaller error.
+RatedCode with_tried_split(RatedCode its, const Trials& trials) {
   for (const double moved : {0.25, 0.1})
-    for (std::size_t from = 0; from < its.code.tones.size(); ++from)
-      for (std::size_t to = 0; to < its.code.tones.size(); ++to) {
-        if (from == to) continue;
-        TriedCode changed = its;
-        const double share = moved * its.code.tones[from].share;
-        changed.code.tones[from].share -= share;
-        changed.code.tones[to].share += share;
-        if (changed.code.tones[from].share < min_exposure_share * changed.code.tones[from].phases)
-          continue;
-        changed.error_m = trials.error_m(changed.code);
-        if (changed.error_m < its.error_m) its = std::move(changed);
-      }
+    improve_split(its, moved, [&](const SquareCode& code) { return trials.error_m(code); });
   return its;
 }
 
-/// Returns true if a frequency has hardly more than the smallest time, so that the code without it
-/// is as good.
+/// Returns true if a frequency has at most twice the smallest time. The code without this frequency
+/// is then about as good.
 bool has_idle_frequency(const SquareCode& code) {
   return std::any_of(code.tones.begin(), code.tones.end(), [](const SquareTone& tone) {
     return tone.share < 2.0 * min_exposure_share * tone.phases;
   });
 }
 
-/// The best codes of different frequencies.
-std::vector<TriedCode> finalists_of(const std::vector<TriedCode>& tried,
+/// Returns the best codes, each with different frequencies.
+std::vector<RatedCode> finalists_of(const std::vector<RatedCode>& tried,
                                     const FrequencyChoice& choice, const Trials& trials) {
-  std::vector<TriedCode> best;
-  for (const TriedCode& its : tried) {
+  std::vector<RatedCode> best;
+  for (const RatedCode& its : tried) {
     if (best.size() == finalists || !(its.error_m < infinity)) break;
-    const bool is_new = std::none_of(best.begin(), best.end(), [&](const TriedCode& other) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const RatedCode& other) {
       return have_same_frequencies(its.code, other.code);
     });
     if (!is_new || (!best.empty() && has_idle_frequency(its.code))) continue;
@@ -153,7 +137,7 @@ SearchRecord record_of(const FrequencySearch& search, const FrequencyChoice& cho
               search.pruned_by_bound, search.best.size(), search.best.size())};
 }
 
-/// "120 MHz: 2 phases, 55 % of the time; ..".
+/// "120 MHz: 2 phases, 55 % of the time, ...; duty 0.5".
 std::string in_words(const SquareCode& code, const Camera& camera) {
   std::vector<std::string> tones;
   for (const SquareTone& tone : code.tones)
@@ -172,8 +156,7 @@ Candidate candidate_of(const SquareCode& code, const Camera& camera, const Desig
 BrokenRule nothing_found(const Camera& camera, const FrequencySearch& search,
                          const FrequencyChoice& choice) {
   if (search.ambiguous < search.sets)
-    return broken("sensor.integration_times_s",
-                  fmt::format("[{}]", fmt::join(*camera.sensor.integration_times_s, ", ")),
+    return broken("sensor.integration_times_s", list_text(*camera.sensor.integration_times_s),
                   fmt::format("must add up to exposure_s = {:.6g} for a set of frequencies with "
                               "equal times of its phases and at most {} exposures",
                               camera.exposure_s.total_s, choice.exposures.back()));
@@ -181,33 +164,24 @@ BrokenRule nothing_found(const Camera& camera, const FrequencySearch& search,
   for (const int frequency : choice.frequencies)
     frequencies_hz.push_back(frequency * camera.fundamental_frequency_hz);
   return broken(
-      "light.frequencies_hz", fmt::format("[{}]", fmt::join(frequencies_hz, ", ")),
+      "light.frequencies_hz", list_text(frequencies_hz),
       fmt::format(
-          "must contain at most {} frequencies whose common unambiguous range covers {:.6g} "
-          "m; expected a higher fundamental_frequency_hz or a smaller "
-          "operating.working_distance_m",
+          "must contain a set of at most {} frequencies whose common unambiguous range covers "
+          "{:.6g} m; raise fundamental_frequency_hz or reduce operating.working_distance_m",
           choice.max_frequencies, camera.range_m() / choice.max_repetitions));
-}
-
-bool is_binary(const CodeSet& code) {
-  for (int e = 0; e < code.exposures(); ++e)
-    if (!code.modulation(e).is_binary()) return false;
-  for (int k = 0; k < code.measurements(); ++k)
-    if (!code.demodulation(k).is_binary()) return false;
-  return true;
 }
 
 std::vector<std::string> binary_families(const Camera& camera, const DesignOptions& options) {
   std::vector<std::string> names = suggested_baselines(camera, options);
   for (std::string& name : other_families(camera, options)) names.push_back(std::move(name));
   std::erase_if(names, [&](const std::string& name) {
-    return why_no_family(name, camera) || !is_binary(build_family(name, camera));
+    return why_no_family(name, camera) || !build_family(name, camera).is_binary();
   });
   return names;
 }
 
-/// The camera with the shortest unambiguous range that covers its working distance, which other
-/// codes can be made for, too.
+/// Returns the camera with the shortest unambiguous range that covers its working distance, for a
+/// fair comparison with codes at the fundamental frequency.
 Camera with_shortest_range(Camera camera, const DesignOptions& options) {
   constexpr int min_samples = 240;
   const int factor = frequency_choice(camera, options).max_repetitions;
@@ -236,30 +210,31 @@ void add_frequency_candidates(const Camera& camera, const DesignOptions& options
   leave_out_frequencies(camera, choice, result);
   const ProgressParts parts(progress, {50, 50});
 
-  // 1. All sets of frequencies by the estimate.
+  // 1. Rank all sets of frequencies by the estimate.
   const FrequencySearch search = search_frequencies(camera, choice, estimated, parts[0]);
   if (search.best.empty()) require(nothing_found(camera, search, choice));
   std::vector<SquareCode> codes;
-  for (const EstimatedCode& its : search.best) codes.push_back(its.code);
-  const std::optional<SquareCode> usual = rule_of_thumb(choice);
-  if (usual && choice.time_shares.empty()) codes.push_back(*usual);
+  for (const RatedCode& its : search.best) codes.push_back(its.code);
+  std::optional<SquareCode> usual;  // has equal times, which need not be listed
+  if (choice.time_shares.empty()) usual = rule_of_thumb(choice);
+  if (usual) codes.push_back(*usual);
 
-  // 2. The best of them by trials, with more phases and other splits.
+  // 2. Rank the best sets by trials, with more phases and other splits.
   const Trials trials(camera, options);
-  std::vector<TriedCode> tried = trials.sorted(codes);
+  std::vector<RatedCode> tried = trials.sorted(codes);
   try_more_phases(camera, choice, trials, tried);
   report(parts[1], 0.5, "frequencies");
-  const std::vector<TriedCode> best = finalists_of(tried, choice, trials);
+  const std::vector<RatedCode> best = finalists_of(tried, choice, trials);
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  for (const TriedCode& its : best) {
+  for (const RatedCode& its : best) {
     Candidate candidate = candidate_of(its.code, camera, options);
     candidate.seconds = elapsed.count();
     candidate.search = record_of(search, choice);
     candidate.per_measurement = reports_of(candidate.code, "frequencies");
     result.candidates.push_back(std::move(candidate));
   }
-  if (usual && choice.time_shares.empty()) {
+  if (usual) {
     Candidate candidate = candidate_of(*usual, camera, options);
     candidate.method = "reference";
     candidate.code = candidate.code.renamed("rule-of-thumb-" + candidate.code.name());
@@ -278,7 +253,8 @@ std::optional<std::string> price_of_frequencies(const Camera& camera, const Desi
   for (const Contenders& contenders :
        {contending_atlas_codes(wide, usual),
         contending_families(binary_families(wide, usual), wide, search_seed(options))}) {
-    const auto first = std::find_if(contenders.codes.begin(), contenders.codes.end(), is_binary);
+    const auto first = std::find_if(contenders.codes.begin(), contenders.codes.end(),
+                                    [](const CodeSet& code) { return code.is_binary(); });
     if (first != contenders.codes.end()) binary.push_back({.code = *first, .method = "reference"});
   }
   if (binary.empty()) return std::nullopt;

@@ -16,8 +16,8 @@ namespace tofsmith {
 void add_frequency_candidates(const Camera& camera, const DesignOptions& options,
                               DesignResult& result, const Progress& progress);
 
-/// Compares the winner's error with the error of the best binary code of the atlas and the families
-/// for the camera, in a sentence; none: there is no such code.
+/// Returns a sentence that compares the error of the winner with the error of the best binary code
+/// of the atlas and the families for the camera; none: there is no such code.
 std::optional<std::string> price_of_frequencies(const Camera& camera, const DesignOptions& options,
                                                 const DesignResult& result,
                                                 const Progress& progress);

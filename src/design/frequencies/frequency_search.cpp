@@ -7,39 +7,24 @@
 #include <cmath>
 #include <functional>
 
-#include "design/designed_code.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-/// Time moved from one frequency to another, as a share of the time of the first.
+/// Parts of the time of a frequency that the descent moves to another one.
 constexpr std::array<double, 4> moved_shares = {0.4, 0.15, 0.05, 0.015};
 
-EstimatedCode with_free_split(EstimatedCode its, const SquareErrorEstimate& estimate) {
+RatedCode with_free_split(RatedCode its, const SquareErrorEstimate& estimate) {
+  const auto error_m_of = [&](const SquareCode& code) { return estimate.error_m(code); };
   for (const double moved : moved_shares)
-    for (bool improves = true; improves;) {
-      improves = false;
-      for (std::size_t from = 0; from < its.code.tones.size(); ++from)
-        for (std::size_t to = 0; to < its.code.tones.size(); ++to) {
-          if (from == to) continue;
-          SquareCode changed = its.code;
-          const double share = moved * changed.tones[from].share;
-          changed.tones[from].share -= share;
-          changed.tones[to].share += share;
-          if (changed.tones[from].share < min_exposure_share * changed.tones[from].phases) continue;
-          const double error_m = estimate.error_m(changed);
-          if (!(error_m < its.error_m)) continue;
-          its = {std::move(changed), error_m};
-          improves = true;
-        }
+    while (improve_split(its, moved, error_m_of)) {
     }
   return its;
 }
 
-/// Calls `visit` for every choice of listed times that adds up.
+/// Calls `visit` for every assignment of listed times whose sum is the total time.
 void for_each_listed_split(SquareCode& code, const std::vector<double>& time_shares,
                            std::size_t tone, double left,
                            const std::function<void(const SquareCode&)>& visit) {
@@ -56,9 +41,9 @@ void for_each_listed_split(SquareCode& code, const std::vector<double>& time_sha
   }
 }
 
-EstimatedCode with_listed_split(SquareCode code, const std::vector<double>& time_shares,
-                                const SquareErrorEstimate& estimate) {
-  EstimatedCode best{code, infinity};
+RatedCode with_listed_split(SquareCode code, const std::vector<double>& time_shares,
+                            const SquareErrorEstimate& estimate) {
+  RatedCode best{code, infinity};
   for_each_listed_split(code, time_shares, 0, 1.0, [&](const SquareCode& split) {
     const double error_m = estimate.error_m(split);
     if (error_m < best.error_m) best = {split, error_m};
@@ -69,26 +54,26 @@ EstimatedCode with_listed_split(SquareCode code, const std::vector<double>& time
   return best;
 }
 
-/// The best codes found until now.
+/// The best codes found so far.
 class Best {
  public:
   explicit Best(std::size_t kept) : kept_(kept) {}
 
-  /// Error that the next code must be below.
+  /// Upper limit of the error of further codes.
   double limit_m() const { return codes_.size() < kept_ ? infinity : codes_.back().error_m; }
-  void add(EstimatedCode its) {
+  void add(RatedCode its) {
     if (!(its.error_m < limit_m())) return;
     const auto at = std::upper_bound(
         codes_.begin(), codes_.end(), its.error_m,
-        [](double error_m, const EstimatedCode& other) { return error_m < other.error_m; });
+        [](double error_m, const RatedCode& other) { return error_m < other.error_m; });
     codes_.insert(at, std::move(its));
     if (codes_.size() > kept_) codes_.pop_back();
   }
-  std::vector<EstimatedCode> take() { return std::move(codes_); }
+  std::vector<RatedCode> take() { return std::move(codes_); }
 
  private:
   std::size_t kept_;
-  std::vector<EstimatedCode> codes_;
+  std::vector<RatedCode> codes_;
 };
 
 /// Sets of frequencies that begin with the same frequency.
@@ -116,7 +101,8 @@ class Branch {
     code.tones.pop_back();
   }
 
-  /// The fewest exposures, or, where times are listed, all numbers that they may add up for.
+  /// Adds the code with the fewest exposures; if times are listed, with every allowed number of
+  /// exposures, because the sum of the times depends on it.
   void add_exposures(const SquareCode& code) {
     for (const int exposures : choice_.exposures_of(static_cast<int>(code.tones.size()))) {
       sets.push_back(with_exposures(code, choice_, exposures));
@@ -146,19 +132,19 @@ void search_branch(const std::vector<SquareCode>& sets, const FrequencyChoice& c
       return;
     }
     const std::size_t count = std::min(at_a_time, order.size() - begin);
-    std::vector<EstimatedCode> estimated(count);
+    std::vector<RatedCode> estimated(count);
     parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t i) {
       const auto at = static_cast<std::size_t>(i);
       estimated[at] = with_best_split(sets[order[begin + at]], choice, estimate);
     });
-    for (EstimatedCode& its : estimated) best.add(std::move(its));
+    for (RatedCode& its : estimated) best.add(std::move(its));
   }
 }
 
 }  // namespace
 
-EstimatedCode with_best_split(const SquareCode& code, const FrequencyChoice& choice,
-                              const SquareErrorEstimate& estimate) {
+RatedCode with_best_split(const SquareCode& code, const FrequencyChoice& choice,
+                          const SquareErrorEstimate& estimate) {
   if (!choice.time_shares.empty()) return with_listed_split(code, choice.time_shares, estimate);
   return with_free_split({code, estimate.error_m(code)}, estimate);
 }
@@ -172,7 +158,7 @@ FrequencySearch search_frequencies(const Camera& camera, const FrequencyChoice& 
   double done = 0.0;
   for (const double duty : choice.duties) {
     const SquareErrorEstimate estimate(camera, duty, choice.frequencies.front());
-    // Behind a band limit the highest frequency need not be the best for the local error.
+    // With a band limit, the highest frequency may not have the smallest local error.
     std::vector<double> bounds_m;
     for (const int frequency : choice.frequencies)
       bounds_m.push_back(estimate.local_bound_m(

@@ -4,38 +4,65 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "design/designed_code.hpp"
 #include "design/frequencies/frequency_choice.hpp"
 #include "design/frequencies/square_error.hpp"
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
-/// A code and its estimated error.
-struct EstimatedCode {
+/// A code and its error, estimated or by trials [m].
+struct RatedCode {
   SquareCode code;
-  double error_m = 0.0;
+  double error_m = infinity;
 };
 
-/// Codes of the smallest estimated errors, and what became of all sets of frequencies.
+/// Codes with the smallest estimated errors, and a summary of all sets of frequencies.
 struct FrequencySearch {
-  std::vector<EstimatedCode> best;   ///< the smallest error first
+  std::vector<RatedCode> best;       ///< the smallest error first
   std::int64_t sets = 0;             ///< sets of frequencies, times duties
-  std::int64_t ambiguous = 0;        ///< repeat within the working distance
-  std::int64_t pruned_by_bound = 0;  ///< no split of the time makes them one of the best
+  std::int64_t ambiguous = 0;        ///< sets that repeat within the working distance
+  std::int64_t pruned_by_bound = 0;  ///< sets that no split of the time makes one of the best
 };
+
+/// Moves time from each frequency of a code to each other one, and keeps the moves that reduce the
+/// error. Exposures keep at least min_exposure_share.
+/// @param moved       share of the time of the first frequency
+/// @param error_m_of  returns the error of a SquareCode [m]
+/// @return true if the error decreased
+template <typename ErrorOf>
+bool improve_split(RatedCode& its, double moved, const ErrorOf& error_m_of) {
+  bool improves = false;
+  for (std::size_t from = 0; from < its.code.tones.size(); ++from)
+    for (std::size_t to = 0; to < its.code.tones.size(); ++to) {
+      if (from == to) continue;
+      SquareCode changed = its.code;
+      const double share = moved * changed.tones[from].share;
+      changed.tones[from].share -= share;
+      changed.tones[to].share += share;
+      if (changed.tones[from].share < min_exposure_share * changed.tones[from].phases) continue;
+      const double error_m = error_m_of(changed);
+      if (!(error_m < its.error_m)) continue;
+      its = {std::move(changed), error_m};
+      improves = true;
+    }
+  return improves;
+}
 
 /// Splits the total time between the frequencies of a code for the smallest estimated error: by
-/// descent, or over all times of the choice's list that add up.
-EstimatedCode with_best_split(const SquareCode& code, const FrequencyChoice& choice,
-                              const SquareErrorEstimate& estimate);
+/// descent, or over all sums of listed times that equal the total.
+RatedCode with_best_split(const SquareCode& code, const FrequencyChoice& choice,
+                          const SquareErrorEstimate& estimate);
 
 /// Searches all sets of frequencies and duties for the smallest estimated errors, each set with the
 /// fewest exposures: by the estimate, more exposures of one frequency only add read noise.
-/// Branches whose lower bound exceeds the error of the last of the best are cut off; none of the
-/// best is lost by that.
-/// @param kept  number of the best
+/// Skips branches whose lower bound exceeds the largest kept error, which does not change the
+/// result.
+/// @param kept  number of codes in `best`
 /// @note same result for any number of threads
 FrequencySearch search_frequencies(const Camera& camera, const FrequencyChoice& choice,
                                    std::size_t kept, const Progress& progress);

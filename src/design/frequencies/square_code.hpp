@@ -23,20 +23,20 @@ struct SquareCode {
   std::vector<SquareTone> tones;  ///< the highest frequency first
 
   int exposures() const;
-  /// Number of times that the code repeats in the period of the fundamental frequency.
+  /// Number of repetitions per period of the fundamental frequency.
   int repetitions() const;
   /// "square-15x2-10x2": frequencies and their number of phases.
   std::string name() const;
 };
 
-/// Phases of an exposure series in steps of 1 / phase_steps periods: a quadrature pair for two,
-/// else equally spaced as closely as the steps allow.
+/// Returns the phases of the exposures of one frequency in steps of 1 / phase_steps periods: a
+/// quadrature pair for two exposures, otherwise equal spacing, rounded to the steps.
 std::vector<int> phases_in_steps(int phases, int phase_steps);
 
-/// Level of the light over average power while it is on.
+/// Power of the light while it is on, divided by the average power.
 double square_level(double duty, double peak_factor);
 
-/// The code for the taps, peak and samples of a camera with light.square.
+/// Returns the code for the taps, peak and samples of a camera with light.square.
 CodeSet to_code_set(const SquareCode& code, const Camera& camera);
 
 }  // namespace tofsmith

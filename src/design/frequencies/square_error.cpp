@@ -22,8 +22,8 @@ constexpr int highest_odd_harmonic = 9;
 /// Amplitude of harmonic h of a square wave that is on for a share of the period.
 double harmonic_of_square(int h, double duty) { return std::sin(pi * h * duty) / (pi * h); }
 
-/// Factor of the correlation function of one gate in a measurement: differences of two taps and
-/// mixers see twice the first tap's, times the contrast.
+/// Ratio of a measurement to the correlation function of one gate: twice the contrast for mixers
+/// and for the difference of two taps.
 double measurement_gain(const Sensor& sensor) {
   return sensor.mixes_taps() ? 2.0 * sensor.modulation_contrast : 1.0;
 }
@@ -36,7 +36,7 @@ SquareErrorEstimate::SquareErrorEstimate(const Camera& on, double duty, int high
   const Sensor& sensor = camera.sensor;
   const double level = square_level(duty, camera.light.peak_factor);
   const double time_s = camera.exposure_s.total_s;
-  // Two taps collect all light, one its half; a mixer reads its difference once.
+  // Two taps collect all light, one tap half of it. A mixer reads the difference once.
   const double collected = sensor.mixes_taps() ? 1.0 : 0.5;
   const double readouts = sensor.taps == 2 ? 2.0 : 1.0;
   read_variance_e2_ = readouts * constant_variance_e2_of(sensor);

@@ -25,12 +25,13 @@ class SquareErrorEstimate {
 
   /// Estimated error [m].
   double error_m(const SquareCode& code) const;
-  /// At most error_m() of the same code for every split of the time: every frequency has all of
-  /// the time to distinguish lobes, and the best frequency has it for the local error. Both are
-  /// computed for white noise, which never confuses more.
+  /// Lower bound of error_m() of the same code for every split of the time. Each frequency has all
+  /// of the time to distinguish lobes, and the best frequency has all of the time for the local
+  /// error. Assumes a decoder that weights measurements by their noise, whose error is never
+  /// larger.
   double lower_bound_m(const SquareCode& code) const;
-  /// The local part of lower_bound_m() of one frequency: a lower bound for every set of frequencies
-  /// that has none with a smaller one and repeats at most so often.
+  /// The local part of lower_bound_m() of one frequency. The smallest value of several frequencies
+  /// is a lower bound for every set of them that repeats at most `max_repetitions` times.
   double local_bound_m(const SquareTone& tone, int max_repetitions) const;
 
  private:
@@ -43,7 +44,7 @@ class SquareErrorEstimate {
     double curvature = 0.0;   ///< sum of 2 |a_h|^2 (2 pi h f)^2
     Eigen::ArrayXd distance;  ///< sum of 2 |a_h|^2 2 (1 - cos 2 pi h x) over x in [0, 1)
   };
-  /// Weight and variance of a tone in sums over measurements.
+  /// Terms of one frequency in sums over measurements.
   struct Contribution {
     const Spectrum* spectrum = nullptr;
     double weight = 0.0, variance_e2 = 0.0;
