@@ -51,7 +51,8 @@ def attribute(key):
     facts = [f"{key['help']}" + (f" [{key['unit']}]" if key["unit"] else "")]
     if "words" in key:
         *most, last = key["words"]
-        facts.append(f"{', '.join(most)} or {last}" if key["type"] == "choice" else "")
+        listed = " or ".join(filter(None, [", ".join(most), last]))
+        facts.append(listed if key["type"] == "choice" else "")
     facts += [key["range"], f"only with {key['condition']}" if key["condition"] else ""]
     text = "; ".join(filter(None, facts)) + "."
     default = key["default"]
