@@ -31,7 +31,7 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-/// Keys that decide how raw numbers come about; a calibration changes others.
+/// Keys that determine the raw numbers and that a calibration does not change.
 constexpr std::array<std::string_view, 7> recording_keys = {
     "fundamental_frequency_hz", "sensor.taps",     "sensor.drain",         "sensor.readout",
     "sensor.demodulation",      "sensor.adc_bits", "sensor.black_level_dn"};
@@ -42,7 +42,7 @@ nlohmann::json value_of(const nlohmann::json& camera, std::string_view key) {
   return table.value(key.substr(dot == key.npos ? 0 : dot + 1), nlohmann::json("none"));
 }
 
-/// "sensor.taps = 2 instead of 1"
+/// Returns texts such as "sensor.taps = 2 instead of 1".
 std::vector<std::string> differing_keys(const Camera& camera, const Camera& recorded) {
   const auto here = nlohmann::json::parse(camera_to_json(camera)),
              there = nlohmann::json::parse(camera_to_json(recorded));
@@ -55,8 +55,8 @@ std::vector<std::string> differing_keys(const Camera& camera, const Camera& reco
   return differences;
 }
 
-/// Returns true if two codes have different correlation functions on a camera, or if it cannot play
-/// the recorded one.
+/// Returns true if two codes have different correlation functions on a camera, or if the camera
+/// does not support the recorded one.
 bool differs(const std::string& code, const std::string& recorded, const Camera& camera,
              const CodeFileOptions& file_options) {
   constexpr double rounding = 1e-6;
@@ -81,8 +81,8 @@ std::string recorded_code(const fs::path& raw) {
   const fs::path beside = code_beside(raw);
   if (is_file(beside)) return beside.string();
   throw UsageError(
-      fmt::format("--code is required, because there is no {} next to the raw frames: a family "
-                  "(`tofsmith codes` lists them), a code file or a measured table",
+      fmt::format("--code is required, because there is no {} next to the raw frames; expected a "
+                  "family (`tofsmith codes` lists them), a code file or a measured table",
                   beside.string()));
 }
 
@@ -99,8 +99,8 @@ std::vector<std::string> recording_conflicts(const fs::path& raw, const std::str
   if (warnings.empty() && is_file(recorded) && !is_same_file(code, recorded) &&
       !names_measured_table(code) && differs(code, recorded.string(), camera, file_options))
     warnings.push_back(
-        fmt::format("warning: the code {} differs from {}; without --code, the code "
-                    "of that file is used",
+        fmt::format("warning: the code {} differs from {}; without --code, the code of that file "
+                    "is used",
                     code, recorded.string()));
   return warnings;
 }

@@ -11,14 +11,15 @@
 
 namespace tofsmith::apps {
 
-/// File in which `simulate` leaves the code of raw frames: raw.code.json next to raw.npy.
+/// Returns the file in which `simulate` stores the code of raw frames: raw.code.json for raw.npy.
 std::filesystem::path code_beside(const std::filesystem::path& raw);
 
-/// The code with which frames were recorded: the file next to them.
+/// Returns the file next to raw frames with the code that recorded them.
 /// @throws UsageError if there is none
 std::string recorded_code(const std::filesystem::path& raw);
 
-/// Warnings that the code and the camera to decode with differ from those next to the raw frames.
+/// Returns warnings if the code or the camera for decoding differs from the file next to the raw
+/// frames.
 std::vector<std::string> recording_conflicts(const std::filesystem::path& raw,
                                              const std::string& code, const Camera& camera,
                                              const CodeFileOptions& file_options);

@@ -73,7 +73,7 @@ class Streaming(CommandLineTest):
         self.assertEqual(out.stdout, windows.astype("<f4").tobytes())
         self.assertIn("decoded 7 frames", out.stderr.decode())
         for more in (("--average", "2"), ("--averaged", "2"), ("--hdr", "1,4,16")):
-            self.refuse(self.arguments("--sliding", *more), more[0], "goes without sliding",
+            self.refuse(self.arguments("--sliding", *more), more[0], "is not valid with sliding",
                         code=2)
 
     def test_a_pipe_can_be_interrupted_while_it_waits(self):

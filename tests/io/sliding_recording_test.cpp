@@ -189,8 +189,8 @@ TEST_F(SlidingRecording, RejectsMeansMergedExposuresAndLookAhead) {
     EXPECT_THAT([&] { decode_recording(request, *backend_); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr(field)));
   };
-  rejects([](DecodeRequest& r) { r.average = 2; }, "average = 2; goes without sliding");
-  rejects([](DecodeRequest& r) { r.averaged = 3.0; }, "averaged = 3; goes without sliding");
+  rejects([](DecodeRequest& r) { r.average = 2; }, "average = 2; is not valid with sliding");
+  rejects([](DecodeRequest& r) { r.averaged = 3.0; }, "averaged = 3; is not valid with sliding");
   rejects([](DecodeRequest& r) { r.hdr = {1.0, 4.0, 16.0}; }, "hdr = 3 exposures");
   rejects([](DecodeRequest& r) { r.time_filter = TimeFilterOptions{.look_ahead = 1}; },
           "look_ahead = 1");

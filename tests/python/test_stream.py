@@ -72,7 +72,7 @@ def test_sliding_windows_are_those_of_recordings(decoder, layout, tmp_path):
     windows = np.load(tmp_path / "d.npy")
     assert np.array_equal(np.stack([t["depth"] for t in taken]), windows, equal_nan=True)
     assert np.array_equal(windows[::4], decoder.decode(raw).depth_m, equal_nan=True)
-    with pytest.raises(ValueError, match="average = 2; goes without sliding"):
+    with pytest.raises(ValueError, match="average = 2; is not valid with sliding"):
         decoder.decode_stream(io.BytesIO(raw.tobytes()), taken.append, raw_format=layout,
                               sliding=True, average=2)
 

@@ -62,8 +62,8 @@ struct DecodeRequest {
   /// `average`.
   std::vector<double> hdr;
   /// F frames of E exposures give (F - 1) E + 1 depth images, in the order of their last
-  /// exposures. A time filter averages windows that share no exposure. Goes without `average`,
-  /// `averaged`, `hdr` and `look_ahead`.
+  /// exposures. A time filter averages windows that share no exposure. Not valid with `average`,
+  /// `averaged`, `hdr` or `look_ahead`.
   bool sliding = false;
   std::filesystem::path stray_light;  ///< image of shares, as StrayLight takes it
   double averaged = 1.0;              ///< multiplied by `average`
@@ -78,9 +78,9 @@ struct DecodeRequest {
   double offset_m = 0.0;
   std::filesystem::path gain_map;  ///< as PixelMaps::gain
   double memory_mb = 256.0;
-  /// Exposures of the code in the order of the decoder's table, as Playback::order, which suggests
-  /// other orders for numbers that do not fit; empty: one per measurement, in the order of the
-  /// code.
+  /// Order of the code's exposures in the decoder's table, as Playback::order. It is only used to
+  /// suggest other orders if the raw numbers do not fit. Empty: one exposure per measurement, in
+  /// the order of the code.
   std::vector<int> order;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them

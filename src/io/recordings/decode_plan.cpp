@@ -66,15 +66,15 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
   return maps;
 }
 
-/// Checks what excludes sliding windows.
+/// Rejects options that are not valid with sliding windows.
 void check_sliding(const DecodeRequest& request) {
-  constexpr const char* rule = "goes without sliding: its windows are of single exposures";
+  constexpr const char* rule = "is not valid with sliding, which uses single exposures";
   require(request.average == 1, "average", request.average, rule);
   require(request.averaged == 1.0, "averaged", request.averaged, rule);
   require(request.hdr.empty(), "hdr", fmt::format("{} exposures", request.hdr.size()), rule);
   const int look_ahead = request.time_filter ? request.time_filter->look_ahead : 0;
   require(look_ahead == 0, "look_ahead", look_ahead,
-          "goes without sliding: each window is decoded with its last exposure");
+          "is not valid with sliding, which decodes each window after its last exposure");
 }
 
 }  // namespace
@@ -98,8 +98,7 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
   require(
       request.lens || request.view_deg || !(holds_points(output) || request.kind == DepthKind::z),
       "view_deg", "none",
-      "points and z need the [lens] of the camera, or this angle of view to assume, such as "
-      "60");
+      "points and z need the [lens] of the camera, or this angle of view to assume, such as 60");
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("goes with a .npy file; the output is {}", output.string()));

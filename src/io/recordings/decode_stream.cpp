@@ -22,8 +22,8 @@ namespace {
 
 constexpr const char* stream_name = "the stream";
 
-/// Number of bytes of a frame that contain its exposures up to each one. An exposure of images is
-/// complete before its frame is.
+/// Returns the number of bytes of a frame after which each of its exposures is complete. Only
+/// planar frames have exposures that are complete before the frame.
 std::vector<std::size_t> exposure_ends(const RawFormat& format, int exposures) {
   const auto frame = static_cast<std::size_t>(format.frame_bytes());
   std::vector<std::size_t> ends(static_cast<std::size_t>(exposures), frame);

@@ -26,7 +26,8 @@ struct Preparation {
   std::vector<double> hdr;    ///< exposures of frames that make one; empty: none
   int sliding = 0;            ///< exposures of a sliding window; 0: whole frames are decoded
 
-  /// With sliding windows, the input gives a frame for each of its exposures, complete up to it.
+  /// With sliding windows, the input returns each frame once per exposure, complete up to that
+  /// exposure.
   bool exposures_arrive = false;
 
   bool needs_frames() const {

@@ -101,12 +101,11 @@ std::optional<std::string> noise_note(double ratio, int frame, double averaged) 
   constexpr double usual = 1.5;
   if (ratio <= usual && ratio >= 1.0 / usual) return std::nullopt;
   return fmt::format(
-      "frame {} has {:.2g} times the noise that the camera's keys predict, from differences of "
-      "neighbouring pixels: the filter {}. Measure the noise with `tofsmith calibrate noise`, or "
-      "assume that of this frame with --averaged {:.3g}",
+      "frame {} has {:.2g} times the noise that the camera predicts (estimated from differences of "
+      "neighbouring pixels), so that the filter {}. Measure the noise with `tofsmith calibrate "
+      "noise`, or assume the noise of this frame with --averaged {:.3g}",
       frame, ratio,
-      ratio < 1.0 ? "adds pixels of different depths as if they had the same"
-                  : "adds fewer pixels than it could",
+      ratio < 1.0 ? "averages pixels of different depths" : "averages fewer pixels than it could",
       std::min(averaged / (ratio * ratio), 1e9));
 }
 

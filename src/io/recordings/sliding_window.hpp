@@ -13,14 +13,14 @@ namespace tofsmith {
 /// Number of windows of `exposures` consecutive exposures in a recording of whole frames.
 constexpr int windows_of(int frames, int exposures) { return (frames - 1) * exposures + 1; }
 
-/// The last exposures of a recording, one of each kind that the code has, in the code's order.
+/// The latest recording of each exposure of a code, in the order of the code.
 class SlidingWindow {
  public:
-  /// @param exposures  of a frame
+  /// @param exposures  number per frame
   explicit SlidingWindow(int exposures) : exposures_(exposures) {}
 
-  /// Replaces one exposure of the window by that of a frame, which must have the size and the type
-  /// of the frames before it. All exposures of the first frame must be taken before view().
+  /// Replaces one exposure of the window by the same exposure of a frame. All frames must have the
+  /// same size and type. All exposures must have been taken before view().
   void take(const RawView& frame, int exposure);
   /// Returns the numbers of the window, valid until the next take().
   RawView view() const;
