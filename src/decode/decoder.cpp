@@ -195,7 +195,7 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRat
   if (planes.bin && !bin_of_row.empty()) write_bins(tile, planes.bin);
 }
 
-/// One pixel in double arithmetic.
+/// Decodes one pixel in double arithmetic.
 void Decoder::Plan::decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
                                   const RangePart& part, std::size_t at,
                                   const DecodedView& planes) const {

@@ -56,6 +56,15 @@ bool DecodedView::wants_bins_only() const {
   return bin && wanted == 1;
 }
 
+std::vector<DecodedPlane> DecodedView::planes() const {
+  std::vector<DecodedPlane> wanted;
+  for (const PlaneDescription& described : plane_descriptions)
+    if (with_plane(
+            described.plane, [](const auto* plane) { return plane != nullptr; }, *this))
+      wanted.push_back(described.plane);
+  return wanted;
+}
+
 DecodedView DecodedView::of(DepthImage& image) {
   DecodedView view;
   for_each_plane([](auto*& to, auto& from) { to = from.pixels.data(); }, view, image);

@@ -18,14 +18,14 @@ namespace tofsmith {
 
 namespace {
 
-/// Distances by which pixels decode too far.
+/// Errors of decoded depths that corrections and maps will subtract.
 class DepthErrors {
  public:
   /// @param maps  of the frame; a map of its size or none
   DepthErrors(const DecodingTable& table, const PixelMaps& maps, int width)
       : table_(table), maps_(maps), width_(static_cast<std::size_t>(width)) {}
 
-  /// NaN of a dead pixel.
+  /// Returns the error [m]; NaN for a dead pixel.
   double at(std::size_t pixel, double decoded_m, const float* signal_e_per_s) const {
     double error_m = maps_.delay_offset_m.empty()
                          ? 0.0
@@ -44,8 +44,11 @@ class DepthErrors {
   std::size_t width_;
 };
 
-/// Takes the depth off a pixel. A status stays that makes the depth doubtful anyway.
-void remove_depth(std::size_t at, PixelStatus side, const DecodedView& decoded) {
+/// Removes the depth of a pixel if its corrected depth is outside the limits. A status that already
+/// makes the depth doubtful is kept.
+void remove_if_outside(const DepthLimits& limits, double depth_m, std::size_t at,
+                       const DecodedView& decoded) {
+  if (limits.contains(depth_m)) return;
   for_each_plane(
       [at]<typename Value>(Value* plane) {
         if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, ReturnStatus>)
@@ -53,7 +56,8 @@ void remove_depth(std::size_t at, PixelStatus side, const DecodedView& decoded) 
       },
       decoded);
   PixelStatus& status = decoded.status[at];
-  if (status == PixelStatus::ok || status == PixelStatus::ambiguous) status = side;
+  if (status == PixelStatus::ok || status == PixelStatus::ambiguous)
+    status = limits.status_of(depth_m);
 }
 
 /// Restricts the pixels of one block.
@@ -76,7 +80,7 @@ class BlockRestriction {
     view.averaged = averaged_.empty() ? nullptr : averaged_.data();
     view.noise = raw_.noise;
     view.is_marked = true;
-    DepthImage within = image_of_same_planes();
+    DepthImage within(decoded_.planes(), 1, static_cast<int>(chosen_.size()));
     decoder_.decode_within(view, parts_.data(), DecodedView::of(within));
     for (std::size_t j = 0; j < chosen_.size(); ++j) merge(chosen_[j], within, j);
   }
@@ -87,7 +91,8 @@ class BlockRestriction {
     double depth_m = 0.0;  ///< corrected
   };
 
-  /// Keeps a pixel to decode again if its depth lies outside the limits or may be wrong.
+  /// Removes the depth of a certain pixel that is outside the limits. Uncertain pixels are decoded
+  /// again.
   void choose(std::size_t at) {
     if (std::isnan(decoded_.depth_m[at])) return;
     const double range_m = decoder_.table().range_m;
@@ -96,11 +101,8 @@ class BlockRestriction {
     const double error_m = errors_.at(first_ + at, decoded_m, signal);
     if (std::isnan(error_m)) return;
     const double depth_m = wrap(decoded_m - error_m, range_m);
-    const bool is_inside = limits_.contains(depth_m);
-    if (decoded_.confidence[at] >= 1.0f) {  // no other depth is possible
-      if (!is_inside) remove_depth(at, limits_.status_of(depth_m), decoded_);
-      return;
-    }
+    if (decoded_.confidence[at] >= 1.0f)  // no other depth is possible
+      return remove_if_outside(limits_, depth_m, at, decoded_);
     chosen_.push_back({at, depth_m});
     parts_.push_back(part_of(first_ + at, signal));
     const std::size_t count = static_cast<std::size_t>(raw_.measurements);
@@ -120,22 +122,9 @@ class BlockRestriction {
     return {wrap(begin_m, range_m) / range_m, (end_m - begin_m) / range_m};
   }
 
-  DepthImage image_of_same_planes() const {
-    std::vector<DecodedPlane> planes;
-    for (const PlaneDescription& described : plane_descriptions)
-      with_plane(
-          described.plane,
-          [&](const auto* plane) {
-            if (plane) planes.push_back(described.plane);
-          },
-          decoded_);
-    return {planes, 1, static_cast<int>(chosen_.size())};
-  }
-
   void merge(const Pixel& pixel, const DepthImage& within, std::size_t from) {
     if (!std::isnan(within.depth_m.pixels[from])) return copy(pixel.at, within, from);
-    if (!limits_.contains(pixel.depth_m))
-      remove_depth(pixel.at, limits_.status_of(pixel.depth_m), decoded_);
+    remove_if_outside(limits_, pixel.depth_m, pixel.at, decoded_);
   }
 
   void copy(std::size_t at, const DepthImage& within, std::size_t from) const {
@@ -156,13 +145,6 @@ class BlockRestriction {
   std::vector<RangePart> parts_;
   std::vector<float> values_, averaged_;
 };
-
-void require_planes(const DecodedView& decoded, bool with_confidence) {
-  require(
-      decoded.depth_m && decoded.status && (decoded.confidence || !with_confidence), "decoded",
-      "a null plane",
-      with_confidence ? "must have depth, confidence and status" : "must have depth and status");
-}
 
 }  // namespace
 
@@ -191,7 +173,8 @@ std::optional<DepthLimits> depth_limits(const DecodingTable& table,
 void restrict_depths(const DepthLimits& limits, const DepthDecoder& decoder, const RawView& raw,
                      const PixelMaps& maps, int width, std::size_t first,
                      const DecodedView& decoded, const Progress& progress) {
-  require_planes(decoded, true);
+  require(decoded.depth_m && decoded.confidence && decoded.status, "decoded", "a null plane",
+          "must have depth, confidence and status");
   constexpr std::int64_t block_pixels = usual_block_pixels / 16;
   const MarkedRaw marked(raw, decoder.table().marking);
   const DepthErrors errors(decoder.table(), maps, width);
@@ -204,11 +187,11 @@ void restrict_depths(const DepthLimits& limits, const DepthDecoder& decoder, con
 }
 
 void remove_outside(const DepthLimits& limits, const DecodedView& decoded, std::size_t count) {
-  require_planes(decoded, false);
+  require(decoded.depth_m && decoded.status, "decoded", "a null plane",
+          "must have depth and status");
   for (std::size_t i = 0; i < count; ++i) {
     const double depth_m = static_cast<double>(decoded.depth_m[i]);
-    if (!std::isnan(depth_m) && !limits.contains(depth_m))
-      remove_depth(i, limits.status_of(depth_m), decoded);
+    if (!std::isnan(depth_m)) remove_if_outside(limits, depth_m, i, decoded);
   }
 }
 

@@ -90,18 +90,14 @@ void keep_averaged(const RawView& raw, float* averaged) {
     std::fill_n(averaged, raw.pixels(), 1.0f);
 }
 
-/// Returns the planes that limits need although nobody wants them, and adds them to `decoded`.
+/// Adds the planes that limits need to `decoded`. @return their memory
 DepthImage planes_for_limits(std::size_t pixels, DecodedView& decoded) {
-  std::vector<DecodedPlane> planes;
+  const std::vector<DecodedPlane> wanted = decoded.planes();
+  std::vector<DecodedPlane> missing;
   for (const DecodedPlane plane :
        {DecodedPlane::depth, DecodedPlane::confidence, DecodedPlane::status})
-    with_plane(
-        plane,
-        [&](const auto* memory) {
-          if (!memory) planes.push_back(plane);
-        },
-        decoded);
-  DepthImage image(planes, 1, static_cast<int>(pixels));
+    if (std::find(wanted.begin(), wanted.end(), plane) == wanted.end()) missing.push_back(plane);
+  DepthImage image(missing, 1, static_cast<int>(pixels));
   for_each_plane(
       [](auto*& plane, auto& added) {
         if (!added.empty()) plane = added.pixels.data();

@@ -14,18 +14,13 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-bool is_unsigned(const RawView& raw) {
-  return raw.was_unsigned || std::holds_alternative<const std::uint8_t*>(raw.data) ||
-         std::holds_alternative<const std::uint16_t*>(raw.data);
-}
-
 template <typename Number>
 RawView mark_as(const RawView& raw, const RawMarking& marking, std::vector<std::byte>& buffer) {
   const auto row_numbers =
       static_cast<std::size_t>(raw.width) * static_cast<std::size_t>(raw.measurements);
   buffer.resize(static_cast<std::size_t>(raw.height) * row_numbers * sizeof(Number));
   auto* const numbers = reinterpret_cast<Number*>(buffer.data());
-  const bool was_unsigned = is_unsigned(raw);
+  const bool was_unsigned = raw.is_unsigned();
   parallel_for(raw.height, [&](std::int64_t row) {
     Number* to = numbers + static_cast<std::size_t>(row) * row_numbers;
     for_each_run(raw, row * raw.width, raw.width,

@@ -163,12 +163,7 @@ std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes
 void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
                                              const std::vector<std::int32_t>& open,
                                              const DecodedView& decoded) const {
-  std::vector<DecodedPlane> wanted;
-  for (const PlaneDescription& described : plane_descriptions)
-    if (with_plane(
-            described.plane, [](const auto* plane) { return plane != nullptr; }, decoded))
-      wanted.push_back(described.plane);
-  DepthImage image(wanted, 1, static_cast<int>(open.size()));
+  DepthImage image(decoded.planes(), 1, static_cast<int>(open.size()));
   decoder.decode(numbers, DecodedView::of(image));
   for_each_plane(
       [&](const auto& from, auto* to) {

@@ -23,6 +23,7 @@ TEST(DecodedPlanes, ViewsHaveExactlyThePlanesOfTheirImage) {
     DepthImage image({plane}, 2, 3);
     const DecodedView view = DecodedView::of(image), later = view.from(4);
     EXPECT_EQ(view.wants_bins_only(), plane == DecodedPlane::bin);
+    EXPECT_EQ(view.planes(), std::vector{plane});
     for (const DecodedPlane other : all_planes())
       with_plane(
           other,

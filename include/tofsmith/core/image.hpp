@@ -86,6 +86,11 @@ struct RawView {
   bool is_marked = false;
 
   std::int64_t pixels() const { return std::int64_t{height} * width; }
+  /// Returns true if the numbers are or were unsigned integers.
+  bool is_unsigned() const {
+    return was_unsigned || std::holds_alternative<const std::uint8_t*>(data) ||
+           std::holds_alternative<const std::uint16_t*>(data);
+  }
 
   /// (H, W, K), with the measurements of a pixel adjacent.
   template <typename Number>

@@ -98,11 +98,11 @@ class Decoder {
   /// @note the same bits for any number of threads and any layout of the raw numbers, and on every
   ///       processor
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As decode(), with only those depths as candidates that lie within the part of the range of
-  /// each pixel. Candidates are maxima of the correlation (minima of other methods' costs), so that
-  /// a depth is never the end of a part. Confidence assumes that depths outside are 100 times less
-  /// frequent. Pixels without candidate have no return, and neither have pixels whose depth lies
-  /// outside with a probability of at least 0.9.
+  /// As decode(), but only depths within a part of the range are candidates. Candidates are maxima
+  /// of the correlation (other methods: minima of the cost), so that depths do not accumulate at
+  /// the ends of a part. Confidence assumes that depths outside are 100 times less frequent. Pixels
+  /// without a candidate, and pixels whose depth lies outside with a probability of at least 0.9,
+  /// are no_return.
   /// @param parts  one per pixel, row by row
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;

@@ -21,7 +21,7 @@ struct DepthCorrection;
 
 /// Outcome of a pixel. If several apply, the first of invalid, saturated, no_return, low_signal,
 /// inconsistent, too_near, too_far, ambiguous is reported. Only mark_mixed_pixels() sets mixed, and
-/// only DepthLimits set too_near and too_far.
+/// only depth limits set too_near and too_far.
 enum class PixelStatus : std::uint8_t {
   ok = 0,
   invalid = 1,     ///< a measurement is NaN or infinite: no depth
@@ -168,6 +168,8 @@ struct DecodedView {
 #undef TOFSMITH_PLANE
 
   bool wants_bins_only() const;
+  /// Returns the planes that are not null.
+  std::vector<DecodedPlane> planes() const;
   /// All planes of an image that have a size.
   static DecodedView of(DepthImage& image);
   /// The same planes from a later pixel on.

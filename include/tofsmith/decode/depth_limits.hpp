@@ -18,15 +18,15 @@ struct DepthLimits {
   double max_m = 0.0;
 
   bool contains(double depth_m) const { return depth_m >= min_m && depth_m <= max_m; }
-  /// too_near or too_far, of a depth that is not within the limits.
+  /// Returns too_near or too_far for a depth outside the limits.
   PixelStatus status_of(double depth_m) const {
     return depth_m < min_m ? PixelStatus::too_near : PixelStatus::too_far;
   }
 };
 
-/// Returns the limits to decode with: `min_depth_m` and `max_depth_m`, each replaced by the
-/// camera's working distance if it is absent, and by the end of the range without either. None if
-/// nothing limits the depth.
+/// Returns the limits for decoding: `min_depth_m` and `max_depth_m`. An absent one is replaced by
+/// the camera's working distance, or by the end of the range if there is none. Returns none if all
+/// three are absent.
 /// @throws std::invalid_argument naming the field, unless 0 <= minimum < maximum <= range
 std::optional<DepthLimits> depth_limits(const DecodingTable& table,
                                         std::optional<double> min_depth_m,
@@ -35,13 +35,13 @@ std::optional<DepthLimits> depth_limits(const DecodingTable& table,
 /// Restricts decoded pixels to depths within the limits. Pixels with a confidence below 1 are
 /// decoded again with the depths within the limits as the only candidates
 /// (DepthDecoder::decode_within). A pixel without such a candidate, or whose depth lies outside
-/// with a probability of at least 0.9, is too_near or too_far. Its status stays saturated,
-/// low_signal or inconsistent if it was; its depth is NaN in any case.
+/// with a probability of at least 0.9, is too_near or too_far. The status saturated, low_signal or
+/// inconsistent is kept; the depth is NaN in any case.
 ///
-/// Called before apply(DepthCorrection) and apply(PixelMaps), whose effect is taken into account;
-/// remove_outside() follows them.
+/// Must be called before apply(DepthCorrection) and apply(PixelMaps), whose effect it takes into
+/// account, and remove_outside() after them.
 /// @param decoder  decoder of the planes
-/// @param raw      decoded numbers, one view of `decoded`
+/// @param raw      numbers of the same pixels as `decoded`
 /// @param maps     maps of the whole frame, of `width` columns
 /// @param first    index in the frame of the first pixel of `raw`
 /// @param decoded  depth, confidence and status are needed
@@ -51,8 +51,9 @@ void restrict_depths(const DepthLimits& limits, const DepthDecoder& decoder, con
                      const PixelMaps& maps, int width, std::size_t first,
                      const DecodedView& decoded, const Progress& progress = {});
 
-/// Takes the depth off pixels whose corrected depth is not within the limits, as restrict_depths()
-/// does. @param decoded  depth and status are needed
+/// Removes the depth of pixels whose corrected depth is outside the limits, with the same statuses
+/// as restrict_depths().
+/// @param decoded  depth and status are needed
 void remove_outside(const DepthLimits& limits, const DecodedView& decoded, std::size_t count);
 
 }  // namespace tofsmith

@@ -102,8 +102,8 @@ std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> de
 struct PlaneCorrections {
   PixelMaps maps;                    ///< of whole frames, beside the table's depth correction
   std::optional<MixedPixels> mixed;  ///< marks mixed pixels, in whole frames; none: not looked for
-  /// Restricts depths (restrict_depths()), which with a spatial filter requires
-  /// FrameSteps::keeps_filtered; none: any depth in the range.
+  /// Applied by restrict_depths(); with a spatial filter they require FrameSteps::keeps_filtered.
+  /// None: any depth in the range.
   std::optional<DepthLimits> limits = {};
 };
 

@@ -53,7 +53,7 @@ class LikelihoodDecoder {
   ///   confidence: posterior probability of the main lobe around the most likely depth, with the
   ///     noise at the first estimate of the depth.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As decode(), with only those depths as candidates that lie within `parts`.
+  /// As Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.

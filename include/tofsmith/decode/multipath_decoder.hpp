@@ -88,7 +88,7 @@ class MultipathDecoder {
   /// @note the same bits for any number of threads; processors without fused multiply-add differ in
   ///       the last ones
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As decode(), with only those depths as candidates that lie within `parts`.
+  /// As Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image with the usual planes.

@@ -79,7 +79,7 @@ class UnwrapDecoder {
   ///   confidence: posterior probability of the main lobe around the depth of the chosen wraps,
   ///     from all measurements.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As decode(), with only those depths as candidates that lie within `parts`.
+  /// As Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.

@@ -60,10 +60,9 @@ class LikelihoodSearch {
   /// @param within  where the depth must lie; null: anywhere. No signal if no peak lies there.
   MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall,
                          const RangePart* within = nullptr) const;
-  /// Posterior probability of the main lobe around the most likely depth, by
-  /// LobePosterior::confidence().
+  /// Returns LobePosterior::confidence() of the most likely depth.
   std::optional<double> confidence(const LikelihoodPixel& pixel, const MostLikely& found,
-                                   const RangePart* within = nullptr) const;
+                                   const RangePart* within) const;
 
  private:
   struct Peak;

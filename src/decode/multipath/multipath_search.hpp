@@ -11,8 +11,7 @@ struct PixelGroup {
   alignas(64) float electrons[max_measurements][pixels_per_group];    ///< without dark ones [e]
   alignas(64) float variance_e2[max_measurements][pixels_per_group];  ///< each > 0
   alignas(64) float guess[pixels_per_group];                          ///< [fine points]
-  /// Part of the range in which the direct return does not lie: its beginning and its length [fine
-  /// points].
+  /// Part of the range in which the direct return cannot lie: beginning and length [fine points].
   alignas(64) float excluded_from[pixels_per_group] = {};
   alignas(64) float excluded_length[pixels_per_group] = {};
 };
@@ -50,8 +49,9 @@ struct DelayBounds {
 void fit_single(const MultipathCurve& curve, const PixelGroup& pixels, SingleFits& fits);
 
 /// Noise-weighted least squares of two returns, S1 >= S2 >= 0, or of a return and its tail if the
-/// curve has one: all pairs of coarse places are tried, the best few followed downhill. They start
-/// outside the excluded part of the range, or next to it, but may end inside.
+/// curve has one: all pairs of coarse places are tried, the best few followed downhill. Searches
+/// start outside the excluded part of the range, or at most one coarse step inside, but may end
+/// inside.
 /// @note as fit_single
 void fit_pair(const MultipathCurve& curve, const DelayBounds& delays, const PixelGroup& pixels,
               PairFits& fits);

@@ -324,11 +324,6 @@ bool LobePosterior::is_certain(const double* plane, const double* variance_e2,
   return is_sure(q.data(), static_cast<float>(score), static_cast<float>(least), row);
 }
 
-double LobePosterior::confidence(const double* plane, const double* variance_e2,
-                                 std::int32_t row) const {
-  return is_certain(plane, variance_e2, row) ? 1.0 : probability(plane, variance_e2, row);
-}
-
 double LobePosterior::probability(const double* plane, const double* variance_e2,
                                   std::int32_t row) const {
   return share_of(lobe_window(row), NoiseMetric(noise_basis_, plane, variance_e2));
@@ -337,8 +332,8 @@ double LobePosterior::probability(const double* plane, const double* variance_e2
 std::optional<double> LobePosterior::confidence(const double* plane, const double* variance_e2,
                                                 std::int32_t row, const RangePart* part) const {
   constexpr double surely_outside = 0.9;
-  if (!part || part->is_whole()) return confidence(plane, variance_e2, row);
   if (is_certain(plane, variance_e2, row)) return 1.0;
+  if (!part || part->is_whole()) return probability(plane, variance_e2, row);
   const NoiseMetric noise(noise_basis_, plane, variance_e2);
   const Window allowed = window_of(*part);
   const double inside = share_of(allowed, noise), outside = outside_prior * (1.0 - inside);

@@ -72,12 +72,10 @@ class LobePosterior {
   /// @return in [0, 1], the same bits on every processor
   /// @note thread-safe; allocates nothing in most cases
   double probability(const double* plane, const double* variance_e2, std::int32_t row) const;
-  /// probability(), or 1 where is_sure() proves it.
-  double confidence(const double* plane, const double* variance_e2, std::int32_t row) const;
-  /// confidence() of a row in a part of the range in which nearly all depths lie: depths outside
-  /// are less likely a priori by the factor `outside_prior`. None if the depth lies outside with a
-  /// probability of at least 0.9 nevertheless.
-  /// @param part  null: any depth
+  /// Returns probability(), or 1 if LobeBound or is_sure() proves it. With a part of the range,
+  /// depths outside are less likely a priori by the factor `outside_prior`; returns none if the
+  /// depth nevertheless lies outside with a probability of at least 0.9.
+  /// @param part  of the range; null: all of it
   std::optional<double> confidence(const double* plane, const double* variance_e2, std::int32_t row,
                                    const RangePart* part) const;
   static constexpr double outside_prior = 0.01;

@@ -97,7 +97,8 @@ double PixelModel::score_at(const double* plane, std::int32_t row) const {
                          : -std::numeric_limits<double>::infinity();
 }
 
-/// On a smooth curve, the score at the nearest row and the integral of its slope.
+/// On a smooth curve, the sum of the score at the nearest row and the integral of the score's
+/// slope.
 double PixelModel::score_at(const double* plane, const Position& position) const {
   const std::int32_t to = next(position.bin);
   const double t = position.fraction;
@@ -116,8 +117,8 @@ double PixelModel::score_at(const double* plane, const Position& position) const
 std::optional<Position> PixelModel::best_within(const double* plane, const RangePart& part) const {
   // The best position of a row is up to one row away from it.
   const auto first = static_cast<std::int32_t>(std::floor(part.begin * samples_)) - 1;
-  const auto count =
-      static_cast<std::int32_t>(std::min(1.0 * samples_, std::ceil(part.length * samples_) + 3.0));
+  const auto count = static_cast<std::int32_t>(
+      std::min<double>(samples_, std::ceil(part.length * samples_) + 3.0));
   const auto wrapped = [&](std::int32_t n) { return ((n % samples_) + samples_) % samples_; };
   std::optional<Position> best;
   double best_score = -std::numeric_limits<double>::infinity();

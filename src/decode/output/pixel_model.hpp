@@ -56,8 +56,8 @@ class PixelModel {
   /// On a smooth curve instead the maximum of the pixel's own correlation (DepthPolynomials).
   Position refine(const double* plane, std::int32_t bin) const;
 
-  /// Best position within a part of the range, of those at which the score <q, p> / |p| is higher
-  /// than at the positions next to them. None if the score has no maximum there.
+  /// Returns the highest local maximum of the score <q, p> / |p| within a part of the range; none
+  /// if there is no local maximum.
   std::optional<Position> best_within(const double* plane, const RangePart& part) const;
 
   /// Least squares of electrons - dark (K) on x at the position and on ambient light, without

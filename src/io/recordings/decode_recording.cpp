@@ -180,7 +180,7 @@ class Pace {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Compares the noise of the frame that was filtered with the camera's.
+/// Adds a note if the noise of a filtered frame differs from the prediction of the camera.
 void add_noise_note(FramePipeline& pipeline, const Band& band, DecodedRecording& result) {
   const FrameSteps& steps = pipeline.steps();
   if (const auto ratio = measured_noise_ratio(*steps.filter, pipeline.measured()))
@@ -276,8 +276,9 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   if (const auto note = repeated_offset_note(table, corrections.maps.delay_offset_m))
     result.notes.push_back(*note);
   decode_frames(reader, preparation, rows, pipelines, corrections, output, progress, result);
-  if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
-  if (const auto note = inconsistent_note(result.total())) {
+  const StatusCounts total = result.total();
+  if (const auto note = no_depth_note(total)) result.notes.push_back(*note);
+  if (const auto note = inconsistent_note(total)) {
     const auto misfit =
         misfit_note(request, decoder, reader, target.first_frame * preparation.group());
     result.notes.push_back(misfit ? *misfit : *note);

@@ -11,9 +11,9 @@
 #include <numeric>
 #include <set>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 
 using Order = std::vector<int>;
 
-/// Raw numbers of some pixels, the measurements of a pixel side by side.
+/// Raw numbers of some pixels, with the measurements of a pixel adjacent.
 struct PixelSample {
   std::vector<float> numbers;
   int measurements = 0;
@@ -33,15 +33,14 @@ struct PixelSample {
   int pixels() const { return static_cast<int>(numbers.size()) / measurements; }
 };
 
-/// Difference of the largest and the smallest measurement of a pixel [e]; 0 if a number is no
-/// measurement.
+/// Returns the difference of the largest and the smallest measurement of a pixel [e]; 0 if a number
+/// is clipped or not finite.
 double contrast(const float* numbers, const DecodingTable& table) {
+  const SaturationLevels levels(table);
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int k = 0; k < table.measurements(); ++k) {
     const float number = numbers[k];
-    if (!std::isfinite(number) || (table.saturation_level && number >= *table.saturation_level) ||
-        (table.lower_saturation_level && number <= *table.lower_saturation_level))
-      return 0.0;
+    if (!std::isfinite(number) || levels.clip(number)) return 0.0;
     const double electrons =
         (static_cast<double>(number) - table.black_level[k]) * table.gain_e_per_raw[k];
     low = std::min(low, electrons);
@@ -50,7 +49,8 @@ double contrast(const float* numbers, const DecodingTable& table) {
   return high - low;
 }
 
-/// The pixels with the most contrast of evenly spaced rows, which shot noise hides least.
+/// Returns the pixels with the most contrast in evenly spaced rows. A wrong order of exposures
+/// shows most clearly in them.
 PixelSample sample_of(const RawFramesReader& reader, int frame, const DecodingTable& table) {
   constexpr int max_rows = 64;
   constexpr std::size_t max_read = 1 << 14, max_kept = 512;
@@ -63,9 +63,7 @@ PixelSample sample_of(const RawFramesReader& reader, int frame, const DecodingTa
   for (int i = 0; i < rows; ++i) {
     const int row = static_cast<int>(std::int64_t{i} * reader.height() / rows);
     const RawView view = reader.read_rows(frame, row, 1, buffer);
-    sample.was_unsigned = view.was_unsigned ||
-                          std::holds_alternative<const std::uint16_t*>(view.data) ||
-                          std::holds_alternative<const std::uint8_t*>(view.data);
+    sample.was_unsigned = view.is_unsigned();
     for (int column = 0; column < view.width; column += step) {
       read.resize(read.size() + measurements);
       copy_pixels(view, column, 1, read.data() + read.size() - measurements);
@@ -86,8 +84,8 @@ PixelSample sample_of(const RawFramesReader& reader, int frame, const DecodingTa
   return sample;
 }
 
-/// Square root of the median chi-square per degree of freedom: how many times as large as the noise
-/// the deviations from the code are. NaN without degrees of freedom.
+/// Returns the square root of the median chi-square per degree of freedom, which is the ratio of
+/// the deviations from the code to the noise. Infinite without degrees of freedom.
 double residual_of(const Decoder& decoder, const PixelSample& sample) {
   const int pixels = sample.pixels();
   std::vector<float> residual(static_cast<std::size_t>(pixels));
@@ -108,7 +106,7 @@ double residual_of(const Decoder& decoder, const PixelSample& sample) {
   return std::sqrt(static_cast<double>(*middle));
 }
 
-/// The sample whose exposure q[i] of the recording is the i-th.
+/// Returns the sample with exposure q[i] of the recording as its i-th exposure.
 PixelSample reordered(const PixelSample& sample, const Order& q) {
   const int taps = sample.measurements / static_cast<int>(q.size());
   PixelSample result = sample;
@@ -120,35 +118,43 @@ PixelSample reordered(const PixelSample& sample, const Order& q) {
   return result;
 }
 
-/// All permutations of the first n integers if they are few, else the order and its reverse.
-std::vector<Order> permutations(int n) {
-  constexpr int max_permuted = 4;
+/// Returns 0 ... n - 1.
+Order ascending(int n) {
   Order order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
-  if (n > max_permuted) return {order, Order(order.rbegin(), order.rend())};
+  return order;
+}
+
+std::vector<Order> all_permutations(int n) {
+  Order order = ascending(n);
   std::vector<Order> all;
   do all.push_back(order);
   while (std::ranges::next_permutation(order).found);
   return all;
 }
 
+/// Returns all permutations if n is small, otherwise the ascending and the descending order.
+std::vector<Order> some_permutations(int n) {
+  constexpr int max_permuted = 4;
+  if (n <= max_permuted) return all_permutations(n);
+  const Order order = ascending(n);
+  return {order, Order(order.rbegin(), order.rend())};
+}
+
 /// Orders in which a driver may deliver exposures: frequencies exchanged, phases exchanged within
 /// each frequency, or phase after phase instead of frequency after frequency.
 std::set<Order> plausible_orders(int exposures) {
   constexpr int max_all = 6;
-  std::set<Order> orders;
   if (exposures <= max_all) {
-    Order order(static_cast<std::size_t>(exposures));
-    std::iota(order.begin(), order.end(), 0);
-    do orders.insert(order);
-    while (std::ranges::next_permutation(order).found);
-    return orders;
+    const std::vector<Order> all = all_permutations(exposures);
+    return {all.begin(), all.end()};
   }
+  std::set<Order> orders;
   for (int size = 1; size <= exposures; ++size) {
     if (exposures % size != 0) continue;
     const int groups = exposures / size;
-    for (const Order& group : permutations(groups))
-      for (const Order& member : permutations(size)) {
+    for (const Order& group : some_permutations(groups))
+      for (const Order& member : some_permutations(size)) {
         Order by_groups, by_members;
         for (const int g : group)
           for (const int m : member) {
@@ -184,7 +190,7 @@ struct Alternative {
   std::string text;
 };
 
-/// Option that results in the order q of the recorded exposures.
+/// Returns the option that results in the order q of the recorded exposures.
 std::string option_text(const Order& recorded, const Order& q) {
   Order order(q.size());
   for (std::size_t i = 0; i < q.size(); ++i) order[static_cast<std::size_t>(q[i])] = recorded[i];
@@ -203,7 +209,7 @@ std::vector<Alternative> alternatives(const PixelSample& sample, const Decoder& 
   return all;
 }
 
-/// ". This fits ...: ..." with the best alternatives; "" without a better one.
+/// Returns ". This fits ...: ..." with the best alternatives; "" if none is clearly better.
 std::string better_text(std::vector<Alternative> all, double residual) {
   constexpr double clearly = 1.0 / 3.0, alike = 1.25;
   constexpr std::size_t max_named = 3;
@@ -217,8 +223,7 @@ std::string better_text(std::vector<Alternative> all, double residual) {
   const std::string rest =
       all.size() > max_named
           ? fmt::format(
-                "; and {} others, which differ from these by an offset or the direction of "
-                "depth",
+                "; and {} others, which differ from these by an offset or the direction of depth",
                 all.size() - max_named)
           : "";
   return fmt::format(". This fits (residual {} times the noise): {}{}", plain_number(best, 2),
@@ -240,11 +245,7 @@ std::optional<std::string> misfit_note(const DecodeRequest& request, const Depth
   if (!correlation) correlation = &own.emplace(table);
   const double residual = residual_of(*correlation, sample);
   if (!(residual > large) || std::isinf(residual)) return std::nullopt;
-  Order recorded = request.order;
-  if (recorded.empty()) {
-    recorded.resize(static_cast<std::size_t>(table.measurements()));
-    std::iota(recorded.begin(), recorded.end(), 0);
-  }
+  const Order recorded = request.order.empty() ? ascending(table.measurements()) : request.order;
   return fmt::format(
       "raw numbers do not fit this code (residual {} times the noise): check --order, --code, "
       "--camera and the byte order{}",
