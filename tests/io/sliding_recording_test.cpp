@@ -180,6 +180,11 @@ TEST_F(SlidingRecording, SurfacesThatMoveWithinAWindowAreInconsistent) {
   EXPECT_THAT(inconsistent("still.npy"), Each(0));
   // Windows 1 to 3 have exposures of both frames; two of five columns move.
   EXPECT_EQ(inconsistent("moving.npy"), (std::vector<std::int64_t>{0, 12, 12, 12, 0, 0, 0, 0, 0}));
+  // Inconsistent windows are compared with a frame of the recording, which has fewer than windows.
+  DecodeRequest third = sliding("moving.npy", "d.npy");
+  third.outputs = {DecodedPlane::depth, DecodedPlane::status};
+  third.frame = 3;
+  EXPECT_EQ(decode_recording(third, *backend).total().of(PixelStatus::inconsistent), 12);
 }
 
 TEST_F(SlidingRecording, RejectsMeansMergedExposuresAndLookAhead) {

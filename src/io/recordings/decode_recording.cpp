@@ -207,7 +207,7 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
     report(here, 0.0, "reading");
     decode_next(input, corrections, band, target, planes, here);
     if (preparation.steps.filter && result.frames.empty())
-      add_noise_note(*pipelines.front(), band, result);
+      add_noise_note(input.pipeline(), band, result);
     if (target.undistortion) undistort(planes, *target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)
@@ -280,7 +280,7 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   if (const auto note = no_depth_note(total)) result.notes.push_back(*note);
   if (const auto note = inconsistent_note(total)) {
     const auto misfit =
-        misfit_note(request, decoder, reader, target.first_frame * preparation.group());
+        misfit_note(request, decoder, reader, preparation.first_recorded(target.first_frame));
     result.notes.push_back(misfit ? *misfit : *note);
   }
 }

@@ -38,7 +38,9 @@ struct Preparation {
   int frames_of(int recorded) const {
     return sliding > 0 ? windows_of(recorded, sliding) : (recorded + group() - 1) / group();
   }
-  /// Frames that are submitted to the pipeline, of so many.
+  /// Returns the first recorded frame from which frame `index` is decoded.
+  int first_recorded(int index) const { return sliding > 0 ? index / sliding : index * group(); }
+  /// Number of frames that are submitted to the pipeline for `recorded` frames.
   int submitted_of(int recorded) const {
     return hdr.empty() && sliding == 0 ? recorded : frames_of(recorded);
   }
