@@ -30,8 +30,8 @@ struct SettingValue {
 using Settings = std::span<const std::string>;
 
 /// Reads a camera from TOML. Keys are the names of the fields; all except fundamental_frequency_hz
-/// are optional. Light levels default to the levels of the paper, the name to the stem of the file. An
-/// impulse response of kind "file" is read from a file relative to this one, see
+/// are optional. Light levels default to the levels of the paper, the name to the stem of the file.
+/// An impulse response of kind "file" is read from a file relative to this one, see
 /// read_impulse_response().
 /// @param source_name  path, or name for error messages
 /// @throws IoError "file:line:column: ..." (or "setting '...': ...") for invalid TOML, unknown keys

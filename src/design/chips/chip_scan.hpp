@@ -46,7 +46,8 @@ void find_informed(const InformationRows& information, std::span<const ScanAssig
                    int chips, int taps, std::uint32_t* informed);
 
 /// As find_informed() for pairs: adds the matrices of one exposure (points x chips x entries) to
-/// the matrices of each other exposure. For each point, the rows of a block are `chips` consecutive rows.
+/// the matrices of each other exposure. For each point, the rows of a block are `chips` consecutive
+/// rows.
 /// @param informed  one bit per other exposure, for each block
 void find_informed_pairs(const InformationRows& others, std::span<const float> first, int chips,
                          std::size_t blocks, std::uint32_t* informed);
