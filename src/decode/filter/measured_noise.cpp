@@ -57,9 +57,7 @@ class Differences {
 RawView middle_rows(RawView raw) {
   constexpr int max_rows = 128;
   const int rows = std::min(raw.height, max_rows), first = (raw.height - rows) / 2;
-  raw.data = std::visit(
-      [&](const auto* data) -> decltype(raw.data) { return data + first * raw.row_stride; },
-      raw.data);
+  std::visit([&](auto& data) { data += first * raw.row_stride; }, raw.data);
   if (raw.averaged) raw.averaged += std::ptrdiff_t{first} * raw.width;
   raw.height = rows;
   return raw;
