@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# What build_info() and `tofsmith --version` say. The commit is looked up at every build, in a source
-# file of its own: a new commit compiles that file and links, no more. Included from
-# src/CMakeLists.txt.
+# Writes the data of build_info() and `tofsmith --version`. Each build looks up the commit and stores
+# it in a separate source file, so that a new commit compiles only that file and links. Included
+# from src/CMakeLists.txt.
 
 set(TOFSMITH_COMMIT "" CACHE STRING "The commit to name; empty: ask git")
 set(commit_source "${CMAKE_CURRENT_BINARY_DIR}/build_commit.cpp")
 set(write_commit ${CMAKE_COMMAND} -D "source=${PROJECT_SOURCE_DIR}" -D "output=${commit_source}"
                  -D "commit=${TOFSMITH_COMMIT}" -P "${PROJECT_SOURCE_DIR}/cmake/build_commit.cmake")
-execute_process(COMMAND ${write_commit} COMMAND_ERROR_IS_FATAL ANY)  # lint reads it unbuilt
+execute_process(COMMAND ${write_commit} COMMAND_ERROR_IS_FATAL ANY)  # for lint, which builds nothing
 add_custom_target(tofsmith_build_commit BYPRODUCTS "${commit_source}"
                   COMMAND ${write_commit} COMMENT "Looking up the commit" VERBATIM)
 add_dependencies(tofsmith_core tofsmith_build_commit)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# The components: which folders of src/ each is made of, and which others it stands on. Each is a
-# library, an export and a pair of Debian packages; everything else asks here.
+# Lists the components, with the folders of src/ that form each and the components it needs. Each
+# component is a library, an export and a pair of Debian packages. All other files use this list.
 
 set(TOFSMITH_ALL_COMPONENTS core gpu design io report lab sweep)
 
@@ -42,13 +42,13 @@ foreach(component IN LISTS wanted_components)
                         "${TOFSMITH_ALL_COMPONENTS}")
   endif()
 endforeach()
-# From the top down: what is needed is wanted, too.
+# Selects all components needed by the selected ones, from the top down.
 foreach(component IN ITEMS sweep lab report io design gpu)
   if(component IN_LIST wanted_components)
     list(APPEND wanted_components ${tofsmith_${component}_needs})
   endif()
 endforeach()
-# Those that are built, each after what it stands on.
+# The components to build, each after the components it needs.
 set(TOFSMITH_BUILT_COMPONENTS)
 foreach(component IN LISTS TOFSMITH_ALL_COMPONENTS)
   set(TOFSMITH_HAS_${component} OFF)

@@ -6,11 +6,11 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)  # the same bytes wherever the build stands
+set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)  # the same bytes for any build folder
 
 find_program(TOFSMITH_CCACHE ccache)
 if(TOFSMITH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # The sloppiness lets ccache serve translation units that use a precompiled header.
+  # With this setting ccache serves translation units that use a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER
       ${CMAKE_COMMAND} -E env
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
@@ -21,13 +21,13 @@ add_library(tofsmith_build_options INTERFACE)
 target_compile_features(tofsmith_build_options INTERFACE cxx_std_20)
 target_compile_options(tofsmith_build_options INTERFACE
   -Wall -Wextra -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
-  # Contraction would make a sum depend on how the compiler fused it; kernels ask for FMA explicitly.
+  # With contraction, sums would depend on the compiler. Kernels use FMA explicitly.
   -ffp-contract=off
   $<$<BOOL:${TOFSMITH_WERROR}>:-Werror>
   $<$<AND:$<BOOL:${TOFSMITH_CCACHE}>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
 
-# What makes a flaw in a reader of hostile files harder to use; tests/consumer/hardening_test.py looks
-# for it in what is installed. Sanitizers check more, and do not go together with it.
+# Hardening for readers of untrusted files; tests/consumer/hardening_test.py verifies it in installed
+# files. Sanitizers check more and cannot be combined with it.
 option(TOFSMITH_HARDEN "Compile optimized builds with what hardens them against hostile input" ON)
 if(TOFSMITH_HARDEN AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang"
    AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
@@ -37,7 +37,7 @@ if(TOFSMITH_HARDEN AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_CXX_COMPILER
   elseif(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
     list(APPEND hardening -mbranch-protection=standard)
   endif()
-  if(NOT CMAKE_CXX_FLAGS MATCHES "FORTIFY")  # a distribution's own level
+  if(NOT CMAKE_CXX_FLAGS MATCHES "FORTIFY")  # set by a distribution
     list(APPEND hardening -D_FORTIFY_SOURCE=2)
   endif()
   set(optimized "$<CONFIG:Release,RelWithDebInfo,MinSizeRel>")
@@ -46,11 +46,11 @@ if(TOFSMITH_HARDEN AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_CXX_COMPILER
     "$<${optimized}:LINKER:-z,relro,-z,now,-z,noexecstack>")
 endif()
 
-# Compiles a target at -O1 in optimized builds, which takes two thirds of the time of -O3: for code that
-# runs for a shorter time than it compiles. No level contracts or reorders sums, so results are the same.
+# Compiles a target at -O1 in optimized builds, in two thirds of the time of -O3, for code that runs
+# for a shorter time than it compiles. Results are the same: no level contracts or reorders sums.
 function(tofsmith_compile_fast target)
   set(options $<$<CXX_COMPILER_ID:GNU,Clang>:-O1>)
-  # At -O1, GCC 12 takes the storage of Eigen's temporaries for used after it was freed.
+  # At -O1, GCC 12 falsely warns that Eigen uses freed temporaries.
   list(APPEND options $<$<CXX_COMPILER_ID:GNU>:-Wno-use-after-free>)
   get_target_property(type ${target} TYPE)
   set(scope PRIVATE)

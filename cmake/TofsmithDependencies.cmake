@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Everything comes from Debian packages; scripts/packages.sh lists them.
+# All dependencies are Debian packages, listed in scripts/packages.sh.
 
-# What each component uses itself; what its users must find again is in
-# tofsmith<Component>Dependencies.cmake, which cmake/TofsmithInstall.cmake writes.
+# Finds the dependencies of each component. cmake/TofsmithInstall.cmake writes
+# tofsmith<Component>Dependencies.cmake, which finds the ones that users of a component need.
 
 if(EMSCRIPTEN)
   include(TofsmithWasm)
@@ -33,7 +33,7 @@ if(TOFSMITH_USE_FFTW OR TOFSMITH_HAS_io)
 endif()
 if(TOFSMITH_USE_FFTW)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
-  find_library(FFTW_THREADS_LIBRARY fftw3_threads REQUIRED)  # a planner that threads may share
+  find_library(FFTW_THREADS_LIBRARY fftw3_threads REQUIRED)  # its planner is thread-safe
 endif()
 
 if(TOFSMITH_HAS_io OR TOFSMITH_BUILD_TESTS)
@@ -51,7 +51,7 @@ if(TOFSMITH_HAS_io)
   find_package(TBB REQUIRED)  # Embree's threads
   pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
   pkg_check_modules(YAML_CPP REQUIRED IMPORTED_TARGET yaml-cpp)
-  pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)  # not the one for MPI
+  pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)  # without MPI
 endif()
 
 set(TOFSMITH_HAS_OPENCL OFF)
@@ -87,11 +87,11 @@ if(TOFSMITH_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()
 if(TOFSMITH_BUILD_BENCHMARKS)
-  find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)  # a peer; can be missing
+  find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)  # an optional peer
 endif()
 if(TOFSMITH_BUILD_PYTHON)
-  # Debian's own, for which the packages are: another python3 may come first on PATH. pip names the
-  # one it installs for.
+  # Debian's Python, which its packages need: another python3 may be first on PATH. pip passes the
+  # interpreter it installs for.
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The python3 to build the package for")
   set(TOFSMITH_PYTHON_ROOT "" CACHE PATH
       "Unpacked Debian packages with the headers of another python3 and its pybind11, to build for")
@@ -105,7 +105,7 @@ if(TOFSMITH_BUILD_PYTHON)
   endif()
   if(NOT Python_FOUND OR NOT pybind11_FOUND)
     set(consequence WARNING "The Python package is not built")
-    if(TOFSMITH_BUILD_PYTHON STREQUAL "REQUIRED")  # pip and packages ask for nothing else
+    if(TOFSMITH_BUILD_PYTHON STREQUAL "REQUIRED")  # for pip and packages
       set(consequence FATAL_ERROR "The Python package cannot be built")
     endif()
     set(missing pybind11-dev)

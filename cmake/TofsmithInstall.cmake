@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: each component's library, headers, CMake targets and pkg-config file, the command
-# line with its manual pages and shell completion, examples, the licence. Parts that can be installed
-# alone: <component> and <component>_dev, dev, tool, python.
+# cmake --install: the library, headers, CMake targets and pkg-config file of each component, the
+# command line with manual pages and shell completion, examples and the licence. Parts that can be
+# installed alone: <component> and <component>_dev, dev, tool, python.
 
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tofsmith)
@@ -14,7 +14,7 @@ else()
   set(TOFSMITH_IS_STATIC OFF)
 endif()
 
-# What the users of a component must find: of a static library all that it uses inside.
+# Dependencies that users of a component must find; for a static library, also its internal ones.
 set(finds_core "find_dependency(Eigen3 3.4)")
 if(TOFSMITH_IS_STATIC)
   list(APPEND finds_core "find_dependency(Threads)" "find_dependency(HWY)" "find_dependency(fmt)")
@@ -49,10 +49,10 @@ foreach(component IN LISTS TOFSMITH_BUILT_COMPONENTS)
           FILE tofsmith_${component}_targets.cmake COMPONENT ${dev})
   set(dependencies ${PROJECT_BINARY_DIR}/tofsmith_${component}_dependencies.cmake)
   list(JOIN finds_${component} "\n" finds)
-  file(CONFIGURE OUTPUT ${dependencies} CONTENT "# What tofsmith::${component} needs.\n@finds@\n" @ONLY)
+  file(CONFIGURE OUTPUT ${dependencies} CONTENT "# Dependencies of tofsmith::${component}.\n@finds@\n" @ONLY)
   install(FILES ${dependencies} DESTINATION ${package_dir} COMPONENT ${dev})
   set(folders ${tofsmith_${component}_folders})
-  list(REMOVE_ITEM folders gpu)  # one header says all of it
+  list(REMOVE_ITEM folders gpu)  # described by one header
   list(TRANSFORM folders PREPEND "${PROJECT_SOURCE_DIR}/include/tofsmith/"
        OUTPUT_VARIABLE headers)
   install(DIRECTORY ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tofsmith COMPONENT ${dev}
@@ -69,7 +69,7 @@ endforeach()
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/tofsmithConfig.cmake.in ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
   INSTALL_DESTINATION ${package_dir})
-# Before 1.0 a minor version may break its users.
+# Before 1.0, minor versions may be incompatible.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tofsmithConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
@@ -77,7 +77,7 @@ install(FILES ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
         DESTINATION ${package_dir} COMPONENT core_dev)
 include(TofsmithPkgConfig)
 
-# A Debian package has its licence in a file of Debian's form.
+# Debian packages contain the licence in Debian's format.
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
@@ -93,7 +93,7 @@ if(TARGET tofsmith_cli)
        ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(tofsmith_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${from_bin_to_lib}")
   install(TARGETS tofsmith_cli COMPONENT tool)
-  # What `tofsmith lab` copies out; apps/lab_command.cpp knows the place.
+  # `tofsmith lab` copies this page; apps/lab_command.cpp contains its path.
   set(TOFSMITH_LAB_PAGE "" CACHE FILEPATH
       "The page that scripts/lab.sh has made, to be installed; empty: build-lab/lab.html if it is there")
   set(lab_page "${TOFSMITH_LAB_PAGE}")

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# The kernels of tofsmith::gpu as texts in it, which devices compile; and OpenCL. Included from
-# src/CMakeLists.txt.
+# Adds the sources of the kernels as strings to tofsmith::gpu, for compilation on devices, and links
+# OpenCL. Included from src/CMakeLists.txt.
 
-# Adds NAME, the text of some files one behind the other, which HEADER declares.
+# Adds NAME, a string declared in HEADER, with the concatenated text of the given files.
 function(tofsmith_add_kernels name header)
   set(kernel_text)
   foreach(file IN LISTS ARGN)

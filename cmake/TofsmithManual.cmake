@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Manual pages and shell completion, made from what the command line says of itself.
+# Generates manual pages and shell completion from `tofsmith --list-commands`.
 
 find_program(TOFSMITH_BUILD_PYTHON3 NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH
              DOC "Makes manual pages and completions; no package of its own is needed")

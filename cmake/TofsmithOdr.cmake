@@ -11,7 +11,7 @@ if(TOFSMITH_ODR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   string(APPEND CMAKE_CXX_FLAGS " -fno-lto")  # links use the code, not the descriptions
 endif()
 
-# Adds the target `odr`; to be called when all others exist.
+# Adds the target `odr`. Call it after all other targets are defined.
 function(tofsmith_add_odr)
   if(NOT TOFSMITH_HAS_ODR)
     return()

@@ -7,7 +7,7 @@
 file(GLOB Python_INCLUDE_DIR "${TOFSMITH_PYTHON_ROOT}/usr/include/python3.*")
 find_package(Python 3.11 COMPONENTS Development.Module)
 set(pybind11_DIR "${TOFSMITH_PYTHON_ROOT}/usr/lib/cmake/pybind11")
-# pybind11 would ask the interpreter for these.
+# pybind11 would query the interpreter for these.
 set(PYTHON_MODULE_EXTENSION
     ".cpython-${Python_VERSION_MAJOR}${Python_VERSION_MINOR}-${CMAKE_LIBRARY_ARCHITECTURE}.so")
 set(PYTHON_MODULE_DEBUG_POSTFIX "")

@@ -33,7 +33,7 @@ set(about "tofsmith finds, judges and uses the coding functions of continuous-wa
 time-of-flight cameras: it designs modulation and demodulation waveforms for a
 camera, simulates scenes with them and decodes raw measurements into depth.")
 
-# Each component's library, libtofsmith-core0.1, and what compiles against it, libtofsmith-core-dev.
+# For each component its library, libtofsmith-core0.1, and its headers, libtofsmith-core-dev.
 set(libraries)
 set(development)
 foreach(component IN LISTS TOFSMITH_BUILT_COMPONENTS)
@@ -104,7 +104,7 @@ if(TARGET _tofsmith)
       "${about}\n\nThis package is the Python module tofsmith.")
 endif()
 
-# Debian's own files, compression, the bill of materials and dates are put in between installing and packing.
+# Adds Debian's files, the bill of materials and dates after installation and before packing.
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER "${component}" upper)
   list(APPEND debian_names "${component}" "${CPACK_DEBIAN_${upper}_PACKAGE_NAME}")

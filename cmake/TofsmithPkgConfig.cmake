@@ -3,8 +3,8 @@
 # tofsmith-<component>.pc for each component and tofsmith.pc for all, for
 # `pkg-config --cflags --libs tofsmith-core`. Included from TofsmithInstall.cmake.
 
-# Not in Requires.private: --static would ask for static builds of these and of all that they use,
-# which Debian does not have.
+# Requires.private is unsuitable: --static would require static builds of these libraries and of
+# their dependencies, which Debian does not have.
 set(pc_requires_core eigen3)
 if(TOFSMITH_IS_STATIC)
   list(APPEND pc_requires_core libhwy fmt)

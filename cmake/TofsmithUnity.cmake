@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Compiles the sources of a folder in groups, so that the headers and templates they share are read
-# and compiled once a group: builds, lint and sanitizers take a third of the time. Tests, the demo
-# and packages are built so.
+# Compiles the sources of a folder in groups, so that shared headers and templates are compiled once
+# per group. Builds, lint and sanitizers then need a third of the time. Tests, the demo and packages
+# are built this way.
 
 option(TOFSMITH_UNITY "Compile the sources of a folder in groups" OFF)
 set(TOFSMITH_UNITY_SOURCES 18 CACHE STRING "Sources in a group at most")
 
-# Left alone are kernels that include themselves once for each SIMD target, and what says so.
+# Excludes kernels, which include themselves once for each SIMD target.
 function(tofsmith_group_sources target)
   if(NOT TOFSMITH_UNITY)
     return()
@@ -17,7 +17,7 @@ function(tofsmith_group_sources target)
   set(folders)
   foreach(source IN LISTS sources)
     get_filename_component(path "${source}" ABSOLUTE)
-    # Of src/ the folder, whatever the room: rooms are small.
+    # For src/, the top folder: its subfolders are small.
     file(RELATIVE_PATH folder "${CMAKE_CURRENT_SOURCE_DIR}" "${path}")
     string(REGEX REPLACE "/.*" "" folder "${folder}")
     if(folder MATCHES "\\.cpp$")
@@ -31,7 +31,7 @@ function(tofsmith_group_sources target)
     endif()
   endforeach()
   list(REMOVE_DUPLICATES folders)
-  # Groups of a folder are as large as each other, so that no core waits long for the last.
+  # Groups of a folder have similar sizes, so that all cores finish at about the same time.
   foreach(folder IN LISTS folders)
     list(LENGTH sources_of_${folder} count)
     math(EXPR groups "(${count} + ${TOFSMITH_UNITY_SOURCES} - 1) / ${TOFSMITH_UNITY_SOURCES}")
@@ -47,8 +47,8 @@ endfunction()
 
 set(TOFSMITH_UNITY_TESTS 8 CACHE STRING "Test files in a group at most")
 
-# The same for tests. Each test file has helpers of its own, often of the same name (`refusal`): a file
-# goes into the first group where no other declares one of its names.
+# Groups tests. Test files define local helpers, often with equal names (`refusal`): a file is added
+# to the first group in which no file declares any of its names.
 function(tofsmith_group_tests target)
   if(NOT TOFSMITH_UNITY)
     return()
@@ -57,7 +57,7 @@ function(tofsmith_group_tests target)
   set(groups 0)
   foreach(source IN LISTS sources)
     get_filename_component(path "${source}" ABSOLUTE)
-    # Declarations begin a line. Semicolons and brackets would disturb lists of CMake.
+    # Declarations start at the left margin. CMake lists must not contain semicolons or brackets.
     file(READ "${path}" text)
     string(REGEX REPLACE "[][;]" "=" text "${text}")
     string(REGEX REPLACE "\n(namespace|template|using namespace|using [a-z]+::)[^\n]*" "" text "${text}")

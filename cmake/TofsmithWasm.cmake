@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# For emscripten: what core, design and the documents of io need are libraries of headers, which
-# Debian installs beside the system's own. They are linked into a folder of their own, since the
-# rest of /usr/include is not for this compiler.
+# For emscripten: core, design and the document readers of io need only header libraries. Debian
+# installs them in /usr/include, whose other headers this compiler must not use, so they are linked
+# into a separate folder.
 
 set(wasm_headers "${PROJECT_BINARY_DIR}/headers")
 file(MAKE_DIRECTORY "${wasm_headers}")
@@ -13,12 +13,12 @@ foreach(folder IN ITEMS eigen3/unsupported hwy fmt nlohmann toml++)
   get_filename_component(name "${folder}" NAME)
   file(CREATE_LINK "/usr/include/${folder}" "${wasm_headers}/${name}" SYMBOLIC)
 endforeach()
-# Random123 refuses architectures that it does not list, before it takes the code for all of them.
+# Random123 rejects architectures that it does not list, although its portable code fits them.
 file(CONFIGURE OUTPUT "${wasm_headers}/Random123/philox.h" CONTENT
      "#define __riscv\n#define R123_USE_SSE 0\n#include \"/usr/include/Random123/philox.h\"\n#undef __riscv\n")
-# Eigen takes the vectors of SSE2, which emscripten translates (-msse2): sums then have the order
-# that they have natively. What it asks for beside them that only an x86 has are the header of MMX,
-# of which it needs nothing, and hints to GCC's allocation of registers.
+# Eigen uses SSE2 vectors, which emscripten translates (-msse2), so that sums have the same order as
+# in native code. It also includes the MMX header, of which it uses nothing, and contains hints for
+# GCC's register allocation; both exist only on x86.
 if(NOT EXISTS "${wasm_headers}/mmintrin.h")
   file(COPY /usr/include/eigen3/Eigen DESTINATION "${wasm_headers}")
   set(with_hints "${wasm_headers}/Eigen/src/Core/products/GeneralBlockPanelKernel.h")
@@ -36,7 +36,7 @@ foreach(library IN ITEMS Eigen3::Eigen hwy::hwy fmt::fmt nlohmann_json::nlohmann
   add_library(${library} INTERFACE IMPORTED GLOBAL)
   target_link_libraries(${library} INTERFACE tofsmith_wasm_headers)
 endforeach()
-add_library(Threads::Threads INTERFACE IMPORTED GLOBAL)  # all work is done in one thread
+add_library(Threads::Threads INTERFACE IMPORTED GLOBAL)  # the module is single-threaded
 set(HWY_INCLUDE_DIR "${wasm_headers}")
 set(RANDOM123_INCLUDE_DIR "${wasm_headers}")
 set(TOFSMITH_HAS_TBB OFF)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Builds for 64-bit Arm by Debian's cross compiler. Libraries are those of a Debian root for arm64 in
-# TOFSMITH_ARM64_ROOT, which scripts/arm64.sh makes, or without it those of this system, as packages
-# like libfmt-dev:arm64 bring them; what is built runs here by qemu-user.
+# Builds for 64-bit Arm with Debian's cross compiler. Libraries come from the arm64 root that
+# scripts/arm64.sh creates (TOFSMITH_ARM64_ROOT) or, without it, from packages such as
+# libfmt-dev:arm64 on this system. The results run under qemu-user.
 
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# Writes the source file that names the commit, and leaves it alone when that has not changed.
+# Writes the source file that contains the commit, if the commit has changed.
 #   cmake -D source=DIR -D output=FILE -D commit=TEXT -P build_commit.cmake
-# An empty commit asks git, or, in an archive that git made, cmake/archived_commit.txt.
+# For an empty commit, git is asked, or cmake/archived_commit.txt in an archive made by git.
 
-# What git says in the directory, or "".
+# Sets the output of git in the directory, or "".
 function(git result)
   execute_process(COMMAND git --no-optional-locks ${ARGN} WORKING_DIRECTORY ${source}
                   OUTPUT_VARIABLE text ERROR_QUIET RESULT_VARIABLE failed
@@ -15,7 +15,7 @@ function(git result)
   set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
-# A project that carries tofsmith along has commits of its own.
+# The commit of a project that contains tofsmith's sources is not tofsmith's.
 git(top rev-parse --show-toplevel)
 if(top)
   file(REAL_PATH "${top}" top)
@@ -23,7 +23,7 @@ if(top)
 endif()
 if(NOT commit AND top AND top STREQUAL here)
   git(commit rev-parse HEAD)
-  string(SUBSTRING "${commit}" 0 12 commit)  # git's own short form depends on the clone
+  string(SUBSTRING "${commit}" 0 12 commit)  # git's abbreviation depends on the clone
   git(changes status --porcelain --untracked-files=no)
   if(commit AND changes)
     string(APPEND commit "+dirty")

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Shell completion for bash, zsh and fish from what the command line says of itself.
+"""Writes shell completion for bash, zsh and fish from the output of `--list-commands`.
 
     tofsmith --list-commands | python3 make_completions.py DIRECTORY
 
-What is no command, option or built-in name is completed as a file.
+Words that are no command, option or built-in name are completed as files.
 """
 
 import json
@@ -14,16 +14,16 @@ from pathlib import Path
 
 HEAD = "# {shell} completion of tofsmith {version}, made by cmake/make_completions.py.\n"
 
-# Arguments that take a built-in name or a file, by the kind of name.
+# The kind of built-in name that an argument accepts in addition to a file.
 NAMED = {"--camera": "camera", "CAMERA": "camera", "--code": "code", "CODE": "code",
          "--target": "code", "--depth": "scene", "--scene": "scene", "SCENE": "scene"}
 
-# Options that mean something else for each command.
+# Options that each command has.
 OWN = {"--help", "--help-all", "--version"}
 
 
 def words_for(command, argument, names):
-    """What can be typed for the argument; files may be meant too."""
+    """Returns the words to offer for an argument, which may also accept files."""
     if "choices" in argument:
         return argument["choices"]
     kind = next((NAMED[name] for name in argument["names"] if name in NAMED), None)
@@ -45,7 +45,7 @@ def spelled(options):
 
 
 def bash(listing):
-    """One function: finds the command, then what its place takes."""
+    """Returns the bash script, one function that finds the command and the words to offer."""
     paths, values, takes = [], [], []
     for command in listing["commands"]:
         path = " ".join(command["words"])
@@ -63,7 +63,7 @@ def bash(listing):
     general = spelled(o for o in program if not OWN & set(o["names"]))
     general_takes = "|".join(f'*" {name}"' for o in valued(program) for name in o["names"])
     return HEAD.format(shell="bash", version=listing["version"]) + f"""
-# Whether the option $2 of command $1 takes a value.
+# Succeeds if the option $2 of command $1 has a value.
 _tofsmith_takes_value() {{
   case "$1 $2" in
     {general_takes}|{'|'.join(takes)}) return 0 ;;
@@ -105,14 +105,14 @@ _tofsmith() {{
     mapfile -t COMPREPLY < <(compgen -W "$subcommands $names" -- "$current")
     [[ -z $path ]] && return
   fi
-  # Files beside built-in names; without a match, readline itself offers files.
+  # Offers files in addition to built-in names; without a match, readline offers files.
   if ((${{#COMPREPLY[@]}})) && [[ -n $current ]]; then
     compopt -o filenames 2>/dev/null
     mapfile -t -O ${{#COMPREPLY[@]}} COMPREPLY < <(compgen -f -- "$current")
   fi
 }}
 
-# Sets what can follow the command $1.
+# Sets the words that can follow the command $1.
 _tofsmith_at() {{
   case "$1" in
 {chr(10).join(paths)}
@@ -124,7 +124,7 @@ complete -o bashdefault -o default -F _tofsmith tofsmith
 
 
 def fish(listing):
-    """One line for each command, option and positional, with its help."""
+    """Returns the fish script, one line with help for each command, option and positional."""
 
     def quoted(text):
         return "'" + one_line(text).replace("\\", "\\\\").replace("'", "\\'") + "'"
@@ -162,7 +162,7 @@ def fish(listing):
 
 
 def zsh(listing):
-    """One function for each command, by _arguments."""
+    """Returns the zsh script, one function that calls _arguments for each command."""
 
     def quoted(text):
         return re.sub(r"([][:\\])", r"\\\1", one_line(text)).replace("'", "'\\''")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Manual pages from what the command line says of itself: tofsmith.1 and one for each command.
+"""Writes manual pages from the output of `--list-commands`: tofsmith.1 and one per command.
 
     tofsmith --list-commands | python3 make_manual.py DIRECTORY
 """
@@ -14,12 +14,12 @@ EXIT_STATUS = (("0", "done"), ("1", "failed; the message says of what"),
 ENVIRONMENT = (("TOFSMITH_TARGET", "instruction set to use, such as AVX2, so that machines that "
                                    "differ give equal bits"),)
 
-# Options that mean something else for each command.
+# Options that each command has.
 OWN = {"--help", "--help-all", "--version"}
 
 
 def escaped(text):
-    """Text that groff prints as it is."""
+    """Escapes text for groff."""
     text = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\`")
     text = text.replace("^", "\\(ha").replace("~", "\\(ti")
     return "\n".join("\\&" + line if line.startswith(".") else line for line in text.split("\n"))
@@ -42,7 +42,7 @@ def term(head, text):
 
 
 def sentences(argument):
-    """What the argument means, and what may be given."""
+    """Returns the help of an argument and its accepted values."""
     kind, _, rule = argument.get("value", "").partition(":")
     found = [argument["help"].rstrip(".")] if argument["help"] else []
     if "choices" in argument:
@@ -80,7 +80,7 @@ def section(title, entries):
 
 
 def manual_page(command, listing):
-    """One page in the man macros; `command` is an entry of listing["commands"]."""
+    """Returns a page in man macros; `command` is an entry of listing["commands"]."""
     words, commands = command["words"], {tuple(c["words"]): c for c in listing["commands"]}
     program = commands[()]
     name = page_name(words)

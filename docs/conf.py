@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The documentation's pages. scripts/docs.sh builds them; `tofsmith` must be importable."""
+"""Configures Sphinx for scripts/docs.sh; `tofsmith` must be importable."""
 
 import sys
 from pathlib import Path
@@ -28,14 +28,14 @@ extensions = [
 exclude_patterns = ["_extensions", "Doxyfile"]
 highlight_language = "none"  # indented blocks are commands and formulas alike
 nitpicky = True
-smartquotes = False  # of --option they make a dash
+smartquotes = False  # they turn --option into a dash
 toc_object_entries = False
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 
 autosummary_generate = True
-autodoc_typehints = "none"  # the docstrings say shapes, units and what may stand for what
+autodoc_typehints = "none"  # docstrings state types, shapes and units
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 
@@ -46,5 +46,5 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False
-html_show_search_summary = False  # it fetches pages, which browsers do not let files do
+html_show_search_summary = False  # it fetches pages, which browsers block for local files
 templates_path = ["_templates"]

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a page that are no figures: text, settings, tables, commands.
+// The parts of a page other than figures: text, settings, tables, commands.
 
 import {copyText, element, saveText} from './dom.js';
 import {csvOf} from './export.js';
 
-/** Text with `code` between backticks as elements. */
+/** Converts text with `code` between backticks to elements. */
 export const inline = (text) => text.split(/`([^`]+)`/).map(
     (part, i) => (i % 2 ? element('code', {}, part) : part));
 
@@ -15,7 +15,7 @@ const pairs = (name) => ({entries}) => element(
         ([key, value]) => element(
             'div', {}, element('dt', {}, key), element('dd', {}, value))));
 
-const unbrokenLetters = 40;  // of a cell; longer ones are sentences, which break
+const unbrokenLetters = 40;  // longest cell without line breaks
 
 function tableOf({id, title, caption, columns, rows, highlighted}) {
   const cell = (tag, c, ...content) => element(tag, {
@@ -72,7 +72,7 @@ const makers = {
   code: codeOf
 };
 
-/** The element of a block that is no figure. */
+/** Returns the element of a block other than a figure. */
 export function blockOf(block) {
   if (!(block.kind in makers)) throw new Error(`unknown kind of block: ${block.kind}`);
   const node = makers[block.kind](block);

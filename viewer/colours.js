@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Colours of series and of values: those of the report's figures.
+// Colours of series and values in figures.
 
-/** The colour of the i-th series, for style attributes. */
+/** Returns the colour of the i-th series, for style attributes. */
 export const seriesColour = (i) => `var(--s${i % 7})`;
 
-/** Dashes that tell a series from those of the same colour. */
+/** Dashes that distinguish series of the same colour. */
 export const seriesDash = (i) => ['', '7 4', '2 3', '8 3 2 3'][Math.floor(i / 7) % 4];
 
 const viridis = [
@@ -27,21 +27,21 @@ function between(stops, place) {
   return stops[i].map((v, c) => Math.round(v + (at - i) * (stops[i + 1][c] - v)));
 }
 
-/** Red, green and blue of a place in [0, 1] on the scale from dark blue to yellow. */
+/** Returns red, green and blue at a place in [0, 1] on the scale from dark blue to yellow. */
 export const sequentialColour = (place) => between(viridis, place);
 
-/** The same from blue over white to red. */
+/** Returns red, green and blue at a place in [0, 1] on the scale from blue over white to red. */
 export const divergingColour = (place) => between(diverging, place);
 
-/** Functions from a place in [0, 1] to a colour, by the names in documents. */
+/** Functions from a place in [0, 1] to a colour, by their names in documents. */
 export const colourMaps = {
   viridis: sequentialColour,
   cividis: (place) => between(cividis, place),
   diverging: divergingColour
 };
 
-/** Three numbers as CSS writes a colour. */
+/** Formats red, green and blue as a CSS colour. */
 export const cssColour = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
-/** Whether text on this colour must be light. */
+/** Returns true if text on this colour must be light. */
 export const isDark = ([r, g, b]) => 0.299 * r + 0.587 * g + 0.114 * b < 130;

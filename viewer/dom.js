@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Elements of the page, and what is said to those who do not see them.
+// Creates elements of the page and announces changes to screen readers.
 
 const svgNamespace = 'http://www.w3.org/2000/svg';
 
-/** The element of the page with this id. */
+/** Returns the element with this id. */
 export const byId = (id) => document.getElementById(id);
 
 function filled(node, attributes, children) {
@@ -19,21 +19,21 @@ function filled(node, attributes, children) {
   return node;
 }
 
-/** An HTML element with attributes (`onclick` and such are listeners) and children. */
+/** Creates an HTML element with attributes (`onclick` etc. are listeners) and children. */
 export const element = (name, attributes = {}, ...children) =>
     filled(document.createElement(name), attributes, children);
 
-/** The same of SVG. */
+/** Creates an SVG element with attributes and children. */
 export const drawn = (name, attributes = {}, ...children) =>
     filled(document.createElementNS(svgNamespace, name), attributes, children);
 
-/** Says a sentence to screen readers. */
+/** Announces a sentence to screen readers. */
 export function announce(text) {
   const status = byId('status');
   status.textContent = status.textContent === text ? text + '\u00a0' : text;
 }
 
-/** Shows a message above everything until it is put away; an empty one hides it. */
+/** Shows a message above the page until the user closes it; an empty message hides it. */
 export function notice(text) {
   const place = byId('notice');
   place.hidden = !text;
@@ -49,7 +49,7 @@ export function notice(text) {
           []));
 }
 
-/** Shows a problem where it arose, or takes it away. */
+/** Shows a problem at its field, or removes it. */
 export function showProblem(place, text) {
   place.hidden = !text;
   if (place.textContent !== (text ?? '')) place.textContent = text ?? '';
@@ -57,22 +57,22 @@ export function showProblem(place, text) {
 
 const widths = new WeakMap();
 
-/** Calls `redraw()` when the element's width changes, once at first. */
+/** Calls `redraw()` now and when the element's width changes. */
 export function onWidth(node, redraw) {
   new ResizeObserver(([entry]) => {
     const width = Math.floor(entry.contentRect.width);
     if (width === widthOf(node)) return;
     widths.set(node, width);
-    if (width > 0) drawSoon(node, redraw);  // later: it changes heights, which are observed, too
+    if (width > 0) drawSoon(node, redraw);  // deferred, since drawing changes observed heights
   }).observe(node);
 }
 
-/** The width of such an element in pixels, without the layout that asking the browser costs. */
+/** Returns the stored width of an observed element in pixels, which causes no layout. */
 export const widthOf = (node) => widths.get(node) ?? 0;
 
 const drawings = new Map();
 
-/** Draws before the next frame, once however often it is asked for. */
+/** Draws once before the next frame, for any number of calls. */
 export function drawSoon(owner, draw) {
   if (!drawings.size)
     requestAnimationFrame(() => {
@@ -85,7 +85,7 @@ export function drawSoon(owner, draw) {
 
 const probe = element('span', {hidden: true}), colours = new Map();
 
-/** What a colour of the style sheets is at present, for canvases. */
+/** Returns the current value of a style sheet's colour, for canvases. */
 export function colourOf(name) {
   if (!probe.isConnected) document.body.append(probe);
   if (!colours.has(name)) {
@@ -95,20 +95,20 @@ export function colourOf(name) {
   return colours.get(name);
 }
 
-/** Colours are others from now on. */
+/** Discards stored colours after a change of the theme. */
 export const forgetColours = () => colours.clear();
 
-/** Lets a person save a text as a file. */
+/** Offers a text for download. */
 export const saveText = (text, name, type) => saveBlob(new Blob([text], {type}), name);
 
-/** The same of bytes. */
+/** Offers bytes for download. */
 export function saveBlob(blob, name) {
   const address = URL.createObjectURL(blob);
   element('a', {href: address, download: name}).click();
   setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-/** Copies a text; gives whether that was allowed. */
+/** Copies a text to the clipboard and returns true if the browser allowed it. */
 export async function copyText(text) {
   try {
     await navigator.clipboard.writeText(text);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Figures as SVG and PNG files, data as CSV.
+// Exports figures as SVG and PNG files, and data as CSV.
 
 import {drawn, element} from './dom.js';
 
@@ -9,7 +9,7 @@ const quoted = (value) => {
   return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 };
 
-/** Rows as comma-separated values. */
+/** Formats rows as comma-separated values. */
 export const csvOf = (rows) => rows.map((row) => row.map(quoted).join(',') + '\n').join('');
 
 const styles = [
@@ -17,7 +17,7 @@ const styles = [
   'font-family', 'font-weight', 'visibility'
 ];
 
-/** A copy of an SVG element that needs no style sheet. */
+/** Copies an SVG element with its computed styles, so that it needs no style sheet. */
 function inked(svg) {
   const copy = svg.cloneNode(true);
   const from = [svg, ...svg.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
@@ -30,7 +30,7 @@ function inked(svg) {
   return copy;
 }
 
-/** Lines of a text node with their boxes: [{text, box}]. Lines break after spaces and hyphens. */
+/** Returns the lines of a text node: [{text, box}]. Lines break after spaces and hyphens. */
 function linesOf(node) {
   const content = node.textContent, range = document.createRange(), lines = [];
   for (const {index, 0: part} of content.matchAll(/[^\s-]*-|[^\s-]+/g)) {
@@ -46,7 +46,7 @@ function linesOf(node) {
   return lines.map(({start, end, box}) => ({text: content.slice(start, end).replace(/\s+/g, ' '), box}));
 }
 
-/** Lines of text below an element: [{text, box, owner}]. */
+/** Returns the lines of text in an element: [{text, box, owner}]. */
 function textsOf(root) {
   const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT), texts = [];
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
@@ -57,7 +57,7 @@ function textsOf(root) {
   return texts;
 }
 
-/** A figure as the text of an SVG file, as it is on the page at present. */
+/** Returns the SVG file of a figure in its present state. */
 export function svgOf(root) {
   const frame = root.getBoundingClientRect();
   const placed = (box) => ({x: box.left - frame.left, y: box.top - frame.top});
@@ -105,7 +105,7 @@ export function svgOf(root) {
   return new XMLSerializer().serializeToString(page);
 }
 
-/** The same as a PNG image, two pixels for each pixel of the page. */
+/** Returns a figure as a PNG image, with two pixels for each pixel of the page. */
 export async function pngOf(root) {
   const {width, height} = root.getBoundingClientRect(), picture = new Image();
   picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svgOf(root))}`;

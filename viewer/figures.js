@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// From the figures of a document to plots: lines, maps, images, curves and clouds.
+// Draws the figures of a document: lines, maps, images, curves and clouds.
 
 import {unpacked} from './arrays.js';
 import {inline} from './blocks.js';
@@ -32,7 +32,7 @@ function cssOf(colour) {
 
 const titleOf = ({label, unit}) => (unit ? `${label} (${unit})` : label);
 
-/** An axis of a document for a plot that shows these values. */
+/** Converts an axis of a document for a plot of these values. */
 function axisSpec(axis, values) {
   let range = axis.range;
   if (!range) {
@@ -49,7 +49,7 @@ function axisSpec(axis, values) {
   };
 }
 
-/** Places of a series: a list, or {count, from, to} at equal distances. */
+/** Returns the x values of a series: a list, or {count, from, to} at equal distances. */
 const placesIn = (x) => (Array.isArray(x) ?
     x :
     Array.from({length: x.count}, (_, i) => x.from + i * (x.to - x.from) / (x.count - 1)));
@@ -65,7 +65,7 @@ const seriesSpec = (one) => ({
   width: one.width
 });
 
-/** Ends of an x axis: those of the data, without room around them. */
+/** Returns the limits of an x axis, the range of the data without margins. */
 function tightRange(axis, values) {
   if (axis.range) return axis;
   const [low, high] = rangeOf(values, axis.log);
@@ -93,7 +93,7 @@ function drawLines(block, body) {
       y: axisSpec(column.y, heights)
     };
   });
-  const isFront = Boolean(body.closest('.front'));  // one screen has little room
+  const isFront = Boolean(body.closest('.front'));  // the first screen has little room
   const rowHeight = Math.max(isFront ? 33 : 42, Math.min(84, (isFront ? 200 : 320) / rows.length));
   rows.forEach((row, r) => columns.forEach((column, c) => {
     const plot = new LinePlot(), {x, y} = axes[c], isLast = r === rows.length - 1;
@@ -120,11 +120,11 @@ function drawLines(block, body) {
   ];
 }
 
-// A number in a cell of a map.
+// Formats a number in a cell of a map.
 const cellText = (value) => (Math.abs(value) >= 1e4 ? value.toExponential(1) : shortText(value, 3));
 
 function panelGrid(columns, count) {
-  const most = count === 4 && columns === 3 ? 2 : Math.min(columns, count);  // no row of one panel
+  const most = count === 4 && columns === 3 ? 2 : Math.min(columns, count);  // no single panel
   return element('div', {class: 'panels titled', style: `--columns:${most}`});
 }
 
@@ -157,7 +157,7 @@ function drawMap({alt, columns, show_values, x, y, colours, panels}, body) {
   ];
 }
 
-/** The planes of an image figure: [{values, before}], of the differences if there is a reference. */
+/** Returns the planes of an image figure, [{values, before}], or their errors for a reference. */
 async function planesOf({panels, reference}) {
   const planes = await Promise.all(panels.map(async (panel) => ({
     values: await unpacked(panel.values),
@@ -210,7 +210,7 @@ async function drawImages(block, body) {
   ];
 }
 
-/** Buttons of which one is chosen; each does something: [[name, act], ..]. */
+/** Creates buttons of which one is selected: [[name, action], ...]. */
 function choiceOf(choices) {
   const buttons = choices.map(([name, act]) => element('button', {
                                 type: 'button',
@@ -254,7 +254,7 @@ function sliderOf({before_name: left, after_name: right}, pictures) {
 
 const middle = ([low, high]) => (low + high) / 2;
 
-/** Points of all panels around one centre: {points: arrays of (N, 3), ranges}. */
+/** Returns the points of all panels relative to their centre: {points: (N, 3) arrays, ranges}. */
 function centred(places) {
   const ranges = [0, 1, 2].map((axis) => rangeOf(places.map((one) => one[axis])));
   const centre = ranges.map(middle);
@@ -305,7 +305,7 @@ async function drawCurves(block, body) {
   return rowsOf(panels, places, values, titleOf(block.colours));
 }
 
-// Clouds are in the frame of the camera: x right, y down, z forward. Drawings have z up.
+// Clouds use the camera's frame: x right, y down, z forward. Drawings have z up.
 async function drawClouds(block, body) {
   const {panels} = block, places = await placesOf(panels);
   const values = await Promise.all(panels.map((panel) => unpacked(panel.values)));
@@ -329,7 +329,7 @@ async function drawClouds(block, body) {
   return rowsOf(panels, places, values, titleOf(block.colours));
 }
 
-/** Functions that draw the data of a figure into an element and return its rows as a function. */
+/** Functions that draw a figure in an element and return a function for the rows of its data. */
 export const kinds = {
   lines: drawLines,
   map: drawMap,
@@ -338,7 +338,7 @@ export const kinds = {
   cloud: drawClouds
 };
 
-/** The node of a figure, and a function that draws it and returns a promise. */
+/** Returns the node of a figure and a function that draws it and returns a promise. */
 export function figureBlock(block) {
   const body = element('div', {class: 'body'});
   const caption = element('p', {class: 'caption'}, ...inline(block.caption));

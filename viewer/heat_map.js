@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Values by row and column as coloured cells, with the value of each cell as text.
+// Draws values by row and column as coloured cells with text.
 
 import {colourBar} from './colour_bar.js';
 import {cssColour, isDark} from './colours.js';
@@ -8,8 +8,8 @@ import {announce, drawn, drawSoon, element, onWidth, widthOf} from './dom.js';
 import {axisOf, frameOf, innerOf, ValueBox} from './plot.js';
 
 /**
- * A heat map that follows its width. What it shows: {label, columns, rows: texts of the ticks,
- * values: rows after rows, colour(value): [r, g, b] or null, cellText(value), details(column, row):
+ * A heat map that adapts to its width. Specification: {label, columns, rows: texts of the ticks,
+ * values: row by row, colour(value): [r, g, b] or null, cellText(value), details(column, row):
  * lines, titles: {x, y}, height, scale: colour bar or null, current: [column, row] or null,
  * choose(column, row) or null}.
  */
@@ -30,7 +30,7 @@ export class HeatMap {
     onWidth(this.node, () => this.#draw());
   }
 
-  /** Shows something else. */
+  /** Shows another specification. */
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute(
@@ -113,7 +113,7 @@ export class HeatMap {
   }
 }
 
-/** An axis of named places; every n-th name where there is no room for more. */
+/** Draws an axis of names; if there is not enough room, every n-th name. */
 function levels(texts, room) {
   const wide = 10 + 6.2 * Math.max(...texts.map((text) => text.length));
   const step = Math.max(1, Math.ceil(Number.isFinite(room) ? wide / room : texts.length / 12));

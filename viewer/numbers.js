@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as the page writes them, and where axes have their ticks.
+// Formats numbers and places the ticks of axes.
 
 const superscripts = {
   '-': '\u207b',
@@ -16,11 +16,11 @@ const superscripts = {
   9: '\u2079'
 };
 
-/** 10 to a whole power, as text. */
+/** Formats an integer power of 10. */
 export const powerText = (power) =>
     '10' + Array.from(String(power), (c) => superscripts[c]).join('');
 
-/** A number with at most so many digits that count, without zeros that say nothing. */
+/** Formats a number with at most `digits` significant digits and no trailing zeros. */
 export function shortText(value, digits = 4) {
   if (!Number.isFinite(value)) return Number.isNaN(value) ? 'none' : String(value);
   const text = String(Number(value.toPrecision(digits)));
@@ -28,7 +28,7 @@ export function shortText(value, digits = 4) {
 }
 
 /**
- * A number with exactly so many digits that count, as tables hold it; never with an exponent below
+ * Formats a number with exactly `digits` significant digits, for tables; without an exponent below
  * 1e6.
  */
 export function fixedText(value, digits) {
@@ -40,8 +40,8 @@ export function fixedText(value, digits) {
 }
 
 /**
- * A number as fields hold it: all its digits, large and small ones with an exponent in steps of
- * three.
+ * Formats a number for an input field: all digits, and for large and small numbers an exponent that
+ * is a multiple of three.
  */
 export function fieldText(value) {
   if (value === null || value === undefined) return '';
@@ -53,19 +53,19 @@ export function fieldText(value) {
   return `${Number((value / 10 ** power).toPrecision(15))}e${power}`;
 }
 
-/** Metres as text in the unit that suits them. */
+/** Formats metres with a suitable unit. */
 export const lengthText = (metres, digits = 4) => Math.abs(metres) < 1 ?
     `${shortText(metres * 1e3, digits)} mm` :
     `${shortText(metres, digits)} m`;
 
-/** A rate of electrons as axes and lists write it. */
+/** Formats a rate of electrons, for axes and lists. */
 export function rateText(value) {
   if (!(value > 0)) return shortText(value);
   const power = Math.floor(Math.log10(value) + 1e-6), front = shortText(value / 10 ** power, 2);
   return front === '1' ? powerText(power) : `${front}\u00b7${powerText(power)}`;
 }
 
-/** About `count` round values within [low, high]. */
+/** Returns about `count` round values within [low, high]. */
 export function linearTicks(low, high, count) {
   const rough = (high - low) / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -79,9 +79,9 @@ export function linearTicks(low, high, count) {
           ({value, text: Math.abs(value) >= 1e6 ? shortText(value) : value.toFixed(decimals)}));
 }
 
-/** Powers of ten within [low, high]; with 2 and 5 times them where there are few. */
+/** Returns the powers of ten within [low, high]; if there are few, also 2 and 5 times these. */
 export function logarithmicTicks(low, high) {
-  if (high / low < 4) return linearTicks(low, high, 4);  // less than one 1-2-5 step would be left
+  if (high / low < 4) return linearTicks(low, high, 4);  // contains less than one 1-2-5 step
   const ticks = [];
   const isPlain = low >= 1e-3 && high <= 1e5;
   const few = Math.log10(high / low) < 2.2;
@@ -95,13 +95,13 @@ export function logarithmicTicks(low, high) {
   return few ? ticks : ticks.filter((_, i) => i % step === 0);
 }
 
-/** Every so many-th number of a row, so that no more are left than a picture can show. */
+/** Returns every n-th number of a row, as many as a picture can show. */
 export function thinned(values, most) {
   const step = Math.ceil(values.length / most);
   return step < 2 ? values : values.filter((_, i) => i % step === 0);
 }
 
-/** The least and the greatest finite value. */
+/** Returns the smallest and the largest finite value. */
 export function rangeOf(arrays, positive = false) {
   let low = Infinity, high = -Infinity;
   for (const array of arrays)

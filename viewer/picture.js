@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A plane of a picture as pixels, its value under the pointer, and another plane to its left.
+// Shows a plane as pixels, the value under the pointer, and optionally another plane on the left.
 
 import {colourBar} from './colour_bar.js';
 import {element} from './dom.js';
 import {ValueBox} from './plot.js';
 
 /**
- * One plane. What it shows: {label, title, note, width, height, values, before: values to the left
+ * A plane. Specification: {label, title, note, width, height, values, before: values to the left
  * of split() or null, colour(value) -> [r, g, b] or null, scale: colour bar or null, text(value,
  * index)}.
  */
@@ -26,7 +26,7 @@ export class Picture {
     this.node.addEventListener('pointerleave', () => this.value.hide());
   }
 
-  /** Shows something else. */
+  /** Shows another specification. */
   show(spec) {
     this.spec = spec;
     this.canvas.width = spec.width;
@@ -41,7 +41,7 @@ export class Picture {
     this.split(this.#split);
   }
 
-  /** Shows `before` on this share of the width, from the left. */
+  /** Shows `before` in this share of the width, from the left. */
   split(share) {
     this.#split = share;
     const context = this.canvas.getContext('2d'), {width, height} = this.spec;

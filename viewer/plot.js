@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Lines over axes, with legend and values under the pointer or the arrow keys.
+// Draws lines with axes, a legend, and values at the pointer or by arrow keys.
 
 import {announce, drawn, drawSoon, element, onWidth, widthOf} from './dom.js';
 import {linearTicks, logarithmicTicks, shortText} from './numbers.js';
 
 let clips = 0;  // number of clip paths: part of their ids
 
-/** One axis: from values to pixels, and its ticks. */
+/** Creates an axis, which maps values to pixels, with its ticks. */
 export function axisOf(
     {range: [low, high], log = false, ticks = null, isWhole = false}, [from, to], count) {
   const most = isWhole ? Math.min(count, high - low) : count;
@@ -24,7 +24,7 @@ export function axisOf(
   };
 }
 
-/** An axis range with room around what is shown. */
+/** Returns a range for an axis with a margin around the data. */
 export function paddedRange([low, high], log = false) {
   if (log) {
     const room = Math.max((high / low) ** 0.06, 1.02);
@@ -34,7 +34,7 @@ export function paddedRange([low, high], log = false) {
   return [low - room, high + room];
 }
 
-/** A box in the plot that shows a value near a point of it. */
+/** A box that shows a value near a point of the plot. */
 export class ValueBox {
   constructor(plot) {
     this.plot = plot;
@@ -42,7 +42,7 @@ export class ValueBox {
     plot.append(this.box);
   }
 
-  /** Shows lines of text or elements beside (x, y) in pixels of the plot. */
+  /** Shows lines of text or elements next to (x, y), in pixels of the plot. */
   show(x, y, ...lines) {
     this.box.replaceChildren(...lines.map((line) => element('div', {}, line)));
     this.box.hidden = false;
@@ -63,11 +63,11 @@ const margin = {
   bottom: 40
 };
 
-/** Margins of a plot, narrower where it is part of a grid or has no title. */
+/** Returns the margins of a plot, narrower in a grid or without a title. */
 const marginsOf = ({isCompact, isBare, left}) =>
     ({...margin, left: left ?? (isCompact ? 50 : margin.left), bottom: isBare ? 8 : margin.bottom});
 
-/** The frame of a plot: grid, ticks and titles of both axes. `layout`: see marginsOf. */
+/** Draws the frame of a plot: grid, ticks and titles of both axes. `layout`: see marginsOf. */
 export function frameOf(x, y, titles, width, height, layout = {}) {
   const room = marginsOf(layout);
   const [left, right, top, bottom] =
@@ -104,7 +104,7 @@ export function frameOf(x, y, titles, width, height, layout = {}) {
   return drawn('g', {}, ...parts);
 }
 
-/** The inner rectangle of a plot of this size, for axes. */
+/** Returns the inner rectangle of a plot of this size, for axes. */
 export function innerOf(width, height, layout = {}) {
   const room = marginsOf(layout);
   return {x: [room.left, width - room.right], y: [height - room.bottom, room.top]};
@@ -127,7 +127,7 @@ function pathOf(series, x, y) {
   return path;
 }
 
-/** Dots of a series with their error bars. */
+/** Draws the dots of a series with error bars. */
 function marksOf(series, x, y) {
   const marks = [];
   const style = `stroke:${series.colour};fill:${series.colour}`;
@@ -172,7 +172,7 @@ function sampleOf({colour, dash, mark, width = 1.8}) {
       /markers/.test(mark) ? dot : null);
 }
 
-/** A legend: every name with a sample of each style in which it is drawn. */
+/** Draws a legend: each name with a sample of each of its styles. */
 export function legendOf(series) {
   const names = new Map();
   for (const one of series) {
@@ -186,7 +186,7 @@ export function legendOf(series) {
                      'li', {}, ...Array.from(styles.values(), sampleOf), element('span', {}, name))));
 }
 
-/** Index of the value of an increasing list that is nearest to `value` by the pixels of an axis. */
+/** Returns the index of the value of an increasing list that is nearest to `value` in pixels. */
 function nearest(values, value, axis) {
   let best = 0;
   const at = axis.at(value), gap = (i) => Math.abs(axis.at(values[i]) - at);
@@ -195,7 +195,7 @@ function nearest(values, value, axis) {
   return best;
 }
 
-/** Index of the value of a series at a place: of steps, the last one that begins before it. */
+/** Returns the index of a series at a place; for steps, of the last one that starts before it. */
 function indexAt(series, value, axis) {
   if (series.mark !== 'steps') return nearest(series.x, value, axis);
   const after = series.x.findIndex((x) => x > value);
@@ -203,17 +203,17 @@ function indexAt(series, value, axis) {
 }
 
 /**
- * A plot of lines that follows its width. Dragging across it shows a part of the x axis; a double
- * click shows all of it again.
+ * A plot of lines that adapts to its width. Dragging selects a part of the x axis; a double click
+ * shows the full axis again.
  *
- * What it shows: {label, height, x: {title, range, log, unit, text}, y: {..}, series: [{name, x, y,
- * error, mark, colour, dash, width, band: [low, high]}], hasLegend, isCompact, isBare}.
+ * Specification: {label, height, x: {title, range, log, unit, text}, y: {...}, series: [{name, x,
+ * y, error, mark, colour, dash, width, band: [low, high]}], hasLegend, isCompact, isBare}.
  */
 export class LinePlot {
   #spec = null;
   #index = null;
-  #zoomed = null;  // the part of the x axis that is shown
-  #begin = null;   // where a drag began
+  #zoomed = null;  // the visible part of the x axis
+  #begin = null;   // start of a drag
 
   constructor() {
     this.node = element('div', {class: 'plot'});
@@ -232,7 +232,7 @@ export class LinePlot {
     onWidth(this.node, () => this.#draw());
   }
 
-  /** Shows something else. */
+  /** Shows another specification. */
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute('aria-label', `${spec.label}. Arrow keys read values.`);

@@ -11,7 +11,7 @@ const status = window.tofsmithFigures = {total: 0, rendered: 0, errors: []};
 addEventListener('error', (event) => status.errors.push(String(event.message)));
 addEventListener('unhandledrejection', (event) => status.errors.push(String(event.reason)));
 
-const drawings = new Map();  // from nodes of figures to functions that draw them once
+const drawings = new Map();  // functions that draw a figure once, by its node
 
 function nodeOf(block) {
   if (!(block.kind in kinds)) return blockOf(block);
@@ -44,7 +44,7 @@ function show({title, subtitle, footer, sections}) {
           subtitle ? element('p', {class: 'subtitle'}, subtitle) : null),
       theme);
   byId('page').append(
-      title ? header : '',  // a single figure has none
+      title ? header : '',  // a page with one figure has no header
       element('main', {}, ...sections.map(sectionOf)),
       footer ? element('footer', {}, footer) : '');
   startTheme(theme);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Curves and points in space on a canvas, turned by pointer and keys.
+// Draws curves and points in space on a canvas; pointer and keys rotate the view.
 
 import {colourOf, drawSoon, element, forgetColours, onWidth, widthOf} from './dom.js';
 
@@ -11,7 +11,7 @@ const start = {
 };
 const views = new Set();
 
-/** A direction of view that several drawings share: all of them turn together. */
+/** A direction of view, which several drawings can share. */
 export class SpaceView {
   constructor(direction = {}) {
     this.start = {...start, ...direction};
@@ -37,8 +37,9 @@ export class SpaceView {
   }
 
   /**
-   * A function from a point to its place in a picture and its distance. Points are in a sphere of
-   * this radius or, if given, in a box of these half lengths, which fits in its first direction.
+   * Returns a function that maps a point to its position in a picture and its distance. Points are
+   * in a sphere of this radius or, if given, in a box of these half lengths, which fits the picture
+   * in the initial direction.
    */
   projection(width, height, {radius, box}) {
     const [sy, cy, sp, cp] =
@@ -54,7 +55,7 @@ export class SpaceView {
   }
 }
 
-/** Half width and half height of a box seen in a direction. */
+/** Returns the half width and half height of a box seen in a direction. */
 function shadowOf([x, y, z], {yaw, pitch}) {
   const sy = Math.abs(Math.sin(yaw)), cy = Math.abs(Math.cos(yaw));
   const away = sy * x + cy * y;
@@ -69,9 +70,9 @@ addEventListener('themechange', redrawAll);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
 
 /**
- * One drawing. What it shows: {label, view, points: (N, 3) as one array around the origin, colour(i):
- * CSS colour of a point, isCurve: closed curve or points, pointSize, radius or box of all (see projection), axes: [{title,
- * from, to}], height}.
+ * A drawing. Specification: {label, view, points: (N, 3) in one array around the origin, colour(i):
+ * CSS colour of a point, isCurve: closed curve or points, pointSize, radius or box of all points
+ * (see projection), axes: [{title, from, to}], height}.
  */
 export class Space {
   #spec = null;
@@ -88,7 +89,7 @@ export class Space {
     onWidth(this.node, () => this.draw());
   }
 
-  /** Shows something else; null: no longer shown. */
+  /** Shows another specification; null hides the drawing. */
   show(spec) {
     this.#spec?.view.spaces.delete(this);
     this.#spec = spec;
@@ -114,7 +115,7 @@ export class Space {
     this.#spec.view.turn(...(step ?? [0, 0]), zoom);
   }
 
-  // The wheel scrolls the page unless Ctrl is held, as on maps.
+  // The wheel scrolls the page unless Ctrl is pressed, as in maps.
   #wheel(event) {
     if (!event.ctrlKey) return;
     event.preventDefault();
@@ -133,7 +134,7 @@ export class Space {
     this.last = [event.clientX, event.clientY];
   }
 
-  /** Draws it in its present direction. */
+  /** Draws the view in the present direction. */
   draw() {
     const width = widthOf(this.node), spec = this.#spec;
     if (!spec || width < 20) return;

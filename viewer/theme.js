@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Light, dark, or as the system has it.
+// Selects the light or dark theme, or the theme of the system.
 
 const themes = ['auto', 'light', 'dark'];
 const names = {
@@ -13,12 +13,12 @@ const place = 'tofsmith-lab-theme';
 function kept() {
   try {
     return localStorage.getItem(place);
-  } catch {  // pages from files may have no storage
+  } catch {  // pages from files may lack storage
     return null;
   }
 }
 
-/** Lets a button go through the themes, and begins with the one that was chosen last. */
+/** Makes a button switch between the themes, starting with the one chosen last. */
 export function startTheme(button) {
   const show = (theme) => {
     if (theme === 'auto')
@@ -36,7 +36,7 @@ export function startTheme(button) {
     try {
       localStorage.setItem(place, next);
     } catch {
-      // it lasts as long as the page
+      // the choice is lost with the page
     }
     show(next);
   });

@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the software bill of materials of a package as SPDX 2.3 (JSON).
 
-What is in it is found, not listed: the headers that its objects were compiled from, as Ninja noted
-them, and the shared libraries that its ELF files name, each with the Debian package it is of.
-Licences of what is compiled in come from the copyright file beside this script; a header of a
-package that it does not name, and that is not only declarations, is an error.
+The contents are found, not listed: headers that the objects include, from Ninja's dependencies, and
+shared libraries that the ELF files need, each with its Debian package. The copyright file next to
+this script contains the licences of code that is compiled in. A header with code from a package
+that the file does not contain is an error.
 
     make_sbom.py --name tofsmith --version 0.1.0-1 --component tool --build BUILD --date SECONDS \
-                 -o sbom.spdx.json [ELF ..]
+                 -o sbom.spdx.json [ELF ...]
 """
 
 import argparse
@@ -23,12 +23,12 @@ import re
 import subprocess
 import sys
 
-# Where the objects of a component are.
+# Folders with the objects of each component.
 OBJECTS = {
     "tool": ["apps/CMakeFiles/"],
     "python": ["python/CMakeFiles/_tofsmith.dir/"],
 }
-# Headers of C: they declare what shared libraries hold, and nothing of them is compiled in.
+# C headers, which only declare symbols of shared libraries.
 DECLARATIONS = re.compile(
     r"libc6-dev|linux-libc-dev|libcrypt-dev|libpng-dev|zlib1g-dev|libzip-dev|libhdf5-dev|"
     r"libsqlite3-dev|libmd-dev|libfftw3-dev|libpython3\.\d+-dev|"
@@ -48,7 +48,7 @@ def spdx_licence(debian):
 
 
 def known_licences(copyright_file):
-    """The licence of each thing that a paragraph of the copyright file names; `*` is a wildcard."""
+    """Returns the licences in the copyright file by the names of its paragraphs; `*` is a wildcard."""
     licences = {}
     for paragraph in copyright_file.read_text().split("\n\n"):
         files = re.match(r"Files: (.*)", paragraph)
@@ -61,13 +61,13 @@ def known_licences(copyright_file):
 
 
 def licence_of(name, licences):
-    """The declared licence of a Debian package, or None."""
+    """Returns the declared licence of a Debian package, or None."""
     return next((licence for pattern, licence in licences.items()
                  if fnmatch.fnmatchcase(native(name), pattern)), None)
 
 
 def headers_of(build, component):
-    """Of the system, that objects of the component were compiled from."""
+    """Returns the system headers that the objects of the component include."""
     folders = OBJECTS.get(component, [f"src/CMakeFiles/tofsmith_{component}.dir/"])
     dependencies, entry = {}, None
     for line in run("ninja", "-C", str(build), "-t", "deps").splitlines():
@@ -88,7 +88,7 @@ def headers_of(build, component):
 
 
 def owners(files):
-    """The Debian packages that files are of, and their versions."""
+    """Returns the Debian packages that contain the files, and their versions."""
     names = set()
     for begin in range(0, len(files), 500):
         listing = subprocess.run(["dpkg-query", "-S", *files[begin:begin + 500]],
@@ -104,12 +104,12 @@ def owners(files):
 
 
 def native(name):
-    """A package's name on its own architecture."""
+    """Returns the name of a package without its architecture."""
     return name.removesuffix("-arm64-cross")
 
 
 def installed_libraries():
-    """Paths of the shared libraries of this system, by their names."""
+    """Returns the paths of the shared libraries of this system by name."""
     paths = {}
     for line in run("/sbin/ldconfig", "-p").splitlines():
         match = re.match(r"\s*(\S+) \(.*\) => (.*)", line)
@@ -119,22 +119,22 @@ def installed_libraries():
 
 
 def arm_libraries():
-    """The same of those for arm64, which ldconfig does not list on another processor."""
+    """Returns the paths of arm64 libraries, which ldconfig does not list on other processors."""
     return {file.name: str(file) for folder in ("/usr/lib", "/lib")
             for file in pathlib.Path(folder, "aarch64-linux-gnu").glob("*.so.*")}
 
 
 def libraries_of(elf_files):
-    """Paths of the shared libraries that ELF files name; ours are not found, and left out."""
+    """Returns the paths of the shared libraries that ELF files need, without tofsmith's."""
     needed, paths = set(), installed_libraries()
     for file in elf_files:
-        if pathlib.Path(file).is_symlink():  # of a library that another package has
+        if pathlib.Path(file).is_symlink():  # to a library of another package
             continue
         described = run("readelf", "-hdW", file)
         if "AArch64" in described:
             paths |= arm_libraries()
         needed |= set(re.findall(r"\(NEEDED\).*\[(.*)\]", described))
-    # Debian's dpkg knows files below /usr/lib or /lib, as they were packed.
+    # dpkg lists files below /usr/lib or /lib, as in the package.
     found = [paths[name] for name in sorted(needed) if name in paths]
     return sorted({name for path in found
                    for name in (path, str(pathlib.Path(path).resolve()),
@@ -156,8 +156,8 @@ def package(identifier, name, version, licence, source=None):
 
 
 def packages_compiled_in(build, component):
-    """The Debian packages that code of a component comes from, with version and source, and the
-    licence of every package that the copyright file names."""
+    """Returns the Debian packages with code in a component, with version, source and, for packages
+    in the copyright file, licence."""
     licences = known_licences(pathlib.Path(__file__).with_name("copyright"))
     compiled_in = owners(headers_of(build, component))
     unknown = [name for name in compiled_in

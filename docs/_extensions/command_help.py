@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `tofsmith --list-commands` says of every command."""
+"""Reads the commands and options printed by `tofsmith --list-commands`."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from typing import Optional
 
 @dataclass
 class Entry:
-    """A positional or an option."""
+    """A positional argument or an option."""
 
     names: list[str]
     description: str
-    value: str = ""  # its placeholder: TEXT, INT, ..
+    value: str = ""  # placeholder: TEXT, INT, ...
     rule: str = ""
     default: Optional[str] = None
     repeats: bool = False
@@ -28,11 +28,11 @@ class Entry:
 
 @dataclass
 class Command:
-    words: list[str]  # ["sweep", "merge"]; [] is the tool itself
+    words: list[str]  # ["sweep", "merge"]; [] is the program
     description: str
     subcommands: list[str]
     sections: dict[str, list[Entry]]
-    footer: str  # what follows the options
+    footer: str  # printed after the options
 
     @property
     def name(self) -> str:
@@ -55,7 +55,7 @@ def entry_of(argument: dict) -> Entry:
 
 
 def all_commands(tool: str) -> list[Command]:
-    """The tool itself, then every command, each with its subcommands behind it."""
+    """Returns the program, then its commands, each followed by its subcommands."""
     text = subprocess.run([tool, "--list-commands"], check=True, capture_output=True, text=True,
                           timeout=60).stdout
     return [Command(command["words"], command["summary"], command["subcommands"],

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes generated/commands, a page for every command of the tool, from its help texts, and
-generated/camera_keys.md and generated/raw_format_keys.md, the keys of these files."""
+"""Writes generated/commands, a page with the help of each command, and generated/camera_keys.md and
+generated/raw_format_keys.md, the keys of these files."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from command_help import Command, Entry, all_commands
 
 
 def plain(text: str) -> str:
-    """Text that means nothing to Markdown, but for code between backticks."""
+    """Escapes Markdown outside backticks."""
     parts = text.split("`")
     parts[::2] = [re.sub(r"([\\*_<>\[\]#|~^$])", r"\\\1", part) for part in parts[::2]]
     return "`".join(parts)
 
 
 def sentence(text: str) -> str:
-    """With a capital, if the first word is one."""
+    """Capitalizes the first word of a sentence, unless it is a name or symbol."""
     return text[0].upper() + text[1:] if re.match(r"[a-z]{2,}\b|a ", text) else text
 
 
 def rule_of(entry: Entry) -> str:
-    """What a value must be, in words."""
+    """Returns a sentence with the accepted values."""
     between = re.fullmatch(r"in \[(.*) - (.*)\]", entry.rule)
     if between:
         return f"From {between[1]} to {between[2]}."
@@ -101,8 +101,7 @@ that differ give the same bits.
 
 
 def write_pages(tool: str, folder: Path) -> list[str]:
-    """Writes one page per command, subcommands on the page of theirs.
-    @return the names of the pages"""
+    """Writes one page per command and its subcommands, and returns the names of the pages."""
     first, *rest = all_commands(tool)
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.md"):
@@ -129,8 +128,8 @@ def camera_key_row(key: dict) -> str:
 
 
 def keys_page(tool: str, title: str, file: str, options: list[str]) -> str:
-    """The keys that `tofsmith cameras OPTIONS` lists, a table of Markdown for each table of the
-    file."""
+    """Returns the keys printed by `tofsmith cameras OPTIONS`, a Markdown table per table of the file.
+    """
     keys = json.loads(subprocess.run([tool, "cameras", *options, "--json"], check=True,
                                      capture_output=True, text=True).stdout)
     head = "\n| key | meaning | unit | values | default |\n|---|---|---|---|---|"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Formulas by KaTeX, which goes with the pages: they need no network."""
+"""Draws formulas with KaTeX, which is copied to the pages: they need no network."""
 
 from pathlib import Path
 from shutil import copy

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Puts the lab into the site, where scripts/lab.sh has built it, and a link to it into its page."""
+"""Copies the lab built by scripts/lab.sh to the site and links to it from its page."""
 
 import shutil
 from pathlib import Path

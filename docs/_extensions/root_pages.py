@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes pages of the Markdown files in the repository's root, and leads links there to them."""
+"""Makes pages from the Markdown files in the root of the repository and adapts links to them."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ PAGES = {"README.md": "readme.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING
 
 
 def moved(target: str) -> str:
-    """A link's target, seen from generated/ instead of the root."""
+    """Returns a link's target relative to generated/ instead of the root."""
     path, mark, place = target.partition("#")
     if "://" in target or not path:
         return target

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the files of the code that pages link to, and leads each link to the line it names."""
+"""Adds the source files that pages link to, and resolves each link to a line."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def page_of(file: Path) -> str:
 
 
 def lead_links_to_lines(app, document):
-    """MyST takes a file that is no page for a download; of the code, show it."""
+    """Shows linked source files; MyST would offer them for download."""
     for node in list(document.findall(addnodes.download_reference)):
         target = node["reftarget"]
         if not source_symbols.is_source(target):

@@ -19,11 +19,11 @@ DOCS = ROOT / "docs"
 class SourceLink(NamedTuple):
     page: Path
     target: str
-    symbol: Optional[str]  # None: the link is to the file as a whole
+    symbol: Optional[str]  # None for a link to a whole file
 
 
 def line_of(text: str, symbol: str) -> Optional[int]:
-    """The line (from 1) that defines a C++ or Python symbol, qualified or not."""
+    """Returns the line (from 1) that defines a C++ or Python symbol, qualified or not."""
     name = re.escape(re.split(r"::|\.", symbol)[-1])
     owner = re.escape(symbol.replace(".", "::")) if "::" in symbol else None
     patterns = [
@@ -43,25 +43,25 @@ def line_of(text: str, symbol: str) -> Optional[int]:
 
 
 def is_source(target: str) -> bool:
-    """Whether a link's target is a file of the repository outside the pages."""
+    """Returns true if a link's target is a file of the repository outside the pages."""
     return target.startswith("../") and ".md" not in target
 
 
 def links_of(page: Path) -> Iterator[SourceLink]:
-    """The links of a page into the code."""
+    """Returns the links of a page to source files."""
     for text, target in re.findall(r"\[([^\[\]]+)\]\(([^)\s]+)\)", page.read_text()):
         if is_source(target):
             yield SourceLink(page, target, symbol_in(text))
 
 
 def symbol_in(text: str) -> Optional[str]:
-    """The symbol that a link's text names: text that is code and not a file's name."""
+    """Returns the symbol in a link's text, if the text is code and not a file name."""
     match = re.fullmatch(r"`([A-Za-z_][\w:.]*?)(\(\))?`", text)
     return match[1] if match and not re.search(r"\.(hpp|cpp|py|sh|toml)$|/", match[1]) else None
 
 
 def problem_with(link: SourceLink) -> Optional[str]:
-    """What is wrong with a link into the code, in one sentence."""
+    """Returns a sentence that describes the fault of a link to source code, or None."""
     file = (link.page.parent / link.target).resolve()
     if not file.exists():
         return f"{link.page.name}: {link.target}: there is no such file"
