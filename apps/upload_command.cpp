@@ -71,7 +71,7 @@ nlohmann::ordered_json channels_json(const UploadRequest& request) {
     for (const QuantizedWaveform& waveform : channel.stored) stored.push_back(waveform.name);
     json.push_back({{"channel", channel.channel},
                     {"arm", name_of(w.arm)},
-                    {"plays", w.name},
+                    {"waveform", w.name},
                     {"stored", std::move(stored)},
                     {"points", w.points()},
                     {"periods", w.periods},

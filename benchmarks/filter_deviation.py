@@ -81,9 +81,9 @@ def judged(depth, deviation, truth, part):
     z, s, t = depth[:, part], deviation[:, part], truth[part]
     near = np.isfinite(z) & np.isfinite(s) & (np.abs(z - t) < 0.45 * STEP_M)
     other = 1 - near.mean()
-    told = near.sum(0) > len(z) / 2
-    near, z, s, t = near[:, told], z[:, told], s[:, told], t[told]
-    if not told.any():
+    known = near.sum(0) > len(z) / 2
+    near, z, s, t = near[:, known], z[:, known], s[:, known], t[known]
+    if not known.any():
         return np.nan, np.nan, other
     count = near.sum(0)
     mean = np.where(near, z, 0).sum(0) / count

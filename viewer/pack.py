@@ -23,16 +23,16 @@ IMPORT = re.compile(r"^import \{([^}]*)\} from '(\.[\w./]+)';\n", re.M)
 EXPORT = re.compile(r"^export ((?:async )?function\*?|class|const|let) (\w+)", re.M)
 
 
-def module_order(path, done, under_way):
+def module_order(path, done, pending):
     """Adds the modules that a module needs to `done`, the module itself last."""
     if path in done:
         return
-    if path in under_way:
-        names = [one.name for one in [*under_way, path]]
+    if path in pending:
+        names = [one.name for one in [*pending, path]]
         raise SystemExit(f"pack.py: import cycle: {' -> '.join(names)}")
     text = path.read_text()
     for _, needed in IMPORT.findall(text):
-        module_order((path.parent / needed).resolve(), done, [*under_way, path])
+        module_order((path.parent / needed).resolve(), done, [*pending, path])
     done[path] = text
 
 

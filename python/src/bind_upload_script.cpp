@@ -78,23 +78,24 @@ void bind_model(py::module_& module) {
       .def_readonly("max_vpp", &GeneratorModel::max_vpp);
 }
 
-/// A property of the waveform that a channel plays.
+/// Binds a property of the waveform of a channel.
 template <typename Of>
-auto played(Of property) {
+auto of_waveform(Of property) {
   return [property](const UploadChannel& channel) {
     return std::invoke(property, channel.selected_waveform());
   };
 }
 
 void bind_channel(py::module_& module) {
-  py::class_<UploadChannel>(
-      module, "UploadChannel",
-      "Tables of one channel: the names of those stored, and the one that it plays, to which arm\n"
-      "(light or sensor), points, periods, rates, voltages and full_scale (value of the waveform "
-      "at\nhigh_v) belong.")
+  py::class_<UploadChannel>(module, "UploadChannel",
+                            "Waveforms of a channel: names of the `stored` tables and of the "
+                            "selected `waveform`, with its\n"
+                            "arm (light or sensor), points, periods, rates, voltages and "
+                            "full_scale (the value at high_v).")
       .def_readonly("channel", &UploadChannel::channel)
-      .def_property_readonly("arm", played([](const auto& w) { return tofsmith::name_of(w.arm); }))
-      .def_property_readonly("plays", played(&QuantizedWaveform::name))
+      .def_property_readonly("arm",
+                             of_waveform([](const auto& w) { return tofsmith::name_of(w.arm); }))
+      .def_property_readonly("waveform", of_waveform(&QuantizedWaveform::name))
       .def_property_readonly("stored",
                              [](const UploadChannel& channel) {
                                std::vector<std::string> names;
@@ -102,13 +103,13 @@ void bind_channel(py::module_& module) {
                                  names.push_back(waveform.name);
                                return names;
                              })
-      .def_property_readonly("points", played(&QuantizedWaveform::points))
-      .def_property_readonly("periods", played(&QuantizedWaveform::periods))
-      .def_property_readonly("sample_rate_hz", played(&QuantizedWaveform::sample_rate_hz))
-      .def_property_readonly("repetition_hz", played(&QuantizedWaveform::repetition_hz))
-      .def_property_readonly("low_v", played(&QuantizedWaveform::low_v))
-      .def_property_readonly("high_v", played(&QuantizedWaveform::high_v))
-      .def_property_readonly("full_scale", played(&QuantizedWaveform::full_scale));
+      .def_property_readonly("points", of_waveform(&QuantizedWaveform::points))
+      .def_property_readonly("periods", of_waveform(&QuantizedWaveform::periods))
+      .def_property_readonly("sample_rate_hz", of_waveform(&QuantizedWaveform::sample_rate_hz))
+      .def_property_readonly("repetition_hz", of_waveform(&QuantizedWaveform::repetition_hz))
+      .def_property_readonly("low_v", of_waveform(&QuantizedWaveform::low_v))
+      .def_property_readonly("high_v", of_waveform(&QuantizedWaveform::high_v))
+      .def_property_readonly("full_scale", of_waveform(&QuantizedWaveform::full_scale));
 }
 
 void bind_step(py::module_& module) {

@@ -31,7 +31,7 @@ py::object whole_number_of(const py::object& given) {
   return py::reinterpret_steal<py::object>(PyNumber_Long(given.ptr()));
 }
 
-py::object numbers_of(const py::object& given, bool whole) {
+py::object as_numbers(const py::object& given, bool whole) {
   if (py::isinstance<py::bool_>(given) || py::isinstance<py::str>(given)) return given;
   py::list numbers;
   if (PySequence_Check(given.ptr()) == 0) {

@@ -65,7 +65,7 @@ py::object whole_number_of(const py::object& given);
 
 /// Converts a sequence of numbers, or a single number, to a list; returns anything else unchanged.
 /// @param whole  1e4 as 10000
-py::object numbers_of(const py::object& given, bool whole);
+py::object as_numbers(const py::object& given, bool whole);
 
 /// How a refusal shows what was given: "str 'abc'".
 std::string shown(py::handle value);
@@ -86,7 +86,7 @@ class OptionReader {
     if constexpr (is_whole<Value>()) given = whole_number_of(given);
     if constexpr (is_list<Value>)
       if constexpr (std::is_arithmetic_v<typename Value::value_type>)
-        given = numbers_of(given, is_whole<typename Value::value_type>());
+        given = as_numbers(given, is_whole<typename Value::value_type>());
     // A bool must be one; a text is no list.
     py::detail::make_caster<Value> caster;
     if (!caster.load(given, !std::is_same_v<Value, bool>)) wrong_type(name, given, needed<Value>());

@@ -121,9 +121,10 @@ def photon_transfer(
                          "differences, from whose mean shot noise does not follow"
                          if reads_differences else
                          "code: goes with cameras that read differences (sensor.readout)")
-    played = None if code is None else code_of(code, camera)._handle
+    code_handle = None if code is None else code_of(code, camera)._handle
     dark_frames = None if dark is None else _check.frames(dark, "dark")
-    handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, played, dict(options))
+    handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, code_handle,
+                                       dict(options))
     fields = handle.fields()
     for name in ("gain_e_per_dn", "read_noise_e", "black_level_dn", "full_well_e"):
         fields[name] = None if fields[name] is None else Estimate(*fields[name])

@@ -12,7 +12,7 @@ from ._camera import Camera
 from ._code import CodeSet
 from .instruments import UploadReport, upload, visa_resource_name
 
-_CHANNEL_KEYS = ("channel", "arm", "plays", "stored", "points", "periods", "sample_rate_hz",
+_CHANNEL_KEYS = ("channel", "arm", "waveform", "stored", "points", "periods", "sample_rate_hz",
                  "repetition_hz", "low_v", "high_v", "full_scale")
 
 
@@ -35,7 +35,7 @@ def _document(report: UploadReport, output_on: bool) -> dict[str, Any]:
 
 def _text(report: UploadReport, output_on: bool) -> str:
     lines = [f"{report.vendor} {report.model} {report.serial} at {report.address}:"]
-    lines += [f"channel {c.channel} plays {c.plays}: {c.points} points, {c.periods} periods, "
+    lines += [f"channel {c.channel}, {c.waveform}: {c.points} points, {c.periods} periods, "
               f"{c.sample_rate_hz / 1e6:.6g} MHz, {c.low_v:.4g} to {c.high_v:.4g} V"
               for c in report.channels]
     state = "on" if output_on else "off (--output-on switches them on)"

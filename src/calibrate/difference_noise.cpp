@@ -89,8 +89,8 @@ Eigen::VectorXd light_per_signal(const DecodingTable& table, double depth_m) {
 /// Returns the numbers of all pixels with reliable depth whose fuller bucket is below `limit_dn`,
 /// since a difference does not reveal clipping. The selection depends only on the mean of both
 /// frames, which is independent of the change.
-std::vector<PairedNumber> numbers_of(const FramePair& pair, const Decoder& decoder, double limit_dn,
-                                     std::size_t& too_bright) {
+std::vector<PairedNumber> paired_numbers(const FramePair& pair, const Decoder& decoder,
+                                         double limit_dn, std::size_t& too_bright) {
   const DecodingTable& table = decoder.table();
   const DepthImage decoded = decoder.decode(pair.mean);
   const auto measurements = static_cast<std::size_t>(table.measurements());
@@ -185,7 +185,7 @@ PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFr
   for (const RawFrames& raw : levels)
     for (int f = 0; f < raw.frames; f += 2) {
       const FramePair pair = pair_of(raw, f);
-      add_groups(numbers_of(pair, decoder, limit_dn, too_bright), options.averaged, result);
+      add_groups(paired_numbers(pair, decoder, limit_dn, too_bright), options.averaged, result);
       for (const float value : pair.mean.values)
         if (std::isfinite(value))
           result.saturation_dn =

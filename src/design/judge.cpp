@@ -53,14 +53,14 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
     return exposures > 0 ? broken(which, exposures, none)
                          : broken("sensor.taps", camera.sensor.taps, none);
   }
-  constexpr std::size_t told = 3;
+  constexpr std::size_t max_reasons = 3;
   std::string reasons = fmt::format(
-      "{}",
-      fmt::join(left_out.begin(),
-                left_out.begin() + static_cast<std::ptrdiff_t>(std::min(told, left_out.size())),
-                "; "));
-  if (left_out.size() > told)
-    reasons += fmt::format("; and {} more reasons", left_out.size() - told);
+      "{}", fmt::join(left_out.begin(),
+                      left_out.begin() +
+                          static_cast<std::ptrdiff_t>(std::min(max_reasons, left_out.size())),
+                      "; "));
+  if (left_out.size() > max_reasons)
+    reasons += fmt::format("; and {} more reasons", left_out.size() - max_reasons);
   return broken("codes that measure depth", "none",
                 fmt::format("no candidate can be used on this camera: {}", reasons));
 }

@@ -17,8 +17,8 @@ constexpr std::int64_t max_tile_pixels = std::int64_t{1} << 24;
 
 /// Calls `use` with the original numbers of the open pixels, as a frame of one row.
 template <typename Number, typename Use>
-void with_numbers_of(const RawView& raw, std::int64_t first, const std::vector<std::int32_t>& open,
-                     const Use& use) {
+void with_open_numbers(const RawView& raw, std::int64_t first,
+                       const std::vector<std::int32_t>& open, const Use& use) {
   const auto* data = std::get<const Number*>(raw.data);
   std::vector<Number> values;
   values.reserve(open.size() * static_cast<std::size_t>(raw.measurements));
@@ -87,19 +87,19 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
   if (!frame.on_device)
     return std::visit(
         [&](const auto* data) {
-          with_numbers_of<std::remove_cvref_t<decltype(*data)>>(
+          with_open_numbers<std::remove_cvref_t<decltype(*data)>>(
               frame.raw, part.first, open,
               [&](const RawView& numbers) { decode_open_pixels(numbers, open, planes); });
         },
         frame.raw.data);
   const int measurements = decoder.measurements();
-  const OpenNumbers there(in.numbers_of(open), measurements, in.raw().noise());
+  const OpenNumbers there(in.open_numbers(open), measurements, in.raw().noise());
   RawView view = there.view();
   std::vector<double> exact;
   if (frame.means) {
     std::vector<std::int32_t> in_frame = open;
     for (std::int32_t& pixel : in_frame) pixel += static_cast<std::int32_t>(part.first);
-    exact = frame.means->numbers_of(in_frame);
+    exact = frame.means->open_numbers(in_frame);
     const float* const averaged = view.averaged;
     view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
     view.averaged = averaged;
@@ -115,14 +115,14 @@ void DeviceDecoder::Plan::decode_from(FrameDone& done, const FrameSource& frame,
   if (all - done.pixels > at_a_time && !other_tile)
     other_tile = std::make_unique<DeviceTile>(device, decoder, options.use_doubles);
   std::int64_t next = done.pixels;
-  std::optional<FramePart> under_way;
-  for (DeviceTile *here = &tile, *there = other_tile.get(); next < all || under_way;
+  std::optional<FramePart> pending;
+  for (DeviceTile *here = &tile, *there = other_tile.get(); next < all || pending;
        std::swap(here, there)) {
-    const std::optional<FramePart> before = std::exchange(under_way, std::nullopt);
+    const std::optional<FramePart> before = std::exchange(pending, std::nullopt);
     if (next < all) {
-      under_way = FramePart{next, std::min(all - next, at_a_time)};
-      start(*here, frame, *under_way, planes);
-      next += under_way->count;
+      pending = FramePart{next, std::min(all - next, at_a_time)};
+      start(*here, frame, *pending, planes);
+      next += pending->count;
     }
     if (!before) continue;
     done.by_decoder += finish(*there, frame, *before, planes);
@@ -155,8 +155,8 @@ std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes
   const std::vector<std::int32_t> open = tile.open_pixels();
   if (!open.empty())
     decode_open_pixels(
-        OpenNumbers(tile.numbers_of(open), decoder.measurements(), tile.raw().noise()).view(), open,
-        planes);
+        OpenNumbers(tile.open_numbers(open), decoder.measurements(), tile.raw().noise()).view(),
+        open, planes);
   return std::ssize(open);
 }
 

@@ -193,7 +193,7 @@ void DeviceFrame::find_depth(int from) {
 void DeviceFrame::decide_open_pixels() {
   const std::vector<std::int32_t> open = tile_.open_pixels();
   if (open.empty()) return;
-  const OpenNumbers numbers(tile_.numbers_of(open), plan_.measurements, {});
+  const OpenNumbers numbers(tile_.open_numbers(open), plan_.measurements, {});
   std::vector<float> depth_m(open.size()), deviation_m(open.size());
   plan_.decoder.decode(numbers.view(), {.depth_m = depth_m.data(),
                                         .predicted_standard_deviation_m = deviation_m.data()});

@@ -39,7 +39,7 @@ void DeviceMeans::finish(double averaged) {
              result_.numbers(), result_.averaged());
 }
 
-std::vector<double> DeviceMeans::numbers_of(const std::vector<std::int32_t>& pixels) {
+std::vector<double> DeviceMeans::open_numbers(const std::vector<std::int32_t>& pixels) {
   const Sums& sums = sums_;
   std::vector<double> numbers(pixels.size() * static_cast<std::size_t>(measurements_));
   const std::size_t bytes = numbers.size() * sizeof(double),

@@ -30,7 +30,7 @@ class DeviceMeans {
   /// Mean, rounded to floats.
   const DeviceRaw& result() const { return result_; }
   /// Mean at some pixels of the frame (K numbers each), not rounded.
-  std::vector<double> numbers_of(const std::vector<std::int32_t>& pixels);
+  std::vector<double> open_numbers(const std::vector<std::int32_t>& pixels);
   /// Mean at all pixels, measurement by measurement, not rounded.
   std::vector<double> numbers() const;
   const DeviceQueue& queue() const { return queue_; }

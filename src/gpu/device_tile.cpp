@@ -139,7 +139,7 @@ std::vector<std::int32_t> DeviceTile::open_pixels() const {
   return pixels;
 }
 
-std::vector<float> DeviceTile::numbers_of(const std::vector<std::int32_t>& open) {
+std::vector<float> DeviceTile::open_numbers(const std::vector<std::int32_t>& open) {
   const auto each = static_cast<std::size_t>(outputs_.records().layout.measurements) + 1;
   std::vector<float> numbers(open.size() * each);
   if (open.empty()) return numbers;

@@ -51,7 +51,7 @@ class DeviceTile {
   /// Pixels of the tile that the CPU must decode; may contain duplicates.
   std::vector<std::int32_t> open_pixels() const;
   /// Raw numbers of open pixels, for OpenNumbers.
-  std::vector<float> numbers_of(const std::vector<std::int32_t>& open);
+  std::vector<float> open_numbers(const std::vector<std::int32_t>& open);
   /// Writes depths and deviations decoded by the CPU into the planes on the device.
   void put_depth(const std::vector<std::int32_t>& open, const std::vector<float>& depth_m,
                  const std::vector<float>& deviation_m);

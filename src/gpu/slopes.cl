@@ -100,9 +100,9 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
     const float w = weight_of(squares, inverse_max) * n.usable / n.noise;
     add_slope(&singles, w, (float)columns, (float)rows, n.difference);
     if (i < 2 * FIRST_FAR_RING) continue;
-    const float told = weight_of(squares, inverse_max * 0.25f) * n.usable;
-    chi2 = product_plus(told, squares, chi2);
-    count += told;
+    const float robust_weight = weight_of(squares, inverse_max * 0.25f) * n.usable;
+    chi2 = product_plus(robust_weight, squares, chi2);
+    count += robust_weight;
   }
   slopes = slopes_of(&singles);
   // Ratio of the scatter of the far neighbours about the plane to its predicted variance.
@@ -374,9 +374,9 @@ kernel void compare_sums(const struct FilterParameters p, const struct SlopePara
   const float near_variance = LARGER(variance, 1e-12f);
   const float less = near_variance - plane_of(&p, planes, w.variance_out)[at];
   const float least = near_variance * LEAST_NOISE_SHARE, noise = LARGER(less, least);
-  const bool is_told = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f &&
+  const bool is_known = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f &&
                        far2 > near_variance * LEAST_ENERGY;
-  plane_of(&p, planes, PLANE_SHIFT)[at] = is_told ? moved / sqrt(move2 * noise) : 0.0f;
+  plane_of(&p, planes, PLANE_SHIFT)[at] = is_known ? moved / sqrt(move2 * noise) : 0.0f;
 }
 
 kernel void keep_near(const struct FilterParameters p, const struct SlopeParameters w,

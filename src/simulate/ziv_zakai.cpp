@@ -21,8 +21,8 @@ struct Shifts {
 /// the highest harmonic.
 Shifts shifts_for(double slope, Eigen::Index highest) {
   constexpr Eigen::Index near_cells = 48;
-  constexpr double told_apart = 8.0;  // in standard deviations
-  const double near = std::min(0.5, told_apart / slope);
+  constexpr double distinct_at = 8.0;  // in standard deviations
+  const double near = std::min(0.5, distinct_at / slope);
   const auto far_cells = static_cast<Eigen::Index>(
       near < 0.5
           ? std::ceil((0.5 - near) * static_cast<double>(std::max<Eigen::Index>(128, 8 * highest)))

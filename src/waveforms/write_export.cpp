@@ -36,12 +36,12 @@ std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera
 constexpr double max_duty_change = 0.01;  // relative; larger changes are noted
 constexpr int max_points_away = 128;      // search range for alternative tables
 
-double duty_change(const GeneratorReport& played) {
-  return played.duty_nominal > 0.0 ? std::abs(played.duty_actual / played.duty_nominal - 1.0) : 0.0;
+double duty_change(const GeneratorReport& report) {
+  return report.duty_nominal > 0.0 ? std::abs(report.duty_actual / report.duty_nominal - 1.0) : 0.0;
 }
 
-const GeneratorReport& most_changed(const std::vector<GeneratorReport>& played) {
-  return *std::ranges::max_element(played, {}, duty_change);
+const GeneratorReport& most_changed(const std::vector<GeneratorReport>& reports) {
+  return *std::ranges::max_element(reports, {}, duty_change);
 }
 
 /// Returns true if tables with this number of points per period are valid and preserve all duties.

@@ -246,9 +246,9 @@ class Commands(CommandLineTest):
         self.assertNotIn("note", self.do(*look))
         picture[1, 2] = 2706
         np.save(self.path("picture.npy"), picture)
-        told = "note: the brightest albedo of the picture is 2706"
-        self.assertIn(told, self.do(*look))
-        self.assertIn(told, self.do("simulate", *look[1:], "--code", "sinusoid-k4", "-o", "r.npy"))
+        note = "note: the brightest albedo of the picture is 2706"
+        self.assertIn(note, self.do(*look))
+        self.assertIn(note, self.do("simulate", *look[1:], "--code", "sinusoid-k4", "-o", "r.npy"))
 
     def test_decode_reports_frames_without_any_depth(self):
         adc = ("--set", "sensor.adc_bits=12", "--set", "sensor.gain_e_per_dn=1")

@@ -292,9 +292,9 @@ class Tally:
         try:
             return action()
         except (Broken, subprocess.TimeoutExpired) as problem:
-            told = re.sub(r"\d+", "N", str(problem))[:100]
-            self.broken[command.name, kind, told] += 1
-            self.first.setdefault((command.name, kind, told), (what, str(problem)))
+            message = re.sub(r"\d+", "N", str(problem))[:100]
+            self.broken[command.name, kind, message] += 1
+            self.first.setdefault((command.name, kind, message), (what, str(problem)))
             return "broken"
 
     def report(self):

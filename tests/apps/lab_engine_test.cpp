@@ -248,7 +248,7 @@ TEST(LabEngine, CommandsOmitKeysThatThePageOmits) {
 }
 
 TEST(LabEngine, ADesignReturnsACodeForTheCameraAndReportsProgress) {
-  double told = 0.0;
+  double reported = 0.0;
   const Json request = {{"call", "design"},
                         {"built_in", "paper-10f0"},
                         {"method", "factorize"},
@@ -260,11 +260,11 @@ TEST(LabEngine, ADesignReturnsACodeForTheCameraAndReportsProgress) {
                           {{"key", "operating.signal_e_per_s"}, {"value", "[1e5]"}},
                           {{"key", "operating.ambient_e_per_s"}, {"value", "[1e2]"}}}}};
   const Json json = Json::parse(answer(request.dump(), [&](double fraction, std::string_view) {
-                                  told = fraction;
+                                  reported = fraction;
                                   return true;
                                 }).json);
   ASSERT_TRUE(json.contains("answer")) << json;
-  EXPECT_EQ(told, 1.0);
+  EXPECT_EQ(reported, 1.0);
   const CodeSet code = parse_code_json(json["answer"]["file"].get<std::string>());
   EXPECT_EQ(code.name(), json["answer"]["document"]["best"].get<std::string>());
   EXPECT_GT(json["answer"]["error_m"], 0.0);

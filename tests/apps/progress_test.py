@@ -25,13 +25,13 @@ class ProgressLines(CommandLineTest):
         return error
 
     def test_long_commands_print_plain_lines_unless_quiet(self):
-        told = [self.start_watched(*LONG, *json) for json in ((), ("--json",))]
+        watched = [self.start_watched(*LONG, *json) for json in ((), ("--json",))]
         quiet = [self.start_watched(*words) for words in (("--quiet", *LONG), (*LONG, "--quiet"))]
-        for process in told:
+        for process in watched:
             first = process.stderr.readline()
             self.assertRegex(first, rb"^tofsmith: evaluating \d+ %  \w[^\r\x1b]*\n$")
         time.sleep(1)  # longer than the delay of the first line
-        for process in (*told, *quiet):
+        for process in (*watched, *quiet):
             self.assertEqual(self.end(process), b"tofsmith: interrupted; nothing was written\n")
 
     def test_short_commands_print_no_progress(self):

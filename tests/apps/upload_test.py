@@ -33,7 +33,7 @@ class Upload(CommandLineTest):
             self.assertTrue(report["verified"], report["message"])
             self.assertEqual(report["instrument"]["model"], model)
             light, sensor = report["channels"]
-            self.assertEqual((light["plays"], sensor["plays"]), ("modulation_1", "demodulation_1"))
+            self.assertEqual((light["waveform"], sensor["waveform"]), ("modulation_1", "demodulation_1"))
             self.assertAlmostEqual(light["numbers"]["amplitude_vpp"]["read_back"], 1.0, places=3)
             for n, channel in enumerate((light, sensor), 1):
                 self.assertTrue(generator.is_on(n))

@@ -205,9 +205,9 @@ TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
     EXPECT_TRUE(std::any_of(contenders.codes.begin(), contenders.codes.end(),
                             [&](const CodeSet& code) { return code.name() == best; }))
         << best;
-    std::size_t told = contenders.codes.size();
-    for (const auto& [reason, left_out] : contenders.left_out) told += left_out.size();
-    EXPECT_EQ(told, names.size()) << "each competes or is told why not";
+    std::size_t listed = contenders.codes.size();
+    for (const auto& [reason, left_out] : contenders.left_out) listed += left_out.size();
+    EXPECT_EQ(listed, names.size()) << "each competes or has a reason";
   }
 }
 
@@ -217,12 +217,13 @@ TEST(ContendingFamilies, ReportWhyOthersCannotCompete) {
   camera.sensor.shortest_pulse_s = 0.2 / camera.fundamental_frequency_hz;
   const Contenders contenders =
       contending_families({"single-ramp-k3", "square-k4", "nothing-k4"}, camera, 2);
-  std::string told;
+  std::string listed;
   for (const auto& [reason, names] : contenders.left_out)
-    told += fmt::format("{}: {}\n", fmt::join(names, ","), reason);
-  EXPECT_THAT(told, HasSubstr("single-ramp-k3: has pulses or gaps below sensor.shortest_pulse_s"));
-  EXPECT_THAT(told, HasSubstr("nothing-k4: code = nothing-k4"));
-  ASSERT_EQ(contenders.codes.size(), 1u) << told;
+    listed += fmt::format("{}: {}\n", fmt::join(names, ","), reason);
+  EXPECT_THAT(listed,
+              HasSubstr("single-ramp-k3: has pulses or gaps below sensor.shortest_pulse_s"));
+  EXPECT_THAT(listed, HasSubstr("nothing-k4: code = nothing-k4"));
+  ASSERT_EQ(contenders.codes.size(), 1u) << listed;
 }
 
 TEST(Design, TriesEveryBuiltInCodeAndReportsThoseNotJudged) {

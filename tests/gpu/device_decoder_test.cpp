@@ -260,15 +260,15 @@ TEST_F(DeviceDecoding, OverlappedCopiesChangeNothing) {
   const RawView view = RawView::interleaved(raw.data(), height, width, 4);
   const Outputs expected = decoded(setup.decoder, view);
   const DeviceDecoder on_device(device(), setup.decoder);
-  std::vector<double> told;
+  std::vector<double> fractions;
   Outputs outputs(static_cast<std::size_t>(view.pixels()));
   on_device.decode(view, outputs.view(), [&](double fraction, std::string_view) {
-    told.push_back(fraction);
+    fractions.push_back(fraction);
     return true;
   });
   expect_alike(device().info(), true, outputs, expected, 1e6);
-  EXPECT_EQ(told.size(), 4u);
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(fractions.size(), 4u);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   std::int64_t left = 0;
   expect_only(decoded(on_device, view, left, 1), expected, 1);
 }

@@ -28,7 +28,7 @@ std::uint16_t number_at(std::size_t row, std::size_t column, int phase = 0) {
                                     41 * static_cast<std::size_t>(phase));
 }
 
-std::vector<std::uint16_t> numbers_of(int phase = 0) {
+std::vector<std::uint16_t> phase_image(int phase = 0) {
   std::vector<std::uint16_t> numbers;
   for (std::size_t row = 0; row < height; ++row)
     for (std::size_t column = 0; column < width; ++column)
@@ -120,7 +120,7 @@ TEST(Tiff, ReadsStripsAndTilesOfEveryCompression) {
               packed_by(scheme, block_bytes(first, rows, 0, width, big_endian, predictor == 2)));
         const NpyArray image = parse_tiff(strips.file(), "a.tiff");
         EXPECT_THAT(image.shape(), ElementsAre(height, width));
-        EXPECT_THAT(image.as<std::uint16_t>(), testing::ElementsAreArray(numbers_of()));
+        EXPECT_THAT(image.as<std::uint16_t>(), testing::ElementsAreArray(phase_image()));
 
         tiles.tags.push_back({322, {32}});
         tiles.tags.push_back({323, {16}});
@@ -129,7 +129,7 @@ TEST(Tiff, ReadsStripsAndTilesOfEveryCompression) {
             tiles.blocks.push_back(
                 packed_by(scheme, block_bytes(row, 16, column, 32, big_endian, predictor == 2)));
         EXPECT_THAT(parse_tiff(tiles.file(324, 325), "a.tiff").as<std::uint16_t>(),
-                    testing::ElementsAreArray(numbers_of()));
+                    testing::ElementsAreArray(phase_image()));
       }
 }
 
@@ -183,7 +183,7 @@ std::vector<std::filesystem::path> write_phases(const TemporaryDirectory& direct
   std::vector<std::filesystem::path> files;
   for (int phase = 0; phase < 4; ++phase) {
     files.push_back(directory / ("p" + std::to_string(phase) + extension));
-    const std::vector<std::uint16_t> numbers = numbers_of(phase);
+    const std::vector<std::uint16_t> numbers = phase_image(phase);
     if (extension == ".png") {
       write_png(files.back(), {height, width, 1, 16, numbers}, overwrite);
       continue;
@@ -208,7 +208,7 @@ TEST(PhaseImages, FormAFrame) {
     ASSERT_EQ(frames.measurements, 4);
     for (int phase = 0; phase < 4; ++phase)
       for (std::size_t i = 0; i < height * width; ++i)
-        ASSERT_EQ(frames.values[4 * i + static_cast<std::size_t>(phase)], numbers_of(phase)[i]);
+        ASSERT_EQ(frames.values[4 * i + static_cast<std::size_t>(phase)], phase_image(phase)[i]);
   }
 }
 

@@ -143,7 +143,7 @@ TEST(DesignDocument, AddsTheBestCodeAndComparisons) {
   ASSERT_EQ(document["codes"].size(), result.candidates.size());
   Keys names;
   for (const json& code : document["codes"]) {
-    EXPECT_TRUE(names.insert(code["name"]).second) << "a name is told twice";
+    EXPECT_TRUE(names.insert(code["name"]).second) << "a repeated name";
     Keys expected = code_keys;
     expected.insert({"method", "times_best"});
     if (code["name"] == document["best"]) expected.insert("robustness");

@@ -76,16 +76,16 @@ def wrong_bins(table, raw, found):
     """Returns the pixels that were not assigned the lowest of the best bins."""
     unit = table - table.mean(axis=1, keepdims=True)
     size = np.linalg.norm(unit, axis=1)
-    told = np.flatnonzero(size > 1e-12 * size.max())
-    unit = np.ascontiguousarray((unit[told] / size[told, None]).T)
-    among_told = np.full(len(table), -1)
-    among_told[told] = np.arange(len(told))
+    known = np.flatnonzero(size > 1e-12 * size.max())
+    unit = np.ascontiguousarray((unit[known] / size[known, None]).T)
+    among_known = np.full(len(table), -1)
+    among_known[known] = np.arange(len(known))
 
     y, bins = raw[0].astype(float), found[0]
     valid = np.isfinite(y).all(axis=1)
     wrong = (bins == -1) == valid
     pixels = np.flatnonzero(valid & ~wrong)
-    at = among_told[bins[pixels]]
+    at = among_known[bins[pixels]]
     wrong[pixels[at < 0]] = True  # a bin without contrast
     pixels, at = pixels[at >= 0], at[at >= 0]
     y = y[pixels]
@@ -95,8 +95,8 @@ def wrong_bins(table, raw, found):
     y -= y.mean(axis=1, keepdims=True)
     norm = np.linalg.norm(y, axis=1)
     surely_tied, perhaps_tied = 0.9e-11 * norm - rounding, 1.1e-11 * norm + rounding
-    step = max(1, SCORES_AT_ONCE // len(told))
-    all_scores = np.empty((step, len(told)))
+    step = max(1, SCORES_AT_ONCE // len(known))
+    all_scores = np.empty((step, len(known)))
     for first in range(0, len(pixels), step):
         part = slice(first, first + step)
         here = at[part]

@@ -40,11 +40,11 @@ def upload(address, timeout_s=5.0, progress=None, camera=TARGET[1], **options):
 
 def sent_points(script, channel):
     """Returns the bytes of the table of a script's channel."""
-    (data,) = [s.data for s in script.steps if s.what == f"load {channel.plays}"]
+    (data,) = [s.data for s in script.steps if s.what == f"load {channel.waveform}"]
     return data[2 + int(data[1:2]):] if data[:1] == b"#" else data
 
 
-def plays(simulated, report, script, output_on):
+def generates(simulated, report, script, output_on):
     """Returns whether a simulated generator outputs the requested waveforms."""
     for channel in report.channels:
         n = channel.channel
@@ -73,9 +73,9 @@ def test_every_family_outputs_what_was_sent(family, output_on):
     assert report.verified and "equal" in report.message
     assert report.address == f"TCPIP::127.0.0.1::{simulated.address[10:]}::SOCKET"
     assert (report.model, report.treated_as) == (MODELS[family], MODELS[family].rstrip("BC"))
-    assert [channel.plays for channel in report.channels] == ["modulation_2", "demodulation_2"]
+    assert [channel.waveform for channel in report.channels] == ["modulation_2", "demodulation_2"]
     script = instruments.upload_script(*TARGET, report.treated_as, **QUICK | options)
-    assert plays(simulated, report, script, output_on)
+    assert generates(simulated, report, script, output_on)
     assert len(simulated.memory) == (3 if family == "tektronix" else 6)
     assert len(report.numbers) > 5
     for number in report.numbers:
@@ -89,7 +89,7 @@ def test_siglent_accepts_three_headers_and_its_own_clock():
         with generator("siglent") as simulated:
             report = upload(simulated.address, wave_header=header)
         script = instruments.upload_script(*TARGET, "SDG2042X", wave_header=header, **QUICK)
-        assert report.verified and plays(simulated, report, script, False)
+        assert report.verified and generates(simulated, report, script, False)
     with generator("siglent") as simulated:
         report = upload(simulated.address, camera=ts.Camera(TARGET[1], fundamental_frequency_hz=1e6),
                         true_arb=True, load_ohm=float("inf"), tables={"samples": 12})
@@ -105,7 +105,7 @@ def test_points_without_read_back_are_unverified(family):
         report = upload(simulated.address, read_back=False)
     assert not report.verified and report.message.startswith("unverified")
     script = instruments.upload_script(*TARGET, report.treated_as, read_back=False, **QUICK)
-    assert plays(simulated, report, script, False)
+    assert generates(simulated, report, script, False)
 
 
 def outcome(simulated, script, output_on, upload_to_it):
@@ -117,7 +117,7 @@ def outcome(simulated, script, output_on, upload_to_it):
         except OSError as error:
             assert str(error).startswith("TCPIP::127.0.0.1::"), fault
             return "failed"
-    assert report.verified and plays(simulated, report, script, output_on), fault
+    assert report.verified and generates(simulated, report, script, output_on), fault
     return "verified"
 
 
@@ -344,7 +344,7 @@ def test_upload_script_equals_the_command(cli):
                               capture_output=True, text=True, check=True)
         script = instruments.upload_script(*TARGET, model, **more)
         assert str(script) == done.stdout
-        assert [c.plays for c in script.channels] == ["modulation_2", "demodulation_2"]
+        assert [c.waveform for c in script.channels] == ["modulation_2", "demodulation_2"]
         assert sum(len(step.data) for step in script.steps) > 0
         assert script.model.name in {m.name for m in instruments.generator_models()}
     whole = instruments.upload_script(*TARGET, "33522", all=True)

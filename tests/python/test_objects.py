@@ -224,10 +224,10 @@ def test_mixers_use_signed_weights():
     again = pickle.loads(pickle.dumps(code))
     assert again.is_signed and np.allclose(again.demodulation, weights)
     scene = ts.Scene(np.full((4, 5), 2.0, np.float32))
-    for played in (family, code):
-        frame = ts.capture(scene, played, camera, signal_e_per_s=1e7, falloff=False)
+    for code_or_family in (family, code):
+        frame = ts.capture(scene, code_or_family, camera, signal_e_per_s=1e7, falloff=False)
         assert frame.shape == (4, 5, 4) and frame.min() < 0
-        assert np.allclose(ts.Decoder(played, camera).decode(frame).depth_m, 2.0, atol=0.05)
+        assert np.allclose(ts.Decoder(code_or_family, camera).decode(frame).depth_m, 2.0, atol=0.05)
     with pytest.raises(ValueError, match="sensor.demodulation"):
         ts.ForwardModel(code, "paper-10f0")
     with pytest.raises(ValueError, match="in \\[-1, 1\\]"):

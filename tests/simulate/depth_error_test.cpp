@@ -299,12 +299,13 @@ TEST(BestRotation, AGeneratorReproducesTheRotatedCode) {
   const int bins = best_rotation(code, camera, {.trials = 400}).rotation_bin;
   const CodeSet rotated = code.rotated(bins);
   EXPECT_GT(bins, 0);
-  const auto played = [&](const Waveform& waveform) {
+  const auto as_generated = [&](const Waveform& waveform) {
     return generated(waveform, *camera.light.generator, camera.fundamental_frequency_hz);
   };
   for (int e = 0; e < code.exposures(); ++e) {
-    const Waveform later = played(code.modulation(e)).delayed(bins / 300.0);
-    EXPECT_LT((played(rotated.modulation(e)).harmonics(50) - later.harmonics(50)).norm(), 1e-9);
+    const Waveform later = as_generated(code.modulation(e)).delayed(bins / 300.0);
+    EXPECT_LT((as_generated(rotated.modulation(e)).harmonics(50) - later.harmonics(50)).norm(),
+              1e-9);
   }
 }
 

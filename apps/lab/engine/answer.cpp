@@ -79,9 +79,10 @@ Answer about() {
 Answer set(const Request& request) {
   const Change asked{request.text("key"),
                      request.has("value") ? std::optional(request.text("value")) : std::nullopt};
-  const auto [camera, told] = changed(request.camera(), asked);
+  const auto [camera, resolved] = changed(request.camera(), asked);
   Answer answer = camera_answer(camera);
-  answer["change"] = {{"key", told.key}, {"value", told.value ? Json(*told.value) : Json()}};
+  answer["change"] = {{"key", resolved.key},
+                      {"value", resolved.value ? Json(*resolved.value) : Json()}};
   return answer;
 }
 

@@ -130,10 +130,10 @@ std::pair<Camera, Change> changed(const Camera& camera, const Change& change) {
   require(!change.value || change.value->find_first_not_of(" \t") != std::string::npos, change.key,
           "nothing", "expected a value");
   constexpr std::string_view kind = ".impulse_response.kind";
-  Change told = change;
+  Change resolved = change;
   if (change.value && change.key.ends_with(kind)) {
-    told.key = change.key.substr(0, change.key.size() - std::string(".kind").size());
-    const bool is_light = told.key.starts_with("light");
+    resolved.key = change.key.substr(0, change.key.size() - std::string(".kind").size());
+    const bool is_light = resolved.key.starts_with("light");
     const ImpulseResponse& before =
         is_light ? camera.light.impulse_response : camera.sensor.impulse_response;
     const double limit_hz = before.f_max_hz > 0.0    ? before.f_max_hz
@@ -142,14 +142,14 @@ std::pair<Camera, Change> changed(const Camera& camera, const Change& change) {
     std::string word = *change.value;
     std::erase(word, '"');
     if (word == "hann")
-      told.value = fmt::format("{{ kind = \"hann\", f_max_hz = {} }}", limit_hz);
+      resolved.value = fmt::format("{{ kind = \"hann\", f_max_hz = {} }}", limit_hz);
     else if (word == "gaussian" || word == "lowpass")
-      told.value = fmt::format("{{ kind = \"{}\", cutoff_hz = {} }}", word, limit_hz);
+      resolved.value = fmt::format("{{ kind = \"{}\", cutoff_hz = {} }}", word, limit_hz);
     else
-      told.value = fmt::format("{{ kind = \"{}\" }}", word);
+      resolved.value = fmt::format("{{ kind = \"{}\" }}", word);
   }
-  const std::array settings = {told.key + "=" + told.value.value_or("")};
-  return {with_settings(camera, settings), told};
+  const std::array settings = {resolved.key + "=" + resolved.value.value_or("")};
+  return {with_settings(camera, settings), resolved};
 }
 
 }  // namespace tofsmith::lab

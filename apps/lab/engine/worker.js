@@ -8,13 +8,13 @@
 const numberTypes = {Float32Array, Float64Array, Int32Array, Uint8Array};
 let engine = null;
 let currentId = null;
-let toldAt = 0;
+let reportedAt = 0;
 
 /** Reports progress ten times per second. */
 function tellProgress(fraction, text) {
   const now = Date.now();
-  if (currentId === null || (now - toldAt < 100 && fraction < 1)) return;
-  toldAt = now;
+  if (currentId === null || (now - reportedAt < 100 && fraction < 1)) return;
+  reportedAt = now;
   self.postMessage({id: currentId, progress: {done: fraction, total: 1, text}});
 }
 

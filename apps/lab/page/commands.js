@@ -48,12 +48,12 @@ export class Commands {
     const own =
         camera.file === undefined ? {built_in: camera.built_in} : {camera_file: camera.file_name};
     for (const {what, text, files} of this.strips) {
-      const played = what === 'design' ? [] : what === 'scene' ? [codes[chosen]] : codes;
+      const shown = what === 'design' ? [] : what === 'scene' ? [codes[chosen]] : codes;
       const asked = {
         what,
         ...own,
         changes: camera.changes,
-        codes: played.map(codeWord),
+        codes: shown.map(codeWord),
         trials,
         seed,
         scene: scene.name,
@@ -72,7 +72,7 @@ export class Commands {
         text.textContent = answers.map((answer) => answer.command).join('\n');
         const needed = [
           ...(own.camera_file ? [own.camera_file] : []),
-          ...played.filter((code) => code.file !== undefined).map(codeWord)
+          ...shown.filter((code) => code.file !== undefined).map(codeWord)
         ];
         files.textContent =
             needed.length ? `It reads ${needed.join(', ')}: save that from this page first.` : '';

@@ -48,9 +48,9 @@ def reproduce(study: Study) -> None:
                     "%: {:.1f}, {:.1f} and {:.1f} times better.".format(*a, *b, *(b / a)))
     study.picture("errors", draw_errors(percent),
                   "Mean circular depth error over all emulated depths, with standard errors.")
-    played = tofsmith.CodeSet.from_waveforms(*tofsmith.actual_waveforms(ours, camera), taps=ours.taps,
-                                             samples=camera.samples, name="as played")
-    study.picture("waveforms", plot.waveforms(played, camera),
+    generated = tofsmith.CodeSet.from_waveforms(*tofsmith.actual_waveforms(ours, camera), taps=ours.taps,
+                                             samples=camera.samples, name="as generated")
+    study.picture("waveforms", plot.waveforms(generated, camera),
                   "The redesigned code as the generators play it, and its correlation functions.")
     study.table("errors_percent_of_range", [
         {"code": name, "optical_density": density, "error": float(error), "standard_error": float(se)}

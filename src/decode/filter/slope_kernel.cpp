@@ -150,9 +150,10 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
         singles.add(w, place, difference);
         if (i < 2 * first_far_ring) continue;
-        const Vector told = hn::Mul(weight_of(squares, hn::Mul(inverse_max, all(0.25f))), usable);
-        chi2 = hn::MulAdd(told, squares, chi2);
-        count = hn::Add(count, told);
+        const Vector robust_weight =
+            hn::Mul(weight_of(squares, hn::Mul(inverse_max, all(0.25f))), usable);
+        chi2 = hn::MulAdd(robust_weight, squares, chi2);
+        count = hn::Add(count, robust_weight);
       }
       singles.solve(across, along);
       store(hn::Max(hn::Div(chi2, hn::Max(count, all(1e-6f))), all(1.0f)), excess + p);
@@ -256,9 +257,9 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
     const Vector noise = hn::Max(hn::Sub(near_variance, load(sums.far_variance + at)),
                                  hn::Mul(near_variance, all(least_noise_share)));
     const Vector difference = hn::Div(moved, hn::Sqrt(hn::Mul(move2, noise)));
-    const Mask is_told = hn::And(hn::Gt(load(sums.usable + at), zero),
-                                 hn::Gt(far2, hn::Mul(near_variance, all(least_energy))));
-    store(hn::IfThenElseZero(is_told, difference), sums.difference + at);
+    const Mask is_known = hn::And(hn::Gt(load(sums.usable + at), zero),
+                                  hn::Gt(far2, hn::Mul(near_variance, all(least_energy))));
+    store(hn::IfThenElseZero(is_known, difference), sums.difference + at);
   }
 }
 

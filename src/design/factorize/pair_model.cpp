@@ -64,12 +64,12 @@ double PairModel::residual_rms(const Eigen::VectorXd& modulation,
 
 WaveformPair PairModel::actual(const WaveformPair& pair) const {
   const double f0_hz = camera_.fundamental_frequency_hz;
-  WaveformPair played = pair;
+  WaveformPair generated_pair = pair;
   if (const auto& generator = camera_.light.generator)
-    played.modulation = at_average_power(generated(pair.modulation, *generator, f0_hz));
+    generated_pair.modulation = at_average_power(generated(pair.modulation, *generator, f0_hz));
   if (const auto& generator = camera_.sensor.generator)
-    played.demodulation = generated(pair.demodulation, *generator, f0_hz);
-  return played;
+    generated_pair.demodulation = generated(pair.demodulation, *generator, f0_hz);
+  return generated_pair;
 }
 
 double PairModel::residual_rms(const WaveformPair& nominal) const {

@@ -72,7 +72,7 @@ class Elimination {
       const auto across = across_of(i, signal_e);
       square = hn::MulAdd(hn::Mul(weight_of(i), across), across, square);
     }
-    is_told = hn::And(hn::Gt(square, hn::Mul(all(rounding), dd)), hn::Gt(square, hn::Zero(d)));
+    is_known = hn::And(hn::Gt(square, hn::Mul(all(rounding), dd)), hn::Gt(square, hn::Zero(d)));
   }
 
   HWY_INLINE DoubleVector weight_of(int i) const {
@@ -90,7 +90,7 @@ class Elimination {
 
   DoubleVector signal_share, ambient_share;
   DoubleVector square;  // |across|^2
-  hn::Mask<Doubles> is_told;
+  hn::Mask<Doubles> is_known;
 
  private:
   static constexpr double rounding = 1e-20;  // smaller squares are rounding errors
@@ -116,7 +116,7 @@ void deviations_of(const DepthElectrons& electrons, const Eigen::VectorXd& const
     for (Eigen::Index j = 0; j < electrons.signal.rows(); j += lanes_of(d)) {
       depths.at(j, lights[l]);
       const auto deviation = hn::Div(all(range_m), hn::Sqrt(depths.square));
-      hn::StoreU(hn::IfThenElse(depths.is_told, deviation, infinite), d,
+      hn::StoreU(hn::IfThenElse(depths.is_known, deviation, infinite), d,
                  deviation_m.col(static_cast<Eigen::Index>(l)).data() + j);
     }
 }
@@ -150,8 +150,8 @@ void add_gradient_of(const DepthElectrons& electrons, const Eigen::VectorXd& con
       depths.at(j, lights[l]);
       // d sigma = -range / |across|^3 d |across|^2 / 2
       const auto by_half_square = hn::IfThenElseZero(
-          depths.is_told, hn::Div(hn::Mul(hn::LoadU(d, weights + j), all(-range_m)),
-                                  hn::Mul(depths.square, hn::Sqrt(depths.square))));
+          depths.is_known, hn::Div(hn::Mul(hn::LoadU(d, weights + j), all(-range_m)),
+                                   hn::Mul(depths.square, hn::Sqrt(depths.square))));
       for (int i = 0; i < K; ++i) {
         const auto weight = depths.weight_of(i), across = depths.across_of(i, signal_e);
         const auto by_mean = hn::Mul(by_half_square, hn::Mul(weight, across));

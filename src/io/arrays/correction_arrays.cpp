@@ -26,8 +26,8 @@ void for_each_array(Struct& its, const std::string& prefix, const Visit& visit) 
   });
 }
 
-std::vector<double> numbers_of(const NpzReader& archive, const std::string& file,
-                               const std::string& name) {
+std::vector<double> read_numbers(const NpzReader& archive, const std::string& file,
+                                 const std::string& name) {
   const NpyArray array = archive.read(name);
   if (array.axes() > 1)
     throw IoError(fmt::format("{}: {}", file, name),
@@ -59,7 +59,7 @@ std::optional<DepthCorrection> correction_of(const NpzReader& archive, const std
   for_each_array(
       correction, std::string(correction_prefix), [&](const std::string& name, auto& value) {
         using Value = std::remove_cvref_t<decltype(value)>;
-        const std::vector<double> numbers = numbers_of(archive, file, name);
+        const std::vector<double> numbers = read_numbers(archive, file, name);
         if constexpr (std::is_arithmetic_v<Value>) {
           constexpr auto largest = static_cast<double>(std::numeric_limits<Value>::max());
           if (numbers.size() != 1 || !(std::abs(numbers[0]) <= largest))

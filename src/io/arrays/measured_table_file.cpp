@@ -32,17 +32,17 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
           std::vector<std::string>& notes) {
   const Eigen::Index rows = matrix.rows(), columns = matrix.cols();
   const bool upright = can_be_table(rows, columns), lying = can_be_table(columns, rows);
-  const bool told_lying = axes == TableAxes::measurements_first;
-  if (axes ? !(told_lying ? lying : upright) : !(upright || lying))
+  const bool expects_lying = axes == TableAxes::measurements_first;
+  if (axes ? !(expects_lying ? lying : upright) : !(upright || lying))
     throw IoError(place, fmt::format("found the shape ({}, {}); expected {} with N in [{}, {}] and "
                                      "K at most {}",
-                                     rows, columns, told_lying ? "(K, N)" : "(N, K)", min_samples,
-                                     max_samples, max_measurements));
+                                     rows, columns, expects_lying ? "(K, N)" : "(N, K)",
+                                     min_samples, max_samples, max_measurements));
   if (!axes && upright && lying && rows <= columns)
     throw IoError(place, fmt::format("found the shape ({}, {}), which could be (N, K) or (K, N); "
                                      "expected the axes, --table-axes nk or kn",
                                      rows, columns));
-  if (!(axes ? told_lying : !upright)) return;
+  if (!(axes ? expects_lying : !upright)) return;
   matrix.transposeInPlace();
   if (!axes)
     notes.push_back(

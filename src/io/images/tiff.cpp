@@ -153,7 +153,7 @@ class TiffImage {
   NpyType type() const;
   Blocks blocks() const;
   std::vector<std::byte> unpacked(std::size_t block, std::size_t size, bool tiled) const;
-  std::vector<std::byte> numbers_of(std::size_t block, std::size_t rows, const Blocks& all,
+  std::vector<std::byte> read_block(std::size_t block, std::size_t rows, const Blocks& all,
                                     std::size_t item) const;
 
   Bytes content_;
@@ -271,7 +271,7 @@ TiffImage::Blocks TiffImage::blocks() const {
   return all;
 }
 
-std::vector<std::byte> TiffImage::numbers_of(std::size_t block, std::size_t rows, const Blocks& all,
+std::vector<std::byte> TiffImage::read_block(std::size_t block, std::size_t rows, const Blocks& all,
                                              std::size_t item) const {
   std::vector<std::byte> bytes = unpacked(block, rows * all.width * item, all.tiled);
   if (big_endian_ == host_is_little_endian) swap_byte_order(bytes, item);
@@ -297,7 +297,7 @@ NpyArray TiffImage::numbers() const {
     for (std::size_t column = 0; column < width; column += all.width, ++block) {
       const std::size_t rows = std::min(all.height, height - row),
                         columns = std::min(all.width, width - column);
-      const auto bytes = numbers_of(block, all.tiled ? all.height : rows, all, item);
+      const auto bytes = read_block(block, all.tiled ? all.height : rows, all, item);
       for (std::size_t r = 0; r < rows; ++r)
         std::memcpy(image.bytes().data() + ((row + r) * width + column) * item,
                     bytes.data() + r * all.width * item, columns * item);

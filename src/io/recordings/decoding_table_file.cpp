@@ -106,7 +106,7 @@ std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measu
 }
 
 /// The camera with what a user says beyond it.
-Camera as_played(Camera camera, const DecodingTableOptions& options) {
+Camera with_playback(Camera camera, const DecodingTableOptions& options) {
   if (options.order.empty() && !options.reversed) return camera;
   Playback playback = camera.playback.value_or(Playback());
   if (!options.order.empty()) playback.order = options.order;
@@ -164,7 +164,7 @@ LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& c
     const CodeSet actual = load_camera_code(code, camera, options.file);
     refuse_table_options(code, options);
     loaded.name = actual.name();
-    const Camera playing = as_played(camera, options);
+    const Camera playing = with_playback(camera, options);
     loaded.table = make_decoding_table(ForwardModel(actual, playing), playing);
   }
   if (const auto note = ambiguity_note(loaded.table)) loaded.notes.push_back(*note);

@@ -27,11 +27,11 @@ def command(*words):
     return json.loads(done.stdout)
 
 
-def numbers_of(document, path=""):
+def numeric_fields(document, path=""):
     if isinstance(document, dict):
-        return {k: v for key, one in document.items() for k, v in numbers_of(one, f"{path}.{key}").items()}
+        return {k: v for key, one in document.items() for k, v in numeric_fields(one, f"{path}.{key}").items()}
     if isinstance(document, list):
-        return {k: v for i, one in enumerate(document) for k, v in numbers_of(one, f"{path}[{i}]").items()}
+        return {k: v for i, one in enumerate(document) for k, v in numeric_fields(one, f"{path}[{i}]").items()}
     is_number = isinstance(document, (int, float)) and not isinstance(document, bool)
     return {path: document} if is_number else {}
 
@@ -54,7 +54,7 @@ class Numbers(LabTest):
         sets = [word for change in changes for word in ("--set", f"{change['key']}={change['value']}")]
         theirs = command("evaluate", code, "--camera", camera, *sets, "--trials", str(TRIALS), "--seed", "3")
         document, cells = ours
-        found, expected = numbers_of(document["codes"]), numbers_of(theirs["codes"])
+        found, expected = numeric_fields(document["codes"]), numeric_fields(theirs["codes"])
         self.assertEqual(found.keys(), expected.keys())
         range_m = 299792458 / (2 * theirs["camera"]["fundamental_frequency_hz"])
         for place, value in expected.items():
@@ -106,12 +106,12 @@ class Numbers(LabTest):
     def test_invalid_values_give_the_message_of_the_command(self):
         done = subprocess.run([TOOL, "cameras", "paper-10f0"], capture_output=True, text=True, check=True)
         self.assertIn("fundamental_frequency_hz", done.stdout)
-        told = self.run_script("""
+        message = self.run_script("""
             enter(byId('field-light-peak_factor'), 'nan');
             await waitFor(() => !byId('field-light-peak_factor-problem').hidden);
             return byId('field-light-peak_factor-problem').textContent;""")
         failed = subprocess.run([TOOL, "codes", "sinusoid-k4", "--set", "light.peak_factor=nan"], capture_output=True, text=True)
-        self.assertIn(told.split(":", 1)[-1].strip(), failed.stderr)
+        self.assertIn(message.split(":", 1)[-1].strip(), failed.stderr)
 
 
 if __name__ == "__main__":

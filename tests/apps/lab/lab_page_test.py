@@ -162,18 +162,18 @@ class Page(LabTest):
 
     def test_invalid_values_are_reported_at_the_field_and_the_picture_stays(self):
         for text in ("nan", "inf", "-1", "1e400", "five", ""):
-            told, same = self.run_script("""
+            message, same = self.run_script("""
                 const picture = document.querySelector('[data-part=waveforms] svg').outerHTML, state = JSON.stringify(tofsmithLab.store.state);
                 enter(byId('field-light-peak_factor'), args[0]);
                 const problem = byId('field-light-peak_factor-problem');
                 await waitFor(() => !problem.hidden);
                 await settled();
                 const same = picture === document.querySelector('[data-part=waveforms] svg').outerHTML && state === JSON.stringify(tofsmithLab.store.state);
-                const told = problem.textContent, invalid = byId('field-light-peak_factor').getAttribute('aria-invalid');
+                const message = problem.textContent, invalid = byId('field-light-peak_factor').getAttribute('aria-invalid');
                 enter(byId('field-light-peak_factor'), '4');
                 await waitFor(() => problem.hidden);
-                return [invalid && told, same];""", text)
-            self.assertIn("peak_factor", told, text)
+                return [invalid && message, same];""", text)
+            self.assertIn("peak_factor", message, text)
             self.assertTrue(same, text)
         for name in ("seed", "scene-signal"):
             self.run_script("enter(byId(args[0]), 'NaN');", name)

@@ -72,9 +72,9 @@ class Pack(unittest.TestCase):
             ("import * as x from './x.js';\n", "export const a = 1;\n", "cannot pack"),
             ("import {a} from './x.js';\n", "export default 1;\n", "cannot pack"),
         ):
-            status, told, page = self.packed(main_js=main, x_js=other)
+            status, message, page = self.packed(main_js=main, x_js=other)
             self.assertNotEqual(status, 0)
-            self.assertIn(word, told)
+            self.assertIn(word, message)
             self.assertIsNone(page)
 
 
