@@ -21,130 +21,130 @@
 
 namespace tofsmith {
 
-/// Unit in which delays are given.
+/// Unit of delays.
 enum class DelayUnit { second, metre, bin, period };
 
-/// "s", "m", "bin" or "period"; "ns" and the like through seconds_per_unit().
+/// Parses "s", "m", "bin" or "period". For "ns" and other scaled units see seconds_per_unit().
 /// @throws std::invalid_argument for any other word
 DelayUnit parse_delay_unit(std::string_view word);
 
-/// Frames of a flat target at known delays, in the order in which they were taken.
+/// Frames of a flat target at known delays, in recording order.
 struct DelaySweep {
-  std::vector<double> delay_periods;  ///< of each frame (F), any real
+  std::vector<double> delay_periods;  ///< delay of each frame (F), any real number
   RawFrames frames;                   ///< (F, H, W, K) raw numbers; H = W = 1 for a table of means
   std::vector<std::string> notes;
 
-  /// Whether sizes agree and delays run through a whole period without a gap.
-  /// @throws std::invalid_argument naming what is missing
+  /// @throws std::invalid_argument unless sizes match and the delays cover a whole period without
+  ///         gaps
   void validate() const;
 };
 
-/// What the file of a sweep does not say.
+/// Properties of a delay sweep that its file does not contain.
 struct DelaySweepOptions {
-  std::filesystem::path shifts;  ///< delays of a stack of frames: text of one column, or .npy
+  std::filesystem::path shifts;  ///< delays of a stack of frames: text with one column, or .npy
   DelayUnit unit = DelayUnit::second;
-  double unit_scale = 1.0;                 ///< in `unit` of one number of the file
+  double unit_scale = 1.0;                 ///< size of the number 1 in the file, in `unit`
   double fundamental_frequency_hz = 15e6;  ///< f0: a period is 1/f0, or c/(2 f0) in metres
-  int samples = 240;                       ///< N, bins of a period
+  int samples = 240;                       ///< N, number of bins per period
   DecimalMark decimal = DecimalMark::automatic;
-  MeasuredTableOptions table;  ///< how an array (N, K) without delays is read
+  MeasuredTableOptions table;  ///< for an array (N, K) without delays
 };
 
 /// Reads a delay sweep:
 ///   - text: delay and K values per row,
-///   - .npy or .npz of shape (F, H, W, K) beside a list of F shifts,
-///   - .npy or .npz of shape (N, K): equal steps of one period, see read_measured_table().
-/// @throws IoError naming file and place for what does not fit
+///   - .npy or .npz of shape (F, H, W, K), together with a list of F shifts,
+///   - .npy or .npz of shape (N, K): equal steps over one period, see read_measured_table().
+/// @throws IoError naming file and position if the contents do not match
 DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepOptions& options);
 
-/// What is known of the camera that took a sweep.
+/// Properties of the camera that recorded a sweep.
 struct CorrelationCalibrationOptions {
-  int taps = 1;                ///< columns hold the taps of an exposure side by side
-  bool differences = false;    ///< columns are differences of taps
-  double range_m = 10.0;       ///< depth of a whole period [m], > 0
-  Eigen::VectorXd exposure_s;  ///< T [s] (K), if they differ; else empty
-  double black_level = 0.0;    ///< raw number without light, where there are no dark frames
-  RawFrames dark;              ///< frames with the light off, or none
-  std::optional<float> saturation_level;  ///< raw numbers from here on are clipped
-  Image<float> geometry_m;  ///< depth of the flat target in each pixel less that on the axis [m];
-                            ///< empty: none is taken out of the offset map
+  int taps = 1;                           ///< columns contain the taps of an exposure side by side
+  bool differences = false;               ///< columns are differences of taps
+  double range_m = 10.0;                  ///< depth of a whole period [m], > 0
+  Eigen::VectorXd exposure_s;             ///< T [s] (K), if they differ; otherwise empty
+  double black_level = 0.0;               ///< raw number without light, if there are no dark frames
+  RawFrames dark;                         ///< frames with the light off, or none
+  std::optional<float> saturation_level;  ///< raw numbers at or above it are clipped
+  Image<float> geometry_m;  ///< depth of the flat target in each pixel minus depth on the axis [m],
+                            ///< removed from the offset map; empty: none
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate(const DelaySweep& sweep) const;
 };
 
-/// Pixels left out, each counted once, by the first reason that holds.
+/// Number of excluded pixels by reason. Each pixel is counted once, for the first reason.
 struct DeadPixels {
   int not_a_number = 0;  ///< NaN or infinity in some frame
-  int constant = 0;      ///< the same number in all frames
+  int constant = 0;      ///< same number in all frames
   int saturated = 0;     ///< clipped in some frame
-  int low = 0;           ///< responds with less than a tenth of the usual
+  int low = 0;           ///< response below a tenth of the usual one
   int total() const { return not_a_number + constant + saturated + low; }
 };
 
-/// What is known of a camera by a sweep.
+/// Result of calibrate_correlation().
 struct CalibratedCorrelation {
-  MeasuredTable table;             ///< of the usual pixel, its gain 1 and its offset 0
+  MeasuredTable table;             ///< of the usual pixel, which has gain 1 and offset 0
   Eigen::MatrixXd standard_error;  ///< of each value of the table (N, K)
-  PixelMaps maps;                  ///< of each pixel; empty for a table of means
-  double delay_error_m = 0.0;      ///< standard error of a usual pixel's offset [m]
-  double gain_error = 0.0;         ///< of its gain
+  PixelMaps maps;                  ///< offset and gain of each pixel; empty for a table of means
+  double delay_error_m = 0.0;      ///< standard error of the offset of a usual pixel [m]
+  double gain_error = 0.0;         ///< standard error of the gain of a usual pixel
   DeadPixels dead;
-  bool drift_known = false;            ///< some delay was measured more than once
-  bool drift_corrected = false;        ///< and what was found is beyond 3 standard errors
-  Estimate light_drift;                ///< change of the light over the sweep, as a share
+  bool drift_known = false;            ///< at least one delay was measured more than once
+  bool drift_corrected = false;        ///< the drift exceeds 3 standard errors and was removed
+  Estimate light_drift;                ///< relative change of the light over the sweep
   Estimate level_drift;                ///< change of the level over the sweep [raw numbers]
-  std::vector<Estimate> tap_mismatch;  ///< of each exposure of two taps, as Sensor::tap_mismatch
-  double noise_rms = 0.0;              ///< of one raw number [raw numbers]
+  std::vector<Estimate> tap_mismatch;  ///< per exposure of two taps, as Sensor::tap_mismatch
+  double noise_rms = 0.0;              ///< noise of one raw number [raw numbers]
   std::string noise_source;            ///< "pixels", "repeats" or "high harmonics"
   std::vector<std::string> notes;
 };
 
-/// The measured table of a sweep.
-///   1. Dead pixels are left out.
-///   2. Drift: delays measured more than once show how light and level changed in time, taken to be
-///      straight lines; what is beyond 3 standard errors is taken out.
-///   3. Every pixel's curve is taken apart into harmonics; its delay and gain against the mean
-///      curve maximize the sum over harmonics and measurements (the least squares fit), and the
-///      mean curve is made again of the pixels so aligned, until neither changes.
-///   4. Table: the aligned mean at N equally spaced places of the period, N as many as there were.
-///      Errors from the residuals of the fits, place by place. table.model_error_percent is twice
-///      their share of the signal's part of the measurements. Pixels whose curves have another
-///      shape differ by more.
-/// The mean gain is 1 and the mean offset 0.
-/// @throws std::invalid_argument if sweep or options are invalid, or no live pixel is left
+/// Computes the measured table of a sweep.
+///   1. Exclude dead pixels.
+///   2. Determine the drift of light and level from delays that were measured more than once, as
+///      straight lines in time. Remove drifts that exceed 3 standard errors.
+///   3. Compute the harmonics of the curve of every pixel. Delay and gain of a pixel relative to
+///      the mean curve maximize the sum over harmonics and measurements (least squares). Recompute
+///      the mean curve from the aligned pixels, and repeat until neither changes.
+///   4. The table is the aligned mean at N equally spaced positions of the period, where N is the
+///      number of measured positions. Its errors follow from the residuals of the fits at each
+///      position. table.model_error_percent is twice their share of the part of the measurements
+///      that is due to the signal. It is too small for pixels whose curves have another shape.
+/// The mean gain is 1 and the mean offset is 0.
+/// @throws std::invalid_argument if sweep or options are invalid, or all pixels are dead
 CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
                                             const CorrelationCalibrationOptions& options,
                                             const Progress& progress = {});
 
-/// Depth that something else knows of what frames show: another sensor, a plane at a known pose,
-/// the camera's own engine, a stage.
+/// Depths of the recorded scene from an independent source: another sensor, a plane with known
+/// pose, the camera's own processing, or a translation stage.
 struct ReferenceDepth {
-  /// Along the ray [m]: one for all frames or one for each, of their size, or 1 x 1 for a target
-  /// that is as far in every pixel. NaN, infinite or <= 0: not known.
+  /// Depth along the ray [m]: one image for all frames or one per frame, of the size of the frames,
+  /// or 1 x 1 for a target with the same depth in every pixel. NaN, infinite or <= 0: unknown.
   std::vector<Image<float>> depth_m;
-  bool is_z = false;  ///< along the optical axis instead: the camera's lens says where pixels look
+  bool is_z = false;  ///< depth along the optical axis; rays are given by the camera's lens
 };
 
-/// Reads reference depth in metres: .npy of shape (H, W), (F, H, W), or (F,), a distance for each
-/// frame; .npz .exr .pfm, and .png (16 bits, mm), of one image.
-/// @throws IoError naming the file for what does not fit
+/// Reads reference depth in metres: .npy of shape (H, W), (F, H, W), or (F,) with one distance per
+/// frame; .npz, .exr, .pfm or .png (16 bits, mm) with one image.
+/// @throws IoError naming the file if the contents do not match
 ReferenceDepth read_reference_depth(const std::filesystem::path& path);
 
-/// One term of a depth correction, as it was found.
+/// Fitted term of a depth correction.
 struct CalibratedTerm {
-  std::string name;  ///< offset, cos 4, sin 4, row, column, row^2 column, log signal, ..
-  Estimate value_m;  ///< its 95 % interval is +- 1.96 standard errors
+  std::string name;  ///< offset, cos 4, sin 4, row, column, row^2 column, log signal, ...
+  Estimate value_m;  ///< the 95 % interval is +- 1.96 standard errors
 };
 
 /// Harmonic of a correlation function beyond the camera's model.
 struct CalibratedHarmonic {
-  int harmonic = 2;   ///< of the frequency
-  Estimate in_phase;  ///< share of the fundamental's amplitude, in phase with it at its maximum
+  int harmonic = 2;   ///< multiple of the frequency
+  Estimate in_phase;  ///< in phase with the fundamental at its maximum, relative to its amplitude
   Estimate quadrature;
 };
 
-/// One frequency of a code, as reference depth determines it.
+/// Calibrated properties of one frequency of a code.
 struct CalibratedFrequency {
   double frequency_hz = 0.0;
   Estimate offset_m;  ///< constant that the camera adds to the depth of this frequency
@@ -153,32 +153,31 @@ struct CalibratedFrequency {
   std::vector<CalibratedHarmonic> harmonics;  ///< only determined ones
 };
 
-/// The error of nominal depth, less its mean, to be looked at: means over pixels that count; not a
-/// number where there are none.
+/// Error of the nominal depth minus its mean, for plots: means over the pixels that have weight;
+/// NaN without such pixels.
 struct DepthErrorPicture {
-  std::vector<double>
-      depth_m;  ///< centres of equal parts of the range, as the nominal code decodes
-  std::vector<double> before_m;  ///< over each of them
-  std::vector<double> after_m;   ///< what the correction leaves of it
-  Image<float> before_image_m;   ///< over all frames, of square cells of pixels
+  std::vector<double> depth_m;   ///< centres of equal parts of the range, in nominal depth
+  std::vector<double> before_m;  ///< mean error in each part
+  std::vector<double> after_m;   ///< mean error in each part after the correction
+  Image<float> before_image_m;   ///< mean over all frames in square cells of pixels
   Image<float> after_image_m;
 };
 
 /// Result of calibrate_depth().
 struct CalibratedDepth {
-  MeasuredTable table;    ///< the nominal functions, with the correction
-  bool reversed = false;  ///< delay runs backwards; the table does too
+  MeasuredTable table;    ///< nominal correlation functions with the correction
+  bool reversed = false;  ///< delay runs backwards; so does the table
   /// One per frequency of the code; the table contains these values. Empty: a single frequency.
   std::vector<CalibratedFrequency> frequencies;
-  /// For with_depth(): offset [m] and contrast of each frequency of the code, as the keys
-  /// playback.offset_m and sensor.modulation_contrast. Empty: the mean error is the offset, and the
-  /// camera's contrast stays.
+  /// For with_depth(): offset [m] and contrast of each frequency of the code, as in the keys
+  /// playback.offset_m and sensor.modulation_contrast. Empty: the offset is the mean error, and the
+  /// contrast of the camera does not change.
   std::vector<double> offsets_m, contrasts;
-  std::vector<CalibratedTerm> terms;   ///< of the known part of the range
-  std::vector<std::string> far_terms;  ///< names of those that count beyond it
-  double known_share = 0.0;            ///< of the range in which the reference had depths
-  double mean_error_m = 0.0;           ///< of the nominal depth, in [-range / 2, range / 2]
-  double rms_before_m = 0.0;           ///< of its error, but for the mean
+  std::vector<CalibratedTerm> terms;   ///< for depths within the reference
+  std::vector<std::string> far_terms;  ///< names of the terms used for all other depths
+  double known_share = 0.0;            ///< share of the range that the reference covers
+  double mean_error_m = 0.0;           ///< mean error of nominal depth, in [-range / 2, range / 2]
+  double rms_before_m = 0.0;           ///< rms of this error minus its mean
   /// Remaining error on held-out blocks of pixels; none if too few pixels have weight.
   std::optional<double> rms_m;
   /// Remaining error of far_terms on held-out parts of the range; none if the reference is at one
@@ -189,7 +188,7 @@ struct CalibratedDepth {
   double outlier_share = 0.0;  ///< share of pixels without weight
   /// As DecodeOptions::model_error_percent, within 20 %; none: the code has no degrees of freedom.
   std::optional<double> model_error_percent;
-  std::int64_t pixels = 0;  ///< that were compared
+  std::int64_t pixels = 0;  ///< number of compared pixels
   DepthErrorPicture picture;
   std::vector<std::string> notes;
 };
@@ -283,85 +282,88 @@ Camera with_temperature(Camera camera, const TemperatureDrift& found,
                         std::optional<double> reference_c = {},
                         std::optional<double> sensor_reference_c = {});
 
-/// What a lens scatters, as a bright target before black shows it.
+/// Result of calibrate_stray_light().
 struct CalibratedStrayLight {
-  Image<float> kernel;            ///< as StrayLight takes it
+  Image<float> kernel;            ///< for StrayLight
   std::vector<double> radius_px;  ///< distances from the pixel (J)
-  std::vector<Estimate> share;    ///< of a pixel's light in each pixel so far away (J)
-  Estimate total;                 ///< of all light that is scattered
+  std::vector<Estimate> share;    ///< share of a pixel's light in one pixel at each distance (J)
+  Estimate total;                 ///< share of all light that is scattered
   std::int64_t target_pixels = 0;
-  std::int64_t pixels = 0;  ///< around the target
+  std::int64_t pixels = 0;  ///< number of pixels around the target
   std::vector<std::string> notes;
 };
 
-/// Stray light from frames of a small bright target before black.
-///   1. Means over frames, less those of `dark`, or the black level. The target are the pixels of
-///   at
-///      least half the light of the brightest; a pixel's light is that in the target's direction of
-///      the K measurements, in units of the target's mean.
-///   2. Around the target (2 pixels away and more) light is kernel * target. The kernel depends on
-///      distance alone: r^2 times it is a straight line over log r between distances 1.5 times
-///      apart, from 3 pixels on, and constant below. Least squares; errors by what is left over in
-///      each pixel (MacKinnon and White 1985, HC3).
-///   3. The target's own light follows from the kernel, and the fit is made again, three times.
-/// Whatever else is bright around the target counts as stray light, so there should be nothing.
-/// @param dark  the same with the target covered; may have no frames
-/// @throws std::invalid_argument if sizes differ, nothing is bright, the target is saturated, fewer
-///         than 4 pixels or more than a quarter of the image, or the rest is not black
+/// Determines the stray light of a lens from frames of a small bright target on a black background.
+///   1. Average the frames, and subtract the mean of `dark`, or the black level. The target
+///      consists of the pixels with at least half the light of the brightest one. The light of a
+///      pixel is its component along the target's vector of K measurements, in units of the
+///      target's mean.
+///   2. Around the target (at least 2 pixels away), light is kernel * target. The kernel depends
+///      only on distance: r^2 kernel is piecewise linear in log r, with nodes at ratios of 1.5 from
+///      3 pixels on, and constant below. Fit it by least squares, with standard errors from the
+///      residuals of the pixels (MacKinnon and White 1985, HC3).
+///   3. Compute the target's own light with the kernel, and repeat the fit three times.
+/// Any other light around the target counts as stray light, so the background must be black.
+/// @param dark  frames with the target covered; may be empty
+/// @throws std::invalid_argument if sizes differ, there is no bright pixel, the target is
+///         saturated, has fewer than 4 pixels or covers more than a quarter of the image, or the
+///         background is not black
 CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFrames& dark,
                                            const Camera& camera, const Progress& progress = {});
 
-/// Writes a table with its correction, as read_measured_table() reads it.
+/// Writes a table with its correction in the format of read_measured_table().
 /// @throws IoError as below
 void write_calibrated_table(const std::filesystem::path& path, const MeasuredTable& table,
                             OutputPolicy policy);
 
-/// Writes the table as read_measured_table() reads it: corrfs, corrfs_se, offset_dn, taps,
-/// differences and, where they are known, ambient and exposure_s. Columns hold the taps of an
-/// exposure side by side.
-/// @throws IoError unless the extension is .npz, or as AtomicFile does
+/// Writes a calibrated table in the format of read_measured_table(): corrfs, corrfs_se, offset_dn,
+/// taps, differences and, if known, ambient and exposure_s. Columns contain the taps of an exposure
+/// side by side.
+/// @throws IoError unless the extension is .npz, or as AtomicFile
 void write_calibrated_table(const std::filesystem::path& path, const CalibratedCorrelation& found,
                             OutputPolicy policy);
 
-/// One harmonic of a measured table against that of an ideal code.
+/// One harmonic of a measured table compared with that of an ideal code.
 struct HarmonicRatio {
   int harmonic = 1;
   double measured = 0.0;  ///< amplitude, root of the sum of squares over measurements
-  double ideal = 0.0;     ///< the same of the fitted code without responses
-  Estimate ratio;         ///< what both arms pass of it; not a number where the code has none
+  double ideal = 0.0;     ///< amplitude of the fitted code without impulse responses
+  Estimate ratio;         ///< transmission of both arms; NaN if the code does not have the harmonic
 };
 
 /// An ideal code fitted to a measured table.
 struct IdealCodeFit {
   std::string code;
-  double delay_periods = 0.0;   ///< by which the measured curves arrive later
-  bool reversed = false;        ///< delay runs the other way
+  double delay_periods = 0.0;   ///< delay of the measured curves
+  bool reversed = false;        ///< delay runs backwards
   bool inverted = false;        ///< all signs are opposite
-  std::vector<int> exposure;    ///< of the code that each measured exposure is
-  double scale = 1.0;           ///< raw numbers of one unit of the code's correlation
-  double ideal_residual = 0.0;  ///< rms left over the rms of the table, without responses
-  double residual = 0.0;        ///< the same with the response
-  ImpulseResponse response;     ///< of each of the two arms, both alike; none if nothing is gained
-  Estimate parameter_hz;        ///< its f_max_hz or cutoff_hz
+  std::vector<int> exposure;    ///< exposure of the code for each measured exposure
+  double scale = 1.0;           ///< raw numbers per unit of the code's correlation
+  double ideal_residual = 0.0;  ///< residual rms / rms of the table, without impulse responses
+  double residual = 0.0;        ///< residual rms / rms of the table, with `response`
+  ImpulseResponse response;     ///< of each of the two arms; none if it does not improve the fit
+  Estimate parameter_hz;        ///< f_max_hz or cutoff_hz of `response`
   Eigen::MatrixXd fitted;       ///< (N, K), without means
-  std::vector<HarmonicRatio> harmonics;  ///< 1 .. 16
+  std::vector<HarmonicRatio> harmonics;  ///< 1 to 16
 };
 
-/// Fits codes to a measured table, the least residual first: common scale, delay, direction and
-/// sign, the order of exposures, and one symmetric response of both arms (hann, gaussian or
-/// lowpass), all by least squares over harmonics. Means of columns do not count.
+/// Fits codes to a measured table, and returns the fits by ascending residual. The parameters are a
+/// common scale, delay, direction, sign, the order of exposures, and one symmetric impulse response
+/// for both arms (hann, gaussian or lowpass). Least squares over harmonics; means of columns are
+/// ignored.
 /// @param table   (N, K)
-/// @param error   standard errors of its values (N, K)
-/// @param codes   families or codes that fit the camera's taps, of K values
-/// @throws std::invalid_argument if no code has K values
+/// @param error   standard errors of the table (N, K)
+/// @param codes   families or codes that fit the camera's taps, with K measurements
+/// @throws std::invalid_argument if no code has K measurements
 std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
                                           const Eigen::MatrixXd& error, const Camera& camera,
                                           const std::vector<CodeSet>& codes);
 
-/// The ideal codes of K values on that camera: every family, without responses, peak or generator.
+/// Returns the ideal codes with K measurements: all families for the camera, without impulse
+/// responses, peak limit or generator.
 std::vector<CodeSet> ideal_codes(const Camera& camera, int measurements);
 
-/// The camera whose arms respond as fitted and whose taps differ as measured.
+/// Returns the camera with the fitted impulse responses and the measured tap mismatch.
 Camera with_fit(Camera camera, const IdealCodeFit& fit,
                 const std::vector<Estimate>& tap_mismatch = {});
 

@@ -40,7 +40,7 @@ auto fields_of(ConstOrNot<ResponseRecordOptions> auto& o) {
       Field("time_unit_s", o.time_unit_s, above(0), Help{"unit of the time column"},
             IfAbsent{"from its name, or 1"}),
       Field("column", o.column, Help{"name or number (from 1) of the column of values"}),
-      Field("decimal", o.decimal, Help{"decimal mark of a text"}));
+      Field("decimal", o.decimal, Help{"decimal mark of a text file"}));
 }
 
 /// Reads text (see number_table.hpp) with times and values, or with values only, or a NumPy array
@@ -74,8 +74,8 @@ struct ResponseCalibrationOptions {
 };
 auto fields_of(ConstOrNot<ResponseCalibrationOptions> auto& o) {
   return std::tuple(
-      Field("excitation", o.excitation, Help{"what the arm answered to"},
-            IfAbsent{"found from the record"}),
+      Field("excitation", o.excitation, Help{"input of the arm during the record"},
+            IfAbsent{"detected in the record"}),
       Field("fundamental_frequency_hz", o.fundamental_frequency_hz, FieldMark::from_above),
       Field("samples", o.samples, FieldMark::from_above));
 }

@@ -30,7 +30,7 @@ auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
       Field("adc_bits", o.adc_bits, closed(1, 24), Help{"resolution of the raw numbers"},
             IfAbsent{"the camera's, or the smallest usual one"}),
       Field("averaged", o.averaged, above(0),
-            Help{"number of equal frames that each frame is already the mean of"}));
+            Help{"number of frames averaged in each recorded frame"}));
 }
 
 /// Mean and variance of one measurement in a pair of frames; for differences, of numbers with about

@@ -48,11 +48,11 @@ inline constexpr std::array<std::string_view, 2> demodulations = {"gain", "signe
 /// The modulated light source.
 struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave
-  bool binary = true;         ///< designs for it only switch on and off
+  bool binary = true;         ///< designed waveforms only switch on and off
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
-  std::optional<Generator> generator;  ///< plays the modulation; none: any waveform, exactly
-  std::optional<SquareLight> square;   ///< square waves that designs of frequencies choose from
+  std::optional<Generator> generator;  ///< generates the modulation; none: any waveform, exactly
+  std::optional<SquareLight> square;   ///< square waves available to designs of frequencies
 
   friend bool operator==(const LightSource&, const LightSource&) = default;
 };
@@ -76,17 +76,17 @@ inline void describe(FieldVisitor& fields, LightSource& light) {
 /// The demodulating pixel.
 struct Sensor {
   int taps = 1;        ///< values per exposure; 2 = two-bucket; n = exclusive taps
-  bool binary = true;  ///< designs for it only switch on and off
+  bool binary = true;  ///< designed waveforms only switch on and off
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
-  std::optional<Generator> generator;  ///< plays the demodulation; none: any waveform, exactly
+  std::optional<Generator> generator;  ///< generates the demodulation; none: any waveform, exactly
   double read_noise_e = 20.0;
   NoiseModel noise = NoiseModel::poisson;
   double dark_current_e_per_s = 0.0;
   double modulation_contrast = 1.0;               ///< C; below 1 the taps mix
   std::vector<double> modulation_contrasts = {};  ///< per exposure or frequency; empty: the above
-  /// 1 + m / 2 is the sensitivity of the first, third, ... tap, 1 - m / 2 that of the others; with
-  /// one tap, of the exposures.
+  /// m: the first, third, ... tap has the sensitivity 1 + m / 2, the others have 1 - m / 2. With
+  /// one tap, the same applies to exposures.
   double tap_mismatch = 0.0;
   std::optional<double> full_well_e;
   std::optional<int> adc_bits;
@@ -96,17 +96,17 @@ struct Sensor {
   bool drain = true;  ///< false: the gains of all taps add up to 1
   Readout readout = Readout::separate;
   Demodulation demodulation = Demodulation::gain;
-  std::optional<double> readout_gap_s;   ///< none: 0
-  std::optional<double> frame_period_s;  ///< none: the time that the exposures take
-  std::optional<int> max_exposures;      ///< of a design of frequencies; none: 8
+  std::optional<double> readout_gap_s;                     ///< none: 0
+  std::optional<double> frame_period_s;                    ///< none: duration of the exposures
+  std::optional<int> max_exposures;                        ///< of a design of frequencies; none: 8
   std::optional<std::vector<double>> integration_times_s;  ///< of one exposure; none: any
 
-  std::vector<double> contrasts_of(const CodeSet& code) const;  ///< of every exposure, if it fits
+  std::vector<double> contrasts_of(const CodeSet& code) const;  ///< per exposure, if the code fits
   bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
   /// Returns true if an exposure has several taps, which a contrast below 1 mixes.
   bool mixes_taps() const { return taps >= 2 || is_signed(); }
-  /// Returns true if measurements are differences of light: ambient light may cancel, its noise
-  /// does not.
+  /// Returns true if measurements are differences of light, in which ambient light may cancel, but
+  /// not its noise.
   bool subtracts() const { return is_signed() || readout == Readout::difference; }
 
   friend bool operator==(const Sensor&, const Sensor&) = default;
@@ -194,11 +194,11 @@ struct ExposureTime {
   friend bool operator==(const ExposureTime&, const ExposureTime&) = default;
 };
 
-/// Differences between the exposures that a camera plays and those of the code, as a calibration
-/// finds them. Measured tables already contain them.
+/// Differences between the exposures of a camera and of the code, as found by a calibration.
+/// Measured tables already contain them.
 struct Playback {
-  /// Exposure of the code that is played first, second, ...: a permutation of 0, 1, ...; empty: the
-  /// order of the code.
+  /// Exposure of the code that the camera records first, second, ...: a permutation of 0, 1, ...
+  /// Empty: the order of the code.
   std::vector<int> order;
   bool reversed = false;  ///< chi(-z) is measured instead of chi(z)
   bool inverted = false;  ///< taps are swapped; a single tap is open where the code closes it
@@ -330,39 +330,40 @@ struct Camera {
   std::optional<LensBlur> blur;  ///< none: sharp
   std::optional<Optics> optics;  ///< none: light levels are known in electrons only
   OperatingRange operating;
-  std::optional<Playback> playback;        ///< none: exposures are those of the code
+  std::optional<Playback> playback;        ///< none: exposures are as in the code
   std::optional<Temperature> temperature;  ///< none: no dependence
 
-  /// Time from the beginning of a frame to that of the next [s]: sensor.frame_period_s, or as long
-  /// as the exposures take, each with its gap.
-  /// @throws std::invalid_argument if frame_period_s is shorter than those
+  /// Returns the time between the beginnings of consecutive frames [s]: sensor.frame_period_s, or
+  /// the duration of the exposures with their gaps.
+  /// @throws std::invalid_argument if frame_period_s is shorter than the exposures
   double frame_period_s(int exposures) const;
-  /// Middle of an exposure [s], from the beginning of frame 0: exposures follow one another, with a
-  /// gap after each.
+  /// Returns the middle of an exposure [s] after the beginning of frame 0. Each exposure is
+  /// followed by a gap.
   double exposure_middle_s(int frame, int exposure, int exposures) const;
-  /// Middle between the beginning of a frame's first exposure and the end of its last [s].
+  /// Returns the middle between the beginning of a frame's first exposure and the end of its last
+  /// [s] after the beginning of frame 0.
   double frame_middle_s(int frame, int exposures) const;
 
-  /// Depth after which everything repeats [m]: c / (2 f0).
+  /// Unambiguous range [m]: c / (2 f0).
   double range_m() const;
   /// Depth of one bin [m]: range / N.
   double bin_m() const;
-  /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: transfer function of both arms together. Where
-  /// rows are read out, the sensor's response delays what it detects, as the light's does:
-  /// conj(H_d H_m).
+  /// Returns H_d(n f0) conj(H_m(n f0)) for n = 0 to `highest`: the transfer function of both arms
+  /// together. For rows the sensor's response delays the detected light, as the light's response
+  /// does: conj(H_d H_m).
   Eigen::VectorXcd transfer(int highest) const;
-  /// H_m(n f0) of the light alone. The mean of edges that are displaced by normal deviations of
-  /// rms s, period by period, is the waveform blurred by that normal density: a factor
-  /// exp(-(2 pi n f0 s)^2 / 2) beside the impulse response.
+  /// Returns H_m(n f0) of the light alone. With edge jitter (independent normal displacements of
+  /// rms s in every period), the mean waveform is blurred by the normal density, so that the
+  /// transfer function has the additional factor exp(-(2 pi n f0 s)^2 / 2).
   Eigen::VectorXcd light_transfer(int highest) const;
-  /// H_d(n f0) of the sensor alone, with its jitter.
+  /// Returns H_d(n f0) of the sensor alone, with its jitter.
   Eigen::VectorXcd sensor_transfer(int highest) const;
-  /// Whether either arm has an impulse response or jitter.
+  /// Returns true if either arm has an impulse response or jitter.
   bool band_limited() const;
-  /// Whether the light has.
+  /// Returns true if the light source has an impulse response or jitter.
   bool light_is_band_limited() const;
 
-  /// @throws std::invalid_argument naming the field, its value and the rule it breaks
+  /// @throws std::invalid_argument naming the field, its value and the broken rule
   void validate() const;
 
   friend bool operator==(const Camera&, const Camera&) = default;
@@ -412,21 +413,21 @@ inline void describe(FieldVisitor& fields, Camera& camera) {
                camera.temperature);
 }
 
-/// The camera judged on surfaces of that albedo at each of these distances: its operating points
-/// are what its optics make of them, brightest first.
-/// @param klux  sunlight on the surfaces, in place of the optics' own
+/// Returns the camera with operating points for surfaces of the given albedo at each of these
+/// distances, computed by its optics, brightest first.
+/// @param klux  sunlight on the surfaces, overrides that of the optics
 /// @throws std::invalid_argument naming field, value and rule; also for a camera without optics
 Camera at_distances(Camera camera, std::vector<double> distances_m, double albedo = 1.0,
                     std::optional<double> klux = {});
 
-/// Light that captures have if nobody says another: that of the camera's optics on white surfaces
-/// at that distance, with its sunlight, if it has any; else the middle of the operating points.
+/// Returns the default light of captures: that of the camera's optics on white surfaces at the
+/// given distance, with its sunlight; without optics the middle of the operating points.
 OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 
-/// The camera whose single pixels measure what sums of `operating.neighbours` = n pixels do, and
-/// what its codes are judged on: exposures n times as long, read noise sqrt(n) times as large with
-/// quantization in it, full well and saturation of the converter n times as high, one neighbour. A
-/// converter's black level is taken as high enough. The camera itself for n = 1.
+/// Returns the camera on which codes are evaluated: one whose single pixels measure the sum of
+/// `operating.neighbours` = n pixels. Exposures, full well and saturation of the converter are n
+/// times as large, the read noise (including quantization) sqrt(n) times. The black level is
+/// assumed to be high enough for the converter. Returns the camera itself for n = 1.
 /// @throws std::invalid_argument if the camera is invalid
 Camera judged_camera(const Camera& camera);
 
@@ -437,53 +438,54 @@ std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera);
 /// Returns the camera with a list of the integration times of a code; unchanged for equal shares.
 Camera timed_by(const CodeSet& code, Camera camera);
 
-/// Why `code` cannot be played and read out on `camera`, a valid one: taps, samples, peak,
-/// exposures, light that no tap takes without a drain, pulses that are too short. None: it can.
+/// Returns why a valid `camera` does not support `code`: taps, samples, peak, exposures, light that
+/// no tap collects although there is no drain, or pulses that are too short. None: it is supported.
 std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera);
 
-/// The same as a check.
-/// @throws InvalidArgument with the text of why_not_playable(), if there is one
+/// @throws InvalidArgument with the text of why_not_playable() if the camera does not support the
+///         code
 void require_fits(const CodeSet& code, const Camera& camera);
 
-/// Of a mixer the camera whose two buckets, open where a binary weight is 1 and where it is -1,
-/// differ by what the mixer measures: each has half of its noise without light. Full well,
-/// converter and mismatch are left out. Other cameras as they are.
+/// Returns the camera with two buckets that is equivalent to a mixer: the buckets are open where a
+/// binary weight is 1 and -1, respectively, and their difference is the mixer's measurement. Each
+/// bucket has half of the mixer's noise variance without light. Full well, converter and mismatch
+/// are removed. Returns other cameras unchanged.
 Camera in_buckets(Camera camera);
 
-/// Why no family `name` can be built for the camera; none: build_family() does.
+/// Returns why the family `name` cannot be built for the camera. None: build_family() succeeds.
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera);
 
-/// The family `name`, built for the camera: within its peak, on its samples, with the second bucket
-/// of every measurement where the sensor has two taps, and from -1 to 1 where it is a mixer.
-/// @throws InvalidArgument with the text of why_no_family(), if there is one
+/// Builds the family `name` for the camera: within its peak, with its samples, with the second
+/// bucket of every measurement if the sensor has two taps, and from -1 to 1 if it is a mixer.
+/// @throws InvalidArgument with the text of why_no_family()
 CodeSet build_family(std::string_view name, const Camera& camera);
 
-/// Where a number of a camera's description is from.
+/// Source of a number in the description of a camera.
 struct NumberSource {
-  std::string key;     ///< "sensor.taps", or the table or value that holds several keys
+  std::string key;     ///< "sensor.taps", or a table or value with several keys
   std::string source;  ///< data sheet or paper, by name
 };
 
-/// A camera that needs no file, as lists show it: those of the paper, and some of the trade.
+/// Entry in the list of built-in cameras: cameras of the paper and some commercial ones.
 struct BuiltInCamera {
   std::string name;
   std::string description;  ///< one line
-  /// The family that its raw frames are of, or that suits it (list_families()); "": none does.
+  /// Family of its raw frames, or one that suits it (list_families()); "": none.
   std::string code;
   std::vector<NumberSource> sources;
 
-  /// Source of a key's value, "light.peak_factor"; "assumed" where none is known.
+  /// Returns the source of a key such as "light.peak_factor"; "assumed" if it is unknown.
   std::string source_of(std::string_view key) const;
 };
 
 /// Built-in camera that commands use by default.
 inline constexpr std::string_view default_camera_name = "indoor";
 
-/// All of them; built_in_camera() builds each. built_in_camera_toml() writes one with its sources.
+/// Returns all built-in cameras. See built_in_camera() and built_in_camera_toml().
 std::vector<BuiltInCamera> list_built_in_cameras();
-/// Their names.
+/// Returns the names of all built-in cameras.
 std::vector<std::string> built_in_camera_names();
-/// @throws std::invalid_argument for an unknown name, with the nearest known one
+/// @throws std::invalid_argument for an unknown name, with the most similar known name
 Camera built_in_camera(const std::string& name);
 
 }  // namespace tofsmith

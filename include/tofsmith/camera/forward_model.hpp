@@ -12,58 +12,59 @@
 
 namespace tofsmith {
 
-/// The correlation function of one demodulation and one modulation function, for real depth:
+/// Correlation function of one demodulation and one modulation function, for real depths:
 ///   chi(u) = integral over the period of (h_d * d)(t) (h_m * m)(t - u) dt,  u in periods.
-/// Without impulse responses it is piecewise linear and kept exactly by its corners; with them it
-/// is smooth and kept by its harmonics D_n Hd_n conj(M_n Hm_n).
+/// Without impulse responses it is piecewise linear and stored exactly as a list of corners. With
+/// impulse responses it is smooth and stored as harmonics D_n Hd_n conj(M_n Hm_n).
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (3)
 class CorrelationFunction {
  public:
   /// Without impulse responses.
   CorrelationFunction(const Waveform& demodulation, const Waveform& modulation);
-  /// With `transfer` = Hd_n conj(Hm_n), n = 0 .. as many harmonics as are to be kept.
+  /// With impulse responses. @param transfer  Hd_n conj(Hm_n) for all harmonics to be stored
   CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
                       const Eigen::VectorXcd& transfer);
 
-  /// The same `delay` later [periods], and with `reversed` in -u: f(+-(u - delay)).
+  /// Returns the function delayed by `delay` [periods] and, if `reversed`, in -u: f(+-(u - delay)).
   CorrelationFunction moved(double delay, bool reversed) const;
 
-  /// Value at depth `u` [periods]; any real u, period 1.
+  /// Returns the value at depth `u` [periods], any real number; the period is 1.
   double operator()(double u) const;
-  /// Values at u = j / points, j = 0 .. points - 1.
+  /// Returns the values at u = j / points, j = 0 to points - 1.
   Eigen::VectorXd table(int points) const;
 
-  /// Fourier coefficients; empty where corners are stored.
+  /// Fourier coefficients; empty if corners are stored.
   const Eigen::VectorXcd& harmonics() const { return harmonics_; }
-  /// Whether a piecewise linear function has all its corners at multiples of 1 / points.
+  /// Returns true if the function is piecewise linear with all corners at multiples of 1 / points.
   bool has_corners_at(int points) const;
 
  private:
   CorrelationFunction() = default;
 
-  std::vector<double> corners_;  // positions in [0, 1), sorted; empty when harmonics are kept
+  std::vector<double> corners_;  // positions in [0, 1), sorted; empty if harmonics are stored
   std::vector<double> values_;   // at the corners
   Eigen::VectorXcd harmonics_;
 };
 
-/// Light that comes back from one depth.
+/// Return of light from one depth.
 struct Return {
-  double signal_e_per_s = 0.0;  ///< S, were the sensor fully open
+  double signal_e_per_s = 0.0;  ///< S at a gate that is always open
   double depth_bin = 0.0;       ///< position in [0, N), any real
 };
 
-/// What a camera that plays a code measures: expected electrons and their variance.
+/// Expected electrons and variances of the measurements of a code on a camera.
 ///   mu_i(z) = T_i (S chi_i(z) + A kappa_i + dark),  variance mu_i + sigma_r^2 (+ step^2 / 12)
-/// chi and kappa are those of the actual waveforms, behind both arms.
-/// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4); several returns add.
+/// chi and kappa are computed from the actual waveforms, filtered by both arms. Several returns
+/// add.
+/// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4)
 ///
-/// A *tap value* is what one tap collects (E x taps of them); a *measurement* is what leaves the
-/// sensor (the same, or the differences A - B of two-bucket pairs). Of a mixer with the weight w
-/// the two taps of an exposure are A = (w^2 + w) / 2 and B = (w^2 - w) / 2: A - B is what it
-/// measures, and A + B the light that makes its shot noise, the square of the weight. A weight that
-/// switches is that of two buckets; of others A and B may be negative. Where rows are read out, the
-/// taps are the N time bins of the one exposure, and measurements sums of them with the rows'
-/// weights: y = C^T h, of covariance C^T diag(E h) C and read noise.
+/// A *tap value* is the charge of one tap (E x taps values); a *measurement* is a value that the
+/// sensor reads out: a tap value, or the difference A - B of a two-bucket pair. A mixer with weight
+/// w is modelled by two taps per exposure, A = (w^2 + w) / 2 and B = (w^2 - w) / 2, so that A - B
+/// is its measurement, and A + B is the square of the weight, which determines its shot noise. For
+/// weights of -1 and 1 these are two buckets; for others A and B may be negative. If rows are read
+/// out, the taps are the N time bins h of the single exposure, and the measurements are their sums
+/// with the weights of the rows: y = C^T h, with covariance C^T diag(E h) C plus read noise.
 class ForwardModel {
  public:
   /// @throws std::invalid_argument if the camera is invalid or the code does not fit it
@@ -75,25 +76,27 @@ class ForwardModel {
   int exposures() const { return has_rows() ? 1 : tap_values() / taps_; }
   /// Mean over exposures of the constant that [playback] adds to depth [m].
   double playback_offset_m() const { return playback_offset_m_; }
-  /// Whether measurements are rows of one exposure, whose noise is correlated.
+  /// Returns true if measurements are rows of one exposure, whose noise is correlated.
   bool has_rows() const { return time_bin_.has_value(); }
 
-  /// chi_i(z) of every measurement (K) at a real depth.
+  /// Returns chi_i(z) of every measurement (K) at a real depth.
   Eigen::VectorXd correlation(double depth_bin) const;
-  /// chi at depth_bin = j N / points, (points, K). points = N gives one row per bin.
+  /// Returns chi at depth_bin = j N / points, (points, K). points = N gives one row per bin.
   Eigen::MatrixXd correlation_table(int points) const;
-  /// The same for the tap values, (points, E x taps).
+  /// As correlation_table() for the tap values, (points, E x taps).
   Eigen::MatrixXd tap_correlation_table(int points) const;
-  /// The highest harmonic that counts: all above together have less than 3e-7 of the amplitude of
-  /// all but the mean. None where a correlation function is piecewise linear.
+  /// Highest significant harmonic: all higher ones together have less than 3e-7 of the amplitude of
+  /// all harmonics except the mean. None if a correlation function is piecewise linear.
   std::optional<int> highest_harmonic() const;
-  /// Points per bin of a table between whose points correlation functions count as straight:
-  /// `least` times a power of two, so that chords are off by 5e-4 of the amplitude or less where
-  /// 2^20 points suffice for that.
+  /// Returns the number of points per bin of a table whose chords approximate the correlation
+  /// functions: `least` times a power of two, with an error of at most 5e-4 of the amplitude unless
+  /// this requires more than 2^20 points.
   int straight_points_per_bin(int least) const;
-  /// Whether all correlation functions are piecewise linear with corners at the rows of a table.
+  /// Returns true if all correlation functions are piecewise linear with corners at the rows of a
+  /// table.
   bool has_corners_at_rows(int rows) const;
-  /// Of rows: light in time bin 0, (points). What bin n sees of depth z, bin 0 sees of z - n.
+  /// Returns the light in time bin 0 for rows, (points). The light in bin n for depth z equals the
+  /// light in bin 0 for depth z - n.
   Eigen::VectorXd time_bin_table(int points) const;
 
   /// kappa_i (K): mean gain seen by ambient light.
@@ -109,10 +112,9 @@ class ForwardModel {
   /// Measurements = readout (K, E x taps) times tap values; entries are +1, -1 and 0, or the rows'
   /// weights.
   const Eigen::MatrixXd& readout() const { return readout_; }
-  /// Electrons of dark current in every measurement (K).
+  /// Dark electrons of every measurement (K).
   Eigen::VectorXd dark_electrons() const;
-  /// Variance of every measurement that does not depend on light [e^2] (K): read noise and
-  /// quantization.
+  /// Variance of every measurement without light [e^2] (K): read noise and quantization.
   Eigen::VectorXd constant_variance_e2() const;
 
   /// Expected tap values [e].
@@ -120,14 +122,14 @@ class ForwardModel {
                                          double ambient_e_per_s) const;
   /// Expected measurements [e] (K).
   Eigen::VectorXd expected_electrons(std::span<const Return> returns, double ambient_e_per_s) const;
-  /// Variance of the measurements [e^2] (K), before any clipping.
+  /// Variance of the measurements [e^2] (K), before clipping.
   Eigen::VectorXd variance_e2(std::span<const Return> returns, double ambient_e_per_s) const;
-  /// Covariance of the measurements [e^2] (K, K); diagonal but where rows are read out.
+  /// Covariance of the measurements [e^2] (K, K); diagonal unless rows are read out.
   Eigen::MatrixXd covariance_e2(std::span<const Return> returns, double ambient_e_per_s) const;
 
  private:
   Eigen::VectorXd tap_correlation(double depth_bin) const;
-  /// Sums over all functions of |c_n|^2, n = 0, 1, ...; empty where one is piecewise linear.
+  /// Sums over all functions of |c_n|^2, n = 0, 1, ...; empty if one is piecewise linear.
   Eigen::VectorXd harmonic_energies() const;
   void read_rows(const CodeSet& code, const Waveform& light, const Eigen::VectorXcd& transfer,
                  double moved);
@@ -135,29 +137,30 @@ class ForwardModel {
   int samples_ = 0;
   int taps_ = 1;
   std::vector<double> contrasts_;  // of the exposures
-  Eigen::VectorXd sensitivity_;    // of the tap values; 1 but for tap_mismatch
+  Eigen::VectorXd sensitivity_;    // of the tap values; 1 without tap_mismatch
   double signal_gain_ = 1.0;       // by the camera's temperature
   double playback_offset_m_ = 0.0;
   double tap_dark_e_per_s_ = 0.0;
   double readout_variance_e2_ = 0.0;             // constant, of a tap value or a row
   std::vector<CorrelationFunction> functions_;   // of the tap values, before taps mix; of the rows
-  std::optional<CorrelationFunction> time_bin_;  // of light in time bin 0, where rows are read out
+  std::optional<CorrelationFunction> time_bin_;  // of light in time bin 0, for rows
   Eigen::VectorXd tap_ambient_gain_, ambient_gain_;
   Eigen::VectorXd tap_exposure_s_, exposure_s_;
   Eigen::MatrixXd readout_;
 };
 
-/// Harmonics of the correlation function kept for `samples` per period, where an arm is limited.
+/// Number of harmonics of a correlation function stored for `samples` per period and a
+/// bandwidth-limited arm.
 int harmonics_kept(int samples);
 
-/// What leaves the sensor as sums of tap values, (K, tap values): each by itself, or A - B of every
-/// two neighbours. Rows have weights of their own, ForwardModel::readout().
+/// Returns the matrix from tap values to measurements, (K, tap values): each tap value, or A - B of
+/// every two adjacent ones. For rows see ForwardModel::readout().
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout);
 
-/// Pairs of K measurements, each with itself too: (0, 0), (1, 0), (1, 1), (2, 0), ..
+/// Number of pairs of K measurements, including equal ones: (0, 0), (1, 0), (1, 1), (2, 0), ...
 constexpr int pairs_of(int measurements) { return measurements * (measurements + 1) / 2; }
 
-/// How the covariance of rows depends on light, packed by pairs_of(K) [e^2]:
+/// Dependence of the covariance of rows on light, packed by pairs_of(K) [e^2]:
 ///   cov_ij(z) = S signal(z, ij) + A ambient[ij] + floor[ij]
 struct RowCovariance {
   Eigen::MatrixXd
@@ -165,58 +168,59 @@ struct RowCovariance {
   Eigen::VectorXd ambient;  ///< T sum_n C_ni C_nj / N (pairs)
   Eigen::VectorXd floor;    ///< of dark current and read noise (pairs)
 
-  /// (K, K) at one row of `signal`.
+  /// Returns the covariance (K, K) at one row of `signal`.
   Eigen::MatrixXd at(Eigen::Index row, double signal_e_per_s, double ambient_e_per_s) const;
 };
+/// Computes the covariance of rows.
 /// @param points  a multiple of N
 /// @throws std::invalid_argument unless model.has_rows()
 RowCovariance row_covariance(const ForwardModel& model, int points);
 
-/// Variance of one tap value that does not depend on light [e^2]: read noise and quantization.
+/// Variance of one tap value without light [e^2]: read noise and quantization.
 double constant_variance_e2_of(const Sensor& sensor);
 
-/// kappa (K) for an estimator on this camera: 0 for all differences of buckets, and all rows,
-/// if the brightest operating ambient leaks into none of them by more than 5 % of its noise, as
-/// where a generator rounds duties of 1/2. To estimate such a leak would cost a whole
-/// measurement; to ignore it costs next to nothing. Else ambient_gain().
+/// Returns kappa (K) for an estimator on this camera. It is 0 for all differences of buckets, and
+/// for all rows, if the brightest operating ambient light contributes at most 5 % of the noise to
+/// each, e.g. if a generator rounds duties of 1/2. Estimating such a small contribution would cost
+/// a whole measurement, and ignoring it has almost no effect. Otherwise returns ambient_gain().
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera);
 
-/// Light that trails off behind the direct return, as in haze or translucent things: after a delay
-/// u behind it comes ratio / mean exp(-u / mean) of its signal per unit of u.
+/// Exponential tail behind the direct return, as in haze or translucent materials: the light with
+/// an additional delay u is ratio / mean exp(-u / mean) times the direct signal, per unit of u.
 struct ExponentialTail {
   double mean_delay_m = 0.5;  ///< [m], > 0 and at most the range of the period
-  double ratio = 0.3;         ///< signal of all of the tail over that of the direct return, >= 0
+  double ratio = 0.3;         ///< signal of the whole tail / signal of the direct return, >= 0
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
 };
 
-/// A measured response of a scene to one short pulse: light by distance, as a histogram.
+/// Measured response of a scene to one short pulse: histogram of light over distance.
 struct Transient {
-  std::vector<double> light;  ///< of each bin, >= 0, any unit; a pixel's signal is shared out so
-  double bin_m = 0.0;         ///< depth that one bin takes, c / 2 times its time [m], > 0
-  double first_m = 0.0;       ///< depth at which bin 0 begins, behind the pixel's depth [m]
+  std::vector<double> light;  ///< light per bin, >= 0, any unit; distributes the pixel's signal
+  double bin_m = 0.0;         ///< depth per bin, c / 2 times its duration [m], > 0
+  double first_m = 0.0;       ///< beginning of bin 0 behind the pixel's depth [m]
 
   /// Sum of all bins.
   double total() const;
-  /// Every bin as a return at its middle, with its share of `signal_e_per_s`; empty bins left out.
-  /// @param depth_bin  of the pixel
+  /// Returns each non-empty bin as a return at its middle, with its share of `signal_e_per_s`.
+  /// @param depth_bin  depth of the pixel
   std::vector<Return> returns(double depth_bin, double signal_e_per_s, double camera_bin_m) const;
 
-  /// Finite bins that are not negative, with some light, no longer together than the range.
-  /// @throws std::invalid_argument naming bin, value and rule
+  /// @throws std::invalid_argument naming bin, value and rule, unless bins are finite and >= 0 with
+  ///         a sum > 0, and cover at most the range
   void validate(double range_m) const;
 };
 
-/// What tap values see of unit light that trails off, (points, E x taps): chi averaged over
-/// exponential delays, row j for a direct return at depth j N / points (see
-/// ForwardModel::tap_correlation_table), exact for chords between rows.
+/// Returns the tap values for an exponential tail of unit light, (points, E x taps): chi averaged
+/// over exponential delays. Row j is for a direct return at depth j N / points (see
+/// ForwardModel::tap_correlation_table()). Exact for chords between rows.
 Eigen::MatrixXd tap_tail_table(const ForwardModel& model, const ExponentialTail& tail,
                                double range_m, int points);
 
-/// What tap values see of unit light spread as a transient, (points, E x taps), row j for a pixel
-/// at depth j N / points. The histogram is resampled onto the rows: constant within its bins, exact
-/// for chords between rows; it wraps at the period, as the light does.
+/// Returns the tap values for unit light with the distribution of a transient, (points, E x taps),
+/// row j for a pixel at depth j N / points. The histogram, constant within its bins, is resampled
+/// to the rows; exact for chords between rows. It wraps at the period, as the light does.
 Eigen::MatrixXd tap_transient_table(const ForwardModel& model, const Transient& transient,
                                     double range_m, int points);
 

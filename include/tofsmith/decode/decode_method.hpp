@@ -13,13 +13,13 @@
 
 namespace tofsmith {
 
-/// The ways from measurements to depth.
+/// Methods of decoding depth from measurements.
 enum class DecodeMethod {
   zncc,        ///< Decoder: any code
   ml,          ///< LikelihoodDecoder: any code
   unwrap,      ///< UnwrapDecoder: sinusoids of one or more frequencies
-  two_return,  ///< TwoReturnDecoder: codes of six independent means or more
-  tail,        ///< TailDecoder: codes of five independent means or more
+  two_return,  ///< TwoReturnDecoder: codes with at least six independent means
+  tail,        ///< TailDecoder: codes with at least five independent means
 };
 
 inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMethod::ml,
@@ -34,17 +34,15 @@ std::string_view name_of(DecodeMethod method);
 /// @throws std::invalid_argument for any other word
 DecodeMethod parse_decode_method(std::string_view name);
 
-/// Help texts of options that choose a decoder.
+/// Help texts of options that select a decoder.
 inline constexpr Help decode_method_help{
-    "decoder: zncc for any code, ml for any code by maximum likelihood (slower), unwrap for "
-    "sinusoids of one or more frequencies; two-return and tail where light comes back twice or "
-    "trails off, for codes of many independent means"};
+    "decoder: zncc or ml (maximum likelihood, slower) for any code; unwrap for sinusoids; "
+    "two-return or tail for multipath"};
 inline constexpr Help unwrap_weights_help{
-    "how unwrapping weighs frequencies: by the variance of their depth on this camera, or by f^2, "
-    "as is classical"};
+    "weights of the frequencies: inverse variance of their depths, or f^2 (classical)"};
 inline constexpr OnlyWith unwrap_weights_condition{"method unwrap"};
 
-/// A decoder of any method.
+/// Interface of the decoders of all methods.
 class DepthDecoder {
  public:
   DepthDecoder() = default;
@@ -54,10 +52,10 @@ class DepthDecoder {
 
   virtual DecodeMethod method() const = 0;
   virtual const DecodingTable& table() const = 0;
-  /// As Decoder::decode(), decode_depth_bins() and decode_bins().
+  /// See Decoder::decode(), decode_depth_bins() and decode_bins().
   virtual void decode(const RawView& raw, const DecodedView& decoded,
                       const Progress& progress = {}) const = 0;
-  /// As Decoder::decode_within().
+  /// See Decoder::decode_within().
   virtual void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                              const Progress& progress = {}) const = 0;
   virtual void decode_depth_bins(const float* measurements, std::int64_t pixels,
@@ -68,9 +66,9 @@ class DepthDecoder {
   virtual const Decoder* correlation_decoder() const = 0;
 };
 
-/// Returns the decoder of a method, with defaults for all other options.
-/// @param unwrap_weights  of DecodeMethod::unwrap
-/// @param multipath       of DecodeMethod::two_return and tail, except for `status_thresholds`
+/// Creates the decoder of a method, with defaults for all other options.
+/// @param unwrap_weights  for DecodeMethod::unwrap
+/// @param multipath       for DecodeMethod::two_return and tail, except for `status_thresholds`
 /// @throws std::invalid_argument if the method cannot decode this table
 std::unique_ptr<const DepthDecoder> make_decoder(
     DecodeMethod method, DecodingTable table, const DecodeOptions& status_thresholds = {},

@@ -19,17 +19,17 @@ namespace tofsmith {
 struct DecodingTable;
 struct DepthCorrection;
 
-/// Outcome of a pixel. If several apply, the first of invalid, saturated, no_return, low_signal,
-/// inconsistent, too_near, too_far, ambiguous is reported. Only mark_mixed_pixels() sets mixed, and
-/// only depth limits set too_near and too_far.
+/// Status of a decoded pixel. If several apply, the first of invalid, saturated, no_return,
+/// low_signal, inconsistent, too_near, too_far, ambiguous is reported. Only mark_mixed_pixels()
+/// sets mixed, and only depth limits set too_near and too_far.
 enum class PixelStatus : std::uint8_t {
   ok = 0,
   invalid = 1,     ///< a measurement is NaN or infinite: no depth
   no_return = 2,   ///< no depth explains the pixel with positive signal: no depth
-  saturated = 3,   ///< a measurement is clipped: the depth may be far off
-  low_signal = 4,  ///< the signal does not stand out of its noise
+  saturated = 3,   ///< a measurement is clipped: the depth may have a large error
+  low_signal = 4,  ///< the signal does not exceed its noise
   ambiguous = 5,   ///< another depth, far from this one, explains the pixel almost as well
-  mixed = 6,  ///< sees two surfaces at an edge: the depth is that of neither, or of a neighbour
+  mixed = 6,       ///< sees two surfaces at an edge: the depth is neither's, or that of a neighbour
   inconsistent = 7,  ///< no depth explains the measurements within their noise
   too_near = 8,      ///< the depth is below the depth limits: no depth
   too_far = 9,       ///< the depth is above the depth limits: no depth
@@ -45,14 +45,14 @@ inline constexpr std::array all_pixel_statuses = {
 /// "too_near", "too_far".
 std::string_view name_of(PixelStatus status);
 
-/// How many returns a pixel shows. It stands beside PixelStatus, which says whether the depth of a
-/// single return can be trusted: a pixel may be saturated and still be two returns.
+/// Number of returns in a pixel. It is independent of PixelStatus, which reports whether the depth
+/// of a single return is reliable: a saturated pixel may have two returns.
 enum class ReturnStatus : std::uint8_t {
-  none = 0,        ///< no depth: invalid or no return at all
+  none = 0,        ///< no depth: invalid or no return
   single = 1,      ///< one return explains the pixel
-  two = 2,         ///< a second return, or a tail, explains it better by more than the threshold
-  unresolved = 3,  ///< one return does not explain it, and neither does a second: the depth is that
-                   ///< of one return and may be biased
+  two = 2,         ///< a second return, or a tail, lowers chi^2 by more than the threshold
+  unresolved = 3,  ///< neither one return nor two explain the pixel: the depth is that of one
+                   ///< return and may be biased
 };
 
 inline constexpr std::array all_return_statuses = {ReturnStatus::none, ReturnStatus::single,
@@ -61,28 +61,28 @@ inline constexpr std::array all_return_statuses = {ReturnStatus::none, ReturnSta
 /// "none", "single", "two", "unresolved".
 std::string_view name_of(ReturnStatus status);
 
-/// Who fills a plane, and whether it is written unless others are requested.
+/// Origin of a plane, and whether it is written by default.
 enum class PlaneUse {
-  usual,       ///< every decoder; written by default
-  on_request,  ///< every decoder
-  of_returns,  ///< decoders of several returns; written by default with these
-  of_frames    ///< decode_frame() alone, from the numbers that it decodes
+  usual,       ///< from every decoder; written by default
+  on_request,  ///< from every decoder
+  of_returns,  ///< from decoders of several returns, which write it by default
+  of_frames    ///< only from decode_frame(), computed from the numbers that it decodes
 };
 
-// Every plane that a decoded frame can have. This is the only list: structs, names, help texts,
-// files and Python classes follow from it. The member in DepthImage and DecodedView has a unit; the
-// word is the name on the command line and in files.
+// All planes of a decoded frame. Structs, names, help texts, files and Python classes are derived
+// from this list. The member of DepthImage and DecodedView includes the unit; the word is the name
+// on the command line and in files.
 //   PLANE(type of a pixel, member, word, unit, use, help)
 #define TOFSMITH_DECODED_PLANES(PLANE)                                                          \
   PLANE(float, depth_m, depth, "m", usual, "distance along the ray, in [0, range)")             \
-  PLANE(float, signal_e_per_s, signal, "e/s", usual, "light of the return")                     \
+  PLANE(float, signal_e_per_s, signal, "e/s", usual, "signal of the return")                    \
   PLANE(float, ambient_e_per_s, ambient, "e/s", usual,                                          \
-        "all other light, NaN where differences hide it")                                       \
+        "ambient light, NaN if it cancels in differences")                                      \
   PLANE(float, confidence, confidence, "", usual,                                               \
         "probability that the depth lies in the main lobe")                                     \
   PLANE(float, predicted_standard_deviation_m, deviation, "m", usual,                           \
-        "predicted standard deviation of depth around the right peak")                          \
-  PLANE(PixelStatus, status, status, "", usual, "whether the depth can be trusted")             \
+        "predicted standard deviation of the depth if it is in the right peak")                 \
+  PLANE(PixelStatus, status, status, "", usual, "reliability of the depth")                     \
   PLANE(float, delay_m, delay, "m", of_returns, "delay of the second return, NaN without one")  \
   PLANE(float, ratio, ratio, "", of_returns,                                                    \
         "light of the second return relative to the first, NaN without a second")               \
@@ -110,7 +110,7 @@ struct PlaneDescription {
     return use == PlaneUse::usual || use == PlaneUse::on_request;
   }
 };
-/// In the order of DecodedPlane.
+/// Descriptions in the order of DecodedPlane.
 inline constexpr std::array plane_descriptions = {
 #define TOFSMITH_PLANE(type, member, word, unit, use, help) \
   PlaneDescription{DecodedPlane::word, #word, #member, unit, PlaneUse::use, help},
@@ -132,7 +132,8 @@ std::string_view name_of(DecodedPlane plane);
 DecodedPlane parse_decoded_plane(std::string_view name);
 /// Returns the help text with the meaning of codes and the methods that fill the plane.
 std::string help_of(DecodedPlane plane);
-/// Returns the planes that are written by default. @param multipath  by decoders of several returns
+/// Returns the planes that are written by default.
+/// @param multipath  for decoders of several returns
 std::vector<DecodedPlane> usual_planes(bool multipath = false);
 
 /// The value of a plane at pixels without depth.
@@ -145,23 +146,23 @@ inline constexpr PixelStatus no_value<PixelStatus> = PixelStatus::invalid;
 template <>
 inline constexpr ReturnStatus no_value<ReturnStatus> = ReturnStatus::none;
 
-/// The planes of a decoded frame, (H, W) each or empty. Pixels without depth (invalid, no_return,
-/// too_near, too_far) hold NaN in every plane of floats.
+/// Planes of a decoded frame, (H, W) each or empty. Pixels without depth (invalid, no_return,
+/// too_near, too_far) are NaN in every plane of floats.
 struct DepthImage {
 #define TOFSMITH_PLANE(type, member, word, unit, use, help) Image<type> member;
   TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
 #undef TOFSMITH_PLANE
 
   DepthImage() = default;
-  /// With the usual planes.
+  /// Allocates the usual planes.
   DepthImage(int height, int width) : DepthImage(usual_planes(), height, width) {}
   DepthImage(const std::vector<DecodedPlane>& planes, int height, int width);
   int height() const { return status.height; }
   int width() const { return status.width; }
 };
 
-/// Where a decoder writes: planes of H x W values, row by row, in the caller's memory. A null plane
-/// is not wanted, and what only it needs is not computed. Owns nothing.
+/// Output of a decoder: planes of H x W values, row by row, in the caller's memory. Null planes are
+/// skipped, together with all work that only they need. Owns nothing.
 struct DecodedView {
 #define TOFSMITH_PLANE(type, member, word, unit, use, help) type* member = nullptr;
   TOFSMITH_DECODED_PLANES(TOFSMITH_PLANE)
@@ -171,12 +172,13 @@ struct DecodedView {
   /// Returns the planes that are not null.
   std::vector<DecodedPlane> planes() const;
   /// All planes of an image that have a size.
+  /// Returns a view of all planes of an image that are not empty.
   static DecodedView of(DepthImage& image);
-  /// The same planes from a later pixel on.
+  /// Returns a view of the same planes that begins at a later pixel.
   DecodedView from(std::size_t pixel) const;
 };
 
-/// Calls `use` with one plane of each of `of`: images, or pointers of views.
+/// Calls `use` with one plane of each argument `of`: images, or pointers of views.
 template <typename Use, typename... Planes>
 auto with_plane(DecodedPlane plane, const Use& use, Planes&... of) {
 #define TOFSMITH_PLANE(type, member, word, unit, use_of, help) \
@@ -186,7 +188,7 @@ auto with_plane(DecodedPlane plane, const Use& use, Planes&... of) {
   throw std::invalid_argument("plane: not a value of DecodedPlane");
 }
 
-/// Calls `use` with every plane in turn, as with_plane().
+/// Calls `use` with every plane in turn; see with_plane().
 template <typename Use, typename... Planes>
 void for_each_plane(const Use& use, Planes&... of) {
 #define TOFSMITH_PLANE(type, member, word, unit, use_of, help) use(of.member...);
@@ -195,42 +197,43 @@ void for_each_plane(const Use& use, Planes&... of) {
 }
 #undef TOFSMITH_DECODED_PLANES
 
-/// What differs from pixel to pixel of a sensor, of the size of its frames. A map left empty is not
+/// Calibration of the individual pixels of a sensor, of the size of its frames. An empty map is not
 /// applied; NaN in a map marks a dead pixel.
 struct PixelMaps {
-  Image<float> delay_offset_m;  ///< (H, W): by how much a pixel decodes too far [m], any sign
-  Image<float> gain;            ///< (H, W): response of a pixel over that of a usual one, > 0
+  Image<float> delay_offset_m;  ///< (H, W): distance by which a pixel decodes too far [m], any sign
+  Image<float> gain;            ///< (H, W): response relative to that of a usual pixel, > 0
 
   bool empty() const { return delay_offset_m.empty() && gain.empty(); }
-  /// @throws std::invalid_argument naming the map, its size and the frames', or the pixel that is
-  ///         infinite or not > 0
+  /// @throws std::invalid_argument naming the map, its size and the frames' size, or the pixel that
+  ///         is infinite or not > 0
   void validate(int height, int width) const;
 };
 
-/// Corrects decoded pixels first .. first + count - 1 (row by row) in place: depth becomes depth -
+/// Corrects decoded pixels first to first + count - 1 (row by row) in place: depth becomes depth -
 /// offset, wrapped into [0, range); signal and ambient are divided by the gain. Confidence and
-/// deviation stay, because shot noise is that of the electrons seen, and so do bins, which say
-/// which row of the table fits. Dead pixels become invalid, without depth.
+/// deviation do not change, because shot noise depends on the collected electrons. Bins do not
+/// change either; they are rows of the table. Dead pixels become invalid, without depth.
 /// @param maps     valid for the frame
-/// @param range_m  of the decoding table [m]
-/// @param decoded  planes whose first value is that of pixel `first`
+/// @param range_m  range of the decoding table [m]
+/// @param decoded  planes whose first value belongs to pixel `first`
 /// @throws std::invalid_argument if the pixels do not lie within a map
 void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, std::size_t first,
            std::size_t count);
 
-/// Takes what a calibration found off decoded depths, which wrap into [0, range), of `count`
-/// pixels from `first` on (row by row), ahead of their maps. Pixels without depth stay as they are.
-/// @param decoded  planes whose first value is that of pixel `first`; the signal is needed
-///                 where the correction has terms in it
-/// @throws std::invalid_argument if the frame, `height` x `width`, has another size, or a
-///         plane that is needed is null
+/// Subtracts a calibrated depth error from the depths of `count` pixels from `first` on (row by
+/// row). Depths wrap into [0, range). Must be called before the PixelMaps are applied. Pixels
+/// without depth do not change.
+/// @param decoded  planes whose first value belongs to pixel `first`; the signal is required if the
+///                 correction depends on it
+/// @throws std::invalid_argument if the correction is not for frames of `height` x `width`, or a
+///         required plane is null
 void apply(const DepthCorrection& correction, double range_m, const DecodedView& decoded,
            int height, int width, std::size_t first, std::size_t count);
 
-/// What is done with pixels at edges of depth that see two surfaces at once.
+/// Treatment of pixels at depth edges that see two surfaces.
 enum class MixedPixels {
-  label,  ///< status mixed; the depth stays as it was decoded
-  snap,   ///< status mixed; the depth of the nearest pixel of the surface that gives more light
+  label,  ///< status mixed; the decoded depth is kept
+  snap,   ///< status mixed; depth of the nearest pixel of the surface that gives more light
   drop,   ///< status mixed; no depth: NaN in every plane of floats
 };
 
@@ -245,35 +248,35 @@ std::string_view name_of(MixedPixels mixed);
 /// @throws std::invalid_argument for any other word
 MixedPixels parse_mixed_pixels(std::string_view name);
 
-/// What is known of filtered pixels beside what their filter gave.
+/// Data of filtered pixels before filtering.
 struct UnfilteredPixels {
-  const RawView* measured = nullptr;  ///< their own numbers, (H, W, K)
-  /// (H, W), or empty: where not 0, mark_mixed_pixels() found the pixel mixed before, and the
-  /// filter left it out. It stays mixed.
+  const RawView* measured = nullptr;  ///< unfiltered measurements, (H, W, K)
+  /// (H, W), or empty: pixels with nonzero values were found mixed before and excluded from the
+  /// filter. They stay mixed.
   Image<std::uint8_t> mixed = {};
 };
 
-/// Finds pixels of a decoded frame that see two surfaces, as lenses make them at edges of depth.
+/// Finds pixels of a decoded frame that see two surfaces (flying pixels), as lenses cause them at
+/// depth edges.
 ///
-/// In the 7 x 7 pixels around a pixel, those whose depth most of their own neighbours share, along
-/// the slope that they show, make the surfaces. A pixel with none of their depths is mixed where
-/// the light of two of them,
+/// The candidate surfaces of a pixel are those pixels of its 7 x 7 neighbourhood whose depth agrees
+/// with most of their neighbours, along the local slope. A pixel whose depth matches none of
+/// these surfaces is mixed if the light of two of them,
 ///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0,
-/// explains its measurements, by weighted least squares, far better than that of either one alone,
-/// within noise, and not much worse than a single return at the depth decoded. Of a filtered pixel
-/// its own numbers are asked, too: a filter adds what lies beside it, which hides what it sees.
-/// With rank 2, as K = 3, anything is explained by two returns: nothing is marked. Pixels that are
-/// invalid, saturated or have no depth stay as they are.
-/// @param table    of the decoder
-/// @param raw      what was decoded: filtered numbers with how many measurements they are the mean
-/// of
-/// @param maps     those applied to `decoded`
-/// @param decoded  whole frame, in place: depth_m, predicted_standard_deviation_m and status are
-///                 needed; snap writes depth_m, the deviation of that depth, and status
-/// @param unfiltered  where `raw` is filtered
-/// @return how many pixels are marked
-/// @throws std::invalid_argument if the shapes do not fit or a plane that is needed is null;
-///         Interrupted if progress says so
+/// fits its measurements (weighted least squares) much better than either surface alone, within
+/// noise, and not much worse than a single return at the decoded depth. For filtered pixels, the
+/// unfiltered measurements must pass the test too, because averaging over neighbours hides mixed
+/// light. With rank 2 (K = 3), two returns fit any measurement, and no pixel is marked. Pixels that
+/// are invalid, saturated or without depth do not change.
+/// @param table    table of the decoder
+/// @param raw      the decoded numbers; filtered numbers with their number of averaged measurements
+/// @param maps     maps that were applied to `decoded`
+/// @param decoded  whole frame, modified in place: depth_m, predicted_standard_deviation_m and
+///                 status are required; snap writes depth_m, its deviation, and status
+/// @param unfiltered  required if `raw` is filtered
+/// @return number of marked pixels
+/// @throws std::invalid_argument if the shapes do not match or a required plane is null;
+///         Interrupted if `progress` requests it
 /// @note the same bits for any number of threads
 std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, MixedPixels mixed,
                                const DecodedView& decoded, const PixelMaps& maps = {},

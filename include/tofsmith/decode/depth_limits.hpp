@@ -44,8 +44,8 @@ std::optional<DepthLimits> depth_limits(const DecodingTable& table,
 /// @param raw      numbers of the same pixels as `decoded`
 /// @param maps     maps of the whole frame, of `width` columns
 /// @param first    index in the frame of the first pixel of `raw`
-/// @param decoded  depth, confidence and status are needed
-/// @throws std::invalid_argument if a plane that is needed is null; Interrupted if progress says so
+/// @param decoded  depth, confidence and status are required
+/// @throws std::invalid_argument if a required plane is null; Interrupted if `progress` requests it
 /// @note the same bits for any number of threads
 void restrict_depths(const DepthLimits& limits, const DepthDecoder& decoder, const RawView& raw,
                      const PixelMaps& maps, int width, std::size_t first,
@@ -53,7 +53,7 @@ void restrict_depths(const DepthLimits& limits, const DepthDecoder& decoder, con
 
 /// Removes the depth of pixels whose corrected depth is outside the limits, with the same statuses
 /// as restrict_depths().
-/// @param decoded  depth and status are needed
+/// @param decoded  depth and status are required
 void remove_outside(const DepthLimits& limits, const DecodedView& decoded, std::size_t count);
 
 }  // namespace tofsmith

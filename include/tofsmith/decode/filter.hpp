@@ -49,21 +49,20 @@ struct FilterOptions {
 auto fields_of(ConstOrNot<FilterOptions> auto& o) {
   return std::tuple(
       Field("windows", o.windows, closed(1, 3),
-            Help{"windows of 5 x 5 pixels, each over the results of the previous one: 5, 25 or 125 "
-                 "pixels wide in all"}),
+            Help{"number of nested windows of 5 x 5 pixels: 5, 25 or 125 pixels wide in total"}),
       Field("slope_rounds", o.slope_rounds, closed(0, 4),
             Help{"additional passes over all windows, along the surface slopes estimated in the "
                  "previous pass"}),
       Field("max_difference_sigma", o.max_difference_sigma, above(0),
             Help{"difference above which a neighbour has no weight"}),
       Field("trusted_pixels", o.trusted_pixels, at_least(1),
-            Help{"upper limit on the number of already averaged pixels that the similarity test of "
-                 "the next window assumes"}),
+            Help{"maximum number of averaged pixels that the similarity test of the next window "
+                 "assumes"}),
       Field("same_depth_sigma", o.same_depth_sigma, above(0),
-            Help{"along slopes, distance within which depths belong to the same surface"}),
+            Help{"depth difference within which pixels belong to the same surface, along slopes"}),
       Field("own_light_sigma", o.own_light_sigma, at_least(0),
-            Help{"a dark pixel in a dark neighbourhood of 7 x 7 pixels keeps its raw value if "
-                 "filtering would raise it by more than this"}));
+            Help{"rise by filtering above which a dark pixel in a dark neighbourhood keeps its raw "
+                 "value"}));
 }
 
 struct FilterPlanes;

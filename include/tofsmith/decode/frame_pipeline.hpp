@@ -13,13 +13,13 @@
 
 namespace tofsmith {
 
-/// Steps from recorded frames to the numbers that are decoded.
+/// Processing steps between recorded frames and the numbers that are decoded.
 struct FrameSteps {
   int average = 1;        ///< recorded frames per mean; 1: frames are not averaged
-  double averaged = 1.0;  ///< equal measurements per recorded number, which is their mean already
-  std::optional<TimeFilterOptions> time_filter;  ///< of the means; none: not filtered in time
+  double averaged = 1.0;  ///< number of equal measurements averaged in each recorded number
+  std::optional<TimeFilterOptions> time_filter;  ///< temporal filter of the means; none: off
   const Filter* filter = nullptr;  ///< spatial filter; must outlive the pipeline; null: none
-  bool keeps_filtered = false;     ///< whether numbers() is called
+  bool keeps_filtered = false;     ///< required for numbers() with a spatial filter
 };
 
 /// Host memory that a pipeline needs [bytes].
@@ -29,10 +29,10 @@ struct FrameMemory {
 };
 
 /// Averages, filters and decodes the frames of one recording, one after another: submit() until a
-/// frame is ready, then decode() it. Made by FrameBackend::prepare().
+/// frame is ready, then decode() it. Created by FrameBackend::prepare().
 ///
 /// Without filters, the same rows of consecutive frames may be submitted instead of whole frames.
-/// Not for several threads at once.
+/// Not thread-safe.
 class FramePipeline {
  public:
   FramePipeline(const DepthDecoder& decoder, const FrameSteps& steps, int height, int width)
@@ -47,25 +47,27 @@ class FramePipeline {
   int height() const { return height_; }
   int width() const { return width_; }
 
-  /// @param frames  to be submitted
+  /// @param frames  number of frames that will be submitted
   virtual FrameMemory memory(int frames) const = 0;
 
   /// Submits the next recorded frame.
   /// @param raw             valid until the next submit() or submit_end()
-  /// @param completes_mean  the last frame of its mean; true without means
+  /// @param completes_mean  true for the last frame of a mean, and if frames are not averaged
   /// @return whether a frame is ready
   /// @throws std::invalid_argument if the measurements or sizes differ; IoError if the device fails
   virtual bool submit(const RawView& raw, bool completes_mean = true) = 0;
-  /// After the last recorded frame: completes a mean of fewer frames, or finishes the next frame
-  /// that waited for later ones. @return whether a frame is ready
+  /// Must be called after the last recorded frame. Completes a mean of fewer frames, or finishes
+  /// the next frame that waited for later ones.
+  /// @return whether a frame is ready
   virtual bool submit_end() = 0;
 
-  /// Filters and decodes the frame that is ready. May be repeated.
-  /// @param left_out  (H, W), or empty: as Filter::apply()
-  /// @throws Interrupted if progress says so; IoError if the device fails, with some planes written
+  /// Filters and decodes the frame that is ready. May be called repeatedly.
+  /// @param left_out  (H, W), or empty; see Filter::apply()
+  /// @throws Interrupted if `progress` requests it; IoError if the device fails. Some planes may
+  ///         have been written.
   virtual void decode(const DecodedView& decoded, const Progress& progress = {},
                       const Image<std::uint8_t>& left_out = {}) = 0;
-  /// Returns the numbers ahead of the spatial filter, valid until the next submit().
+  /// Returns the numbers before the spatial filter, valid until the next submit().
   virtual RawView measured() = 0;
   /// Returns the numbers that are decoded, valid until the next submit() or decode(). With a
   /// spatial filter, requires FrameSteps::keeps_filtered; filters the frame unless decode() did.
@@ -77,8 +79,7 @@ class FramePipeline {
   int height_, width_;
 };
 
-/// A decoder and the processor that runs it: the CPU or an OpenCL device. Safe to use from many
-/// threads at once.
+/// A decoder and the processor that runs it: the CPU or an OpenCL device. Thread-safe.
 class FrameBackend {
  public:
   FrameBackend() = default;
@@ -87,31 +88,30 @@ class FrameBackend {
   virtual ~FrameBackend() = default;
 
   virtual const DepthDecoder& decoder() const = 0;
-  /// Returns the name of the device, or "cpu".
+  /// Returns the name of the OpenCL device, or "cpu".
   virtual std::string device() const = 0;
-  /// @return a pipeline for frames of this size, valid while the backend lives
+  /// Returns a pipeline for frames of this size. The backend must outlive it.
   /// @throws std::invalid_argument if a step does not fit the decoder; IoError if the device fails
   virtual std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
                                                  int width) const = 0;
 };
 
-/// Returns the backend of the CPU. Backends of devices: frame_backend() (gpu.hpp).
+/// Returns the backend of the CPU. For OpenCL devices see frame_backend() (gpu.hpp).
 std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> decoder);
 
 /// Corrections of decoded planes.
 struct PlaneCorrections {
-  PixelMaps maps;                    ///< of whole frames, beside the table's depth correction
-  std::optional<MixedPixels> mixed;  ///< marks mixed pixels, in whole frames; none: not looked for
-  /// Applied by restrict_depths(); with a spatial filter they require FrameSteps::keeps_filtered.
-  /// None: any depth in the range.
+  PixelMaps maps;                    ///< maps of whole frames, in addition to table().correction
+  std::optional<MixedPixels> mixed;  ///< treatment of mixed pixels, in whole frames; none: off
+  /// Limits for restrict_depths(); with a spatial filter they require FrameSteps::keeps_filtered.
+  /// No value: any depth in the range.
   std::optional<DepthLimits> limits = {};
 };
 
-/// Decodes the frame that is ready, or rows of it, and corrects its planes; fills the plane
-/// `averaged`, which with a spatial filter requires FrameSteps::keeps_filtered. If a filtered frame
-/// has mixed pixels, it is filtered again without them, so that their neighbours take nothing from
-/// them.
-/// @param first_row, rows  that were submitted
+/// Decodes the ready frame, or rows of it, and corrects its planes. The plane `averaged` requires
+/// FrameSteps::keeps_filtered if there is a spatial filter. If a filtered frame has mixed pixels,
+/// it is filtered again without them, so that they do not affect their neighbours.
+/// @param first_row, rows  the submitted rows
 /// @param decoded          planes whose first value belongs to the first of the rows
 /// @throws as FramePipeline::decode()
 void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,

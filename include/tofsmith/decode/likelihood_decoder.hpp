@@ -11,27 +11,28 @@
 
 namespace tofsmith {
 
-/// Depth by maximum likelihood. With y' = electrons - dark, expected value and variance
+/// Decodes depth by maximum likelihood. With y' = electrons - dark, expected value and variance
 ///   mu_i(z, S, A) = T_i (S chi_i(z) + A kappa_i)
 ///   v_i(z, S, A)  = T_i (S shot_chi_i(z) + A shot_kappa_i) + shot_dark_i + constant_i,
-/// normal noise makes the most likely depth, signal S >= 0 and ambient light A >= 0 those of least
-///   cost(z, S, A) = sum_i (y'_i - mu_i)^2 / v_i + log v_i,
-/// on the chords between bins, where mu and v are linear in S (1 - t), S t and A. A v_i below 1e-4
-/// of the mean |y'_i| counts as that. Where buckets are subtracted so that ambient light cancels, A
-/// is taken as 0. Among depths whose costs differ by less than 1e-9 the lowest wins.
+/// and normal noise, the most likely depth z, signal S >= 0 and ambient light A >= 0 minimize
+///   cost(z, S, A) = sum_i (y'_i - mu_i)^2 / v_i + log v_i
+/// on the chords between bins, where mu and v are linear in S (1 - t), S t and A. The lower limit
+/// of v_i is 1e-4 of the mean |y'_i|. If buckets are subtracted so that ambient light cancels, A is
+/// 0. Among depths whose costs differ by less than 1e-9, the lowest is returned.
 ///
-/// Candidates are the peaks over bins of weighted least squares, with weights from the estimate of
-/// zero-mean normalized cross-correlation; each is carried to the least cost by Fisher scoring.
+/// Candidates are the peaks over bins of weighted least squares, with weights from the estimate by
+/// zero-mean normalized cross-correlation. Fisher scoring minimizes the cost from each candidate.
 ///
-/// The variance is part of what is fitted. Weights that are frozen at an estimate and iterated
-/// instead, with the same A >= 0, give the same mean depth error within 0.1 % on all built-in codes
-/// but ramps, where they are up to 2 % worse (Poisson and normal noise, S = 1e3 .. 1e5 e/s).
+/// The variance is part of the fit. Iteratively reweighted least squares with the same A >= 0 has
+/// the same mean depth error within 0.1 % for all built-in codes except ramps, where its error is
+/// up to 2 % larger (Poisson and normal noise, S from 1e3 to 1e5 e/s).
 ///
-/// Against Decoder, circular mean depth error on paper-10f0 at S = 1e5, A = 1e2 e/s is 6 %
-/// (hamiltonian-k4), 8 % (hamiltonian-k5), 2 % (sinusoid-k4) and 28 % (gray-k4) less; in strong
-/// ambient light, where all variances are alike, both decode nearly alike.
+/// Compared with Decoder, the circular mean depth error on paper-10f0 at S = 1e5, A = 1e2 e/s is
+/// smaller by 6 % (hamiltonian-k4), 8 % (hamiltonian-k5), 2 % (sinusoid-k4) and 28 % (gray-k4). In
+/// strong ambient light all variances are nearly equal, and both decoders have nearly the same
+/// error.
 ///
-/// Immutable and safe to use from many threads at once.
+/// Immutable and thread-safe.
 class LikelihoodDecoder {
  public:
   /// @throws std::invalid_argument if the table or the options are invalid
@@ -45,24 +46,23 @@ class LikelihoodDecoder {
   int measurements() const { return table().measurements(); }
   int samples() const { return table().bin_count(); }
 
-  /// Decodes one frame on all threads into the caller's planes; as Decoder::decode, but for
+  /// Decodes one frame as Decoder::decode(), except for
   ///   signal and ambient: the most likely ones;
   ///   predicted standard deviation: from the Fisher information on (z, S, A) of the expected
-  ///   values
-  ///     at the estimate; A >= 0 is not counted as knowledge, so that less may be seen in the dark;
+  ///     values at the estimate. It does not use A >= 0, so that it may be too large in the dark;
   ///   confidence: posterior probability of the main lobe around the most likely depth, with the
-  ///     noise at the first estimate of the depth.
+  ///     noise at the initial estimate of the depth.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As Decoder::decode_within().
+  /// See Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K), into a new image.
+  /// Decodes frame `frame` of several (F, H, W, K) into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  /// Positions in [0, N) of many pixels; see Decoder::decode_depth_bins.
-  /// @note single-threaded; allocates N numbers once, nothing per pixel
+  /// Computes the positions of many pixels in [0, N); see Decoder::decode_depth_bins().
+  /// @note single-threaded; allocates N numbers per call, nothing per pixel
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// The nearest bins in [0, N), -1 where a measurement is NaN or infinite.
+  /// Computes the nearest bins in [0, N); -1 if a measurement is NaN or infinite.
   void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
 
  private:

@@ -13,8 +13,8 @@
 
 namespace tofsmith {
 
-/// What is assumed of multipath returns before a pixel is seen; depth itself may be anything. The
-/// answer leans on it where light is scarce.
+/// Prior distribution of multipath returns; depth has a uniform prior. It affects the result if
+/// there is little light.
 struct ReturnPrior {
   double single_probability = 0.5;
   double mean_delay_m = 0.5;
@@ -24,14 +24,14 @@ auto fields_of(ConstOrNot<ReturnPrior> auto& p) {
   return std::tuple(Field("single_probability", p.single_probability, right_open(0, 1),
                           Help{"prior probability that there is no second return"}),
                     Field("mean_delay_m", p.mean_delay_m, above(0),
-                          Help{"prior mean of delays, which are exponential"}),
+                          Help{"mean of the exponential prior of the delay"}),
                     Field("max_ratio", p.max_ratio, left_open(0, 1),
-                          Help{"prior of ratios: uniform from 0 to this"}));
+                          Help{"upper end of the uniform prior of the ratio"}));
 }
 
-/// How multipath is looked for.
+/// Options of multipath decoding.
 struct MultipathOptions {
-  /// Single returns exceed 9 in about one pixel of a hundred.
+  /// In about 1 % of pixels with a single return, chi^2 exceeds 9.
   double threshold = 9.0;
   double shortest_delay_m = 0.1;
   std::optional<double> longest_delay_m;  ///< above the shortest and below the range
@@ -45,24 +45,23 @@ struct MultipathOptions {
 auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
   return std::tuple(
       Field("threshold", o.threshold, at_least(0),
-            Help{"how much chi^2 must fall for a second return to count"}),
+            Help{"decrease of chi^2 above which a second return is accepted"}),
       Field("shortest_delay_m", o.shortest_delay_m, above(0),
             Help{"shortest delay of a second return"}, OnlyWith{"method two-return"}),
       Field("longest_delay_m", o.longest_delay_m, Help{"longest delay of a second return"},
             OnlyWith{"method two-return"}, IfAbsent{"a third of the range"}),
-      Field("tail_m", o.tail_m, above(0), Help{"mean delay of the light that trails off"},
-            OnlyWith{"method tail"}),
+      Field("tail_m", o.tail_m, above(0), Help{"mean delay of the tail"}, OnlyWith{"method tail"}),
       Field("prior", o.prior,
-            Help{"prior under which depth is the posterior median, where one return does not "
-                 "explain the pixel"},
+            Help{"prior of multipath; depth is the posterior median if one return does not explain "
+                 "the pixel"},
             IfAbsent{"the most likely depth"}),
       Field("status_thresholds", o.status_thresholds, Help{"thresholds of the single return"}));
 }
 
-/// What TwoReturnDecoder and TailDecoder share: a model of one return, and one of light that comes
-/// later too for the pixels that one return does not explain.
+/// Base class of TwoReturnDecoder and TailDecoder. Fits one return, and a model with later light if
+/// one return does not explain the pixel.
 ///
-/// Immutable and safe to use from many threads at once.
+/// Immutable and thread-safe.
 class MultipathDecoder {
  public:
   ~MultipathDecoder();
@@ -74,29 +73,32 @@ class MultipathDecoder {
   int measurements() const { return table().measurements(); }
   int samples() const { return table().bin_count(); }
 
-  /// Decodes one frame on all threads into the caller's planes; as Decoder::decode for single and
-  /// unresolved pixels. Where multipath was found
-  ///   depth, signal: of the direct return; ambient light: least squares beside both;
-  ///   predicted standard deviation: from the Fisher information on (z, delta, S1, S2, A); S1 >= S2
-  ///     is not counted as knowledge;
-  ///   confidence: posterior probability against the best other fit at another direct depth;
-  ///   delay, ratio: of the second return or of the tail, NaN where there is none;
-  ///   returns: ReturnStatus; PixelStatus stays what Decoder says.
-  /// With a prior, depth and deviation are the posterior's where one return does not explain the
-  /// pixel.
-  /// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
-  /// @note the same bits for any number of threads; processors without fused multiply-add differ in
-  ///       the last ones
+  /// Decodes one frame on all threads into the caller's planes. Single and unresolved pixels are
+  /// decoded as by Decoder::decode(). For pixels with multipath,
+  ///   depth, signal: of the direct return; ambient light: least squares fit together with both
+  ///     returns;
+  ///   predicted standard deviation: from the Fisher information on (z, delta, S1, S2, A), without
+  ///     the constraint S1 >= S2;
+  ///   confidence: posterior probability compared with the best fit at another direct depth;
+  ///   delay, ratio: of the second return or of the tail; NaN without one;
+  ///   returns: ReturnStatus; PixelStatus is the same as from Decoder.
+  /// With a prior, depth and deviation of pixels that one return does not explain are taken from
+  /// the posterior.
+  /// @throws std::invalid_argument if the shape does not match; Interrupted if `progress` requests
+  ///         it
+  /// @note the same bits for any number of threads; the last bits differ on processors without
+  ///       fused multiply-add
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As Decoder::decode_within().
+  /// See Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K), into a new image with the usual planes.
+  /// Decodes frame `frame` of several (F, H, W, K) into a new image with the usual planes.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  /// Positions in [0, N) of many pixels; see Decoder::decode_depth_bins. NaN also without return.
+  /// Computes the positions of many pixels in [0, N); see Decoder::decode_depth_bins(). NaN without
+  /// a return.
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// The nearest bins in [0, N), -1 where there is none.
+  /// Computes the nearest bins in [0, N); -1 without a return.
   void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
 
  protected:
@@ -107,47 +109,50 @@ class MultipathDecoder {
   std::unique_ptr<const Plan> plan_;
 };
 
-/// Direct depth of pixels behind whose return light trails off, as in haze and translucent things:
+/// Decodes the direct depth of pixels whose return is followed by an exponential tail, as in haze
+/// and translucent materials:
 ///   y' = T o (S1 chi(z) + S2 integral_0^inf exp(-u / L) / L chi(z + u) du + A kappa) + noise,
-/// S1 >= S2 >= 0, with the mean delay L = MultipathOptions::tail_m known. All else is as in
-/// TwoReturnDecoder; a place tried is one depth with its tail, and only depth goes downhill.
-/// The delay it gives is tail_m where a tail was found, the ratio the light of all of the tail
-/// beside the direct return's.
+/// S1 >= S2 >= 0, with a known mean delay L = MultipathOptions::tail_m. The method is that of
+/// TwoReturnDecoder, but a candidate is one depth with its tail, and only the depth is refined. If
+/// a tail is found, `delay` is tail_m and `ratio` is the light of the whole tail divided by that of
+/// the direct return.
 class TailDecoder : public MultipathDecoder {
  public:
-  /// @throws std::invalid_argument if table or options are invalid, or the code holds too few
-  ///         independent means: fewer than 5 (4 where ambient light cancels)
+  /// @throws std::invalid_argument if table or options are invalid, or the code has too few
+  ///         independent means: fewer than 5 (4 if ambient light cancels)
   explicit TailDecoder(DecodingTable table, const MultipathOptions& options = {});
 
-  /// As TwoReturnDecoder::why_not_decodable(), of a tail.
+  /// See TwoReturnDecoder::why_not_decodable().
   static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 
-/// Direct depth of pixels into which light may come back twice:
+/// Decodes the direct depth of pixels that may have two returns:
 ///   y' = electrons - dark = T o (S1 chi(z) + S2 chi(z + delta) + A kappa) + noise,  S1 >= S2 >= 0.
 ///
-/// The fast Decoder fits one return. Its chi^2, weighted by the noise of the measurements and
-/// counted in the dimensions the code spans (what ambient light explains left out), is all that a
-/// second return could explain: up to the threshold the pixel is single and keeps what Decoder
-/// says. Else two returns are fitted by weighted least squares, the likelihood of normal noise: all
-/// pairs of coarse places are tried in closed form, the best three followed by Levenberg-Marquardt
-/// on (z, delta). Two returns are accepted if chi^2 falls by more than the threshold below the best
-/// single return's anywhere. S2 <= S1 is needed: without it a phantom early return explains pixels
-/// of one return.
+/// First, Decoder fits a single return. Its chi^2, weighted by the noise of the measurements and
+/// restricted to the dimensions that the code spans without the ambient component, is an upper
+/// limit on the improvement by a second return. If it is at most the threshold, the pixel is single
+/// and keeps the result of Decoder. Otherwise two returns are fitted by weighted least squares
+/// (maximum likelihood for normal noise): all pairs of positions on a coarse grid are evaluated in
+/// closed form, and the best three are refined by Levenberg-Marquardt over (z, delta). Two returns
+/// are accepted if their chi^2 is below that of the best single return by more than the threshold.
+/// The constraint S2 <= S1 is necessary: otherwise a weak early return can explain pixels with a
+/// single return.
 ///
-/// The noise of a measurement is taken from itself: max(y', 0) + dark + constant variance. Curves
-/// between bins are drawn by cubics where that predicts the table better than chords do.
+/// The noise of a measurement is estimated from the measurement: max(y', 0) + dark + constant
+/// variance. Curves are interpolated between bins by cubics if these predict the table better than
+/// chords do.
 ///
 /// @see docs/multipath.md
 class TwoReturnDecoder : public MultipathDecoder {
  public:
-  /// @throws std::invalid_argument if table or options are invalid, or the code holds too few
-  ///         independent means: fewer than 6 (5 where ambient light cancels), as codes of two
-  ///         frequencies do
+  /// @throws std::invalid_argument if table or options are invalid, or the code has too few
+  ///         independent means: fewer than 6 (5 if ambient light cancels). Codes of two frequencies
+  ///         have too few.
   explicit TwoReturnDecoder(DecodingTable table, const MultipathOptions& options = {});
 
-  /// Why two returns cannot be separated with a table whose numbers are in order: no depth can be
-  /// decoded at all, or there are too few independent means. None: they can, well or badly.
+  /// Returns why two returns cannot be separated with a valid table: no depth can be decoded, or
+  /// there are too few independent means. None: they can be separated, with any accuracy.
   static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 

@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// A part of the unambiguous range, which may continue at the beginning of the range. Positions are
-/// shares of the range.
+/// Part of the unambiguous range, which may wrap around its end. Positions are fractions of the
+/// range.
 struct RangePart {
   double begin = 0.0;   ///< in [0, 1)
   double length = 1.0;  ///< 1 or more: the whole range

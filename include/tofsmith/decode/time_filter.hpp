@@ -25,16 +25,17 @@ struct TimeFilterOptions {
 auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
   return std::tuple(
       Field("max_frames", o.max_frames, at_least(1),
-            Help{"number of frames to average: the newest frame has at least the weight "
-                 "1 / max_frames; 1: frames are not averaged"}),
+            Help{"maximum number of frames to average; 1: frames are not averaged"}),
       Field("max_difference_sigma", o.max_difference_sigma, above(0),
-            Help{"difference from the mean above which a pixel starts anew; from half of it on the "
-                 "past has less weight"}),
-      Field("before_filter", o.before_filter,
-            Help{"also detect changes that only 24 x 24 pixels together show, because a spatial "
-                 "filter follows"}),
-      Field("look_ahead", o.look_ahead, closed(0, 1000),
-            Help{"number of later frames to average, too; each frame waits for them"}));
+            Help{"difference from the mean above which averaging restarts; half of it reduces the "
+                 "weight"}),
+      Field(
+          "before_filter", o.before_filter,
+          Help{
+              "also detect changes in blocks of 24 x 24 pixels, because a spatial filter follows"}),
+      Field(
+          "look_ahead", o.look_ahead, closed(0, 1000),
+          Help{"number of later frames to average as well; delays the output by as many frames"}));
 }
 
 /// Averages the raw measurements of each pixel over frames, as long as the scene does not change,

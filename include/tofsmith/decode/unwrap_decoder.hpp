@@ -13,13 +13,15 @@
 
 namespace tofsmith {
 
-/// How much the depth of each frequency counts. Measured on multifrequency-k5 (S = 1e5, A = 1e2
-/// e/s; circular mean depth error): without band limit both are within 2 % of ZNCC (7.9 against
-/// 7.8 mm); at 10 f0, where a quarter of the amplitude of 7 f0 is left, ZNCC has 25.7 mm,
-/// variance 26.2 and frequency 33.2; at 5 f0, where next to nothing is, 44.9, 44.9 and 351 mm.
+/// Weights of the depths of the frequencies. Circular mean depth errors of multifrequency-k5 at
+/// S = 1e5, A = 1e2 e/s:
+///   band limit  amplitude of 7 f0  ZNCC     variance  frequency
+///   none        all                7.8 mm   7.9 mm    7.9 mm
+///   10 f0       a quarter          25.7 mm  26.2 mm   33.2 mm
+///   5 f0        almost none        44.9 mm  44.9 mm   351 mm
 enum class UnwrapWeights {
-  variance,   ///< by the inverse variance of its depth, through the camera's transfer function
-  frequency,  ///< by f^2, as if all phases were equally noisy: the classical choice
+  variance,   ///< inverse variance of the depth, computed with the camera's transfer function
+  frequency,  ///< f^2, as if all phases had the same noise: the classical choice
 };
 
 constexpr std::array<std::string_view, 2> words_of(UnwrapWeights /*any*/) {
@@ -30,36 +32,39 @@ std::string_view name_of(UnwrapWeights weights);
 /// @throws std::invalid_argument for any other word
 UnwrapWeights parse_unwrap_weights(std::string_view name);
 
-/// How phases become depths, and the thresholds of a pixel's status.
+/// Options of phase unwrapping, and the thresholds of a pixel's status.
 struct UnwrapOptions {
   DecodeOptions status_thresholds;
   UnwrapWeights weights = UnwrapWeights::variance;
-  /// A correlation function is a sinusoid if no more than this share of its variance is outside its
-  /// strongest harmonic; in [0, 1]. What is there turns into an error of depth.
+  /// Maximum share, in [0, 1], of the variance of a correlation function outside its strongest
+  /// harmonic for it to count as a sinusoid. Other harmonics cause depth errors.
   double largest_other_energy = 1e-3;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
 
-/// Depth by phase unwrapping, the classical decoder of multi-frequency sinusoids:
-///   1. the phase of each frequency, by least squares over offset, cosine and sine;
-///   2. candidate depths of each frequency, z_f = (phase_f + n) / f of the range, n = 0 .. f - 1;
-///   3. the candidates, one per frequency, of the least weighted distance sum_f w_f (z_f - z)^2;
-///   4. z = their weighted mean.
-/// Frequencies are found in the correlation functions, and phases are calibrated by them, so that
-/// delay and attenuation of the camera are taken out. All choices of wraps are compared.
+/// Decodes depth by phase unwrapping, the classical decoder of multi-frequency sinusoids:
+///   1. Fit offset, cosine and sine of each frequency by least squares; compute its phase.
+///   2. Candidate depths of each frequency are z_f = (phase_f + n) / f of the range, n = 0 to f -
+///      1.
+///   3. Choose one candidate per frequency to minimize sum_f w_f (z_f - z)^2. All choices of wraps
+///      are compared.
+///   4. z is their weighted mean.
+/// Frequencies and phase offsets are determined from the correlation functions, so that delay and
+/// attenuation of the camera are compensated.
 ///
-/// Against ZNCC on the same code it ignores that all frequencies see the same signal: amplitudes
-/// are not used. Weights by frequency also ignore that a camera attenuates high frequencies.
+/// Unlike ZNCC, the method does not use the amplitudes, although all frequencies have the same
+/// signal. Weights by frequency also ignore that a camera attenuates high frequencies.
 ///
-/// Immutable and safe to use from many threads at once.
-/// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 5, which compares with it
+/// Immutable and thread-safe.
+/// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 5, which compares with this decoder
 class UnwrapDecoder {
  public:
   /// @throws std::invalid_argument if the table or the options are invalid; if a correlation
-  ///         function is no sinusoid; if a frequency is not measured in two phases, or the offset
-  ///         in none; if the frequencies share a divisor, with the range that is unambiguous
+  ///         function is not a sinusoid; if a frequency is measured in fewer than two phases or the
+  ///         offset cannot be determined; or if the frequencies have a common divisor, with the
+  ///         unambiguous range in the message
   explicit UnwrapDecoder(DecodingTable table, const UnwrapOptions& options = {});
   ~UnwrapDecoder();
   UnwrapDecoder(UnwrapDecoder&&) noexcept;
@@ -69,26 +74,26 @@ class UnwrapDecoder {
   const UnwrapOptions& options() const;
   int measurements() const { return table().measurements(); }
   int samples() const { return table().bin_count(); }
-  /// In multiples of f0, ascending.
+  /// Frequencies in multiples of f0, ascending.
   const std::vector<int>& frequencies() const;
-  /// w_f of each frequency, scaled to sum 1.
+  /// Weights w_f of the frequencies, with sum 1.
   const std::vector<double>& weights() const;
 
-  /// Decodes one frame on all threads into the caller's planes; as Decoder::decode, but for
-  ///   predicted standard deviation: noise at the estimate, carried through phases and weights;
+  /// Decodes one frame as Decoder::decode(), except for
+  ///   predicted standard deviation: noise at the estimate, propagated through phases and weights;
   ///   confidence: posterior probability of the main lobe around the depth of the chosen wraps,
   ///     from all measurements.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As Decoder::decode_within().
+  /// See Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// The same for frame `frame` of several (F, H, W, K), into a new image.
+  /// Decodes frame `frame` of several (F, H, W, K) into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  /// Positions in [0, N) of many pixels; see Decoder::decode_depth_bins.
+  /// Computes the positions of many pixels in [0, N); see Decoder::decode_depth_bins().
   /// @note single-threaded; allocates nothing
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// The nearest bins in [0, N), -1 where a measurement is NaN or infinite.
+  /// Computes the nearest bins in [0, N); -1 if a measurement is NaN or infinite.
   void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
 
  private:

@@ -92,14 +92,14 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
   return std::tuple(
       Field("exposures", o.exposures, closed(1, 4), FieldMark::from_above, Help{"exposures"}),
       Field("margin_sigma", o.margin_sigma, at_least(0),
-            Help{"least distance between depths, in noise"}),
+            Help{"smallest distance between depths, in units of noise"}),
       Field("separation_periods", o.separation_periods, open(0, 0.5),
             Help{"distance from which on depths must keep the margin"}),
       Field("equal_duty", o.equal_duty, Help{"open all taps of an exposure equally long"}),
       Field("max_exhaustive", o.max_exhaustive, at_least(0).or_infinity(),
-            Help{"number of codes, after symmetry, up to which all are searched; otherwise codes "
-                 "are annealed without proof"}),
-      Field("finalists", o.finalists, closed(1, 100), Help{"best codes by the metric to keep"}),
+            Help{"maximum size of an exhaustive search, up to symmetry; larger ones use annealing, "
+                 "without proof"}),
+      Field("finalists", o.finalists, closed(1, 100), Help{"number of best codes to keep"}),
       Field("annealing_starts", o.annealing_starts, closed(0, 10000), ByEffort{2},
             Help{"starts of annealing"}),
       Field("annealing_steps", o.annealing_steps, at_least(1), Help{"steps per start"}),

@@ -27,13 +27,13 @@ enum class Termination {
 /// Returns the name of the enumerator.
 std::string_view name_of(Termination termination);
 
-/// How codes are found.
+/// Method of finding codes.
 enum class DesignMethod {
-  factorize,    ///< waveforms whose correlation functions come close to given ones, as in the paper
-  optimize,     ///< all waveforms together, by depth error itself
-  search,       ///< all codes on the grid of a chip clock, with proof where that is possible
-  best,         ///< all of these that suit the camera
-  atlas,        ///< none: codes of the atlas and standard codes are judged, nothing is searched
+  factorize,    ///< waveforms whose correlation functions approximate given ones, as in the paper
+  optimize,     ///< all waveforms jointly, by minimizing the depth error
+  search,       ///< exhaustive search on the grid of a chip clock, proven optimal if possible
+  best,         ///< all methods that the camera supports
+  atlas,        ///< no search: codes from the atlas and standard codes are ranked
   frequencies,  ///< square waves at frequencies that the chip can generate
 };
 constexpr std::array<std::string_view, 6> words_of(DesignMethod /*any*/) {
@@ -78,14 +78,13 @@ struct DesignOptions {
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
   return std::tuple(
       Field("method", o.method,
-            Help{"factorize: factorize correlation functions; optimize: minimize depth error "
-                 "itself; search: all codes on a chip clock, with proof; best: all that suit the "
-                 "camera, with every baseline as a competitor; atlas: nothing is searched, codes "
-                 "of the atlas and standard codes are judged; frequencies: square waves at "
-                 "frequencies that the chip of the camera can generate"}),
+            Help{"best: try all applicable methods and rank them with the standard codes; "
+                 "optimize: minimize depth error; factorize: approximate correlation functions; "
+                 "search: exhaustive, on a chip clock; atlas: no search, rank known codes only; "
+                 "frequencies: square waves at frequencies of the chip"}),
       Field("exposures", o.exposures, closed(1, 16),
             Help{"numbers of exposures to try (3,4,5), or of rows"},
-            IfAbsent{"what suits the camera"}),
+            IfAbsent{"suitable numbers for the camera"}),
       Field("target", o.target, FieldMark::apart),
       Field("factorize", o.factorize, Help{"options of factorization"}),
       Field("optimize", o.optimize, Help{"options of optimization"}),
@@ -94,19 +93,19 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
             Help{"optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter and 2 % "
                  "tap mismatch"}),
       Field("baselines", o.baselines,
-            Help{"families that compete, except for those unusable on the camera"},
-            IfAbsent{"what suits the method"}),
+            Help{"standard codes to compare with; unsupported ones are skipped"},
+            IfAbsent{"suitable codes for the method"}),
       Field("atlas_cameras", o.atlas_cameras, closed(0, 1000),
-            Help{"how many of the nearest cameras of the atlas lend codes, which compete and are "
-                 "where searches start; 0: none"}),
+            Help{"number of most similar atlas cameras whose codes compete and start searches; 0: "
+                 "none"}),
       Field("best_rotation", o.best_rotation,
-            Help{"give every candidate its best origin of depth"}),
+            Help{"choose the best origin of depth for every candidate"}),
       Field("split_exposures", o.split_exposures,
             Help{"also try exposures of different length for optimized and factorized codes"}),
       Field("search_trials", o.search_trials, at_least(100),
-            Help{"trials per operating point while pairs are chosen"}),
+            Help{"trials per operating point during the selection of pairs"}),
       Field("trials", o.trials, closed(1000, 1e8),
-            Help{"trials per operating point for final figures"}),
+            Help{"trials per operating point of the final evaluation"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
       Field("seed", o.seed, Help{"seed of every random choice"}));

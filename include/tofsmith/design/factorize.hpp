@@ -88,24 +88,24 @@ struct FactorizeOptions {
 auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
   return std::tuple(
       Field("total_variation_weights", o.total_variation_weights, closed(1e-7, 1e-2),
-            Help{"weights of total variation, which starts take in turn: large ones find simple "
-                 "codes with few edges, small ones many edges"}),
+            Help{"weights of total variation, used by the starts in turn; larger ones give fewer "
+                 "edges"}),
       Field("max_iterations", o.max_iterations, at_least(1),
             Help{"pairs of convex steps per start"}),
       Field("objective_tolerance", o.objective_tolerance, at_least(0),
             Help{"relative change of the objective below which a start ends"}),
-      Field("feed_back_projection", o.feed_back_projection,
-            Help{"continue from the binary projection, instead of keeping the best projection next "
-                 "to the relaxed iterates"}),
+      Field(
+          "feed_back_projection", o.feed_back_projection,
+          Help{
+              "continue each iteration from the binary projection instead of the relaxed iterate"}),
       Field("random_starts", o.random_starts, at_least(0), ByEffort{2}, Help{"random starts"}),
       Field("structured_starts", o.structured_starts,
             Help{"also start from the thresholded target with pulses and pulse trains"}),
       Field("keep_naive", o.keep_naive,
             Help{"keep the ideal demodulation with one pulse as a candidate"}),
-      Field("refine_edges", o.refine_edges, Help{"move switching times continuously afterwards"}),
-      Field("refined", o.refined, at_least(1),
-            Help{"how many of the best projections are refined"}),
-      Field("kept", o.kept, at_least(1), Help{"how many distinct pairs are returned"}),
+      Field("refine_edges", o.refine_edges, Help{"refine switching times continuously"}),
+      Field("refined", o.refined, at_least(1), Help{"number of best projections to refine"}),
+      Field("kept", o.kept, at_least(1), Help{"number of distinct pairs to return"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of the random starts"}));
 }
 

@@ -24,51 +24,51 @@
 
 namespace tofsmith {
 
-/// Whether an output of this name holds points: .ply, .pcd.
+/// Returns true if an output with this name contains points: .ply, .pcd.
 bool holds_points(const std::filesystem::path& path);
 
-/// Type of the values of a plane in files; statuses are uint8.
+/// Returns the type of the values of a plane in files; statuses are uint8.
 NpyType type_of(DecodedPlane plane);
 /// Returns the help text of DecodeRequest::outputs, which lists the planes.
 std::string_view help_of_outputs();
 
-/// A recording to be decoded into files.
+/// Request to decode a recording into files.
 struct DecodeRequest {
-  /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one per measurement in
-  /// their order, (H, W) or (F, H, W) each.
+  /// .npy, .npz or .h5 of shape (H, W, K) or (F, H, W, K) and any size; or K files of shape (H, W)
+  /// or (F, H, W), one per measurement, in order.
   std::vector<std::filesystem::path> raw;
   RawLayout layout = RawLayout::interleaved;
   std::string dataset;
   std::filesystem::path raw_format;
 
-  /// .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel of
-  /// each; .ply, .pcd (organized): points with planes as scalars. Files of several frames get
-  /// numbers: name-03.npz.
+  /// .npy, .pfm, .png (16 bits, mm): only depth; .npz: one array per plane; .exr: one channel per
+  /// plane; .ply, .pcd (organized): points, with planes as scalars. With several frames, the names
+  /// of the files are numbered: name-03.npz.
   std::filesystem::path output;
   std::vector<DecodedPlane> outputs;
   DepthKind kind = DepthKind::radial;
   bool all_points = false;
-  /// Of points and z, which require a lens or `view_deg`. Pixels that see nothing, by a map of
-  /// rays, are invalid.
+  /// For points and z, which require a lens or `view_deg`. With a map of rays, pixels without a ray
+  /// are invalid.
   std::optional<Lens> lens;
   std::optional<double> view_deg;
-  bool undistort = false;  ///< needs a lens; nothing changes without distortion
+  bool undistort = false;  ///< requires a lens; has no effect without distortion
   std::optional<int> frame;
   bool stack = false;
-  /// A pixel that is invalid or saturated in one frame is so in the mean. Not above the number of
-  /// frames.
+  /// Pixels that are invalid or saturated in one frame are also invalid or saturated in the mean.
+  /// At most the number of frames.
   int average = 1;
-  /// The recording holds whole groups, of which merge_exposures() makes frames. Goes without
-  /// `average`.
+  /// The recording consists of groups of frames, each merged by merge_exposures(). Cannot be
+  /// combined with `average`.
   std::vector<double> hdr;
   /// F frames of E exposures give (F - 1) E + 1 depth images, in the order of their last
   /// exposures. A time filter averages windows that share no exposure. Not valid with `average`,
   /// `averaged`, `hdr` or `look_ahead`.
   bool sliding = false;
-  std::filesystem::path stray_light;  ///< image of shares, as StrayLight takes it
+  std::filesystem::path stray_light;  ///< image with the kernel of StrayLight
   double averaged = 1.0;              ///< multiplied by `average`
-  /// Applies to consecutive frames, or means of frames. `frame` also uses the frames before it,
-  /// and with `look_ahead` the frames after it. With `filter` it is `before_filter`.
+  /// Applied to consecutive frames, or means of frames. `frame` also uses the frames before it, and
+  /// with `look_ahead` the frames after it. With `filter`, `before_filter` is set.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< after the temporal filter
   std::optional<MixedPixels> mixed;     ///< see mark_mixed_pixels()
@@ -83,66 +83,60 @@ struct DecodeRequest {
   /// the order of the code.
   std::vector<int> order;
   OutputPolicy policy = OutputPolicy::refuse_existing;
-  std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
+  std::vector<std::string> other_inputs;  ///< further input files, which outputs must not replace
 };
 auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
   return std::tuple(
       Field("raw", r.raw, FieldMark::from_above),
       Field("layout", r.layout,
-            Help{"how raw numbers are stored: interleaved, or planar for (K,H,W) and (F,K,H,W); "
-                 "never guessed"}),
+            Help{"memory layout of the raw numbers: interleaved (H,W,K) or planar (K,H,W); not "
+                 "detected"}),
       Field("dataset", r.dataset,
-            Help{"array of an .npz, or data set of an .h5, that holds the raw numbers"},
-            IfAbsent{"the one called raw, or the only one"}),
+            Help{"array of an .npz file or dataset of an .h5 file with the raw numbers"},
+            IfAbsent{"raw, or the only one"}),
       Field("raw_format", r.raw_format,
-            Help{"the raw file is a sensor's dump without header, as this .raw.toml file describes "
-                 "it (docs/raw_formats.md)"}),
+            Help{"description (.raw.toml) of a raw file without header; see docs/raw_formats.md"}),
       Field("output", r.output, FieldMark::from_above),
       Field("outputs", r.outputs, Help{help_of_outputs()},
-            IfAbsent{"depth to status, as many as the output holds"}),
+            IfAbsent{"depth to status, if the format supports them"}),
       Field("kind", r.kind,
-            Help{"depth to write: radial distance, as the camera measures it, or z along the axis "
-                 "(the convention of depth images for simulate and demo); .ply and .pcd hold "
-                 "points either way"}),
+            Help{"depth to write: radial distance, or z along the optical axis; .ply and .pcd "
+                 "contain points"}),
       Field("all_points", r.all_points,
-            Help{"in .ply and .pcd also write points of pixels that are not ok"}),
+            Help{"also write points of pixels that are not ok (.ply, .pcd)"}),
       Field("lens", r.lens, FieldMark::from_above),
       Field("view_deg", r.view_deg, open(0, 180),
-            Help{"horizontal angle of view to assume for points and z if the camera has no [lens]"},
+            Help{"horizontal angle of view for points and z if the camera has no [lens]"},
             IfAbsent{"points and z require a lens"}),
       Field("undistort", r.undistort,
-            Help{"write planes without the distortion of the camera's lens: each pixel takes the "
-                 "values of the nearest one; pixels that the lens does not see are invalid"}),
+            Help{"write undistorted planes (nearest pixel); pixels outside the lens's view are "
+                 "invalid"}),
       Field("frame", r.frame, at_least(0),
-            Help{"decode this frame only, counted from 0; with averaging this mean, with exposures "
-                 "to merge this group; a temporal filter also uses the frames before it"},
+            Help{"index of the only frame to decode, from 0; counts means or merged exposures if "
+                 "these are used"},
             IfAbsent{"all"}),
       Field("stack", r.stack,
-            Help{"write all frames to one .npy, (F,H,W), as they come, and each plane but depth to "
-                 "a separate file, NAME-PLANE.npy"}),
-      Field(
-          "average", r.average, at_least(1),
-          Help{"decode the means of this many consecutive frames; the last one is of those left"}),
+            Help{"write all frames to one .npy (F,H,W), and each plane except depth to "
+                 "NAME-PLANE.npy"}),
+      Field("average", r.average, at_least(1),
+            Help{"average this many consecutive frames before decoding; the last group may be "
+                 "smaller"}),
       Field("hdr", r.hdr,
-            Help{"exposure ratios of bracketed frames to the shortest exposure, which is the "
-                 "camera's, such as 1,4,16: each group is merged into one frame, without saturated "
-                 "samples, by their noise"}),
+            Help{"merge groups of frames with these exposures relative to the shortest (the "
+                 "camera's), e.g. 1,4,16"}),
       Field("sliding", r.sliding,
-            Help{"decode each new exposure together with the exposures before it, as many as a "
-                 "frame has: one depth image per exposure; pixels that change meanwhile are "
-                 "inconsistent"}),
+            Help{"decode every exposure with the preceding ones of a frame: one depth image per "
+                 "exposure"}),
       Field("stray_light", r.stray_light,
-            Help{"light that the lens scatters, of calibrate stray-light (.npy .npz .exr .pfm), "
-                 "removed from the raw numbers first"}),
+            Help{"stray-light kernel from calibrate stray-light (.npy .npz .exr .pfm), removed "
+                 "from raw numbers"}),
       Field("averaged", r.averaged, left_open(0, 1e9),
-            Help{"number of equal measurements of which the raw frames are already averages; sets "
-                 "their noise"}),
+            Help{"number of equal measurements averaged in each raw frame; determines the noise"}),
       Field("time_filter", r.time_filter, Help{"options of the temporal filter"}, IfAbsent{"none"}),
       Field("filter", r.filter, Help{"options of the spatial filter"}, IfAbsent{"none"}),
       Field("mixed", r.mixed,
-            Help{"find pixels at edges of depth that see two surfaces: label (status mixed, the "
-                 "depth stays), snap (to the depth of the one that gives more light) or drop (no "
-                 "depth)"},
+            Help{"flying pixels at depth edges: label as mixed, snap to the brighter surface, or "
+                 "drop the depth"},
             IfAbsent{"off"}),
       Field("min_depth_m", r.min_depth_m, at_least(0),
             Help{"smallest radial depth after all corrections; pixels below it are too_near"},
@@ -151,22 +145,22 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"largest radial depth after all corrections; pixels above it are too_far"},
             IfAbsent{"the camera's working distance, or the range"}),
       Field("offset_map", r.offset_map,
-            Help{"distance by which each pixel decodes too far, in metres (.npy .npz .exr .pfm), "
-                 "subtracted from its depth; NaN marks a dead pixel"}),
-      Field("offset_m", r.offset_m,
-            Help{"distance by which every pixel decodes too far, subtracted from its depth"}),
-      Field("gain_map", r.gain_map,
-            Help{"response of each pixel relative to that of a usual one, removed from signal and "
-                 "ambient; NaN marks a dead pixel"}),
+            Help{"depth offset of each pixel in metres (.npy .npz .exr .pfm), subtracted; NaN: "
+                 "dead pixel"}),
+      Field("offset_m", r.offset_m, Help{"depth offset of all pixels, subtracted from the result"}),
+      Field(
+          "gain_map", r.gain_map,
+          Help{
+              "relative response of each pixel, removed from signal and ambient; NaN: dead pixel"}),
       Field("memory_mb", r.memory_mb, left_open(0, 1e9),
-            Help{"memory for frames in flight; larger frames are decoded in bands of rows. The "
-                 "program itself takes some 50 MB more"}),
+            Help{"memory for frames in flight, in addition to about 50 MB; larger frames are "
+                 "decoded in bands"}),
       Field("order", r.order, FieldMark::from_above),
       Field("policy", r.policy, FieldMark::from_above),
       Field("other_inputs", r.other_inputs, FieldMark::from_above));
 }
 
-/// How many pixels have which status.
+/// Number of pixels by status.
 class StatusCounts {
  public:
   void add(std::span<const PixelStatus> statuses);
@@ -178,77 +172,77 @@ class StatusCounts {
   std::array<std::int64_t, all_pixel_statuses.size()> counts_{};
 };
 
-/// What came of a recording.
+/// Result of decode_recording().
 struct DecodedRecording {
   int height = 0;
   int width = 0;
   int measurements = 0;
-  int first_frame = 0;                       ///< that was asked for; means count as frames
-  int frame_count = 0;                       ///< that were asked for; 0 before the work begins
-  std::vector<DecodedPlane> outputs;         ///< the planes written
-  std::vector<std::filesystem::path> files;  ///< of every finished frame; of a stack: of outputs
-  std::vector<StatusCounts>
-      frames;               ///< of every finished frame; no counts if nobody asked for them
-  std::int64_t pixels = 0;  ///< decoded, over all frames
+  int first_frame = 0;                       ///< first requested frame; means count as frames
+  int frame_count = 0;                       ///< number of requested frames; 0 before the start
+  std::vector<DecodedPlane> outputs;         ///< written planes
+  std::vector<std::filesystem::path> files;  ///< per finished frame; of a stack: per plane
+  std::vector<StatusCounts> frames;  ///< per finished frame; zero if statuses were not requested
+  std::int64_t pixels = 0;           ///< number of decoded pixels in all frames
   double seconds = 0.0;
-  std::vector<std::string> notes;  ///< what the user should know
+  std::vector<std::string> notes;  ///< for the user
 
   double frames_per_s() const { return static_cast<double>(frames.size()) / seconds; }
   double megapixels_per_s() const { return 1e-6 * static_cast<double>(pixels) / seconds; }
   StatusCounts total() const;
 };
 
-/// Decodes a recording of any length in memory that does not grow with it, in bands of rows, the
-/// next of which is read meanwhile; with a filter, frame by frame. Each file appears whole or not
-/// at all.
-/// @param backend  its decoder's table defines the raw numbers
-/// @throws std::invalid_argument "field = value; rule" for a request that cannot be, before any
-///         file is written
-/// @throws IoError as RawFramesReader, for maps that do not fit, outputs that exist, are inputs or
-///         cannot hold a depth, and frames that need more than `memory_mb`
-/// @throws Interrupted if progress says so; frames that are finished keep their files
-/// @note the same bits for any number of threads and any memory
+/// Decodes a recording of any length with constant memory, in bands of rows (whole frames if they
+/// are filtered). The next band is read at the same time. Files are written completely or not at
+/// all.
+/// @param backend  the table of its decoder defines the raw numbers
+/// @throws std::invalid_argument "field = value; rule" for an invalid request, before any file is
+///         written
+/// @throws IoError as RawFramesReader; for maps that do not match; for outputs that exist, are
+///         inputs or cannot represent a depth; and for frames that need more than `memory_mb`
+/// @throws Interrupted if `progress` requests it; files of finished frames are kept
+/// @note the same bits for any number of threads and any memory limit
 DecodedRecording decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                                   const Progress& progress = {});
-/// The same, with what is finished in `result` also when it throws.
-/// @param result  filled frame by frame
+/// Decodes a recording as above. If it throws, `result` contains the finished part.
+/// @param result  updated after every frame
 void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                       const Progress& progress, DecodedRecording& result);
 
-/// Fills bytes from a stream; gives how many, fewer only at its end.
+/// Fills `into` with bytes from a stream. Returns the number of bytes, which is smaller only at the
+/// end of the stream.
 using ReadStream = std::function<std::size_t(std::span<std::byte> into)>;
-/// Takes bytes.
+/// Consumes bytes.
 using WriteStream = std::function<void(std::span<const std::byte> bytes)>;
 
-/// What came of a stream.
+/// Result of decode_stream().
 struct DecodedStream {
-  int height = 0;  ///< of its frames; 0 before their description is read
+  int height = 0;  ///< of the frames; 0 until their description is read
   int width = 0;
-  std::int64_t frames = 0;  ///< decoded and written
-  StatusCounts statuses;    ///< of their pixels, if status is among the outputs
-  double seconds = 0.0;     ///< until the last was written, waiting for them included
+  std::int64_t frames = 0;  ///< number of decoded and written frames
+  StatusCounts statuses;    ///< of their pixels, if status is an output
+  double seconds = 0.0;     ///< time until the last frame was written, including waiting
 };
 
-/// Decodes frames as they come, each written before the next is read: in the memory of a few
-/// frames, with nothing held back but what a time filter is to look ahead. What comes out of a
-/// frame are its planes, one after another in the order of the request's `outputs` (depth, if it
-/// names none), of H x W items each, row by row, little end first: float32, status and returns
-/// uint8, bin int32. The same numbers as in decode_recording().
-/// @param request  its raw_format describes a stream: its header, then frame after frame; `raw`,
-///                 `output`, `frame`, `stack`, `memory_mb` and `policy` say nothing
-/// @param result   filled frame by frame, also when it throws
-/// @throws std::invalid_argument, IoError as decode_recording(); IoError if the stream ends in a
-///         frame, or ahead of the first; what `read` and `write` throw; Interrupted
+/// Decodes the frames of a stream. Writes each frame before reading the next, unless a temporal
+/// filter looks ahead; needs memory for a few frames. The output of a frame consists of its planes
+/// in the order of the request's `outputs` (default: depth), each with H x W little-endian items,
+/// row by row: float32, uint8 for status and returns, int32 for bin. The numbers are the same as
+/// from decode_recording().
+/// @param request  `raw_format` describes the stream, a header followed by frames; `raw`, `output`,
+///                 `frame`, `stack`, `memory_mb` and `policy` are ignored
+/// @param result   updated after every frame, also if an exception is thrown
+/// @throws std::invalid_argument, IoError as decode_recording(); IoError if the stream ends within
+///         a frame or before the first; exceptions of `read` and `write`; Interrupted
 void decode_stream(const DecodeRequest& request, const FrameBackend& backend,
                    const ReadStream& read, const WriteStream& write, const Progress& progress,
                    DecodedStream& result);
 
-/// Writes what a decoder gave of a frame, by extension as DecodeRequest::output.
-/// @param planes      not of .npy .pfm .png
-/// @param view        of points (.ply, .pcd)
-/// @param all_points  of pixels that are not ok, too
-/// @throws std::invalid_argument for a plane that is not there; IoError for an unknown extension,
-///         or as AtomicFile
+/// Writes the planes of a decoded frame in the format of the extension, as DecodeRequest::output.
+/// @param planes      ignored for .npy, .pfm and .png
+/// @param view        for points (.ply, .pcd)
+/// @param all_points  also write points of pixels that are not ok
+/// @throws std::invalid_argument if the frame does not have a plane; IoError for an unknown
+///         extension, or as AtomicFile
 void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<DecodedPlane>& planes, const PinholeView& view,
                    OutputPolicy policy, bool all_points = false);

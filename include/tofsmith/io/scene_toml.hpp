@@ -74,13 +74,14 @@ auto fields_of(ConstOrNot<SceneSource> auto& s) {
                  ".pfm)"}),
       Field("kind", s.kind, Help{"content of a depth image: z along the axis, or radial distance"},
             IfAbsent{"as the file states, or z"}),
-      Field("linear_image", s.linear_image, Help{"take PNG images as linear light, not sRGB"}),
+      Field("linear_image", s.linear_image,
+            Help{"treat PNG images as linear light instead of sRGB"}),
       Field("width", s.width, closed(1, 16384), Help{"columns of a built-in scene or a mesh"},
             IfAbsent{"as the camera's [lens], or 320"}),
       Field("height", s.height, closed(1, 16384), Help{"rows of a built-in scene or a mesh"},
             IfAbsent{"as the camera's [lens], or 240"}),
       Field("scale_m", s.scale_m, above(0), Help{"length of one unit of a mesh"}, IfAbsent{"1"}),
-      Field("time_s", s.time_s, finite(), Help{"when a scene that moves is looked at"}));
+      Field("time_s", s.time_s, finite(), Help{"time of the image of a moving scene"}));
 }
 
 /// A scene and the pinhole view of it.

@@ -29,15 +29,16 @@ struct CaptureOptions {
   void validate() const;
 };
 auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
-  return std::tuple(Field("signal_e_per_s", o.signal_e_per_s, at_least(0),
-                          Help{"signal of albedo 1 facing the camera at the reference distance"}),
-                    Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0), Help{"ambient light"}),
-                    Field("reference_distance_m", o.reference_distance_m, above(0),
-                          Help{"distance at which the signal is as given"}),
-                    Field("falloff", o.falloff, Help{"reduce the signal with distance and angle"}),
-                    Field("seed", o.seed, Help{"seed of all noise"}),
-                    Field("frames", o.frames, closed(1, 100000),
-                          Help{"frames one after another, each with its own noise"}));
+  return std::tuple(
+      Field("signal_e_per_s", o.signal_e_per_s, at_least(0),
+            Help{"signal of a white surface that faces the camera at the reference distance"}),
+      Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0), Help{"ambient light"}),
+      Field("reference_distance_m", o.reference_distance_m, above(0),
+            Help{"distance that the signal refers to"}),
+      Field("falloff", o.falloff, Help{"reduce the signal with distance and angle"}),
+      Field("seed", o.seed, Help{"seed of all noise"}),
+      Field("frames", o.frames, closed(1, 100000),
+            Help{"number of frames, each with independent noise"}));
 }
 
 /// Signal of a pixel at a gate that is always open [e/s]; 0 without a return (NaN depth).

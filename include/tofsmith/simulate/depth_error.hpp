@@ -53,16 +53,15 @@ struct EvaluateOptions {
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
   return std::tuple(
       Field("trials", o.trials, closed(2, 4e9),
-            Help{"trials per operating point; with a target, the number of the first round"}),
+            Help{"trials per operating point; initial number if there is a target"}),
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
       Field("sub_bin", o.sub_bin, Help{"decode between bins"}),
       Field("depth", o.depth,
-            Help{"where true depths lie: anywhere in the range, or on bins only, which flatters "
-                 "codes"}),
+            Help{"true depths: uniform in the range, or on bins only (underestimates errors)"}),
       Field("clip_to_open_sensor", o.clip_to_open_sensor,
-            Help{"clip electrons to [0, T (S + A)], like the simulator of the paper's authors"}),
+            Help{"clip electrons to [0, T (S + A)], as in the simulator of the paper's authors"}),
       Field("method", o.method, decode_method_help),
       Field("unwrap_weights", o.unwrap_weights, unwrap_weights_help, unwrap_weights_condition),
       Field("target_standard_error", o.target_standard_error, right_open(0, 1),
@@ -71,8 +70,7 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
       Field("max_trials", o.max_trials, closed(2, 4e9),
             Help{"maximum number of trials per operating point with a target"}),
       Field("draw_every_measurement", o.draw_every_measurement,
-            Help{"draw the noise of every measurement even if zncc needs fewer numbers, so that "
-                 "methods are compared with the same noise"}),
+            Help{"draw the noise of every measurement, so that all methods have the same noise"}),
       Field("bounds", o.bounds, Help{"compute the bounds; otherwise they are 0"}));
 }
 

@@ -50,14 +50,13 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
       Field("channels", r.channels, FieldMark::from_above),
       Field("load_ohm", r.load_ohm,
             Help{"load that the voltages refer to: 1 to 1e6, or inf for an open circuit"}),
-      Field("output_on", r.output_on, Help{"switch the outputs on when all is verified"}),
+      Field("output_on", r.output_on, Help{"switch the outputs on after verification"}),
       Field("read_back", r.read_back,
             Help{"read the points back from the instrument and compare them; some models cannot"}),
       Field("reset", r.reset,
             Help{"reset the instrument first: earlier settings could change the output"}),
-      Field("true_arb", r.true_arb, Help{"play every point instead of skipping some"}, siglent),
-      Field("wave_header", r.wave_header, Help{"how a waveform is announced; sources disagree"},
-            siglent),
+      Field("true_arb", r.true_arb, Help{"output every point instead of skipping some"}, siglent),
+      Field("wave_header", r.wave_header, Help{"header of a waveform; sources disagree"}, siglent),
       Field("settle_s", r.settle_s, closed(0, 60), Help{"pause after a waveform"}, siglent),
       Field("patience_s", r.patience_s, closed(0, 600),
             Help{"additional time for a reset and for files"}),
@@ -131,13 +130,12 @@ struct UploadSelection {
 };
 auto fields_of(ConstOrNot<UploadSelection> auto& s) {
   return std::tuple(
-      Field("light_channel", s.light_channel, closed(0, 8),
-            Help{"channel that plays the light; 0: none"}),
+      Field("light_channel", s.light_channel, closed(0, 8), Help{"channel for the light; 0: none"}),
       Field("sensor_channel", s.sensor_channel, closed(0, 8),
-            Help{"channel that plays the sensor's gain; 0: none"}),
-      Field("exposure", s.exposure, at_least(1), Help{"which of the K pairs is played, from 1"}),
-      Field("tap", s.tap, at_least(1), Help{"tap that the sensor's channel plays, from 1"}),
-      Field("all", s.all, Help{"load all K pairs; the chosen exposure is played"}));
+            Help{"channel for the sensor's gain; 0: none"}),
+      Field("exposure", s.exposure, at_least(1), Help{"exposure to output, from 1"}),
+      Field("tap", s.tap, at_least(1), Help{"tap for the sensor's channel, from 1"}),
+      Field("all", s.all, Help{"load all exposures; the selected one is output"}));
 }
 
 /// Converts a code to tables for a model, in the model's format. The default sample rate is the

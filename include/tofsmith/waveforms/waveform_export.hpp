@@ -160,20 +160,19 @@ struct ExportOptions {
 auto fields_of(ConstOrNot<ExportOptions> auto& o) {
   return std::tuple(
       Field("format", o.format, Help{"format of the files"}),
-      Field("variant", o.variant, Help{"variant of the format, where sources disagree about it"},
-            IfAbsent{"its first"}),
-      Field("samples", o.samples, Help{"points of the table that holds one period"}),
+      Field("variant", o.variant, Help{"variant of the format, if sources disagree about it"},
+            IfAbsent{"the first"}),
+      Field("samples", o.samples, Help{"number of points in the table of one period"}),
       Field("bits", o.bits,
             Help{"amplitude bits of the hardware, at most the format's (1 = on and off)"}),
       Field("sample_rate_hz", o.sample_rate_hz, above(0),
-            Help{"most points per second of the hardware"}),
+            Help{"maximum number of points per second of the hardware"}),
       Field("edge_grid_s", o.edge_grid_s, above(0),
             Help{"grid of the switching times of binary waveforms"}),
       Field("periods", o.periods, Help{"periods in a table"},
-            IfAbsent{"as few as the format takes"}),
-      Field("low_v", o.low_v, Help{"output at no light and at no gain"}),
-      Field("high_v", o.high_v,
-            Help{"output at the highest peak of the light, and at a gain of 1"}));
+            IfAbsent{"as few as the format allows"}),
+      Field("low_v", o.low_v, Help{"output for zero light and zero gain"}),
+      Field("high_v", o.high_v, Help{"output for peak light and a gain of 1"}));
 }
 
 /// All waveforms of a code, ready to be written.
