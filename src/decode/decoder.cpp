@@ -39,7 +39,7 @@ void for_each_tile(const ChordMatcher& matcher, const RawView& raw, IndexRange p
   }
 }
 
-/// Many pixels side by side, as a view of one row each.
+/// Returns a view of many consecutive pixels as a column, one pixel per row.
 RawView column_of(const float* measurements, std::int64_t pixels, int count) {
   constexpr std::int64_t longest = std::numeric_limits<int>::max();
   require(pixels >= 0 && pixels <= longest, "pixels", pixels, "must be in [0, 2^31)");
@@ -146,7 +146,8 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
         plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr, raw.noise,
                      decoded.from(static_cast<std::size_t>(first)));
       });
-    // Planes are those of the best chords: bins that are not beside these come by themselves.
+    // The planes belong to the best chords, whose rows may differ from the best bins. In that case
+    // the bins are computed separately.
     if (is_bin_enough || (decoded.bin && plan_->matcher.is_coarse()))
       for_each_tile(plan_->matcher, raw, block, false, write_bins);
   });

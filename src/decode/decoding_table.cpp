@@ -100,7 +100,7 @@ void DecodingTable::validate() const {
 
 namespace {
 
-/// What makes noise of this covariance white; 0 in directions in which there is none.
+/// Returns the matrix that whitens noise with this covariance; 0 in directions without noise.
 Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& covariance) {
   constexpr double rounding = 1e-12;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(covariance);
@@ -110,7 +110,7 @@ Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& covariance) {
   return weight.asDiagonal() * parts.eigenvectors().transpose();
 }
 
-/// The same packed pairs of a covariance on both sides of which `mix` is multiplied.
+/// Replaces a packed covariance C by mix C mix^T.
 template <typename Row>
 void mix_pairs(const Eigen::MatrixXd& mix, Row&& packed) {
   const RowCovariance one{packed, Eigen::VectorXd::Zero(packed.size()),
@@ -120,7 +120,8 @@ void mix_pairs(const Eigen::MatrixXd& mix, Row&& packed) {
     for (Eigen::Index j = 0; j <= i; ++j, ++pair) packed[pair] = mixed(i, j);
 }
 
-/// The noise of rows: variances and covariance of what is white at the nominal light.
+/// Sets the noise of rows: whitening at the nominal light, and variances and covariance of the
+/// whitened measurements.
 void whiten_rows(const ForwardModel& model, const Camera& camera, DecodingTable& table) {
   RowCovariance noise = row_covariance(model, model.samples());
   const OperatingPoint nominal = camera.operating.middle();
@@ -132,7 +133,8 @@ void whiten_rows(const ForwardModel& model, const Camera& camera, DecodingTable&
   mix_pairs(table.whitening, ambient);
   mix_pairs(table.whitening, floor);
   noise.ambient = ambient, noise.floor = floor;
-  // Of ambient light that cancels nothing is seen but its noise: the nominal one is taken for it.
+  // Ambient light cancels in differences and is visible only through its noise; assume the
+  // nominal level.
   if (table.ambient_gain.isZero(0.0)) {
     noise.floor += nominal.ambient_e_per_s * noise.ambient;
     noise.ambient.setZero();
@@ -228,14 +230,14 @@ void require_exposures(const DecodingTable& table, std::string_view what) {
 
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {
   table.validate();
-  constexpr double equal = 1e-9;  // distance of unit vectors that only rounding tells apart
+  constexpr double equal = 1e-9;  // distance of unit vectors that differ only by rounding
   // Each bin has the direction of the nearest row.
   const RowMajorMatrix curve = AmbientProjection(table).curve;
   const Eigen::Index rows = curve.rows(), bins = table.bin_count();
   RowMajorMatrix unit(bins, curve.cols());
   for (Eigen::Index n = 0; n < bins; ++n) {
     unit.row(n) = curve.row((2 * n * rows + bins) / (2 * bins) % rows);
-    unit.row(n).normalize();  // zeros stay
+    unit.row(n).normalize();  // zero vectors remain zero
   }
   const std::vector<std::int32_t> lowest = lowest_alike(unit, equal);
 

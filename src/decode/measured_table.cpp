@@ -32,7 +32,7 @@ Eigen::VectorXd exposure_s_of(const MeasuredTable& measured, const ExposureTime&
   return exposure_s;
 }
 
-/// The light behind every column: what the shot noise comes from.
+/// Returns the light of every column, which determines its shot noise.
 Eigen::MatrixXd light_of(const Eigen::MatrixXd& correlation) {
   constexpr double rounding = 1e-9;
   Eigen::MatrixXd light = correlation;
@@ -43,8 +43,8 @@ Eigen::MatrixXd light_of(const Eigen::MatrixXd& correlation) {
   return light.cwiseMax(0.0);
 }
 
-/// Columns as light: raised along ambient light until none that it reaches is below 0, as zero-mean
-/// columns are.
+/// Raises columns along ambient light until all values of columns that depend on it are >= 0. This
+/// is necessary for zero-mean columns.
 Eigen::MatrixXd raised(const Eigen::MatrixXd& correlation, const Eigen::VectorXd& ambient_gain) {
   if (ambient_gain.minCoeff() < 0.0) return correlation;
   double rise = 0.0;
@@ -58,7 +58,7 @@ Eigen::MatrixXd raised(const Eigen::MatrixXd& correlation, const Eigen::VectorXd
   return light;
 }
 
-/// Values that both taps of a pair share, by pair.
+/// Returns the common values of both taps of each pair.
 Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
   Eigen::VectorXd shared(values.size() / 2);
   for (Eigen::Index i = 0; i < shared.size(); ++i) {
@@ -113,8 +113,8 @@ void MeasuredTable::validate() const {
 
 namespace {
 
-/// What a table of the reference temperature is at the camera's: everything looks farther by the
-/// offset, on the same chords that decoding takes, and the light of the scene is another.
+/// Converts a table from the reference temperature to the camera's: shifts it by the depth offset
+/// along the chords between rows, and scales it by the change of the signal.
 void warm(const Temperature& temperature, double bin_m, Eigen::MatrixXd& table) {
   const Eigen::MatrixXd cold = table;
   const Eigen::Index samples = cold.rows();
@@ -147,7 +147,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Eigen::MatrixXd readout =
       readout_matrix(columns, subtracts ? Readout::difference : Readout::separate);
   const Eigen::MatrixXd sums = readout.cwiseAbs();
-  // A difference that was read out holds the dark electrons and the read noise of two taps.
+  // A difference contains the dark electrons and the read noise of two taps.
   const double taps_read = measured.differences && !sensor.is_signed() ? 2.0 : 1.0;
 
   const Eigen::VectorXd exposure_s = exposure_s_of(measured, camera.exposure_s);
@@ -180,7 +180,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.dark_electrons =
       measured.differences ? Eigen::VectorXd::Zero(columns).eval() : (readout * dark_e).eval();
   const Eigen::MatrixXd light = light_of(correlation);
-  // Without shot terms the measurements show the light that makes their noise.
+  // Without shot terms, the measurements themselves determine the shot noise.
   if (differs || light != correlation || ambient_gain.minCoeff() < 0.0) {
     table.shot_correlation = light * sums.transpose();
     table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
@@ -197,7 +197,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.correction = measured.correction;
   table.model_error_percent = measured.model_error_percent;
   set_saturation(camera, table);
-  // The table's own black level holds for unsigned numbers, too.
+  // The black level of the table also applies to unsigned numbers.
   if (measured.black_level.size() > 0) table.marking.unsigned_black_level = 0.0;
   return resolved(table);
 }

@@ -42,7 +42,7 @@ void mix(const float* matrix, int count, const In& in, int pixels, float* out) {
   }
 }
 
-/// Coordinates of measurements: those of the decoding plane, then what is left (K, K).
+/// Returns the coordinates of measurements: the decoding subspace, then its complement (K, K).
 Eigen::MatrixXd whole_basis(const Eigen::MatrixXd& plane) {
   const Eigen::Index k = plane.rows(), rank = plane.cols();
   Eigen::MatrixXd basis(k, k);
@@ -53,7 +53,7 @@ Eigen::MatrixXd whole_basis(const Eigen::MatrixXd& plane) {
   return basis;
 }
 
-/// Of a LightBalance.
+/// Computes LightBalance::squares.
 std::vector<float> curve_squares(const Eigen::MatrixXd& curve) {
   std::vector<float> squares;
   for (Eigen::Index n = 0; n < curve.rows(); ++n) {
@@ -71,12 +71,12 @@ std::vector<float> row_by_row(const RowMajorMatrix& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-/// Of how many measurements the numbers of a row from a column on are the mean; null: of one.
+/// Returns the numbers of averaged measurements in a row from a column on; null: 1.
 const float* averaged_of(const RawView& raw, int row, int column) {
   return raw.averaged ? raw.averaged + std::ptrdiff_t{row} * raw.width + column : nullptr;
 }
 
-/// Mean variance of a coordinate, from what was measured.
+/// Computes the mean variance of a coordinate from the measurements.
 void find_variance(const Filter::Plan& plan, RowBlock& electrons, int pixels, float* variance) {
   std::fill_n(variance, pixels, plan.hidden.floor_variance_e2);
   for (int k = 0; k < plan.measurements; ++k) {
@@ -130,7 +130,7 @@ void Filter::Plan::read_again(const RawView& raw, FilterPlanes& frame, int set,
   });
 }
 
-/// @param row_usable, row_variance  of the row; no variance where null
+/// @param row_usable, row_variance  outputs for the row; row_variance may be null
 void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, int set,
                             float* row_usable, float* row_variance) const {
   const SaturationLevels levels(decoder.table());
@@ -177,7 +177,7 @@ void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, in
   });
 }
 
-/// Where light cancels in the measurements, its noise is that of the signal seen around a pixel.
+/// Computes the noise of light that cancels in the measurements, from the signal around each pixel.
 void Filter::Plan::find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const {
   const FilterGrid& grid = frame.grid;
   const float* const averaged = averaged_of(raw, row, 0);
@@ -254,7 +254,7 @@ void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window
   }
 }
 
-/// @param averaged  of the row's pixels: of how many measurements the raw numbers are the mean
+/// @param averaged  number of averaged measurements for each pixel of the row
 void Filter::Plan::write_raw_row(const RawView& raw, FilterPlanes& frame, int from, int to, int row,
                                  float* averaged) const {
   const std::ptrdiff_t start = row * frame.grid.stride;

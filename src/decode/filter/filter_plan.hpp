@@ -14,21 +14,21 @@
 
 namespace tofsmith {
 
-/// Rows of a frame that one thread works on at a time.
+/// Number of rows that one thread processes at a time.
 inline constexpr int filter_rows = 32;
 inline constexpr int window_side = 2 * window_reach + 1;
 
-/// Pixels that the windows of a round are apart.
+/// Distance between the pixels of a window.
 int window_step(int window);
 
-/// The variances that go into a window and come out of it.
+/// Planes with the variances before and after a window.
 struct WindowVariances {
   FilterPlanes::Scalar in, out;
 
   explicit WindowVariances(int window);
 };
 
-/// What a Filter knows, and its steps over a frame.
+/// Constants of a Filter, and its steps over a frame.
 struct Filter::Plan {
   Plan(DecodingTable table, const FilterOptions& options_, const AmbientProjection& projection);
 
@@ -37,35 +37,36 @@ struct Filter::Plan {
   RawScale scale;
   int measurements = 0, rank = 0;
   std::vector<float> to_coordinates;   // (K, K): coordinate j of measurement k at j * K + k
-  std::vector<float> to_measurements;  // and back, k * K + j
+  std::vector<float> to_measurements;  // inverse, k * K + j
   std::vector<float> curve;            // x = T o chi in coordinates (N, K)
   std::vector<float> squares;          // of LightBalance (N, 2)
   HiddenSignal hidden;
-  bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
+  bool has_own_shot_noise = false;  // light that cancels in the measurements causes noise
 
   int samples() const { return decoder.table().samples(); }
-  /// The variance that the last window leaves.
+  /// Variance after the last window.
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 
-  /// Noise of filtered numbers, relative to that which their `averaged` states.
+  /// Noise of filtered numbers relative to the noise stated by their `averaged`.
   NoiseRatios noise_ratios() const;
 
-  /// Raw numbers into the first set of light, with their variances and where they are usable.
+  /// Converts raw numbers to the first set of light, with variances and usable flags.
   void read(const RawView& raw, FilterPlanes& frame) const;
-  /// Raw numbers into a set of light again, and where they are usable into a plane.
+  /// Converts raw numbers to another set of light, with usable flags in another plane.
   void read_again(const RawView& raw, FilterPlanes& frame, int set,
                   FilterPlanes::Scalar usable) const;
-  /// One window of the round that adds neighbours whose vectors are parallel.
+  /// Applies one window of the first pass, which averages neighbours with parallel vectors.
   void add_similar(FilterPlanes& frame, int from, int to, int window) const;
   /// Marks pixels that fail find_own_light() as unusable, because they do not determine slopes.
   /// Overwrites the other set.
   void leave_dark(const RawView& raw, FilterPlanes& frame, int set, int other) const;
-  /// Depth of a set of light, by way of raw numbers in another set.
+  /// Computes the depth of a set of light; overwrites another set with raw numbers.
   void find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const;
-  /// One window of a round that adds neighbours of the same surface: `light` is split into signal
-  /// along the depth and the rest, in `rest`; the sum goes to `to`.
+  /// Applies one window of a pass along slopes, which averages neighbours of the same surface.
+  /// `light` is split into signal along the depth and a remainder, stored in `rest`; the result is
+  /// stored in `to`.
   void add_along_slopes(FilterPlanes& frame, int light, int rest, int to, int window) const;
-  /// What the noise of slopes adds to the variance of the sums of a round.
+  /// Adds the effect of the noise of slopes to the variances of the sums of a pass.
   void add_slope_noise(FilterPlanes& frame, int round) const;
   /// Converts a set of light to raw numbers. Pixels that fail find_own_light() keep their
   /// measurements, and `averaged` is multiplied by find_lit_share(). Overwrites the other set.
@@ -83,8 +84,8 @@ struct Filter::Plan {
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
   void join(FilterPlanes& frame, int set, int row) const;
-  /// Gives `to` back what was there before a window, of which `rest` holds the rest, where that
-  /// window added what is of another surface.
+  /// Restores in `to` the values before a window, whose remainders are in `rest`, where that window
+  /// averaged pixels of another surface.
   void keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const;
 };
 
@@ -96,7 +97,7 @@ void for_each_row(const FilterPlanes& frame, const Work& work) {
   });
 }
 
-/// Calls work(strip, room for its weights) for all strips of a frame, on all threads.
+/// Calls work(strip, memory for its weights) for all strips of a frame, on all threads.
 template <typename Work>
 void for_each_strip(FilterPlanes& frame, int step, bool with_shifts, const Work& work) {
   parallel_for_blocks(frame.grid.height, filter_rows, [&](IndexRange rows) {

@@ -11,21 +11,22 @@
 
 namespace tofsmith {
 
-/// How well every bin explains a pixel, in double: with equal weights or with given ones.
+/// Computes how well every bin explains a pixel, in double precision, with or without weights.
 class DepthScores {
  public:
   explicit DepthScores(const AmbientProjection& projection);
 
   int samples() const { return static_cast<int>(gated_.cols()); }
 
-  /// The lowest of the bins with the best zero-mean normalized cross-correlation, up to rounding.
-  /// @param plane  what ambient light leaves of a pixel (rank)
+  /// Returns the lowest of the bins with the best zero-mean normalized cross-correlation, up to
+  /// rounding.
+  /// @param plane  pixel without the ambient component, in the subspace (rank)
   std::int32_t best_correlation(const double* plane) const;
 
-  /// By how much light from every bin, with ambient light beside it, lowers sum_i weight_i y_i^2;
-  /// signal and ambient light are >= 0.
-  /// @param electrons  without dark (K)
-  /// @param fall       (N)
+  /// Computes by how much light from every bin, together with ambient light, reduces sum_i weight_i
+  /// y_i^2; signal and ambient light are >= 0.
+  /// @param electrons  without dark electrons (K)
+  /// @param fall       result (N)
   void weighted_fall(const double* electrons, const double* weight, double* fall) const;
 
  private:
@@ -34,19 +35,19 @@ class DepthScores {
   Eigen::VectorXd ambient_;    // a (K)
 };
 
-/// Most peaks over bins that are followed to the least cost beside them.
+/// Maximum number of peaks over bins that are refined.
 inline constexpr std::size_t max_peaks = 16;
 
 /// The most likely light of a pixel.
 struct MostLikely {
-  std::array<double, max_measurements> weight;  ///< first estimate of inverse variances [1/e^2]
+  std::array<double, max_measurements> weight;  ///< initial estimate of inverse variances [1/e^2]
   ChordFit best;
-  double moved = 0.0;  ///< of the depth from the best chord's point to that of the curve [rows]
+  double moved = 0.0;  ///< from the best point of the chord to that of the curve [rows]
 };
 
-/// Finds the most likely depth among all. A peak may be missed whose likelihood, by the weights of
-/// the first estimate, is no peak: on ten measurements in dim light, with exposures of 1 : 14, in
-/// fewer than one pixel of a thousand.
+/// Finds the global maximum of the likelihood. It is missed if it is not a peak with the weights of
+/// the initial estimate: with ten measurements in dim light and exposures of 1 : 14, in fewer than
+/// one of a thousand pixels.
 class LikelihoodSearch {
  public:
   LikelihoodSearch(const DecodingTable& table, const AmbientProjection& projection);
@@ -55,9 +56,10 @@ class LikelihoodSearch {
   double depth_row(const ChordFit& fit) const { return fit.position().in_rows(scores_.samples()); }
   double depth_row(const MostLikely& found) const;
 
-  /// No signal where ambient light alone explains the pixel.
-  /// @param fall    work space (N); then what every bin explains, DepthScores::weighted_fall
-  /// @param within  where the depth must lie; null: anywhere. No signal if no peak lies there.
+  /// Returns no signal if ambient light alone explains the pixel.
+  /// @param fall    working memory (N); returns DepthScores::weighted_fall()
+  /// @param within  part in which the depth must lie; null: anywhere. No signal if no peak lies
+  ///   there.
   MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall,
                          const RangePart* within = nullptr) const;
   /// Returns LobePosterior::confidence() of the most likely depth.
@@ -78,7 +80,7 @@ class LikelihoodSearch {
   DepthScores scores_;
   PixelModel correlation_;
   LikelihoodModel model_;
-  bool is_smooth_;  // so that the curve between rows is known to leave the chords
+  bool is_smooth_;  // the curve between rows is known and differs from the chords
   LobePosterior posterior_;
 };
 

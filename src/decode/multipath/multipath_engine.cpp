@@ -22,11 +22,11 @@ namespace {
 constexpr int delays_taken = 18, ratios_taken = 8;
 constexpr double reach_m = 1.7;
 
-/// Measurements and curve in coordinates in which noise is white and ambient light gone; rows of
-/// the curve from `first` on.
+/// Measurements and curve in coordinates with white noise and without ambient light; rows of the
+/// curve from `first` on.
 struct WhitePixel {
   Eigen::VectorXd target;
-  RowMajorMatrix direct, behind;  // (rows, span); `behind` of a tail
+  RowMajorMatrix direct, behind;  // (rows, span); `behind` only for a tail
 
   WhitePixel(const MultipathCurve& curve, const PixelGroup& pixels, int lane, int first, int rows) {
     const int dims = curve.dims(), from = curve.sees_ambient ? 1 : 0;
@@ -58,7 +58,7 @@ struct WhitePixel {
   }
 };
 
-/// Half of what signal along a curve point explains.
+/// Returns half of the squares that a signal along a curve point explains.
 double explained(double along, double own) {
   return along > 0.0 && own > 0.0 ? 0.5 * along * along / own : 0.0;
 }
@@ -141,7 +141,7 @@ DepthPosterior ReturnPosterior::around(const MultipathCurve& curve, const PixelG
           std::sqrt(std::max(square - mean * mean, 0.0))};
 }
 
-/// Pixels that wait for a search, with their places in the block.
+/// Pixels that wait for a search, with their positions in the block.
 struct MultipathEngine::Queue {
   std::array<std::int64_t, pixels_per_group> pixel{};
   std::array<float, pixels_per_group> depth_m{};
@@ -174,7 +174,7 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
   const double freedom = curve_.span - 2;
   unexplained_chi2_ =
       static_cast<float>(freedom + std::sqrt(options.threshold) * std::sqrt(2 * freedom));
-  // Unknown are depth and signal, the second signal and, of a return, its delay.
+  // The unknowns are depth and signal, the second signal and, for a second return, its delay.
   freedom_ = curve_.span - (later == MultipathKind::tail ? 3 : 4);
   const double false_alarm_rate = options.status_thresholds.false_alarm_rate;
   if (freedom_ > 0 && false_alarm_rate > 0.0)
@@ -203,8 +203,8 @@ void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t 
   }
 }
 
-/// One pixel into a lane. Light that was seen tells how noisy it is; where buckets are subtracted,
-/// what the single return says of it does.
+/// Loads one pixel into a lane. The measured light determines the noise or, if buckets are
+/// subtracted, the single return.
 void MultipathEngine::load(const RawBlock& raw, std::int64_t pixel, float depth_m, int lane,
                            PixelGroup& group) const {
   const int k_count = table().measurements();
@@ -304,7 +304,7 @@ void MultipathEngine::search(Queue& queue, const RawBlock& raw, const RangePart*
   queue.count = 0;
 }
 
-/// Weighted least squares of ambient light beside both returns.
+/// Computes the ambient light by weighted least squares, given both returns.
 double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits& fits,
                                         int lane) const {
   const double per_row = 1.0 / curve_.points_per_row;
@@ -337,7 +337,7 @@ void MultipathEngine::store_residual(double chi2, float confidence, std::size_t 
                            : PixelStatus::ok;
 }
 
-/// What one return did not explain, with or without a second.
+/// Stores a pixel that one return does not explain, with or without a second return.
 void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits,
                             int lane, const DecodedView& decoded) const {
   const auto at = static_cast<std::size_t>(pixel);

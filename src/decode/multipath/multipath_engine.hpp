@@ -13,8 +13,7 @@
 
 namespace tofsmith {
 
-/// What is known of the direct depth of a pixel once all multipath returns the prior allows are
-/// averaged over.
+/// Posterior of the direct depth of a pixel, averaged over all multipath returns of the prior.
 struct DepthPosterior {
   double median = 0.0;     ///< [fine points], in [0, points)
   double deviation = 0.0;  ///< [fine points]
@@ -33,19 +32,19 @@ class ReturnPosterior {
 
  private:
   double single_probability_;
-  int reach_;                  // of the window to both sides [fine points]
-  std::vector<int> delay_;     // of equal probability [fine points]; one 0 for a tail
-  std::vector<double> ratio_;  // of equal probability
+  int reach_;                  // of the window on both sides [fine points]
+  std::vector<int> delay_;     // with equal probabilities [fine points]; a single 0 for a tail
+  std::vector<double> ratio_;  // with equal probabilities
 };
 
-/// What is beside the direct return.
+/// Light in addition to the direct return.
 enum class MultipathKind { second_return, tail };
 
-/// Decodes pixels of up to two returns: the single return by the fast decoder, and what one return
-/// does not explain by a search for a second.
+/// Decodes pixels with up to two returns: the fast decoder fits a single return, and a search finds
+/// a second return in pixels that it does not explain.
 class MultipathEngine {
  public:
-  /// @throws std::invalid_argument if table or options are invalid, or the code cannot support it
+  /// @throws std::invalid_argument if table or options are invalid, or the code is not sufficient
   MultipathEngine(DecodingTable table, const MultipathOptions& options, MultipathKind later);
 
   const DecodingTable& table() const { return single_.table(); }
@@ -55,7 +54,7 @@ class MultipathEngine {
   ///               anywhere
   void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
               const Progress& progress) const;
-  /// As Decoder::decode_depth_bins.
+  /// See Decoder::decode_depth_bins().
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
 
  private:
@@ -82,14 +81,14 @@ class MultipathEngine {
   Decoder single_;
   RawScale scale_;
   ExpectedNoise noise_;
-  bool has_own_shot_noise_;  // light that cancels in the measurements still makes noise
+  bool has_own_shot_noise_;  // light that cancels in the measurements causes noise
   Eigen::VectorXd ambient_;
   RowMajorMatrix gated_, gated_tail_;
   MultipathCurve curve_;
   DelayBounds delays_;
-  float unexplained_chi2_;  // more than a single return should leave
-  int freedom_;             // degrees of freedom that both returns leave
-  double consistent_chi2_ = std::numeric_limits<double>::infinity();  // the most they may leave
+  float unexplained_chi2_;  // upper limit for a single return
+  int freedom_;             // degrees of freedom with both returns
+  double consistent_chi2_ = std::numeric_limits<double>::infinity();  // upper limit for both
   std::optional<ReturnPosterior> posterior_;
 };
 

@@ -23,7 +23,7 @@ struct MainLobe {
 };
 
 /// Test that proves a confidence of 1 without a sum over the curve. With c = <q, u_b> for the
-/// direction u_b of the row, every place outside the main lobe scores at most
+/// direction u_b of the row, the score of every place outside the main lobe is at most
 ///   cosine c + sine sqrt(|q|^2 - c^2)
 /// up to the margins in LobePosterior::bound().
 struct LobeBound {
@@ -31,27 +31,28 @@ struct LobeBound {
   double sine = 0.0;
 };
 
-/// Lead in chi-square that proves a confidence of 1: about 1e-3 at most is left for other places.
+/// Lead in chi-square that proves a confidence of 1: all other places have a posterior probability
+/// of at most about 1e-3.
 inline constexpr float sure_lead = 14.0f;
 
 /// Variance of single components of q = V^T y' with covariance C = V^T diag(v) V, a little above
 /// the mean: mean + (standard deviation) / 2 of its eigenvalues.
 double typical_variance(const Eigen::MatrixXd& noise_basis, const Eigen::VectorXd& variance);
 
-/// Nodes are processed in blocks of 16, whatever the length of vectors, so that sums have the same
-/// bits on every processor.
+/// Number of nodes per block. It does not depend on the length of vectors, so that sums have the
+/// same bits on every processor.
 inline constexpr int nodes_per_block = 16;
 
-/// Posterior probability that the depth lies in the main lobe around a row, against all other
-/// places of the curve. All depths are equally likely a priori, ambient light may have any value,
-/// and signal has a log-uniform prior (proportional to 1/S) from a tenth of its standard deviation
+/// Posterior probability that the depth lies in the main lobe around a row, compared with all other
+/// places of the curve. A priori, all depths are equally likely, ambient light may have any value,
+/// and the density of the signal is proportional to 1/S from a tenth of its standard deviation
 /// upwards. With Gaussian noise of covariance C and c(z) = <q, p(z)>_C / |p(z)|_C, the signal in
 /// units of its standard deviation, the integral over the signal is
 ///   p(z) = integral from 0.1 to infinity of exp(c t - t^2 / 2) / t dt.
 ///
-/// The main lobe ends where the score of the row's own measurements stops falling, and at 5 % of
-/// the range on either side. Lobes of a smooth curve may be narrow compared with the rows of the
-/// table, so it is interpolated; `places` are the interpolated rows.
+/// The main lobe ends where the score of the row's own measurements stops decreasing, at most 5 %
+/// of the range away on either side. Lobes of a smooth curve may be narrow compared with the
+/// spacing of rows, so the table is interpolated; `places` are the interpolated rows.
 class LobePosterior {
  public:
   LobePosterior(const DecodingTable& table, const AmbientProjection& projection);
@@ -59,12 +60,11 @@ class LobePosterior {
   MainLobe main_lobe(std::int32_t row) const;
   const LobeBound& bound(std::int32_t row) const { return bounds_[static_cast<std::size_t>(row)]; }
 
-  /// Returns true if the best score next to the row leads every place outside its main lobe by
-  /// enough that confidence is 1: where LobeBound does not prove it, a look at all places often
-  /// does.
+  /// Returns true if the best score near the row exceeds the score of every place outside its main
+  /// lobe by enough to prove a confidence of 1. This test often succeeds where LobeBound does not.
   /// @param plane          q (rank)
   /// @param score          <q, u_b> of the row
-  /// @param least_lead_e2  sure_lead, times the variance
+  /// @param least_lead_e2  sure_lead times the variance
   bool is_sure(const float* plane, float score, float least_lead_e2, std::int32_t row) const;
 
   /// @param plane        q (rank)
@@ -80,21 +80,21 @@ class LobePosterior {
                                    const RangePart* part) const;
   static constexpr double outside_prior = 0.01;
 
-  /// Points of the curve at most `step` radians apart, cut out of the chords between places.
+  /// Points of the curve at most `step` radians apart, on the chords between places.
   struct Nodes {
     double step = 0.0;
     int count = 0;
     int stride = 0;                ///< count, rounded up to whole blocks
     std::vector<float> direction;  ///< unit vectors (rank, stride); 0 without contrast
     std::vector<float> centre;     ///< of the part of the range that a node represents [place]
-    std::vector<float> width;      ///< of that part [place]; 0 in the filling
+    std::vector<float> width;      ///< of that part [place]; 0 in the padding
   };
 
  private:
   /// Steps between nodes.
   static constexpr double sparse_step_rad = 0.24, coarse_step_rad = 0.08, fine_step_rad = 0.02;
   Nodes make_nodes(double step) const;
-  /// The same as MainLobe, in whole places.
+  /// A MainLobe in whole places.
   struct Lobe {
     std::int32_t left = 0;
     std::int32_t right = 0;
@@ -125,7 +125,7 @@ class LobePosterior {
   RowMajorMatrix curve_;        // p (places, rank)
   RowMajorMatrix unit_;         // p / |p|; 0 without contrast
   RowMajorMatrix noise_basis_;  // V (K, rank)
-  Eigen::VectorXd turn_rad_;    // from each place to the next; infinite where there is no chord
+  Eigen::VectorXd turn_rad_;    // from each place to the next; infinite if there is no chord
   std::vector<Lobe> lobes_;     // of rows
   std::vector<LobeBound> bounds_;
   Nodes sparse_, coarse_, fine_;

@@ -16,11 +16,11 @@ namespace tofsmith {
 
 namespace {
 
-/// Beyond the neighbourhood of the lobe's ends, the bound asks for a lead 1.5 times as large, which
-/// makes up for the length of the curve.
+/// Far from the ends of the lobe, the bound requires a lead larger by a factor of 1.5 (1.22^2),
+/// because of the length of the curve there.
 constexpr double far_sine = 1.22;
 
-/// Places of a smooth curve are this close, so that chords between them stay within 5e-5 rad of it.
+/// Spacing of the places of a smooth curve, so that chords deviate from it by at most 5e-5 rad.
 constexpr double place_turn_rad = 0.02;
 constexpr int max_places = 1 << 18;
 
@@ -71,7 +71,7 @@ LobePosterior::Window LobePosterior::window_of(const RangePart& part) const {
           static_cast<std::int32_t>(std::lround(part.length * places_))};
 }
 
-/// The part of a row's main lobe that lies in a window; the row lies in or next to it.
+/// Returns the part of a row's main lobe within a window that contains the row or is next to it.
 LobePosterior::Window LobePosterior::lobe_within(std::int32_t row, const Window& allowed) const {
   const std::int32_t place = row * places_per_row_;
   std::int32_t after = (place - allowed.begin + places_) % places_;
@@ -81,7 +81,8 @@ LobePosterior::Window LobePosterior::lobe_within(std::int32_t row, const Window&
   return {place - left, left + right};
 }
 
-/// As many places on either side as the score of the row's own measurements falls.
+/// Finds the main lobes: on either side, the places along which the score of the row's own
+/// measurements decreases.
 void LobePosterior::find_lobes() {
   constexpr double plateau = 1e-9;
   const auto longest =
@@ -145,8 +146,8 @@ LobePosterior::Nodes LobePosterior::make_nodes(double step) const {
   return nodes;
 }
 
-/// The place between two others before which half of the turn between them lies, so that a node
-/// represents the whole of a run of places with the same direction.
+/// Returns the place at half of the turn between two others, so that one node represents a whole
+/// run of places with the same direction.
 double LobePosterior::half_way(double from, double to) const {
   const auto part = [&](std::int32_t n) {
     const double turn = turn_rad_[((n % places_) + places_) % places_];
@@ -165,7 +166,8 @@ double LobePosterior::half_way(double from, double to) const {
   return 0.5 * (from + to);
 }
 
-/// Scores of all nodes are found once per block of rows, so that fine tables take no longer.
+/// Computes the bounds. Scores of all nodes are computed once per block of rows, to limit the time
+/// for fine tables.
 void LobePosterior::find_bounds() {
   constexpr double most_products = 5e8;
   const double products = static_cast<double>(rows_) * coarse_.stride * rank_;
@@ -178,9 +180,9 @@ void LobePosterior::find_bounds() {
   });
 }
 
-/// The sine of the smallest angle to places outside the main lobe. Far places count with a margin
-/// for the distance between nodes and to the middle row of the block, and as if they were closer;
-/// see far_sine.
+/// Computes the sine of the smallest angle to places outside the main lobe. For far places it
+/// includes margins for the spacing of nodes and for the distance to the middle row of the block,
+/// and the factor far_sine.
 void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::RowVectorXf& score) {
   const Nodes& nodes = coarse_;
   const double reach = max_lobe_share * places_, half_range = 0.5 * places_;
@@ -193,7 +195,7 @@ void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::Row
   };
   const std::int32_t middle = (begin + end) / 2 * places_per_row_;
 
-  // The part of the curve that belongs to the lobes of all rows.
+  // Union of the lobes of all rows in the block.
   std::int32_t left = places_, right = places_;
   for (std::int32_t n = begin; n < end; ++n) {
     left = std::min(left, lobe(n).left + middle - n * places_per_row_);
@@ -215,7 +217,7 @@ void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::Row
     if (after < -half_range) after += places_;
     const double beyond = after > 0.0 ? after - right : -after - left;
     if (beyond < 0.5 * static_cast<double>(nodes.width[at])) continue;
-    // Next to the lobe the curve moves on away from the row; its edge is the closest place.
+    // Next to the lobe the curve moves away from the row, so the edge of the lobe is closest.
     if (beyond <= reach && score[i] <= edge) continue;
     far = std::max(far, static_cast<double>(score[i]));
   }

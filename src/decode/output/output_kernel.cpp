@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/output/output_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway asks for its own headers after foreach_target, and for this one first.
+// Must follow foreach_target.h; this header must be the first one.
 #include <hwy/highway.h>
 
 #include "decode/output/output_noise-inl.hpp"
@@ -22,7 +22,7 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
+/// Processes one chunk. `Rank` 0 means any rank, known only at run time.
 template <int Rank>
 HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
                             const LobePosterior& posterior, const RecordTable& limits,
@@ -56,7 +56,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
   }
 }
 
-/// Row numbers of a chunk: those of its pixels, then -1.
+/// Copies the row numbers of the pixels of a chunk, followed by -1.
 HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t* to) {
   std::fill(std::copy_n(numbers, pixels, to), to + pixels_per_chunk, -1);
 }
@@ -107,7 +107,7 @@ void write(const BinRecords& records, const OutputConstants& c, const LobePoster
   }
 }
 
-/// Bins and offsets of a chunk as positions in double precision.
+/// Converts bins and offsets of a chunk to positions in double precision.
 HWY_INLINE void join(const std::int32_t* bin, const OutputChunk& chunk, double samples,
                      double* depth_bin) {
   const Doubles d;
@@ -167,7 +167,7 @@ HWY_EXPORT(find_positions);
 
 namespace {
 
-/// What has so few digits that its product with any of so many integers is exact.
+/// Rounds a value to so few digits that its products with integers up to `integers` are exact.
 float with_room_for(double value, int integers) {
   int exponent = 0;
   const double mantissa = std::frexp(value, &exponent);

@@ -15,35 +15,35 @@
 
 namespace tofsmith {
 
-/// A tile of pixels with their best bins. Rows have room for pixels_per_tile; what stands past the
-/// first `pixels` does not matter. Rows that the wanted planes do not need (see OutputKernel) may
-/// be null.
+/// A tile of pixels with their best bins. Rows have the length pixels_per_tile; entries after the
+/// first `pixels` are ignored. Rows that the requested planes do not need (see OutputKernel) may be
+/// null.
 struct MatchedTile {
   int pixels = 0;                           ///< at most pixels_per_tile
-  const float* plane = nullptr;             ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 where
-                                            ///< the residual without ambient light is rounding
-  const float* electrons = nullptr;         ///< without dark ones [e], [K][pixels_per_tile]
+  const float* plane = nullptr;             ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 if the
+                                            ///< residual is a rounding error
+  const float* electrons = nullptr;         ///< without dark electrons [e], [K][pixels_per_tile]
   const std::int32_t* bin = nullptr;        ///< of the best score; -1 for an invalid pixel
-  const std::uint8_t* saturated = nullptr;  ///< 1 where a measurement is clipped, else 0
-  const float* averaged = nullptr;          ///< as in RawView, of the first pixel on
+  const std::uint8_t* saturated = nullptr;  ///< 1 if a measurement is clipped, else 0
+  const float* averaged = nullptr;          ///< as in RawView, from the first pixel on
   NoiseRatios noise;
 };
 
-/// From best bins to planes, a tile at a time: what PixelModel and store_pixel define, in single
-/// precision, for all pixels of a vector at once. Deviates from them in that
-///   - depth, signal and ambient light are those of the best point on the chords up to rounding: a
-///     depth errs by about 1e-7 / (angle between bins) of a bin, and by its own rounding to float;
-///   - the noise of signal is that of the best bin, the noise of depth that of the middle of its
-///     quarter of the chord: less than 1 % off on average, more where the noise of bright pixels
-///     vanishes at a bin; negative noise of single measurements, which no light makes, is cut off
-///     in the sum only;
-///   - confidence uses the noise at the best bin. It is 1 where LobeBound proves that other places
-///     have a posterior probability of about 1e-5 at most; only other pixels need LobePosterior.
-/// A plane's values do not depend on which others are wanted, on the pixels beside it, or on the
-/// processor: products and sums are rounded one by one.
+/// Computes planes from best bins, a tile at a time: as PixelModel and store_pixel(), but
+/// vectorized and in single precision. Differences:
+///   - Depth, signal and ambient light are those of the best point on the chords up to rounding: a
+///     depth has an error of about 1e-7 / (angle between bins) bins, plus its rounding to float.
+///   - The noise of signal is that at the best bin, and the noise of depth that at the middle of
+///     the quarter of the chord. The error is below 1 % on average, and larger if the noise of
+///     bright pixels vanishes at a bin. Negative variances of single measurements, which no light
+///     causes, are replaced by 0 only in the sum.
+///   - Confidence uses the noise at the best bin. It is 1 if LobeBound proves that other places
+///     have a posterior probability of at most about 1e-5; only other pixels need LobePosterior.
+/// The values of a plane do not depend on the other planes, on neighbouring pixels or on the
+/// processor: each product and sum is rounded.
 class OutputKernel {
  public:
-  /// @param only_positions  `write` is not going to be asked for anything: less to prepare
+  /// @param only_positions  `write` is never called, which saves preparations
   OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
                const DecodeOptions& options, bool only_positions = false);
 
@@ -51,11 +51,11 @@ class OutputKernel {
   const OutputConstants& constants() const { return constants_; }
   /// One row of LimitLayout per bin.
   const RecordTable& limits() const { return limits_; }
-  /// Models of single pixels in double arithmetic; not with only_positions.
+  /// Models of single pixels in double precision; not available with only_positions.
   const LobePosterior& posterior() const { return *posterior_; }
   const ResidualModel& residuals() const { return *residuals_; }
 
-  /// Which rows of a tile these planes need besides `plane` and `bin`.
+  /// Return true if planes need these rows of a tile, in addition to `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
   bool needs_confidence(const DecodedView& planes) const;
   bool needs_residuals(const DecodedView& planes) const {
@@ -63,12 +63,12 @@ class OutputKernel {
   }
   bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
 
-  /// Writes the tile's pixels to the planes that are not null, from their first value on.
+  /// Writes the pixels of the tile to the planes that are not null, beginning at their first value.
   /// @note thread-safe; allocates nothing
   void write(const MatchedTile& tile, const DecodedView& planes) const;
-  /// The best points on the chords, or the best bins where `write` would leave depth out, [bin] in
-  /// [0, N); not a number without a bin.
-  /// @param depth_bin  with room for pixels_per_tile
+  /// Computes the best points on the chords, or the best bins of pixels whose depth write() omits,
+  /// [bin] in [0, N); NaN without a bin.
+  /// @param depth_bin  of length pixels_per_tile
   void find_positions(const MatchedTile& tile, double* depth_bin) const;
 
  private:

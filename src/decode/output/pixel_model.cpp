@@ -65,7 +65,7 @@ PixelModel::Rise PixelModel::rise_at(const double* plane, std::int32_t row) cons
           dot(plane, polynomials_->asymmetry.row(row).data(), rank())};
 }
 
-/// <q, p> / |p|^2 at a position, from the nearest row.
+/// Returns <q, p> / |p|^2 at a position, from the nearest row.
 double PixelModel::signal_on_curve(const double* plane, const Position& position) const {
   const bool is_near = position.fraction < 0.5;
   const std::int32_t row = is_near ? position.bin : next(position.bin);
@@ -87,7 +87,7 @@ Position PixelModel::refine(const double* plane, std::int32_t bin) const {
   const ChordPoint before = best_inside(left, along(plane, left), at_bin);
   const ChordPoint after = best_inside(bin, at_bin, along(plane, next(bin)));
   if (!(before.score > 0.0 || after.score > 0.0)) return {bin, 0.0};
-  // As among bins, the lower depth wins a tie.
+  // In case of ties choose the lower depth, as for bins.
   if (before.score >= (1 - tie_tolerance) * after.score) return {left, before.fraction};
   return {bin, after.fraction};
 }
@@ -97,7 +97,7 @@ double PixelModel::score_at(const double* plane, std::int32_t row) const {
                          : -std::numeric_limits<double>::infinity();
 }
 
-/// On a smooth curve, the sum of the score at the nearest row and the integral of the score's
+/// Returns the score. On a smooth curve it is the score at the nearest row plus the integral of its
 /// slope.
 double PixelModel::score_at(const double* plane, const Position& position) const {
   const std::int32_t to = next(position.bin);
@@ -147,7 +147,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   const double t = position.fraction;
   PixelEstimate result;
 
-  // The point of the curve, and its slope per bin: at a bin, the mean of both sides.
+  // Point of the curve, and its slope per bin: at a bin, the mean of both sides.
   std::array<double, max_measurements> point, slope, weight;
   const double* p0 = projection_.curve.row(from).data();
   const double* p1 = projection_.curve.row(to).data();
@@ -162,7 +162,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   result.signal_e_per_s =
       polynomials_ ? signal_on_curve(plane, position) : dot(plane, point.data(), r) / length2;
 
-  // What signal leaves is ambient light.
+  // The remainder after the signal is ambient light.
   const double* x0 = projection_.gated.row(from).data();
   const double* x1 = projection_.gated.row(to).data();
   const Eigen::VectorXd& a = projection_.ambient;

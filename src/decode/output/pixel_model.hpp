@@ -18,27 +18,27 @@ struct Position {
   std::int32_t bin = 0;
   double fraction = 0.0;
 
-  /// Of a depth in [0, samples).
+  /// Returns the position of a depth in [0, samples).
   static Position at(double depth_bin) {
     const auto bin = static_cast<std::int32_t>(depth_bin);
     return {bin, depth_bin - bin};
   }
-  /// In [0, samples).
+  /// Returns the depth in [0, samples).
   double in_rows(int samples) const {
     const double position = bin + fraction;
     return position < samples ? position : position - samples;
   }
 };
 
-/// What a pixel's measurements say once its depth is known.
+/// Light and standard deviations of a pixel at its decoded depth.
 struct PixelEstimate {
   double signal_e_per_s = 0.0;
-  double ambient_e_per_s = 0.0;  ///< NaN where it cannot be seen
+  double ambient_e_per_s = 0.0;  ///< NaN if it cancels in the measurements
   double signal_standard_deviation_e_per_s = 0.0;
-  double depth_standard_deviation_row = 0.0;  ///< infinite where depth has no slope
+  double depth_standard_deviation_row = 0.0;  ///< infinite if the curve has no slope
 };
 
-/// The curve P x(z) as chords between bins, and the noise on it.
+/// The curve P x(z) as chords between bins, and its noise.
 class PixelModel {
  public:
   PixelModel(const DecodingTable& table, const AmbientProjection& projection);
@@ -46,32 +46,33 @@ class PixelModel {
   int measurements() const { return static_cast<int>(projection_.basis.rows()); }
   int rank() const { return projection_.rank(); }
 
-  /// Residual of electrons - dark (K) without ambient light, in the plane (rank); exactly 0
-  /// where that is rounding.
+  /// Computes the residual of electrons - dark (K) without ambient light, in the subspace (rank);
+  /// exactly 0 if it is a rounding error.
   void project(const double* electrons, double* plane) const;
 
-  /// Best point on the chords left and right of the best bin, for a vector in the plane (rank).
+  /// Returns the best point on the chords left and right of the best bin, for a vector in the
+  /// subspace (rank).
   ///   beta_j = <q, p_j>, Q_jk = <p_j, p_k>; u = Q11 b0 - Q01 b1, v = Q00 b1 - Q01 b0,
-  ///   t* = v / (u + v) where both are > 0; else no point of the chord beats its better end.
-  /// On a smooth curve instead the maximum of the pixel's own correlation (DepthPolynomials).
+  ///   t* = v / (u + v) if both are > 0; otherwise the better end of the chord is best.
+  /// On a smooth curve, returns the maximum of the pixel's own correlation (DepthPolynomials).
   Position refine(const double* plane, std::int32_t bin) const;
 
   /// Returns the highest local maximum of the score <q, p> / |p| within a part of the range; none
   /// if there is no local maximum.
   std::optional<Position> best_within(const double* plane, const RangePart& part) const;
 
-  /// Least squares of electrons - dark (K) on x at the position and on ambient light, without
-  /// weights; its deviations from the noise expected there. Also fills the noise, `variance_e2`
-  /// (K), of every measurement.
-  /// @param variance_share  of the noise of a single measurement
+  /// Fits electrons - dark (K) by x at the position and ambient light with unweighted least
+  /// squares, and computes the standard deviations from the noise expected there. Also writes the
+  /// variance of every measurement to `variance_e2` (K).
+  /// @param variance_share  variance relative to a single measurement
   PixelEstimate estimate(const double* electrons, const double* plane, const Position& position,
                          double* variance_e2, double variance_share = 1.0) const;
 
-  /// Standard deviation of <difference, q> for a vector in the plane (rank).
+  /// Returns the standard deviation of <difference, q> for a vector in the subspace (rank).
   double deviation_along(const double* difference, const double* variance_e2) const;
 
  private:
-  /// A point beyond neither end of a chord that beats both ends; score <= 0 if there is none.
+  /// Point on a chord whose score exceeds that of both ends; score <= 0 if there is none.
   struct ChordPoint {
     double fraction = 0.0;
     double score = 0.0;
@@ -92,8 +93,8 @@ class PixelModel {
   int samples_;
   AmbientProjection projection_;
   std::optional<DepthPolynomials> polynomials_;  // none: depths lie on chords
-  RowMajorMatrix basis_;                         // from electrons, row by row
-  RowMajorMatrix noise_basis_;                   // from what has the noise
+  RowMajorMatrix basis_;                         // for electrons, row by row
+  RowMajorMatrix noise_basis_;                   // for measurements with the noise of the table
   ExpectedNoise noise_;
   Eigen::VectorXd own_;        // <p_j, p_j>
   Eigen::VectorXd with_next_;  // <p_j, p_{j+1}>

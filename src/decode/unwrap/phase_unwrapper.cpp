@@ -18,12 +18,13 @@ PhaseUnwrapper::PhaseUnwrapper(std::vector<int> frequencies, std::vector<double>
   TOFSMITH_ASSERT_LE(count(), max_frequencies);
 }
 
-/// Seen from a depth z, the nearest candidate of frequency f changes where z is half way between
-/// two of them. Between such places, sum f of them on the range, the choice stays, and the least
-/// distance of all z is that of one of these choices at its weighted mean.
+/// For a depth z, the nearest candidate of frequency f changes where z is half way between two
+/// candidates. Between these places (the sum of all f on the range), the choice is constant. The
+/// minimum of the distance over all z is therefore that of one of these choices at its weighted
+/// mean.
 template <typename Use>
 void PhaseUnwrapper::for_each_choice(const double* phase, const Use& use) const {
-  constexpr double just_after = 1e-9;  // [periods]; beyond the rounding of places that coincide
+  constexpr double just_after = 1e-9;  // [periods]; exceeds the rounding error of places
   Wraps wraps;
   for (std::size_t own = 0; own < frequencies_.size(); ++own)
     for (int wrap = 0; wrap < frequencies_[own]; ++wrap) {

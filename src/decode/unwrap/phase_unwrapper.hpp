@@ -9,7 +9,7 @@
 
 namespace tofsmith {
 
-/// Most frequencies a code can have: two measurements each.
+/// Maximum number of frequencies of a code: two measurements each.
 inline constexpr int max_frequencies = 32;
 
 /// One choice of wraps: a candidate depth for each frequency.
@@ -19,20 +19,21 @@ struct Wraps {
   std::array<double, max_frequencies> candidate;  ///< z_f = (phase_f + wraps_f) / f [periods]
 };
 
-/// Depth from phases that wrap: the candidates, one per frequency, that lie closest together.
+/// Computes depth from wrapped phases: chooses the candidates, one per frequency, that are closest
+/// to each other.
 class PhaseUnwrapper {
  public:
   /// @param frequencies  in multiples of f0
-  /// @param weights      w_f > 0, one each; only their ratios count
+  /// @param weights      w_f > 0, one per frequency; only their ratios matter
   PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights);
 
   int count() const { return static_cast<int>(frequencies_.size()); }
   double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
 
-  /// The choice of least weighted distance, of all there are.
+  /// Returns the choice with the least weighted distance.
   /// @param phase   (count) [periods of the frequency]
-  /// @param within  where the depth must lie; null: anywhere
-  /// @return the distance is infinite if no choice has its depth there
+  /// @param within  part in which the depth must lie; null: anywhere
+  /// @return an infinite distance if no choice has its depth there
   Wraps nearest(const double* phase, const RangePart* within = nullptr) const;
 
  private:
