@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// What the correction takes off in the middle of the image, less the mean error [mm].
+/// Returns the correction in the middle of the image minus the mean error [mm].
 std::vector<Series> correction_curves(const CalibratedDepth& found) {
   ColourAssignment colours;
   Series known{.name = "taken off", .style = colours.style("taken off")};
@@ -64,7 +64,7 @@ Figure error_figure(const CalibratedDepth& found) {
                      {.label = "depth error", .unit = "mm"});
 }
 
-/// What frames say over temperature, and the line through it.
+/// Returns a figure of frame values over temperature, with the fitted line.
 Figure drift_figure(const FigureText& text, const TemperatureDrift& found,
                     const std::vector<double>& of_frames, const Estimate& per_c, double scale,
                     const Axis& axis) {

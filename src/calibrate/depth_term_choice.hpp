@@ -41,7 +41,7 @@ struct Chosen {
   TermChoice known, beyond;
   std::optional<double> known_rms_m, beyond_rms_m;
   int skipped_blocks = 0;  ///< folds of blocks without samples in or out
-  int skipped_parts = 0;   ///< likewise quarters of the range
+  int skipped_parts = 0;   ///< the same for quarters of the range
 };
 
 /// Selects terms by cross-validation on alternate blocks with data and on quarters of the

@@ -27,8 +27,8 @@ struct FrequencyCalibration {
 ///      where c_i is the fundamental of measurement i and n its frequency in units of f0. They
 ///      minimise the weighted squared residuals of the measurements, with signal and ambient light
 ///      of each pixel eliminated (variable projection). b_1 is the error of offset and contrast. A
-///      weak prior, narrower for higher harmonics, determines what the frames do not. Outliers have
-///      zero weight (Tukey's biweight).
+///      weak prior, narrower for higher harmonics, determines the deviations that the frames do not
+///      determine. Outliers have zero weight (Tukey's biweight).
 ///   3. Compute standard errors from tiles of pixels, within which errors may be correlated.
 /// @return  none if the code has a single frequency, or its phases do not agree with the reference
 std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frames,

@@ -19,7 +19,7 @@ Waveform scaled(const Waveform& waveform, double factor) {
                               : waveform.scaled(0.0, factor);
 }
 
-/// Reorders exposures into the order of playback, and complements or swaps taps if inverted.
+/// Reorders exposures as in [playback], and complements or swaps taps if inverted.
 void play(const Playback& playback, int taps, ActualCode& actual) {
   const ActualCode said = actual;
   for (std::size_t e = 0; e < playback.order.size(); ++e) {

@@ -66,8 +66,8 @@ Camera indoor_camera() {
   return camera;
 }
 
-/// Three exclusive taps behind a clock of nine chips per period. Peak power is what is fixed: a
-/// source that may shine all the time (peak factor 1) makes S the rate at peak light.
+/// Three exclusive taps with a clock of nine chips per period. The peak power is fixed: the light
+/// may be always on (peak factor 1), and S is the rate at peak light.
 Camera three_tap_camera() {
   Camera camera;
   constexpr double chip_s = 10e-9;
@@ -81,8 +81,9 @@ Camera three_tap_camera() {
   return camera;
 }
 
-/// A camera of the trade: two taps read out as their difference, light that is on half of the time.
-/// Full well and converter stay open: no source says how many electrons a count is.
+/// A commercial camera with two taps that are read out as their difference, and light that is on
+/// for half of the time. Full well and converter are not set, because the electrons per count are
+/// unknown.
 Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   Camera camera;
   camera.fundamental_frequency_hz = fundamental_frequency_hz;
@@ -107,7 +108,8 @@ Camera with_frequencies(Camera camera, std::vector<double> frequencies_hz, int p
   return camera;
 }
 
-/// Its modulation frequencies are a clock of 96 MHz divided by 4 and by a second divider.
+/// Modulation frequencies of this camera are a clock of 96 MHz divided by 4 and by a second
+/// divider.
 Camera epc660() {
   Camera camera = two_tap_camera(12e6, 4e-3);
   SquareLight& square = camera.light.square.emplace();
@@ -121,7 +123,7 @@ struct Entry {
   Camera camera;
 };
 
-/// The one list of them.
+/// Returns the list of all built-in cameras.
 std::vector<Entry> entries() {
   constexpr const char* kinect_pixel =
       "Sell and O'Connor, IEEE Micro 34(2), 2014, by libfreenect2's issue 150: differential";

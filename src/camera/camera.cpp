@@ -33,7 +33,7 @@ void validate_adc(const Sensor& sensor) {
   }
 }
 
-/// Rows are sums of counts: nothing of what taps can do.
+/// Rejects properties of taps for rows, which are sums of counts.
 void validate_rows(const Sensor& sensor) {
   const auto require_none = [](bool none, const char* field, const char* value) {
     require(none, field, value, "does not go with sensor.readout = \"rows\"");
@@ -47,7 +47,8 @@ void validate_rows(const Sensor& sensor) {
   require_none(!sensor.adc_bits, "sensor.adc_bits", "a converter");
 }
 
-/// A mixer has one number of either sign, and throws nothing away but by its weight.
+/// Rejects properties that a mixer does not have. It outputs one signed number per exposure, and
+/// its weight alone determines how much light is used.
 void validate_mixer(const Sensor& sensor) {
   const char* const beside = "sensor.demodulation = \"signed\"";
   require(sensor.taps == 1, "sensor.taps", sensor.taps,
@@ -288,7 +289,7 @@ void Camera::validate() const {
 
 namespace {
 
-/// Without a drain every electron goes to one of the taps.
+/// Returns the error if the gains of the taps do not sum to 1 without a drain.
 std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& what) {
   const Eigen::MatrixXd gain = code.demodulation_samples();
   for (int first = 0; first < code.measurements(); first += code.taps()) {
@@ -300,7 +301,7 @@ std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& 
   return std::nullopt;
 }
 
-/// Why a list does not have one value per exposure or per frequency of a code.
+/// Returns the error if a list does not have one value per exposure or per frequency of a code.
 std::optional<BrokenRule> list_misfit(const std::string& key, const std::vector<double>& list,
                                       const CodeSet& code) {
   const std::size_t count = list.size(), frequencies = code.frequency_starts().size();
@@ -311,7 +312,7 @@ std::optional<BrokenRule> list_misfit(const std::string& key, const std::vector<
                             code.exposures(), frequencies, code.name()));
 }
 
-/// The values of a list for every exposure.
+/// Returns the values of a list for every exposure.
 std::vector<double> per_exposure(const std::string& key, const std::vector<double>& list,
                                  const CodeSet& code) {
   require(list_misfit(key, list, code));
@@ -412,7 +413,7 @@ FamilyOptions family_options(const Camera& camera) {
           .taps = camera.sensor.taps > 2 ? camera.sensor.taps : 1};
 }
 
-/// Rows where the camera reads rows, and only there.
+/// Returns why code and camera do not both use rows, or both do not.
 std::optional<std::string> why_other_receiver(const CodeSet& code, const Camera& camera) {
   if (camera.sensor.readout == Readout::rows) return why_no_rows(code);
   if (!code.is_rows()) return std::nullopt;

@@ -86,7 +86,7 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
     });
     return tasks;
   }
-  // Of all methods, the search is for cameras that say what their chips are.
+  // With `best`, search only if the camera has a shortest pulse, which defines its chips.
   const bool searches = options.method == DesignMethod::search ||
                         (options.method == DesignMethod::best && camera.sensor.shortest_pulse_s);
   if (searches &&

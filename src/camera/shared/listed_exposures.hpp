@@ -12,8 +12,8 @@
 
 namespace tofsmith {
 
-/// Returns the error if a camera lists exposure times or an order of playback for another number of
-/// exposures.
+/// Returns the error if a camera lists exposure times, or an order of exposures, for another number
+/// of exposures.
 /// @param whose  " of code NAME", for the message
 inline std::optional<BrokenRule> other_exposures_listed(const Camera& camera, int exposures,
                                                         const std::string& whose = "") {

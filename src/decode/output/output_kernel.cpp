@@ -167,7 +167,7 @@ HWY_EXPORT(find_positions);
 
 namespace {
 
-/// Rounds a value to so few digits that its products with integers up to `integers` are exact.
+/// Rounds a value so that its products with integers up to `integers` are exact.
 float with_room_for(double value, int integers) {
   int exponent = 0;
   const double mantissa = std::frexp(value, &exponent);

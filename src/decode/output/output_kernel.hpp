@@ -31,7 +31,7 @@ struct MatchedTile {
 
 /// Computes planes from best bins, a tile at a time: as PixelModel and store_pixel(), but
 /// vectorized and in single precision. Differences:
-///   - Depth, signal and ambient light are those of the best point on the chords up to rounding: a
+///   - Depth, signal and ambient light belong to the best point on the chords up to rounding: a
 ///     depth has an error of about 1e-7 / (angle between bins) bins, plus its rounding to float.
 ///   - The noise of signal is that at the best bin, and the noise of depth that at the middle of
 ///     the quarter of the chord. The error is below 1 % on average, and larger if the noise of

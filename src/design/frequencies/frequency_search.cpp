@@ -54,7 +54,7 @@ RatedCode with_listed_split(SquareCode code, const std::vector<double>& time_sha
   return best;
 }
 
-/// The best codes found so far.
+/// The current best codes.
 class Best {
  public:
   explicit Best(std::size_t kept) : kept_(kept) {}

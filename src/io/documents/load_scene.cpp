@@ -57,14 +57,14 @@ void check_fields_fit(const SceneSource& source, SceneKind kind) {
                                            : "a scene file says its size in [view]");
 }
 
-/// A side of the images of a lens: as it states, or with the optical axis in the middle.
+/// Returns a side of the images of a lens: as specified, or with the optical axis in the middle.
 int side_of_lens(std::optional<int> stated, double axis_px, int fallback) {
   constexpr double max_side = 16384;
   const double side = std::round(2.0 * axis_px + 1.0);
   return stated.value_or(side >= 1.0 && side <= max_side ? static_cast<int>(side) : fallback);
 }
 
-/// A built-in scene or a mesh, as the camera's lens sees it.
+/// Returns a built-in scene or a mesh as seen by the camera's lens.
 StagedScene staged_scene(const SceneSource& source, SceneKind kind,
                          const std::optional<Lens>& lens) {
   if (kind == SceneKind::scene_file) return read_scene_toml(source.scene);

@@ -12,13 +12,13 @@
 
 namespace tofsmith {
 
-/// @throws IoError unless the array holds floats, shape (H, W)
+/// @throws IoError unless the array contains floats of shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
 /// Returns the array (H, W) of an image.
 NpyArray array_from_image(const Image<float>& image);
 
-/// Returns `name` if an array has it, else the name of the only array.
+/// Returns `name` if the archive has such an array, else the name of the only array.
 /// @throws IoError if there is neither
 std::string name_called_or_only(const NpzReader& archive, std::string_view name,
                                 std::string_view file);
@@ -26,7 +26,7 @@ std::string name_called_or_only(const NpzReader& archive, std::string_view name,
 NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
                               std::string_view file);
 
-/// @throws IoError unless the array holds floats
+/// @throws IoError unless the array contains floats
 void require_floats(const NpyArray& array, std::string_view file);
 
 /// @throws IoError if the image has colour channels

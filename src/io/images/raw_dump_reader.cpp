@@ -63,8 +63,8 @@ int frames_in(std::uint64_t found, const RawFormat& format, const std::string& f
   return static_cast<int>(frames);
 }
 
-/// Flips and rotation together: a quarter turn exchanges rows and columns, and then either may run
-/// backwards.
+/// Combination of flips and rotation: a quarter turn exchanges rows and columns; then each may be
+/// reversed.
 struct Orientation {
   bool transposed, reversed_rows, reversed_columns;  ///< of the scene
 
@@ -75,7 +75,7 @@ struct Orientation {
                          (f.rotate_deg == 90 || f.rotate_deg == 180)) {}
 };
 
-/// Place of a pixel of the scene in an image of the file.
+/// Position of a pixel of the scene in an image of the file.
 struct FilePlace {
   int row, column;
 
@@ -128,7 +128,7 @@ std::string oversized_problem(const RawFormat& format, const OversizedNumber& nu
       fitting_changes(format, row));
 }
 
-/// Turns numbers of the file into measurements.
+/// Converts numbers of the file to measurements.
 class Measure {
  public:
   Measure(const RawFormat& f, const RawMarking& marking)
@@ -151,7 +151,7 @@ class Measure {
   const RawMarking& marking_;
   bool is_unsigned_;
   double black_level_;
-  double lowest_ = std::numeric_limits<double>::quiet_NaN();  ///< equal to no number
+  double lowest_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN: equals no number
 };
 
 }  // namespace
@@ -189,7 +189,7 @@ std::size_t RawDumpReader::block_row_bytes() const {
              : 0;
 }
 
-/// Row `row` of an image of the file.
+/// Reads row `row` of an image in the file.
 void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
                                   std::vector<std::byte>& bytes,
                                   std::vector<double>& numbers) const {
@@ -221,8 +221,8 @@ void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
   unpack_numbers(f, bytes, first_bit, numbers);
 }
 
-/// Rows of the scene, (rows, W, K) numbers as they are stored in the file. All rows of the file are
-/// read if a quarter turn makes them columns.
+/// Reads rows of the scene as (rows, W, K) numbers of the file. If a quarter turn exchanges rows
+/// and columns, all rows of the file are read.
 void RawDumpReader::read_block(int frame, int first_row, int rows, Block& block) const {
   const RawFormat& f = format_;
   const Orientation o(f);
@@ -230,7 +230,7 @@ void RawDumpReader::read_block(int frame, int first_row, int rows, Block& block)
   block.pixels.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) *
                       static_cast<std::size_t>(kept));
   const bool side_by_side = f.layout == RawOrder::interleaved;
-  // A line is the part of the scene that one row of the file holds.
+  // A line is the part of the scene in one row of the file.
   const int lines = o.transposed ? width : rows, length = o.transposed ? rows : width;
   for (int line = 0; line < lines; ++line) {
     const FilePlace first =

@@ -14,22 +14,22 @@
 
 namespace tofsmith {
 
-/// Reads rows of the frames of a dump in the memory of those rows.
+/// Reads rows from the frames of a dump. Needs memory for these rows only.
 class RawDumpReader {
  public:
-  /// @throws IoError if the file cannot be read or is not as long as the format says
-  /// @param marking  replaces numbers of the file that are no measurement
+  /// @throws IoError if the file cannot be read or its length does not match the format
+  /// @param marking  replaces numbers of the file that are not measurements
   RawDumpReader(const std::filesystem::path& path, RawFormat format, RawMarking marking = {});
-  /// Of bytes that stay where they are and may change between calls, as many as the format's
-  /// frames.
+  /// Reads from bytes in memory, which must have the length of the format's frames and stay at the
+  /// same address. Their content may change between calls.
   RawDumpReader(std::span<const std::byte> bytes, RawFormat format, RawMarking marking = {});
 
   const RawFormat& format() const { return format_; }
   int frames() const { return frames_; }
 
-  /// Reads rows first_row .. first_row + rows - 1 of the scene, (rows, W, K) numbers, the
-  /// measurements of a pixel side by side and in order, with rotation, signs, black level and
-  /// differences applied.
+  /// Reads rows first_row to first_row + rows - 1 of the scene, (rows, W, K) numbers with the
+  /// measurements of a pixel adjacent and in order. Rotation, signs, black level and differences
+  /// are applied.
   /// @throws IoError if the file cannot be read or became shorter, or if a number exceeds its bits
   template <typename Number>
   void read_rows(int frame, int first_row, int rows, Number* numbers) const;
@@ -47,7 +47,7 @@ class RawDumpReader {
   void read_file_row(int frame, std::size_t image, std::size_t row, std::vector<std::byte>& bytes,
                      std::vector<double>& numbers) const;
 
-  std::string source_;  ///< in errors
+  std::string source_;  ///< name in errors
   std::function<void(std::uint64_t offset, std::span<std::byte> into)> read_at_;
   RawFormat format_;
   RawMarking marking_;

@@ -79,7 +79,7 @@ DecodeTarget target_of(const DecodeRequest& request, const DepthDecoder& decoder
           .undistortion = undistortion_of(request, view)};
 }
 
-/// Not even OutputPolicy::overwrite may replace what is being read.
+/// Rejects outputs that are input files, even with OutputPolicy::overwrite.
 void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& target) {
   std::vector<std::string> inputs = request.other_inputs;
   for (const std::filesystem::path& path :
@@ -94,7 +94,7 @@ double bytes_of_planes(const DecodeTarget& target, int rows) {
   return static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width * rows;
 }
 
-/// Memory of all buffers; `row` is of rows that are read and decoded at a time.
+/// Memory of all buffers; `row` is for each row that is read and decoded at a time.
 FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& target,
                           const Preparation& preparation,
                           const std::vector<std::unique_ptr<FramePipeline>>& pipelines) {
@@ -118,8 +118,8 @@ FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& tar
   return {.whole = all.whole + all.row * height, .row = 0.0};
 }
 
-/// How many rows are read and decoded at a time so that all buffers together fit.
-/// @throws IoError if a frame of this format, a frame to be filtered, or a single row, takes more
+/// Returns the number of rows to read and decode at a time so that all buffers fit into the memory.
+/// @throws IoError if a frame in this format, a frame with filters, or a single row needs more
 int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
                    const Preparation& preparation, double memory_bytes) {
   const int height = target.view.height, width = target.view.width;
@@ -137,13 +137,13 @@ int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
                 ? "without filters, mixed and undistort they go in bands of rows; "
                 : "",
             target.in_rows() ? "" : "; .npy is written row by row, with --stack every plane"));
-  // Larger bands are no faster: new memory costs more than another call.
+  // Larger bands are not faster, because allocating their memory takes longer than another call.
   constexpr double comfortable_bytes = 32e6;
   const double rows = row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : height;
   return std::clamp(static_cast<int>(rows), 1, height);
 }
 
-/// Progress over all frames, which says how fast they come.
+/// Progress over all frames, with their rate.
 class Pace {
  public:
   Pace(const Progress& progress, const DecodeTarget& target)
@@ -153,7 +153,7 @@ class Pace {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  /// The progress of one band. @param pixels  decoded before it
+  /// Returns the progress of one band. @param pixels  number of pixels decoded before
   Progress of_band(const Band& band, std::int64_t pixels) const {
     if (!progress_) return {};
     const std::int64_t frame_pixels = std::int64_t{target_.view.height} * target_.view.width;
@@ -188,7 +188,7 @@ void add_noise_note(FramePipeline& pipeline, const Band& band, DecodedRecording&
       result.notes.push_back(*note);
 }
 
-/// Decodes the target's frames.
+/// Decodes the frames of the target.
 void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
                    const std::vector<std::unique_ptr<FramePipeline>>& pipelines,
                    const PlaneCorrections& corrections, DecodeOutput& output,
@@ -247,7 +247,7 @@ StatusCounts DecodedRecording::total() const {
 
 void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                       const Progress& progress, DecodedRecording& result) {
-  // All that can be wrong is found before the first frame.
+  // Report all errors in the request before the first frame is decoded.
   result = {};
   const DepthDecoder& decoder = backend.decoder();
   check_request(request, decoder);

@@ -45,7 +45,7 @@ std::vector<std::size_t> exposure_ends(const RawFormat& format, int exposures) {
   return ends;
 }
 
-/// Frames of a stream, one after another.
+/// Frames of a stream in sequence.
 class StreamFrames {
  public:
   /// @param exposures  number per frame; next() returns the frame once for each exposure, when it
@@ -61,8 +61,9 @@ class StreamFrames {
     frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format), marking);
   }
 
-  /// The raw numbers of the next frame or exposure, until the call after; none after the last.
-  /// @throws IoError if the stream ends in a frame
+  /// Returns the raw numbers of the next frame or exposure, valid until the next call; none after
+  /// the last.
+  /// @throws IoError if the stream ends within a frame
   std::optional<RawView> next() {
     if (const std::size_t found = read_(header_); found < header_.size()) fail(found, header_);
     header_.clear();
@@ -113,8 +114,8 @@ class StreamFrames {
   std::size_t trailer_bytes_;
   std::vector<std::byte> bytes_;
   std::vector<std::size_t> ends_;  // of exposures, in bytes_
-  std::size_t exposure_ = 0;       // the next one
-  std::size_t at_ = 0;             // bytes of the frame that have been read
+  std::size_t exposure_ = 0;       // next exposure
+  std::size_t at_ = 0;             // number of bytes of the frame that have been read
   RawView view_;
   std::unique_ptr<RawDumpReader> frame_;
   std::vector<float> floats_;
@@ -122,7 +123,7 @@ class StreamFrames {
   std::int64_t frames_ = 0;
 };
 
-/// What there is to a request for a stream.
+/// Returns the request with the checks and defaults for streams.
 DecodeRequest checked(DecodeRequest request, const DepthDecoder& decoder) {
   require(!request.raw_format.empty(), "raw_format", "none",
           "must be a file that describes the frames of the stream");
@@ -174,8 +175,8 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
     report(progress, 0.0, fmt::format("frame {}", result.frames));
-    const ProgressParts parts(progress, {0.0, 1.0});  // how long a stream is nobody knows
-    // A filter in time counts its frames up to an int's; nothing else looks at the number.
+    const ProgressParts parts(progress, {0.0, 1.0});  // the length of a stream is unknown
+    // The frame number is limited to int, which only a temporal filter uses.
     const auto frame = static_cast<int>(
         std::min<std::int64_t>(result.frames, std::numeric_limits<int>::max() / 2));
     if (!decode_next(input, corrections, {frame, 0, height}, target, planes, parts[0])) break;

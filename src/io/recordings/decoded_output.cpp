@@ -38,14 +38,14 @@ NpzArrays arrays(const DepthImage& decoded, const std::vector<DecodedPlane>& pla
   return result;
 }
 
-/// Points of pixels with depth that are ok, or of all with depth.
-/// @param organized  others stand there, too, as NaN
+/// Returns the points of pixels with status ok, or of all pixels with depth.
+/// @param organized  include all other pixels as NaN
 PointCloud cloud(const DepthImage& decoded, const std::vector<DecodedPlane>& planes,
                  const PixelRays& pixel_rays, bool all_points, bool organized) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   PointCloud result;
   std::vector<std::size_t> kept;
-  result.points_m.reserve(decoded.depth_m.size());  // growing would take twice as much for a while
+  result.points_m.reserve(decoded.depth_m.size());  // growing needs twice the memory temporarily
   kept.reserve(decoded.depth_m.size());
   for (int row = 0; row < decoded.depth_m.height; ++row)
     for (int column = 0; column < decoded.depth_m.width; ++column) {
@@ -78,21 +78,21 @@ std::filesystem::path with_suffix(std::filesystem::path path, const std::string&
   return path;
 }
 
-/// File of a plane of a stack: depth in name.npy, others in name-PLANE.npy.
+/// Returns the file for a plane of a stack: name.npy for depth, name-PLANE.npy for others.
 std::filesystem::path stack_path(const std::filesystem::path& path, DecodedPlane plane) {
   return plane == DecodedPlane::depth ? path : with_suffix(path, "-" + std::string(name_of(plane)));
 }
 
-/// Memory that write_planes() takes for a while, beside the planes themselves [bytes per pixel];
-/// for all formats but .npy at most this much.
+/// Returns the temporary memory of write_planes(), in addition to the planes [bytes per pixel]; an
+/// upper limit for all formats except .npy.
 std::size_t writing_bytes_per_pixel(std::string_view extension,
                                     const std::vector<DecodedPlane>& planes) {
   const std::size_t held = bytes_per_pixel(planes), depth = sizeof(float);
-  if (extension == ".npz") return held;  // as arrays
+  if (extension == ".npz") return held;  // copies as arrays
   // The list of kept pixels, and the points with their scalars twice: as lists and as a file.
   if (extension == ".ply" || extension == ".pcd")
     return sizeof(std::size_t) + 2 * (3 + planes.size()) * sizeof(float);
-  // Channels of floats, and at worst the same again in the file.
+  // Float channels, and a file of at most the same size.
   if (extension == ".exr") return 2 * planes.size() * sizeof(float);
   return 2 * depth;  // .pfm, .png: converted, and the file
 }

@@ -24,9 +24,9 @@ Image<float> floats_of(const DepthImage& image, DecodedPlane plane);
 /// Returns the first rows of a plane in its own type.
 std::span<const std::byte> items_of(const DepthImage& image, DecodedPlane plane, int rows);
 
-/// Turns radial distance into z-depth in place.
-/// @param depth_m    rows of as many values as the view is wide
-/// @param first_row  of the view
+/// Converts radial distance to z-depth in place.
+/// @param depth_m    rows with the width of the view
+/// @param first_row  index in the view
 void turn_into_z(float* depth_m, int first_row, int rows, const PixelRays& pixel_rays);
 
 }  // namespace tofsmith

@@ -20,7 +20,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Ambient light that is taken to be equal, though the columns look as if duties were not.
+/// Returns a note if ambient light is assumed to be equal although the duties of the columns
+/// differ.
 std::optional<std::string> duty_note(const std::string& path, const MeasuredTable& measured) {
   constexpr double usual_spread = 0.02;
   const Eigen::VectorXd mean = ambient_gain_of(measured.correlation, MeasuredAmbient::mean);
@@ -34,7 +35,7 @@ std::optional<std::string> duty_note(const std::string& path, const MeasuredTabl
       path);
 }
 
-/// What only a measured table takes was given to a code.
+/// Rejects options that are only valid for measured tables.
 void refuse_table_options(const std::string& code, const DecodingTableOptions& options) {
   const char* const field = options.range_m          ? "range_m"
                             : options.ambient        ? "ambient"
@@ -46,7 +47,8 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
         "{}: goes with a measured table; {} is a code, which the camera says all of", field, code));
 }
 
-/// The columns of another order of exposures, and the rows of delay that runs backwards.
+/// Reorders the columns for another order of exposures, and reverses the rows if delay runs
+/// backwards.
 void play(const DecodingTableOptions& options, MeasuredTable& measured) {
   if (!options.order.empty()) {
     const int side = measured.taps, exposures = measured.columns() / side;
@@ -90,7 +92,8 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   }
 }
 
-/// A note for a table that turns far from row to row and of which nothing is known between rows.
+/// Returns a note if the table turns by large angles between rows and its course between them is
+/// unknown.
 std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measured) {
   constexpr double fine_deg = 10.0;
   const double turn_deg = furthest_turn_rad(table) * 180.0 / std::numbers::pi;
@@ -105,7 +108,7 @@ std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measu
                   : fmt::format("use --set samples={:.0f}", times * table.samples()));
 }
 
-/// The camera with what a user says beyond it.
+/// Returns the camera with the playback options of the user.
 Camera with_playback(Camera camera, const DecodingTableOptions& options) {
   if (options.order.empty() && !options.reversed) return camera;
   Playback playback = camera.playback.value_or(Playback());

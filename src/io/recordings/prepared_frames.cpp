@@ -18,7 +18,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Whole frames that windows of exposures need. A time filter needs all windows up to the last.
+/// Returns the whole frames that windows of exposures need: with a temporal filter, all windows up
+/// to the last.
 std::vector<Band> bands_of_windows(const Preparation& preparation,
                                    const std::vector<Band>& windows) {
   if (windows.empty()) return {};
@@ -28,7 +29,7 @@ std::vector<Band> bands_of_windows(const Preparation& preparation,
   return bands_of(first / exposures, last_exposure / exposures + 1, rows, rows);
 }
 
-/// Frames of the recording that frame `index` of what comes out is made of.
+/// Returns the number of recorded frames that are averaged in output frame `index`.
 int frames_of_mean(const Preparation& preparation, int recorded, int index) {
   return std::min(preparation.group(), recorded - index * preparation.group());
 }
@@ -57,7 +58,7 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
   std::vector<Band> needed;
   const std::optional<TimeFilterOptions>& time_filter = preparation.steps.time_filter;
   if (time_filter && !bands.empty()) {
-    // Whole frames: all up to the last, and those that it looks ahead to.
+    // Whole frames: all up to the last, including look-ahead.
     const int last =
         std::min(preparation.frames_of(recorded), bands.back().frame + 1 + time_filter->look_ahead);
     needed = bands_of(0, last, bands.front().rows, bands.front().rows);
@@ -72,7 +73,7 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
 }
 
 FrameMemory Preparation::memory(int height, int width, int measurements) const {
-  // Of the pixels while mixed ones are marked.
+  // Per pixel, while mixed pixels are marked.
   constexpr double bytes_to_find_mixed = 4 * sizeof(float) + 3;
   constexpr auto bytes = static_cast<double>(sizeof(float));
   FrameMemory memory;
@@ -108,7 +109,7 @@ PreparedFrames::PreparedFrames(Input input, const Preparation& preparation,
   if (!preparation.stray_kernel.empty()) stray_light_.emplace(preparation.stray_kernel);
 }
 
-/// As it is in the recording.
+/// Reads the next band unchanged.
 std::optional<RawView> PreparedFrames::read() {
   std::optional<RawView> raw = input_();
   if (raw && stray_light_) {
@@ -123,7 +124,7 @@ std::optional<RawView> PreparedFrames::read() {
   return raw;
 }
 
-/// The next frames of all exposures as one.
+/// Merges the next frames of all exposures.
 std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
   const std::size_t frames = preparation_.hdr.size();
   exposed_.resize(frames);
@@ -139,7 +140,7 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
     views.back().is_marked = raw->is_marked;
   }
   if (views.empty()) return std::nullopt;
-  if (views.size() < frames)  // of a stream: recordings hold whole groups
+  if (views.size() < frames)  // only for streams: recordings contain whole groups
     throw IoError("the stream",
                   fmt::format("found {} frame{} and the end; expected {}, one of each "
                               "exposure of --hdr",
@@ -148,8 +149,8 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
   return merged_.view();
 }
 
-/// The numbers of window `index`, which must follow the window of the last call. @return none after
-/// the last
+/// Returns the numbers of window `index`, which must follow the window of the last call; none after
+/// the last.
 std::optional<RawView> PreparedFrames::window(int index) {
   const int exposures = preparation_.sliding;
   int missing = window_ ? 1 : exposures + index % exposures;
@@ -164,8 +165,8 @@ std::optional<RawView> PreparedFrames::window(int index) {
   return window_->view();
 }
 
-/// Reads and submits the bands that frame `frame` is made of. @return none after the last, else
-/// whether a frame is ready
+/// Reads and submits the bands of frame `frame`. @return whether a frame is ready; none after the
+/// last
 std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& progress) {
   if (!preparation_.hdr.empty()) {
     const std::optional<RawView> merged = bracketed(progress);
@@ -188,7 +189,8 @@ std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& prog
   return frames > 0 ? std::optional(is_ready) : std::nullopt;
 }
 
-/// The time filter may need later frames first, and earlier ones that do not come out.
+/// Submits frames until the temporal filter returns frame `frame`: it may need later frames, and
+/// earlier ones that are not decoded.
 bool PreparedFrames::next_in_time(int frame, const Progress& progress) {
   const int ahead = preparation_.steps.time_filter->look_ahead;
   const int coming = std::min(ahead, std::max(recorded_ - 1 - frame, 0)) + frame + 1 - frames_read_;

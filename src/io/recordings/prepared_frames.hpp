@@ -17,13 +17,13 @@
 
 namespace tofsmith {
 
-/// What is done to recorded frames before and after they go through a FramePipeline.
+/// Steps before and after the FramePipeline for recorded frames.
 struct Preparation {
   FrameSteps steps;
-  bool find_mixed = false;    ///< afterwards, in whole frames
-  bool undistort = false;     ///< last of all, in whole frames
-  Image<float> stray_kernel;  ///< of StrayLight, taken off first; empty: none
-  std::vector<double> hdr;    ///< exposures of frames that make one; empty: none
+  bool find_mixed = false;    ///< after decoding, in whole frames
+  bool undistort = false;     ///< last step, in whole frames
+  Image<float> stray_kernel;  ///< of StrayLight, first step; empty: none
+  std::vector<double> hdr;    ///< exposures of frames that are merged; empty: none
   int sliding = 0;            ///< exposures of a sliding window; 0: whole frames are decoded
 
   /// With sliding windows, the input returns each frame once per exposure, complete up to that
@@ -34,7 +34,7 @@ struct Preparation {
     return steps.time_filter || steps.filter || find_mixed || undistort || !stray_kernel.empty() ||
            sliding > 0;
   }
-  /// Frames that come out of so many.
+  /// Returns the number of decoded frames for `recorded` frames.
   int frames_of(int recorded) const {
     return sliding > 0 ? windows_of(recorded, sliding) : (recorded + group() - 1) / group();
   }
@@ -46,18 +46,18 @@ struct Preparation {
   }
   /// Number of pipelines. A time filter needs one for each group of windows that share no exposure.
   int pipelines() const { return sliding > 0 && steps.time_filter ? sliding : 1; }
-  /// Frames that one of those is made of.
+  /// Returns the number of recorded frames per submitted frame.
   int group() const { return hdr.empty() ? steps.average : static_cast<int>(hdr.size()); }
-  /// Memory in addition to that of the rows that are read and of the pipeline.
+  /// Memory in addition to the rows that are read and to the pipeline.
   FrameMemory memory(int height, int width, int measurements) const;
 };
 
-/// Makes the pipelines of a preparation.
+/// Creates the pipelines of a preparation.
 std::vector<std::unique_ptr<FramePipeline>> prepare_pipelines(const FrameBackend& backend,
                                                               const Preparation& preparation,
                                                               int height, int width);
 
-/// Bands to read for those that come out, of a recording of so many frames.
+/// Returns the bands to read for the requested frames of a recording with `recorded` frames.
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands);
 
@@ -65,19 +65,19 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
 /// with exposures merged.
 class PreparedFrames {
  public:
-  /// The raw numbers of the next band, until the next call; none after the last.
+  /// Returns the raw numbers of the next band, valid until the next call; none after the last.
   using Input = std::function<std::optional<RawView>()>;
 
-  /// @param input     gives bands_to_read(); whole frames if there is a filter; for one in time all
-  ///                  frames before the first, too, and those that the last looks ahead to
-  /// @param pipelines  of prepare_pipelines(), used in turn; must outlive this
-  /// @param recorded   frames that there are; of a stream the most an int holds
+  /// @param input     returns bands_to_read(); whole frames if there is a filter. With a temporal
+  ///                  filter, also all frames before the first and the look-ahead after the last
+  /// @param pipelines  from prepare_pipelines(), used in turn; must outlive this object
+  /// @param recorded   number of recorded frames; for a stream the largest int
   PreparedFrames(Input input, const Preparation& preparation,
                  const std::vector<std::unique_ptr<FramePipeline>>& pipelines, int recorded);
 
-  /// The pipeline of the band that is ready.
+  /// Pipeline of the band that is ready.
   FramePipeline& pipeline() const { return *pipelines_[current_]; }
-  /// How long next() takes, and decoding with filters, where decoding alone takes 1: roughly.
+  /// Approximate time of next() and of filtering, relative to decoding without filters.
   double effort() const {
     const auto& time_filter = preparation_.steps.time_filter;
     const int comparisons = time_filter ? 1 + time_filter->look_ahead : 0;
@@ -86,9 +86,9 @@ class PreparedFrames {
   double decode_effort() const {
     return preparation_.steps.filter ? 9.0 * (preparation_.find_mixed ? 2.0 : 1.0) : 1.0;
   }
-  /// Submits bands until the next one, of frame `frame` of those that come out, is ready.
+  /// Submits bands until the next band of decoded frame `frame` is ready.
   /// @return false after the last
-  /// @throws IoError as the input; Interrupted if progress says so
+  /// @throws IoError as the input; Interrupted if `progress` requests it
   bool next(int frame, const Progress& progress);
 
  private:
@@ -103,15 +103,15 @@ class PreparedFrames {
   std::size_t current_ = 0;
   int recorded_;
   Input input_;
-  std::vector<RawFrames> exposed_;  // of one group, as they were read
+  std::vector<RawFrames> exposed_;  // one group, as read
   MergedExposures merged_;
   std::optional<StrayLight> stray_light_;
-  RawFrames clean_;                         // of stray light
-  std::vector<float> averaged_;             // of numbers that are read, unless of one
-  int frames_read_ = 0, frames_ready_ = 0;  // by and from the time filter
+  RawFrames clean_;                         // without stray light
+  std::vector<float> averaged_;             // per input number; empty: 1
+  int frames_read_ = 0, frames_ready_ = 0;  // submitted to and returned by the temporal filter
   bool has_ended_ = false;
   std::optional<SlidingWindow> window_;
-  std::optional<RawView> newest_;  // frame of which the window takes exposures
+  std::optional<RawView> newest_;  // frame whose exposures the window uses
   int next_exposure_ = 0;          // of the newest frame
 };
 

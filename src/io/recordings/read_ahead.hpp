@@ -12,27 +12,27 @@
 
 namespace tofsmith {
 
-/// Rows first_row .. first_row + rows - 1 of a frame.
+/// Rows first_row to first_row + rows - 1 of a frame.
 struct Band {
   int frame = 0;
   int first_row = 0;
   int rows = 0;
 };
 
-/// Frames first .. last - 1 from top to bottom, in bands of at most `rows` rows.
+/// Returns bands of at most `rows` rows that cover the frames first to last - 1 from top to bottom.
 std::vector<Band> bands_of(int first, int last, int height, int rows);
 
-/// Gives bands of a recording one after another and reads the next one meanwhile, in the memory of
-/// two.
+/// Returns the bands of a recording one after another, and reads the next one in the background.
+/// Needs memory for two bands.
 class ReadAhead {
  public:
-  /// @param reader  outlives this
+  /// @param reader  must outlive this object
   ReadAhead(const RawFramesReader& reader, std::vector<Band> bands);
   ReadAhead(const ReadAhead&) = delete;
   ReadAhead& operator=(const ReadAhead&) = delete;
 
   const std::vector<Band>& bands() const { return bands_; }
-  /// The raw numbers of the next band, until the call after; none after the last.
+  /// Returns the raw numbers of the next band, valid until the next call; none after the last.
   /// @throws IoError as RawFramesReader::read_rows()
   std::optional<RawView> next();
 
@@ -41,9 +41,9 @@ class ReadAhead {
 
   const RawFramesReader& reader_;
   std::vector<Band> bands_;
-  std::size_t started_ = 0;  // bands whose reading has begun
+  std::size_t started_ = 0;  // number of bands whose reading has started
   std::array<std::vector<std::byte>, 2> buffers_;
-  std::future<RawView> coming_;  // last: its end waits for the buffer's last use
+  std::future<RawView> coming_;  // last member: destroyed before the buffers
 };
 
 }  // namespace tofsmith

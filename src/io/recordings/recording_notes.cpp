@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// What pixels without depth are most likely due to.
+/// Returns the most likely cause of pixels without depth.
 std::string_view likely_cause(PixelStatus status) {
   switch (status) {
     case PixelStatus::invalid:

@@ -11,29 +11,29 @@
 
 namespace tofsmith {
 
-/// How an image through a lens that distorts becomes that of the ideal pinhole: every pixel takes
-/// the values of the one nearest to where its ray is seen, so that no two depths are mixed.
+/// Resamples images of a lens with distortion to the ideal pinhole. Each pixel has the values of
+/// the source pixel nearest to its ray, so that depths are not mixed.
 class Undistortion {
  public:
   /// @throws std::invalid_argument as PinholeView::validate()
   explicit Undistortion(const PinholeView& view);
 
-  /// What it takes, with a plane that is being turned [bytes].
+  /// Returns the memory, including one plane during resampling [bytes].
   std::size_t bytes() const;
 
-  /// @param none  of pixels that no pixel of the image looks at
+  /// @param none  value of pixels that the image does not cover
   template <typename Value>
   void apply(Image<Value>& plane, Value none) const {
     const std::vector<Value> from = plane.pixels;
     for (std::size_t i = 0; i < source_.size(); ++i)
       plane.pixels[i] = source_[i] < 0 ? none : from[static_cast<std::size_t>(source_[i])];
   }
-  /// After apply(): radial distances, so that depth along the axis stays what it was measured as.
+  /// Converts radial distances after apply(), so that depth along the axis does not change.
   void turn_radial(Image<float>& depth_m) const;
 
  private:
-  std::vector<std::int32_t> source_;  // of every pixel; -1: none
-  std::vector<float> radial_ratio_;   // of its ray to that of its source, at the same z
+  std::vector<std::int32_t> source_;  // source pixel of each pixel; -1: none
+  std::vector<float> radial_ratio_;   // of the pixel's ray to the source's ray, at the same z
 };
 
 }  // namespace tofsmith

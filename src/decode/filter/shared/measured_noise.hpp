@@ -13,7 +13,7 @@ namespace tofsmith {
 /// are 0 on slopes. Of the blocks of 8 x 8 pixels in the 128 middle rows, the flattest quarter
 /// counts, each along the flatter of rows and columns.
 /// @return none if fewer than 16 blocks have enough usable pixels
-/// @throws std::invalid_argument if the measurements differ from those of the filter
+/// @throws std::invalid_argument if the number of measurements differs from the filter's
 std::optional<double> measured_noise_ratio(const Filter& filter, const RawView& raw);
 
 }  // namespace tofsmith
