@@ -22,7 +22,7 @@ root = Path(__file__).resolve().parent
 
 
 def version() -> str:
-    """The one that CMakeLists.txt says."""
+    """Returns the version in CMakeLists.txt."""
     found = re.search(r"project\(tofsmith VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text())
     if found is None:
         raise SystemExit("setup.py: found no version in CMakeLists.txt")
@@ -30,8 +30,8 @@ def version() -> str:
 
 
 def run_telling_progress(command: list) -> None:
-    """Runs a build of some minutes. pip hides what it prints, so that its steps, "[12/60] ..", are
-    also written to the terminal, if there is one.
+    """Runs a build of some minutes. pip hides its output, so its steps, "[12/60] ...", are also
+    written to the terminal, if any.
     """
     try:
         terminal = open("/dev/tty", "w") if not sys.stdout.isatty() else None

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes tofsmith/_camera_fields.py, the classes of a camera's parts, of the description of its keys.
+"""Makes tofsmith/_camera_fields.py, the classes of a camera's parts, from the description of its
+keys.
 
     make_camera_fields.py KEYS_PROGRAM OUTPUT
 """
@@ -96,7 +97,7 @@ def main():
         help_text, members = parts.setdefault(class_name(part), (tables[table], []))
         if not any(key["key"].split(".")[-1] == known["key"].split(".")[-1] for known in members):
             members.append(key)
-    # Classes come before those that contain them.
+    # A class must come before the classes that contain it.
     order = sorted(parts, key=lambda name: any(key["type"] == "table" for key in parts[name][1]))
     text = HEADER + "".join(class_text(name, *parts[name]) for name in order)
     with open(output, "w", encoding="utf-8") as file:

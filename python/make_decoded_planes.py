@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes tofsmith/_decoded_planes.py, the planes of a decoded frame, of their description in C++.
+"""Makes tofsmith/_decoded_planes.py, the planes of a decoded frame, from their description in C++.
 
     make_decoded_planes.py KEYS_PROGRAM OUTPUT
 """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes tofsmith/_option_fields.py, the options of functions, of their descriptions in C++.
+"""Makes tofsmith/_option_fields.py, the options of functions, from their descriptions in C++.
 
     make_option_fields.py KEYS_PROGRAM OUTPUT
 """
@@ -22,19 +22,19 @@ from ._check import Path
 from ._option import Option
 '''
 
-# Classes of structs that are fields of others.
+# Classes of structs that are fields of other structs.
 NESTED = {"factorize": "FactorizeOptions", "optimize": "OptimizeOptions",
           "search": "ChipSearchOptions", "decoding": "MultipathOptions", "prior": "ReturnPrior"}
-# Fields that functions take in other ways, by struct.
+# Fields that are separate arguments of functions, by struct.
 ELSEWHERE = {"CaptureOptions": {"signal_e_per_s", "ambient_e_per_s"},
              "RequirementOptions": {"error_m"}, "ExportOptions": {"format"},
              "SceneSource": {"scene"}, "MultipathOptions": {"status_thresholds"},
              "UploadRequest": {"filter"},
              "DecodeRequest": {"time_filter", "filter", "raw_format"}}
-# Classes for functions that take a part of the fields of a struct.
+# Classes for functions with a part of the fields of a struct.
 PARTS = {"StreamOptions": ("DecodeRequest", {"layout", "dataset", "all_points", "frame", "stack",
                                              "memory_mb"})}
-# Classes for functions that take the fields of several structs.
+# Classes for functions with the fields of several structs.
 JOINED = {"UploadOptions": ("UploadSelection", "UploadRequest")}
 # Texts that name files.
 FILES = {"image", "ambient_image"}

@@ -14,11 +14,11 @@ namespace tofsmith::python {
 
 namespace py = pybind11;
 
-/// What arguments of any number type become: float64, C order; a copy only where they are not.
+/// Arguments of any number type, converted to float64 in C order; copied only if necessary.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-/// A NumPy array that owns the values: nothing is copied.
+/// Returns a NumPy array that owns the values. Nothing is copied.
 template <typename Value>
 py::array_t<Value> adopt(std::vector<Value>&& values, std::vector<py::ssize_t> shape) {
   auto* const owner = new std::vector<Value>(std::move(values));
@@ -32,28 +32,28 @@ py::array_t<Value> adopt(std::vector<Value>&& values) {
   return adopt(std::move(values), {size});
 }
 
-/// (rows, columns), in Eigen's order of memory: nothing is copied.
+/// Returns an array (rows, columns) in Eigen's memory order. Nothing is copied.
 py::array_t<double> adopt(Eigen::MatrixXd&& matrix);
 py::array_t<double> adopt(Eigen::VectorXd&& vector);
-/// (H, W); shape (0, 0) of an empty image.
+/// Returns an array (H, W); shape (0, 0) for an empty image.
 py::array_t<float> adopt(Image<float>&& image);
 
 Eigen::VectorXd to_vector(const Doubles& values);
 /// @throws std::invalid_argument naming the argument unless it has two axes
 Eigen::MatrixXd to_matrix(const Doubles& values, const char* argument);
-/// An image of shape (H, W); None is an empty one.
+/// Converts an array (H, W) to an image; None to an empty image.
 /// @throws std::invalid_argument naming the argument unless it has two axes
 Image<float> to_image(const py::object& values, const char* argument);
-/// The same out of a dict of options, where it stands no more; empty if it does not.
+/// Returns and removes an image from a dict of options; empty if there is none.
 Image<float> taken_image(const py::dict& options, const char* name);
 
-/// Frames of shape (F, H, W, K); None is none of them.
+/// Converts an array (F, H, W, K) to frames; None to no frames.
 /// @throws std::invalid_argument naming the argument unless it has four axes
 RawFrames to_raw_frames(const py::object& values, const char* argument);
-/// (F, H, W, K): nothing is copied.
+/// Returns an array (F, H, W, K). Nothing is copied.
 py::array_t<float> adopt(RawFrames&& raw);
 
-/// As Python writes it: "(480, 640, 4)".
+/// Returns the shape in Python notation: "(480, 640, 4)".
 std::string shape_of(const py::array& array);
 
 /// Throws std::invalid_argument "`argument`: got `got`; needs `needs`".

@@ -8,7 +8,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// mae_m at a light level, with the signal scaled uniformly in (0, 1) if asked.
+/// Returns mae_m at a light level, with the signal scaled uniformly in (0, 1) if requested.
 template <typename Bound>
 double mae_m(const Bound& bound, double signal_e_per_s, double ambient_e_per_s,
              bool uniform_albedo) {

@@ -124,7 +124,7 @@ py::array_t<float> stacked(const Images& images, const ImageOf& image_of) {
                {static_cast<py::ssize_t>(images.size()), first.height, first.width});
 }
 
-/// A scene by name or file, of a width and height if they are given.
+/// Loads a scene by name or file, with a width and height if given.
 LoadedScene loaded_scene(const std::string& name, const py::dict& size, const Camera& camera) {
   SceneSource source{.scene = name};
   read_options(size, "", source);
@@ -132,7 +132,7 @@ LoadedScene loaded_scene(const std::string& name, const py::dict& size, const Ca
   return load_scene(source, camera.lens);
 }
 
-/// How light bounces on the way to this camera: what `simulate --bounce-rays` says.
+/// Returns the options for indirect light with this camera, as for `simulate --bounce-rays`.
 /// @throws std::invalid_argument if the scene has no surfaces out of view
 BounceOptions bounce_options(const LoadedScene& scene, const Camera& camera, int rays) {
   if (!scene.staged)
@@ -161,8 +161,8 @@ py::tuple bounced_light_arrays(const std::string& name, const py::dict& size, co
                         adopt(std::move(ratio)));
 }
 
-/// An image as it is, shapes through the camera's lens.
-/// @param bounce_rays  0: light does not bounce
+/// Captures an image directly, or shapes through the camera's lens.
+/// @param bounce_rays  0: no indirect light
 py::dict capture_staged(const std::string& name, const py::dict& size, const py::dict& returns,
                         int bounce_rays, const CodeSet& code, const Camera& camera,
                         const py::dict& given, const py::object& callback) {

@@ -13,7 +13,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// Two levels, the lower of which is 0, become switching times: the rule of NPZ files.
+/// Converts samples with two levels, the lower of which is 0, to switching times, as for NPZ files.
 Waveform waveform_of(const Eigen::VectorXd& samples) {
   const double peak = samples.maxCoeff();
   for (const double value : samples)

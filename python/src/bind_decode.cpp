@@ -43,7 +43,7 @@ std::unique_ptr<FrameBackend> backend_of(const DecodingTable& table, const py::d
   return frame_backend(device, make_decoder(method, table, options, weights, multipath));
 }
 
-/// The planes of a stack of frames, in arrays that Python allocated.
+/// The planes of a stack of frames, in arrays allocated by Python.
 class Planes {
  public:
   Planes(const py::dict& arrays, const RawArray& raw) : shape_(raw.plane_shape()) {
@@ -104,7 +104,7 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
         {.filter = filter ? &filter->filter() : nullptr,
          .keeps_filtered = corrections.mixed || corrections.limits || planes.view().averaged},
         raw.height, raw.width);
-    std::vector<float> signal;  // where the correction alone needs it
+    std::vector<float> signal;  // if only the correction needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
       signal.resize(pixels);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
@@ -182,7 +182,7 @@ py::dict decode_a_stream(const FrameBackend& backend, const py::object& source,
     try {
       decode_stream(request, backend, reading_from(source), sink.stream(), progress, result);
     } catch (const FrameSink::Stopped&) {
-      ++result.frames;  // that was taken
+      ++result.frames;  // this frame was taken
     }
   });
   py::dict dict;

@@ -51,14 +51,14 @@ py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   return dict;
 }
 
-/// A finished design with what it was asked, to be written as the command writes it.
+/// A finished design with its request, written as by the command line.
 struct FinishedDesign {
   Camera camera;
   DesignOptions options;
   DesignResult result;
 };
 
-/// The directory of `tofsmith design -o`, with its report.
+/// Writes the directory of `tofsmith design -o`, with its report.
 void write_design(const FinishedDesign& design, const std::string& path, bool overwrite) {
   const py::gil_scoped_release release;
   const DesignDirectory directory(path);
@@ -91,7 +91,7 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
   return dict;
 }
 
-/// Requirements with what was asked, to be written as the command writes them.
+/// Requirements with their request, written as by the command line.
 struct FoundRequirements {
   Camera camera;
   RequirementOptions options;
@@ -136,7 +136,7 @@ py::dict requirements_dict(const Camera& camera, const py::dict& values,
   return dict;
 }
 
-/// The directory of `tofsmith require -o`, with its page.
+/// Writes the directory of `tofsmith require -o`, with its page.
 void write_found(const FoundRequirements& asked, const std::string& path, bool overwrite) {
   const py::gil_scoped_release release;
   write_requirements(path, asked.camera, asked.found, asked.options, policy_of(overwrite));

@@ -12,7 +12,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// A page that shows one figure and no more.
+/// Returns a page with a single figure.
 std::string page_of(Figure figure) {
   return render({.sections = {{"", {std::move(figure)}, SectionLayout::front}}});
 }

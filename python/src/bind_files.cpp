@@ -15,7 +15,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// All frames as (F, H, W, K) floats.
+/// Returns all frames as (F, H, W, K) floats.
 py::array_t<float> read_raw(const std::string& path, const std::optional<int>& measurements,
                             const std::string& layout, const std::optional<std::string>& format,
                             const std::string& dataset) {

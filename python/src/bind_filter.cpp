@@ -38,7 +38,7 @@ TimeFilterOptions time_filter_options(const py::dict& values) {
 
 namespace {
 
-/// Raw numbers and of how many each is the mean, of frames one after another.
+/// Raw numbers of consecutive frames, with the number of averaged measurements.
 class FilteredFrames {
  public:
   explicit FilteredFrames(int measurements) : measurements_(measurements) {}
@@ -53,8 +53,8 @@ class FilteredFrames {
     averaged_.insert(averaged_.end(), frame.averaged, frame.averaged + pixels);
     ++frames_;
   }
-  /// Arrays of (H, W, K) and (H, W) if there is one frame that comes alone, else (F, H, W, K) and
-  /// (F, H, W).
+  /// Returns arrays of shape (H, W, K) and (H, W) for a single frame if `alone`, else (F, H, W, K)
+  /// and (F, H, W).
   py::tuple arrays(bool alone) {
     std::vector<py::ssize_t> shape = {frames_, height_, width_};
     if (alone) shape.erase(shape.begin());
@@ -68,7 +68,7 @@ class FilteredFrames {
   std::vector<float> numbers_, averaged_;
 };
 
-/// Has `filter(frame, progress)` give what comes of each frame, if anything does.
+/// Calls `filter(frame, progress)` for each frame and collects the results, if any.
 template <typename FilterFrame>
 py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measurement_count,
                         const py::object& averaged_before, const py::object& callback,

@@ -10,8 +10,8 @@
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/design/code_gradients.hpp"
 
-// The steps of tofsmith.torch, which checks and shapes what comes: here arrays of B codes, C order,
-// (B, N, K) of tables, (B, P, K) of measurements, (B, P) of light.
+// The steps of tofsmith.torch, which checks and reshapes the arguments: arrays of B codes in C
+// order, (B, N, K) for tables, (B, P, K) for measurements, (B, P) for light.
 namespace tofsmith::python {
 
 namespace {
@@ -19,15 +19,15 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Shape = std::vector<py::ssize_t>;
 
-/// Matrix or vector b of an array.
+/// Returns matrix or vector b of an array.
 Eigen::Map<const RowMajor> matrix_of(const Doubles& values, py::ssize_t b) {
   return {values.data() + b * values.shape(1) * values.shape(2), values.shape(1), values.shape(2)};
 }
 Eigen::Map<const Eigen::VectorXd> vector_of(const Doubles& values, py::ssize_t b) {
   return {values.data() + b * values.shape(1), values.shape(1)};
 }
-/// Of that very kind: another would be converted, which threads without the lock of the interpreter
-/// must not do.
+/// Requires exactly this type, because threads without the interpreter's lock must not convert
+/// arrays.
 template <typename Value>
 using Measured = py::array_t<Value, py::array::c_style>;
 template <typename Value>
@@ -36,7 +36,7 @@ std::span<const Value> span_of(const Measured<Value>& values, py::ssize_t b) {
   return {values.data() + static_cast<std::size_t>(b) * size, size};
 }
 
-/// Writes what was made for code b into an array.
+/// Writes the result for code b into an array.
 template <typename Value, typename Matrix>
 void put(Value* data, py::ssize_t b, const Matrix& matrix) {
   using Rows = Eigen::Matrix<Value, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -62,7 +62,7 @@ TableArrays arrays_of(const TableTuple& table) {
   return {std::get<0>(table), std::get<1>(table), std::get<2>(table), std::get<3>(table)};
 }
 
-/// Tables that are made code by code; written to from any thread.
+/// Tables computed code by code; any thread may write to them.
 class MadeTables {
  public:
   MadeTables(const CodeGradients& steps, py::ssize_t codes)
@@ -95,7 +95,7 @@ class MadeTables {
   double *shot_data_ = nullptr, *shot_ambient_data_ = nullptr;
 };
 
-/// Works on every code, without the lock of the interpreter.
+/// Processes every code without the interpreter's lock.
 template <typename Work>
 void for_each_code(py::ssize_t codes, const Work& work) {
   const py::gil_scoped_release release;
@@ -230,7 +230,7 @@ std::vector<OperatingPoint> points_of(const Doubles& signal, const Doubles& ambi
   return points;
 }
 
-/// Lights (B, L) to deviations (B, L, 4 N).
+/// Converts lights (B, L) to deviations (B, L, 4 N).
 Doubles depth_deviation_m(const CodeGradients& steps, const TableTuple& table,
                           const Doubles& signal, const Doubles& ambient) {
   const TableArrays tables = arrays_of(table);

@@ -14,7 +14,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// The planes of a scene and its lens, by name.
+/// Returns the planes of a scene and its lens, by name.
 py::dict load(const std::string& name, const py::object& lens, const py::dict& values) {
   SceneSource source{.scene = name};
   OptionReader(values, "").fields(source, {"scene"}).finish();
@@ -42,7 +42,7 @@ py::array_t<float> convert(const py::object& depth_m, const py::dict& lens,
   return adopt(how(image, pixel_rays(lens, image.width, image.height)));
 }
 
-/// (H, W, 3), NaN without depth.
+/// Returns points of shape (H, W, 3); NaN without depth.
 py::array_t<float> points(const py::object& radial_m, const py::dict& lens) {
   const Image<float> radial = to_image(radial_m, "radial_m");
   const PixelRays rays = pixel_rays(lens, radial.width, radial.height);

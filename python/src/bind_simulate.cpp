@@ -13,7 +13,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// Options of their own from a dict.
+/// Reads a struct of options from a dict.
 template <typename Options>
 Options options_of(const py::dict& values) {
   Options options;

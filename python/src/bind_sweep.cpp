@@ -26,7 +26,7 @@ py::array array_of(const NpyArray& array) {
                {array.shape().begin(), array.shape().end()});
 }
 
-/// The arrays of an export, which hold doubles, int64 and bytes of texts.
+/// Converts the arrays of an export: doubles, int64 and bytes of texts.
 py::dict arrays_dict(const NpzArrays& arrays) {
   py::dict dict;
   for (const auto& [name, array] : arrays) {
@@ -40,7 +40,7 @@ py::dict arrays_dict(const NpzArrays& arrays) {
   return dict;
 }
 
-/// What is in a store of the items of a sweep.
+/// Contents of a store for the items of a sweep.
 struct Stored {
   SweepCounts counts;
   NpzArrays arrays;
@@ -108,7 +108,8 @@ std::vector<OutcomeTuple> compute(const WorkList& list, const std::vector<ItemTu
   return outcomes;
 }
 
-/// A sweep with its store and the queue of its unfinished items, which others compute.
+/// A sweep with its store and the queue of unfinished items, which may be shared with other
+/// processes.
 class BoundSweepRun {
  public:
   BoundSweepRun(const std::string& sweep, bool is_text, const std::string& path,

@@ -47,7 +47,7 @@ TrainingSetOptions set_options(const py::dict& values, const Camera& camera) {
   return options;
 }
 
-/// Asks Python for a scene, from any thread.
+/// Loads a scene through Python, from any thread.
 LoadedTrainingScene load_scene(const py::object& load, const std::string& name) {
   const py::gil_scoped_acquire gil;
   try {
@@ -56,8 +56,8 @@ LoadedTrainingScene load_scene(const py::object& load, const std::string& name) 
     loaded.view =
         checked_view(py::dict(scene["lens"]), loaded.image.width(), loaded.image.height());
     return loaded;
-  } catch (const py::error_already_set& error) {  // goes with its thread state
-    // Without the traceback: the index depends on the scenes alone.
+  } catch (const py::error_already_set& error) {  // destroyed with its thread state
+    // Without the traceback, because the index must depend on the scenes only.
     const std::string text = error.what();
     throw std::runtime_error(text.substr(0, text.find("\n\nAt:\n")));
   }
@@ -94,7 +94,7 @@ py::dict write_set(const std::string& directory, const std::vector<std::string>&
   return run_dict(run);
 }
 
-/// Name, entry of the index, problem, and whether it was written now.
+/// Name, entry of the index, problem, and whether the scene was written by this call.
 using SceneTuple = std::tuple<std::string, std::string, std::string, bool>;
 
 /// A training set whose scenes are written by several processes.

@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-// One function per part of the module, each in a file of its own: pybind11 compiles slowly.
+// One function per part of the module, each in a separate file, because pybind11 compiles slowly.
 namespace tofsmith::python {
 
 namespace py = pybind11;

@@ -10,10 +10,10 @@
 
 namespace tofsmith::python {
 
-/// A spatial filter with the backend that runs it.
+/// A spatial filter and its backend.
 class BoundFilter {
  public:
-  /// @param device  as of frame_backend()
+  /// @param device  as in frame_backend()
   BoundFilter(Filter filter, const std::string& device)
       : filter_(std::make_unique<const Filter>(std::move(filter))),
         backend_(frame_backend(device, make_decoder(DecodeMethod::zncc, filter_->table()))) {}

@@ -7,8 +7,8 @@
 
 namespace tofsmith::python {
 
-/// A scene from its planes by name, each (H, W) or None.
-/// @throws std::invalid_argument naming the plane that does not fit
+/// Creates a scene from its planes by name, each (H, W) or None.
+/// @throws std::invalid_argument naming the invalid plane
 SceneImage scene_of(const py::dict& planes);
 
 }  // namespace tofsmith::python

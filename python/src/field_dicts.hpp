@@ -11,9 +11,9 @@
 #include "reports.hpp"
 #include "tofsmith/core/fields.hpp"
 
-// Results as dicts of numbers and arrays, by the names of their fields, and back. An estimate x_m
-// is that and x_se_m beside it. A list of structs is an array, or a list of texts, for each of
-// their fields; one whose name is taken has "point_" before it.
+// Conversion between results and dicts of numbers and arrays with the names of their fields. An
+// estimate x_m becomes x_m and its standard error x_se_m. A list of structs becomes one array (or
+// list of texts) per field; the prefix "point_" resolves name conflicts.
 namespace tofsmith::python {
 
 /// Calls `visit` with the name and value of every number and text of a struct.
@@ -33,7 +33,7 @@ void for_each_entry(Struct& its, Visit&& visit) {
   });
 }
 
-/// Entry number `index` of every struct; each has the type `Value`.
+/// Returns entry number `index` of every struct; all have the type `Value`.
 template <typename Value, typename Structs, typename Visit>
 void for_each_of_column(Structs& items, int index, Visit&& visit) {
   for (auto& item : items) {
@@ -87,7 +87,7 @@ py::dict fields_dict(const Struct& its) {
   return dict;
 }
 
-/// @throws std::invalid_argument naming a column that is of another length than those before it
+/// @throws std::invalid_argument naming a column whose length differs from the previous ones
 template <typename Struct>
 void read_columns(const py::dict& values, std::vector<Struct>& items) {
   Struct blank{};
@@ -106,8 +106,7 @@ void read_columns(const py::dict& values, std::vector<Struct>& items) {
   });
 }
 
-/// The struct that fields_dict() made such a dict of. @throws pybind11 errors for what is missing
-/// or of another type
+/// Inverse of fields_dict(). @throws pybind11 errors for missing fields and wrong types
 template <typename Struct>
 Struct fields_from_dict(const py::dict& values) {
   Struct its;

@@ -12,7 +12,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// Lends bytes to a call of Python, which cannot keep them.
+/// Provides bytes to a Python call, which cannot keep them.
 class LentBytes {
  public:
   explicit LentBytes(std::span<std::byte> bytes)
@@ -22,7 +22,7 @@ class LentBytes {
                                           std::ssize(bytes))) {}
   LentBytes(const LentBytes&) = delete;
   LentBytes& operator=(const LentBytes&) = delete;
-  /// An exporter that is still in use may not be released; nothing can be done about it here.
+  /// An exporter that is still in use must not be released; this cannot be handled here.
   ~LentBytes() {
     const py::error_scope scope;
     if (PyObject* done = PyObject_CallMethod(view_.ptr(), "release", nullptr))
@@ -36,7 +36,7 @@ class LentBytes {
   py::memoryview view_;
 };
 
-/// What readinto() and write() say.
+/// Converts the results of readinto() and write().
 std::size_t count_of(const py::object& said, std::size_t most, const char* argument) {
   if (said.is_none())
     refuse(argument, "None: a stream that does not wait", "one that waits until there is more");

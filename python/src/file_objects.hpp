@@ -12,17 +12,17 @@ namespace tofsmith::python {
 
 namespace py = pybind11;
 
-/// Reads a binary file object of Python: by its readinto(), or else its read(). Needs no GIL.
+/// Reads a binary file object of Python with its readinto(), or else its read(). Needs no GIL.
 ReadStream reading_from(const py::object& source);
 
-/// Hands frames of decode_stream() to Python: the bytes of each plane to `write`, or a dict of
-/// arrays (H, W) by the words of planes to `take`; one of both is None. Needs no GIL.
+/// Passes frames of decode_stream() to Python: the bytes of each plane to `write`, or a dict of
+/// arrays (H, W) by the words of the planes to `take`; one of the two is None. Needs no GIL.
 class FrameSink {
  public:
   /// Thrown through decode_stream() once `take` has returned False.
   struct Stopped {};
 
-  /// @param result  of decode_stream(), which says the size of frames
+  /// @param result  of decode_stream(), contains the size of the frames
   FrameSink(py::object take, py::object write, std::vector<DecodedPlane> planes,
             const DecodedStream& result)
       : take_(std::move(take)),

@@ -11,10 +11,10 @@ namespace tofsmith::python {
 
 namespace py = pybind11;
 
-/// The options of a strength, the entry "strength", with the fields that a dict has of its own.
-/// @throws std::invalid_argument for names that no field has, and rules that are broken
+/// Returns the options of the strength in entry "strength", overridden by the other entries.
+/// @throws std::invalid_argument for unknown names and violated rules
 FilterOptions filter_options(const py::dict& values);
-/// The same of a filter in time, without strength.
+/// Returns the options of a temporal filter, which has no strength.
 TimeFilterOptions time_filter_options(const py::dict& values);
 
 }  // namespace tofsmith::python

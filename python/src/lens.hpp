@@ -13,15 +13,15 @@ namespace tofsmith::python {
 
 namespace py = pybind11;
 
-/// A lens from a dict of the keys of a camera file.
+/// Converts a dict with the keys of a camera file to a lens.
 Lens to_lens(const py::dict& lens);
-/// None of None.
+/// As to_lens(); None is converted to none.
 std::optional<Lens> to_optional_lens(const py::object& lens);
-/// The lens of a view as such a dict.
+/// Returns the lens of a view as a dict.
 py::dict lens_dict(const PinholeView& view);
-/// What an image of this size is seen through. @throws std::invalid_argument as its validate()
+/// Returns the view of images of this size. @throws std::invalid_argument as its validate()
 PinholeView checked_view(const py::dict& lens, int width, int height);
-/// Its rays. @throws IoError also for a file of rays that does not fit
+/// Returns the rays of that view. @throws IoError also for a file of rays that does not match
 PixelRays pixel_rays(const py::dict& lens, int width, int height);
 
 }  // namespace tofsmith::python

@@ -10,7 +10,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// What the command line calls --force is overwrite here.
+/// Replaces --force of the command line by overwrite.
 std::string in_words_of_python(std::string message) {
   constexpr std::string_view flag = "--force";
   const std::size_t place = message.find(flag);
@@ -18,7 +18,7 @@ std::string in_words_of_python(std::string message) {
   return message;
 }
 
-/// Raises `type` with the message and with what the error speaks of as attributes.
+/// Raises `type` with the message and with details of the error as attributes.
 void raise(PyObject* type, const std::string& message,
            std::initializer_list<std::pair<const char*, std::string>> attributes) {
   const py::object error = py::reinterpret_borrow<py::object>(type)(message);
@@ -39,7 +39,7 @@ py::dict build_info_dict() {
   return dict;
 }
 
-/// Holds the number of threads from call to call.
+/// Number of threads for all calls.
 class ThreadSetting {
  public:
   void set(int threads) {
@@ -53,9 +53,9 @@ class ThreadSetting {
 
 }  // namespace
 
-// The package tofsmith checks classes and documents; here arguments have no names, and options come
-// as dicts. std::invalid_argument becomes ValueError, with field, value and rule where it has them;
-// IoError becomes OSError with its place.
+// The package tofsmith checks classes and documents them; the functions here have unnamed
+// arguments, and options are dicts. std::invalid_argument becomes ValueError, with field, value and
+// rule if known; IoError becomes OSError with its place.
 PYBIND11_MODULE(_tofsmith, module) {
   py::options options;
   options.disable_function_signatures();

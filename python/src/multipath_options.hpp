@@ -10,8 +10,8 @@
 
 namespace tofsmith::python {
 
-/// Options of two-return and tail decoding from a dict, which errors call `owner`.
-/// @throws std::invalid_argument naming what breaks a rule, or an unknown name
+/// Reads the options of two-return and tail decoding from a dict; `owner` is its name in errors.
+/// @throws std::invalid_argument naming the violated rule or an unknown name
 MultipathOptions multipath_options(const pybind11::dict& values, const std::string& owner,
                                    double range_m);
 

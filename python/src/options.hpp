@@ -19,7 +19,7 @@
 
 namespace tofsmith::python {
 
-/// What a Python value must be to become a `Value`, in words.
+/// Returns the required Python value for a `Value`, as text.
 template <typename Value>
 std::string needed() {
   if constexpr (is_optional<Value>) {
@@ -28,7 +28,7 @@ std::string needed() {
     return "True or False";
   } else if constexpr (std::is_integral_v<Value>) {
     using Limits = std::numeric_limits<Value>;
-    if (std::is_signed_v<Value>) return "a whole number";  // which rules bound further
+    if (std::is_signed_v<Value>) return "a whole number";  // further limited by rules
     return "a whole number from 0 to " + std::to_string(Limits::max());
   } else if constexpr (std::is_floating_point_v<Value>) {
     return "a number";
@@ -43,7 +43,7 @@ std::string needed() {
   }
 }
 
-/// Whether a Python value becomes a whole number.
+/// Returns true if a Python value is converted to a whole number.
 template <typename Value>
 constexpr bool is_whole() {
   if constexpr (is_optional<Value>) return is_whole<typename Value::value_type>();
@@ -60,14 +60,14 @@ constexpr bool is_given() {
            std::is_same_v<Value, std::string> || std::is_same_v<Value, std::filesystem::path>;
 }
 
-/// 1e4 as 10000; everything else as it is.
+/// Converts 1e4 to 10000; returns anything else unchanged.
 py::object whole_number_of(const py::object& given);
 
 /// Converts a sequence of numbers, or a single number, to a list; returns anything else unchanged.
-/// @param whole  1e4 as 10000
+/// @param whole  convert 1e4 to 10000
 py::object as_numbers(const py::object& given, bool whole);
 
-/// How a refusal shows what was given: "str 'abc'".
+/// Returns a description of a value for errors: "str 'abc'".
 std::string shown(py::handle value);
 
 template <typename Options>
@@ -76,7 +76,7 @@ void read_options(const py::dict& values, const std::string& owner, Options& opt
 /// Sets fields of an options struct from a dict of their names. None leaves the default.
 class OptionReader {
  public:
-  /// @param owner  what the options belong to, for errors: "factorize"; "" for arguments themselves
+  /// @param owner  owner of the options in errors: "factorize"; "" for arguments
   OptionReader(const py::dict& values, std::string owner);
 
   template <typename Value>
@@ -87,13 +87,13 @@ class OptionReader {
     if constexpr (is_list<Value>)
       if constexpr (std::is_arithmetic_v<typename Value::value_type>)
         given = as_numbers(given, is_whole<typename Value::value_type>());
-    // A bool must be one; a text is no list.
+    // A bool must be a bool, and a text is not a list.
     py::detail::make_caster<Value> caster;
     if (!caster.load(given, !std::is_same_v<Value, bool>)) wrong_type(name, given, needed<Value>());
-    field = Value(py::detail::cast_op<Value&>(caster));  // a copy assigned makes GCC 14 warn
+    field = Value(py::detail::cast_op<Value&>(caster));  // assigning a copy makes GCC 14 warn
     return *this;
   }
-  /// A field that a function makes of a text.
+  /// Sets a field from a text with a function.
   template <typename Value, typename Parse>
   OptionReader& word(const char* name, Value& field, Parse parse) {
     std::optional<std::string> text;
@@ -101,9 +101,9 @@ class OptionReader {
     if (text) field = parse(*text);
     return *this;
   }
-  /// A file's name: a text or an os.PathLike.
+  /// Sets a file name from a text or an os.PathLike.
   OptionReader& path(const char* name, std::filesystem::path& field);
-  /// All fields of a struct that users set, but those named.
+  /// Sets all user-settable fields of a struct, except the named ones.
   template <typename Options>
   OptionReader& fields(Options& options, std::initializer_list<std::string_view> but = {}) {
     for_each_field(options, [&](const auto& field) {
@@ -114,9 +114,9 @@ class OptionReader {
     });
     return *this;
   }
-  /// The entry, a dict of its own, or an empty one.
+  /// Returns an entry that is a dict; an empty dict without the entry.
   py::dict table(const char* name);
-  /// @throws std::invalid_argument for names that no field has, with the nearest that one has
+  /// @throws std::invalid_argument for unknown names, with the most similar known one
   void finish() const;
 
  private:
@@ -163,8 +163,8 @@ class OptionReader {
   std::vector<std::string> known_;
 };
 
-/// All fields of an options struct from a dict.
-/// @throws as OptionReader, also for names that no field has
+/// Reads all fields of an options struct from a dict.
+/// @throws as OptionReader, also for unknown names
 template <typename Options>
 void read_options(const py::dict& values, const std::string& owner, Options& options) {
   OptionReader(values, owner).fields(options).finish();

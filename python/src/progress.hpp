@@ -15,14 +15,14 @@ namespace tofsmith::python {
 
 namespace py = pybind11;
 
-/// Between the library's progress and Python: runs signal handlers, so that Ctrl-C stops the work,
-/// and calls `callback(fraction, step)` unless it is None, at most 50 times a second. The work
-/// stops if the callback returns False or raises.
+/// Connects the library's progress to Python: runs signal handlers, so that Ctrl-C cancels, and
+/// calls `callback(fraction, step)` unless it is None, at most 50 times per second. The work is
+/// cancelled if the callback returns False or raises.
 class ProgressBridge {
  public:
   explicit ProgressBridge(py::object callback) : callback_(std::move(callback)) {}
   Progress progress();
-  /// What Python raised while the work ran, if anything.
+  /// Rethrows an exception of Python that was raised during the work.
   void rethrow() const;
 
  private:
@@ -33,7 +33,8 @@ class ProgressBridge {
   std::chrono::steady_clock::time_point next_;
 };
 
-/// work(progress) without the GIL. An exception of the callback or of a signal handler passes on.
+/// Calls work(progress) without the GIL. Exceptions of the callback or of a signal handler
+/// propagate.
 template <typename Work>
 auto without_gil(const py::object& callback, Work&& work) {
   ProgressBridge bridge(callback);

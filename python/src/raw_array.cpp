@@ -14,7 +14,7 @@ namespace {
 
 using Data = decltype(RawView::data);
 
-/// Where the numbers begin, by their type.
+/// Returns a typed pointer to the first number.
 Data data_of(const py::array& array, py::ssize_t offset_bytes) {
   const auto* const begin = static_cast<const char*>(array.data()) + offset_bytes;
   const py::dtype type = array.dtype();
@@ -32,7 +32,7 @@ Data data_of(const py::array& array, py::ssize_t offset_bytes) {
          "float32, float64, uint16 or uint8 in this machine's byte order");
 }
 
-/// Elements from one item of an axis to the next.
+/// Returns the distance between items of an axis, in elements.
 std::ptrdiff_t stride_of(const py::array& array, py::ssize_t axis) {
   const py::ssize_t bytes = array.strides(axis), item = array.itemsize();
   if (bytes % item != 0)

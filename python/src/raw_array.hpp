@@ -9,17 +9,17 @@
 
 namespace tofsmith::python {
 
-/// The frames of a raw array where they are: nothing is copied, whatever the strides.
+/// A view of the frames of a raw array with any strides. Nothing is copied.
 struct RawArray {
   std::vector<RawView> frames;
-  bool is_stack = false;  ///< had an axis of frames
+  bool is_stack = false;  ///< has an axis of frames
   int height = 0;
   int width = 0;
 
   /// (H, W) or (F, H, W).
   std::vector<py::ssize_t> plane_shape() const;
-  /// Of how many measurements each number is the mean.
-  /// @param averaged  of plane_shape(), each > 0; outlives the frames
+  /// Sets the number of measurements averaged in each pixel.
+  /// @param averaged  of plane_shape(), each > 0; must outlive the frames
   /// @throws std::invalid_argument for another shape or numbers that are not > 0
   void set_averaged(const Floats& averaged);
 };

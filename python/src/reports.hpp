@@ -13,14 +13,13 @@ namespace tofsmith::python {
 /// (value, standard error).
 pybind11::tuple pair_of(const Estimate& estimate);
 
-/// What is not of its kind is left out.
+/// Returns a dict without the fields that the kind does not have.
 pybind11::dict impulse_response_dict(const ImpulseResponse& response);
 
-/// Results as dicts of numbers and arrays, under the names of the C++ fields; what belongs to
-/// operating points is an array of one entry per point.
+/// Converts results to dicts of numbers and arrays, with the names of the C++ fields; values per
+/// operating point become arrays with one entry per point.
 pybind11::dict report_dict(const DepthErrorReport& report);
-/// The report that such a dict is of. @throws pybind11 errors for what is missing or of another
-/// type
+/// Inverse of report_dict(). @throws pybind11 errors for missing entries or wrong types
 DepthErrorReport report_of(const pybind11::dict& values);
 pybind11::dict loss_dict(const GeneratorLoss& loss);
 pybind11::dict robustness_dict(const RobustnessReport& report);

@@ -9,8 +9,8 @@
 
 namespace tofsmith::python {
 
-/// A ThreadLimit that calls in several threads share: it exists while any of them runs, with the
-/// number of threads of the first.
+/// A ThreadLimit shared by calls in several threads: it exists while any of them runs, with the
+/// number of threads of the first call.
 class SharedThreadLimit {
  public:
   explicit SharedThreadLimit(int threads) {

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Cameras: light source, sensor, lens and the light levels at which codes are judged."""
+"""Cameras: light source, sensor, lens and the light levels at which codes are evaluated."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _arm(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _toml(value: Any, name: str) -> str:
-    """The value as the right side of `key = ..`."""
+    """Returns the value as the right side of `key = ...`."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
@@ -75,8 +75,8 @@ def _toml(value: Any, name: str) -> str:
 
 
 def _settings(keys: Mapping[str, Any]) -> list[str]:
-    """Keywords as `key=value`: keys of light, sensor, raw, optics, operating and temperature one by
-    one, so that others stay."""
+    """Returns keywords as `key=value`. Keys of light, sensor, raw, optics, operating and
+    temperature become separate settings, so that their other keys do not change."""
     settings = []
     for key, value in keys.items():
         if key in ("light", "sensor", "raw", "optics", "operating", "temperature") and isinstance(value, Mapping):
@@ -89,25 +89,25 @@ def _settings(keys: Mapping[str, Any]) -> list[str]:
 class Camera:
     """A continuous-wave time-of-flight camera. Immutable; pickles.
 
-    Keys are those of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`, `samples`,
-    `light`, `sensor`, `raw`, `lens`, `optics`, `operating`, `playback`, `temperature`; see
-    docs/cameras.md. Those of light, sensor, raw, optics, operating and temperature are dicts, of
-    which keys left out keep what they are.
+    Keywords are the keys of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`,
+    `samples`, `light`, `sensor`, `raw`, `lens`, `optics`, `operating`, `playback`, `temperature`;
+    see docs/cameras.md. light, sensor, raw, optics, operating and temperature are dicts; keys that
+    they do not contain do not change.
 
     Parameters
     ----------
     name_or_path : str or path, optional
-        A built-in camera (`built_in_camera_names()`) or a .toml file. None: the defaults, with
-        `fundamental_frequency_hz` needed.
+        A built-in camera (`built_in_camera_names()`) or a .toml file. None: the defaults;
+        `fundamental_frequency_hz` is then required.
     **keys
-        What is other than there.
+        Keys to override.
 
     Raises
     ------
     OSError
-        If there is no such camera, or the file says what no camera has; names file, line, column.
+        If there is no such camera, or the file is invalid; names file, line, column.
     ValueError
-        For keywords that no camera has, or values that break a rule.
+        For unknown keywords or invalid values.
 
     Examples
     --------
@@ -138,7 +138,7 @@ class Camera:
 
     @classmethod
     def from_toml(cls, text: str, source_name: str = "camera.toml") -> Camera:
-        """A camera from the text of a camera file.
+        """Creates a camera from the text of a camera file.
 
         Raises
         ------
@@ -149,7 +149,7 @@ class Camera:
         return cls._of(_tofsmith.Camera.parse(text, source_name, []))
 
     def replace(self, **keys: Any) -> Camera:
-        """The camera with some keys replaced, as in the constructor.
+        """Returns the camera with some keys replaced, as in the constructor.
 
         Examples
         --------
@@ -160,17 +160,17 @@ class Camera:
         return Camera._of(_refused(lambda: self._handle.with_settings(settings)))
 
     def to_toml(self) -> str:
-        """The camera as a file says it, every default filled in."""
+        """Returns the camera as the text of a camera file, with all defaults."""
         return self._handle.to_toml()
 
     def write(self, path: Path, *, overwrite: bool = False) -> None:
-        """Writes the camera as a file (.toml), named after it, which `design`, `evaluate` and
-        `decode` take.
+        """Writes a camera file (.toml) with the file's name as the camera's name, for `design`,
+        `evaluate` and `decode`.
 
         Raises
         ------
         OSError
-            If the file exists and `overwrite` is not set, or cannot be written.
+            If the file exists and `overwrite` is not set, or if it cannot be written.
         """
         self._handle.write(_check.path(path), bool(overwrite))
 
@@ -190,7 +190,7 @@ class Camera:
 
     @property
     def exposure_s(self) -> Union[float, tuple[float, ...]]:
-        """Integration time [s]: a total for all exposures, or one for each."""
+        """Integration time [s]: a total for all exposures, or one per exposure."""
         value = self._fields["exposure_s"]
         return tuple(value) if isinstance(value, list) else float(value)
 
@@ -218,7 +218,7 @@ class Camera:
 
     @cached_property
     def raw(self) -> RawMarkers:
-        """Raw numbers that mean saturated or invalid; none by default."""
+        """Special raw numbers for saturated or invalid measurements; none by default."""
         lists = self._fields.get("raw", {})
         return RawMarkers(**{key: tuple(map(float, numbers)) for key, numbers in lists.items()})
 
@@ -230,7 +230,7 @@ class Camera:
 
     @cached_property
     def blur(self) -> Optional[LensBlur]:
-        """How the lens blurs, if it does: the other keys of `lens`."""
+        """Blur of the lens, if any: the other keys of `lens`."""
         blur = self._lens_fields(LensBlur)
         return LensBlur(**blur) if blur else None
 
@@ -240,19 +240,19 @@ class Camera:
 
     @cached_property
     def optics(self) -> Optional[Optics]:
-        """What turns watts and lux into electrons, if the camera says it."""
+        """Conversion of watts and lux to electrons, if specified."""
         optics = self._fields.get("optics")
         return None if optics is None else Optics(**_tuples(optics))
 
     @cached_property
     def playback(self) -> Optional[Playback]:
-        """How what is played differs from what codes say, if it does."""
+        """Differences between the exposures of the camera and of the code, if specified."""
         playback = self._fields.get("playback")
         return None if playback is None else Playback(**_tuples(playback))
 
     @cached_property
     def temperature(self) -> Optional[Temperature]:
-        """How depth and signal change with the camera's temperature, if the camera says it."""
+        """Dependence of depth and signal on the temperature, if specified."""
         temperature = self._fields.get("temperature")
         if temperature is None:
             return None
@@ -264,8 +264,8 @@ class Camera:
     def at_temperature(
         self, temperature_c: float, sensor_temperature_c: Optional[float] = None
     ) -> Camera:
-        """The camera at that temperature [degrees C], by its [temperature]: what it then simulates
-        and decodes is of frames taken there.
+        """Returns the camera at a temperature [degrees C], for simulating and decoding frames
+        recorded at this temperature.
 
         Parameters
         ----------
@@ -277,7 +277,7 @@ class Camera:
         Raises
         ------
         ValueError
-            If the camera does not say how it changes.
+            If the camera has no [temperature].
 
         Examples
         --------
@@ -305,22 +305,22 @@ class Camera:
         albedo: float = 1.0,
         klux: Optional[float] = None,
     ) -> Camera:
-        """The camera judged on surfaces at these distances: `operating` has the light that its
-        optics make of them, brightest first.
+        """Returns the camera with operating points for surfaces at these distances, computed by its
+        optics, brightest first.
 
         Parameters
         ----------
         distances_m : float or sequence of float
-            [m], > 0.
+            Distances [m], > 0.
         albedo : float
-            Of the surfaces, in (0, 1].
+            Albedo of the surfaces, in (0, 1].
         klux : float, optional
-            Sunlight on them [klx], in place of the optics' own.
+            Sunlight on the surfaces [klx], overrides that of the optics.
 
         Raises
         ------
         ValueError
-            For a camera without optics, or numbers that break a rule.
+            For a camera without optics, or invalid values.
 
         Examples
         --------
@@ -345,7 +345,7 @@ class Camera:
 
     @property
     def range_m(self) -> float:
-        """Unambiguous range: depths repeat from here on [m]: c / (2 f0)."""
+        """Unambiguous range [m]: c / (2 f0)."""
         return self._handle.range_m()
 
     @property
@@ -354,7 +354,7 @@ class Camera:
         return self._handle.bin_m()
 
     def transfer(self, highest: int) -> npt.NDArray[np.complex128]:
-        """Transfer function of both arms, n = 0 .. highest: H_d(n f0) conj(H_m(n f0)).
+        """Transfer function of both arms for n = 0 to `highest`: H_d(n f0) conj(H_m(n f0)).
 
         Returns
         -------
@@ -385,7 +385,7 @@ class Camera:
 
 
 def _refused(make: Any) -> _tofsmith.Camera:
-    """Errors of keywords are of the call, not of a file."""
+    """Converts errors in keywords to ValueError, because no file is involved."""
     try:
         handle: _tofsmith.Camera = make()
         return handle
@@ -395,7 +395,7 @@ def _refused(make: Any) -> _tofsmith.Camera:
         raise
 
 
-#: Where a camera is asked for, its name or file will do.
+#: A camera, or its name or file.
 CameraLike = Union[Camera, Path]
 
 
@@ -410,10 +410,10 @@ def camera_of(camera: CameraLike) -> Camera:
 
 
 def built_in_camera_names() -> list[str]:
-    """Cameras that need no file."""
+    """Returns the names of the built-in cameras."""
     return _tofsmith.built_in_camera_names()
 
 
 def camera_keys() -> list[str]:
-    """Every key that a camera file can have, such as "light.impulse_response.f_max_hz"."""
+    """Returns all keys of camera files, such as "light.impulse_response.f_max_hz"."""
     return _tofsmith.camera_keys()

@@ -184,7 +184,7 @@ class CodeSet:
 
     @property
     def exposure_shares(self) -> tuple[float, ...]:
-        """Share of the total integration time of each exposure (E); empty: all alike."""
+        """Share of the total integration time of each exposure (E); empty: equal shares."""
         return tuple(self._handle.exposure_shares())
 
     @property
@@ -236,17 +236,18 @@ class CodeSet:
         )
 
     def with_exposure_shares(self, shares: Sequence[float]) -> CodeSet:
-        """The same code with exposures of different length.
+        """Returns the same code with exposures of different length.
 
         Parameters
         ----------
         shares : sequence of float, shape (E,)
-            Share of the total time that each exposure takes, > 0, of sum 1; empty: all alike.
+            Share of the total integration time of each exposure, > 0, of sum 1; empty: equal
+            shares.
 
         Raises
         ------
         ValueError
-            Naming the share and the rule it breaks.
+            Naming the share and the violated rule.
         """
         return CodeSet._of(self._handle.with_exposure_shares([float(share) for share in shares]))
 

@@ -315,8 +315,7 @@ class Decoder:
         sink : callable, or binary file object
             Called with the planes of each frame, a dict of arrays (H, W) with the names in
             `outputs`; returning False stops. A file object receives the bytes of these planes in
-            sequence: float32, status and returns uint8, bin int32, little endian. status and
-            returns uint8, bin int32, little end first.
+            sequence: float32, status and returns uint8, bin int32, little endian.
         raw_format : str or path
             A .raw.toml file; see docs/raw_formats.md.
         time_filter, filter, rays

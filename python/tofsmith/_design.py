@@ -225,7 +225,7 @@ def design(
     normalize : bool
         Rescale the columns of a table to [0, 1].
     effort : float, optional
-        Search effort, 0.01 .. 100 (1): e.g. 0.1 for a first look, 3 for small improvements; 0: no
+        Search effort, 0.01 to 100 (1): e.g. 0.1 for a first look, 3 for small improvements; 0: no
         search, method "atlas". Explicit options of the methods are not scaled.
     progress : callable, optional
     **options

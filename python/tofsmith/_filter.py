@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements of the same depth, in space and time, added before they are decoded."""
+"""Spatial and temporal filtering of raw measurements, before decoding."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FilterLike = Union[str, Mapping[str, Any]]
 
 
 def filter_options(filter: FilterLike) -> dict[str, Any]:
-    """The dict of a FilterLike."""
+    """Converts a FilterLike to a dict."""
     if isinstance(filter, str):
         return {"strength": filter}
     if not isinstance(filter, Mapping):
@@ -37,7 +37,7 @@ TimeFilterLike = Union[int, Mapping[str, Any]]
 
 
 def time_filter_options(time_filter: TimeFilterLike) -> dict[str, Any]:
-    """The dict of a TimeFilterLike."""
+    """Converts a TimeFilterLike to a dict."""
     if not isinstance(time_filter, Mapping):
         return {"max_frames": _check.whole(time_filter, "time_filter", 1)}
     if "max_frames" not in time_filter:
@@ -48,13 +48,13 @@ def time_filter_options(time_filter: TimeFilterLike) -> dict[str, Any]:
 def _frames(
     raw: RawLike, averaged: Optional[npt.ArrayLike], layout: str
 ) -> tuple[npt.NDArray[Any], bool, Optional[npt.NDArray[Any]]]:
-    """Raw numbers, whether they are planar, and of how many measurements they are the mean."""
+    """Returns raw numbers, whether they are planar, and the number of averaged measurements."""
     array, is_planar = _check.raw_array(raw, layout)
     return array, is_planar, _check.means(averaged, array, is_planar)
 
 
 class _OfTable:
-    """What filters know."""
+    """Base of filters, with a table and options."""
 
     _handle: Union[_tofsmith.Filter, _tofsmith.TimeFilter]
 
@@ -69,33 +69,33 @@ class _OfTable:
 
 
 class Filter(_OfTable):
-    """Adds the raw measurements of pixels that see the same depth, before anything is decoded.
-    Immutable, safe to use from many threads at once.
+    """Averages the raw measurements of neighbouring pixels at the same depth, before decoding.
+    Immutable and thread-safe.
 
-    Without ambient light, measurements of one depth are parallel whatever the albedo, so that they
-    may be added without bias; whether two pixels may be is a test that knows the noise of each. See
-    docs/filtering.md.
+    Without ambient light, measurements of one depth are parallel for any albedo, so that they can
+    be averaged without bias. A test that accounts for the noise decides whether two pixels are
+    averaged. See docs/filtering.md.
 
     Parameters
     ----------
     code : CodeSet, DecodingTable, name of a family or file
-        As Decoder takes it.
+        As in Decoder.
     camera : Camera or its name
-        Needed unless `code` is a DecodingTable.
+        Required unless `code` is a DecodingTable.
     strength : {"normal", "light", "strong"}
-        normal adds over 25 x 25 pixels, and once more along the slopes found; light over 5 x 5
-        pixels, several times as fast; strong goes along the slopes twice.
+        normal averages over 25 x 25 pixels, and once more along the estimated slopes; light over
+        5 x 5 pixels, several times as fast; strong repeats the pass along slopes.
     options : dict, optional
-        For experts: keys of FilterOptions, in place of the values of the strength.
+        For experts: keys of FilterOptions, which override the values of the strength.
     device : str, optional
-        OpenCL device that filters, as for Decoder. See docs/gpu.md.
+        OpenCL device of the filter, as for Decoder. See docs/gpu.md.
 
     Raises
     ------
     ValueError
-        For another strength, or an option that breaks a rule.
+        For an unknown strength or an invalid option.
     OSError
-        If there is no such device, or it fails.
+        If there is no such device, or the device fails.
 
     Examples
     --------
@@ -123,7 +123,7 @@ class Filter(_OfTable):
 
     @property
     def device(self) -> str:
-        """Name of the device that filters, or cpu."""
+        """Name of the OpenCL device of the filter, or cpu."""
         return self._handle.device()
 
     def apply(
@@ -139,28 +139,29 @@ class Filter(_OfTable):
         Parameters
         ----------
         raw : ndarray
-            As Decoder.decode() takes it, as it leaves the sensor. Pixels that are invalid or
-            saturated stay as they are and are added to none.
+            As in Decoder.decode(), unprocessed. Pixels that are invalid or saturated do not change
+            and do not affect others.
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional
-            Of how many measurements each pixel's numbers are the mean, where they are.
+            Number of measurements averaged in each pixel, if the numbers are already means.
         layout : {"interleaved", "planar"}
-            Never guessed.
+            Not inferred from the shape.
         progress : callable, optional
-            Called with (fraction, step); False stops.
+            Called with (fraction, step); returning False cancels.
 
         Returns
         -------
         raw : ndarray of float32, shape (H, W, K) or (F, H, W, K)
-            Raw numbers as any decoder takes them.
+            Raw numbers for any decoder.
         averaged : ndarray of float32, shape (H, W) or (F, H, W)
-            Of how many measurements each is the mean, in variance: Decoder.decode()'s `averaged`.
+            Effective number of averaged measurements (variance reduction), for `averaged` of
+            Decoder.decode().
 
         Raises
         ------
         ValueError
-            For another dtype or shape.
+            For an unsupported dtype or shape.
         Interrupted
-            If `progress` says so.
+            If `progress` cancels.
 
         Notes
         -----
@@ -171,26 +172,26 @@ class Filter(_OfTable):
 
 @takes(TimeFilterOptions)
 class TimeFilter(_OfTable):
-    """Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
-    before anything is decoded. What changes starts anew, so that nothing smears. No frame waits for
-    a later one, unless it is to look ahead. Keeps the frame so far; not for several threads at once.
+    """Averages the raw measurements of each pixel over frames as long as they do not change, before
+    decoding. Averaging restarts where the scene changes, so that motion is not smeared. Frames wait
+    for later ones only with `look_ahead`. Stores the current mean; not thread-safe.
 
-    Whether something changed is a test of the pixel, of those around it, and of what they share,
-    that knows the noise of each. See docs/filtering.md.
+    Changes are detected by tests of the pixel, of its neighbourhood, and of their common
+    difference, which account for the noise. See docs/filtering.md.
 
     Parameters
     ----------
     code : CodeSet, DecodingTable, name of a family or file
-        As Decoder takes it.
+        As in Decoder.
     camera : Camera or its name
-        Needed unless `code` is a DecodingTable.
+        Required unless `code` is a DecodingTable.
     **options
-        As TimeFilterOptions. With `look_ahead`, end() gives the frames that still wait after the last.
+        As in TimeFilterOptions. With `look_ahead`, end() returns the last frames.
 
     Raises
     ------
     ValueError
-        For an option that breaks a rule.
+        For an invalid option.
 
     Examples
     --------
@@ -220,34 +221,35 @@ class TimeFilter(_OfTable):
         layout: str = "interleaved",
         progress: Progress = None,
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """Adds the next frame, or those of a stack one after another, on all threads.
+        """Adds the next frame, or the frames of a stack in order, on all threads.
 
         Parameters
         ----------
         raw : ndarray
-            As Decoder.decode() takes it, as it leaves the sensor, as large as the frames before.
-            Pixels that are invalid or saturated stay as they are and start anew.
+            As in Decoder.decode(), unprocessed, with the size of the earlier frames. Averaging
+            restarts for pixels that are invalid or saturated.
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional
-            Of how many measurements each pixel's numbers are the mean, where they are.
+            Number of measurements averaged in each pixel, if the numbers are already means.
         layout : {"interleaved", "planar"}
-            Never guessed.
+            Not inferred from the shape.
         progress : callable, optional
-            Called with (fraction, step); False stops.
+            Called with (fraction, step); returning False cancels.
 
         Returns
         -------
         raw : ndarray of float32, shape (H, W, K) or (F, H, W, K)
-            Raw numbers as any decoder takes them. With `look_ahead` always a stack, of those frames
-            for which enough later ones have come: none of the first.
+            Raw numbers for any decoder. With `look_ahead` always a stack: the frames for which
+            enough later frames were added; empty at first.
         averaged : ndarray of float32, shape (H, W) or (F, H, W)
-            Of how many measurements each is the mean, in variance: Decoder.decode()'s `averaged`.
+            Effective number of averaged measurements (variance reduction), for `averaged` of
+            Decoder.decode().
 
         Raises
         ------
         ValueError
-            For another dtype or shape.
+            For an unsupported dtype or shape.
         Interrupted
-            If `progress` says so.
+            If `progress` cancels.
 
         Notes
         -----
@@ -258,13 +260,14 @@ class TimeFilter(_OfTable):
     def end(
         self, *, progress: Progress = None
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """After the last frame: stacks of those that still wait for later ones, as add() gives them;
-        none without `look_ahead`. The next frame is the first again, of any size.
+        """Returns the frames that still wait for later ones, as stacks in the format of add(). Must
+        be called after the last frame; empty without `look_ahead`. The next frame starts a new
+        sequence and may have any size.
         """
         return self._handle.end(_check.progress(progress))
 
     def forget(self) -> None:
-        """The next frame is the first again, of any size."""
+        """Starts a new sequence. The next frame may have any size."""
         self._handle.forget()
 
 
@@ -277,37 +280,37 @@ def merge_exposures(
     averaged: Optional[npt.ArrayLike] = None,
     layout: str = "interleaved",
 ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-    """Merges frames of one scene at several exposures (HDR) into one of the shortest, before
-    anything is decoded: in each pixel those that are not saturated there, by their noise. See
-    docs/recordings.md.
+    """Merges frames of one scene at several exposures (HDR), before decoding. Each pixel is the
+    average of the frames in which it is not saturated, weighted by their noise and scaled to the
+    shortest exposure. See docs/recordings.md.
 
     Parameters
     ----------
     raw : ndarray, shape (F, H, W, K)
-        As Decoder.decode() takes it, a frame of each exposure.
+        As in Decoder.decode(), one frame per exposure.
     exposures : sequence of float, F of them
-        Over the shortest, which is the camera's: such as (1, 4, 16).
+        Relative to the shortest, which is the camera's, e.g. (1, 4, 16).
     code : CodeSet, DecodingTable, name of a family or file
-        As Decoder takes it.
+        As in Decoder.
     camera : Camera or its name
-        Needed unless `code` is a DecodingTable.
+        Required unless `code` is a DecodingTable.
     averaged : float, or array_like of shape (F, H, W), optional
-        Of how many measurements each pixel's numbers are the mean, where they are.
+        Number of measurements averaged in each pixel, if the numbers are already means.
     layout : {"interleaved", "planar"}
-        Never guessed.
+        Not inferred from the shape.
 
     Returns
     -------
     raw : ndarray of float32, shape (H, W, K)
-        Raw numbers as any decoder takes them; pixels saturated in all exposures stay so.
+        Raw numbers for any decoder; pixels saturated in all exposures remain saturated.
     averaged : ndarray of float32, shape (H, W)
-        Of how many of the shortest exposure each is the mean, in variance: Decoder.decode()'s
-        `averaged`.
+        Effective number of averaged measurements of the shortest exposure (variance reduction), for
+        `averaged` of Decoder.decode().
 
     Raises
     ------
     ValueError
-        For another shape, or exposures of which the shortest is not 1.
+        For another shape, or if the shortest exposure is not 1.
 
     Examples
     --------

@@ -202,8 +202,8 @@ def capture(
     code : CodeSet, name of a family or file
     camera : Camera or its name
     signal_e_per_s : float, optional
-        S [e/s] for albedo 1 facing the camera at the reference distance. Default: the middle
-        operating point.
+        S [e/s] of a white surface that faces the camera at the reference distance. Default: the
+        middle operating point.
     ambient_e_per_s : float, optional
         A [e/s], with the same default.
     stray_light : array_like, shape (2 R + 1, 2 Q + 1), optional

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How depth and signal change with a camera's temperature; docs/calibration.md."""
+"""Dependence of depth and signal on the temperature of a camera; docs/calibration.md."""
 
 from __future__ import annotations
 
@@ -34,19 +34,20 @@ class TemperatureDrift:
     Attributes
     ----------
     mean_c : float
-        Of the frames [degrees C]: where both lines were laid.
+        Mean of the frames [degrees C], the origin of both lines.
     offset_m_per_c, signal_per_c : Estimate
-        By how much depth reads farther per degree [m]; d log(signal) per degree. A 95 % interval is
-        +- `interval_factor` standard errors.
+        Change of the measured depth per degree [m]; d log(signal) per degree. A 95 % interval is +-
+        `interval_factor` standard errors.
     offset_m_per_c2, signal_per_c2 : Estimate
-        Second-order terms beside the lines.
+        Second-order terms, in addition to the lines.
     interval_factor : float
     offset_rms_m, signal_rms : float
-        Of the frames around the lines [m]; of log(signal).
+        Deviation of the frames from the lines [m]; the same for log(signal).
     temperature_c, offset_m, log_signal : list of float
-        Of each frame [degrees C]; against the mean of all frames [m]; likewise.
+        For each frame [degrees C]; offset relative to the mean of all frames [m]; the same for
+        log(signal).
     pixels : int
-        That decode in every frame.
+        Number of pixels that decode in every frame.
     notes : list of str
     sensor : SensorDrift or None
         Drift with the temperature of the sensor, if it was fitted. The other attributes then refer
@@ -119,7 +120,7 @@ def calibrate_temperature(
     Parameters
     ----------
     frames : array_like, shape (F, H, W, K)
-        At least 5.
+        At least 5 frames.
     temperature_c : array_like, shape (F,)
         Temperature of each frame [degrees C]: that of the light source if `sensor_temperature_c`
         is given.
@@ -131,13 +132,13 @@ def calibrate_temperature(
         Temperature of the sensor at each frame [degrees C]. Drifts with both temperatures are
         fitted together, from at least 6 frames.
     progress : callable, optional
-        Called with (fraction, step); False stops.
+        Called with (fraction, step); returning False cancels.
 
     Raises
     ------
     ValueError
-        If temperatures are not as many as frames, not finite or all the same, or no pixel decodes
-        in every frame.
+        If the number of temperatures differs from that of frames, if they are not finite or all
+        equal, or if no pixel decodes in every frame.
 
     Examples
     --------

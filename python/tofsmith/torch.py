@@ -54,13 +54,13 @@ class MeasurementTable(NamedTuple):
     """Measurements of a code on a camera at the N depth bins."""
 
     correlation: Tensor
-    """chi (.., N, K)."""
+    """chi (..., N, K)."""
     ambient_gain: Tensor
-    """kappa (.., K): mean gain seen by ambient light."""
+    """kappa (..., K): mean gain for ambient light."""
     shot_correlation: Optional[Tensor] = None
-    """Of the light behind differences of buckets (.., N, K); None: correlation."""
+    """chi of the collected light for differences of buckets (..., N, K); None: correlation."""
     shot_ambient_gain: Optional[Tensor] = None
-    """The same of ambient light (.., K)."""
+    """kappa of the collected light (..., K); None: ambient_gain."""
 
 
 def measurement_table(

@@ -5,8 +5,8 @@ Time-of-Flight Imaging*, CVPR 2019, reproduced with the public interface of tofs
 
     python3 -m tofsmith.paper fig4 -o out
 
-One module per figure, each a sequence of commented steps: copy from them. `cameras`, `pairs`
-(waveforms), `surfaces` (error over light levels) and `bench` (scans) have what several figures share.
+Each figure has a module, which is a sequence of commented steps to copy from. `cameras`, `pairs`
+(waveforms), `surfaces` (error over light levels) and `bench` (scans) are shared by several figures.
 """
 
 import difflib
@@ -51,14 +51,14 @@ def reproduce(
     names : str or sequence of str
         Keys of `items`, or "all".
     directory : str or path
-        Created if it is missing; figures that are finished there are not made again.
+        Created if missing; finished figures are not made again.
     fast, seed, mesh, overwrite
-        As --fast, --seed, --mesh and --force of the command.
+        As the options --fast, --seed, --mesh and --force of the command.
     on_item : callable, optional
-        Called with name, findings and whether they were finished before, for each figure.
+        Called for each figure with name, findings, and whether it was already finished.
 
-    Raises UsageError for an unknown name, and OSError if the directory holds pages of another program
-    or figures made with other options.
+    Raises UsageError for an unknown name, and OSError if the directory contains pages of another
+    program or figures made with other options.
     """
     import matplotlib
 

@@ -56,14 +56,14 @@ class Study:
         return self.output / self.name
 
     def options(self) -> str:
-        """The options that determine this figure."""
+        """Returns the options that determine this figure."""
         text = f"{'coarse (--fast)' if self.fast else 'full'}, seed {self.seed}"
         if self.name == "fig7" and self.mesh is not None:
             text += f", mesh {Path(self.mesh).name} {digest_of(Path(self.mesh).read_bytes())}"
         return text
 
     def pick(self, full: Value, coarse: Value) -> Value:
-        """`full`, or `coarse` with --fast."""
+        """Returns `full`, or `coarse` with --fast."""
         return coarse if self.fast else full
 
     def state(
@@ -90,9 +90,10 @@ class Study:
             writer.writerows(rows)
 
     def redesigned(self, exposures: int, camera: Camera, fast: bool | None = None) -> CodeSet:
-        """The Hamiltonian code of `exposures` exposures, redesigned for the camera as in the paper:
-        its correlation functions are factorized within the camera's limits, and of the resulting
-        codes the one with the least depth error is taken. Kept in `codes` for other figures."""
+        """Returns the Hamiltonian code with `exposures` exposures, redesigned for the camera as in
+        the paper: its correlation functions are factorized within the camera's limits, and the
+        resulting code with the smallest depth error is selected. Stored in `codes` for other
+        figures."""
         fast = self.fast if fast is None else fast
         inputs = f"{tofsmith.__version__} {exposures} {fast} {self.seed}\n{camera.to_toml()}"
         name = f"hamiltonian-k{exposures}-{camera.name}-{digest_of(inputs.encode())}.code.json"
@@ -116,7 +117,7 @@ class Study:
         write_text(self.directory / "findings.json", json.dumps(document, indent=1) + "\n")
 
     def finished(self) -> dict[str, Any] | None:
-        """findings.json, if this version has finished the figure."""
+        """Returns findings.json if this version has finished the figure."""
         try:
             document = json.loads((self.directory / "findings.json").read_text(encoding="utf-8"))
             [Finding(**finding) for finding in document["findings"]]

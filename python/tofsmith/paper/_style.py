@@ -11,7 +11,7 @@ style = {
     "axes.spines.top": False, "axes.spines.right": False, "pdf.fonttype": 42,
 }
 
-#: Okabe and Ito's colours, which read with any colour vision.
+#: Colours of Okabe and Ito, which are distinguishable with any colour vision.
 family_colours = {
     "hamiltonian-k3": "#56b4e9", "hamiltonian-k4": "#0072b2", "hamiltonian-k5": "#009e73",
     "hamiltonian-k6": "#000000", "pulsed-multifrequency": "#8a8f98", "multifrequency": "#cc79a7",
@@ -24,7 +24,7 @@ def colour_of(code: str) -> str:
 
 
 def short_name(code: str) -> str:
-    """A code's name above a small picture."""
+    """Returns the name of a code for small pictures."""
     if code.endswith("-redesigned"):
         return f"redesigned K = {code[len('hamiltonian-k')]}"
     return "sinusoid" if code.startswith("sinusoid") else "multi-frequency"
@@ -35,7 +35,7 @@ def new_figure(width_in: float, height_in: float) -> Figure:
 
 
 def legend_below(columns: int, *axes: Axes) -> None:
-    """One legend of the lines of some axes, below all axes of their figure."""
+    """Adds one legend for the lines of some axes, below all axes of their figure."""
     figure = axes[0].figure
     entries = {label: handle for axis in axes
                for handle, label in zip(*axis.get_legend_handles_labels())}

@@ -16,7 +16,7 @@ BASELINES = ("sinusoid-k4", "multifrequency-k5")
 
 
 def scanning_codes(study: Study) -> tuple[Camera, list[CodeSet]]:
-    """The prototype, the redesigned codes of K = 4 and 5, and both baselines."""
+    """Returns the prototype, the redesigned codes of K = 4 and 5, and both baselines."""
     camera = Camera("prototype")
     signals = [SCAN_POWER_MW * signal for signal in camera.operating.signal_e_per_s]
     camera = camera.replace(name="prototype-10mw", operating={"signal_e_per_s": signals})
@@ -28,8 +28,8 @@ def decoded_depths(
     scene: Scene, code: CodeSet, camera: Camera, light: Light, *, frames: int, seed: int,
     falloff: bool = True, reference_distance_m: float = 1.0,
 ) -> Any:
-    """Captures a scene several times and decodes every frame: radial depth [m], (F, H, W). Every
-    estimate counts, whatever its status."""
+    """Captures a scene several times and decodes every frame: radial depth [m], (F, H, W). Uses
+    all estimates, regardless of their status."""
     raw = tofsmith.capture(scene, code, camera, signal_e_per_s=light.signal_e_per_s,
                            ambient_e_per_s=light.ambient_e_per_s, falloff=falloff, frames=frames,
                            reference_distance_m=reference_distance_m, seed=seed)
@@ -40,8 +40,8 @@ def emulate_range(
     code: CodeSet, camera: Camera, light: Light, *, target_m: float, shifts: int = 20,
     estimates: int = 300, seed: int = 1,
 ) -> tuple[Any, Any]:
-    """A pixel that sees a target at rest while the modulation is delayed in equal steps over its
-    period: as if the target were moved over the whole range, with the light of where it is. Returns
+    """Measures a static target with one pixel while the modulation is delayed in equal steps over
+    its period, which emulates a target that moves over the whole range at constant light. Returns
     emulated depths (shifts,) and circular depth errors (shifts, estimates) [m]."""
     true_m = (target_m + camera.range_m * np.arange(shifts) / shifts) % camera.range_m
     scene = Scene(np.repeat(true_m[:, None], estimates, axis=1).astype(np.float32))
@@ -61,7 +61,7 @@ class Plane:
         return np.abs((points - self.point) @ self.normal)
 
     def depth_m(self, directions: Any) -> Any:
-        """Radial depth at which rays from the camera meet the plane."""
+        """Returns the radial depth of the plane along rays from the camera."""
         return (self.point @ self.normal) / (directions @ self.normal)
 
 
@@ -86,7 +86,8 @@ class Sphere:
         return np.abs(np.linalg.norm(points - self.centre, axis=1) - self.radius)
 
     def depth_m(self, directions: Any) -> Any:
-        """Radial depth at which rays from the camera meet the near side; NaN for rays that miss it."""
+        """Returns the radial depth of the near side along rays from the camera; NaN for rays that
+        miss it."""
         along = directions @ self.centre
         inside = along**2 - self.centre @ self.centre + self.radius**2
         return along - np.sqrt(np.where(inside >= 0, inside, np.nan))

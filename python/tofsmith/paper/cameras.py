@@ -9,7 +9,7 @@ from tofsmith import Camera
 
 OPTICAL_DENSITIES = (1.0, 2.0, 3.0)  # of the prototype's neutral density filters
 SIGNAL_AT_OD0_E_PER_S = 1e6  # of albedo 1 for 1 mW of average source power: our assumption
-SCAN_POWER_MW = 10.0  # of Figs. 10 and 11; 1 mW behind O.D. 3 is too little for every code
+SCAN_POWER_MW = 10.0  # of Figs. 10 and 11; 1 mW behind O.D. 3 is insufficient for all codes
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,9 @@ class Light:
 
 
 def paper_camera(peak_factor: float, f_max_in_f0: float = 0.0) -> Camera:
-    """A camera of the paper's simulations: f0 = 15 MHz, 300 ms in total, read noise 20 e, Gaussian
-    noise, 5 x 5 light levels, and Hann windows with this band limit on both arms; 0: none."""
+    """Returns a camera of the paper's simulations: f0 = 15 MHz, 300 ms in total, read noise 20 e,
+    Gaussian noise, 5 x 5 light levels, and Hann windows with this band limit on both arms; 0:
+    none."""
     name = f"p{peak_factor:g}" + (f"-{f_max_in_f0:g}f0" if f_max_in_f0 else "")
     camera = Camera("paper-30x", name=name, light={"peak_factor": peak_factor})
     if not f_max_in_f0:
@@ -32,5 +33,6 @@ def paper_camera(peak_factor: float, f_max_in_f0: float = 0.0) -> Camera:
 
 
 def light_behind_filter(optical_density: float, power_mw: float = 1.0) -> Light:
-    """Light on the prototype's detector: the filter is at the source and dims the signal only."""
+    """Returns the light on the prototype's detector. The filter is at the source and attenuates
+    only the signal."""
     return Light(power_mw * SIGNAL_AT_OD0_E_PER_S * 10**-optical_density, 1e3)

@@ -22,13 +22,13 @@ Errors = dict[tuple[str, float], Any]
 
 
 def reproduce(study: Study) -> None:
-    """Every code scans both scenes behind every filter."""
+    """Makes the figure: every code scans both scenes behind every filter."""
     camera, codes = scanning_codes(study)
     width = study.pick(160, 48)
     scenes: Any = (tofsmith.built_in_scene(name, width, 3 * width // 4) for name in ("books", "ball"))
     books, ball = scenes
-    # Objects: the fronts of the books and the wall, which face the camera, and the ball where it is
-    # seen at less than 75 degrees from its normal.
+    # Objects: the fronts of the books and the wall, which face the camera, and the part of the ball
+    # at less than 75 degrees from its normal.
     z_m = tofsmith.z_from_radial(books.depth_m, books.lens)
     faces_camera = np.abs(books.cosine - z_m / books.depth_m) < 1e-3
     fronts = {name: faces_camera & (np.abs(z_m - m) < 1e-3) for name, m in BOOK_FRONTS_M.items()}
@@ -69,7 +69,7 @@ def scan(
                               frames=study.pick(20, 5), seed=seed)
 
     # As on a real bench, the truth is a surface fitted to each code's own mean depths without filter,
-    # with other noise than it is compared with.
+    # from frames with independent noise.
     references_m = np.full((len(codes), *scene.depth_m.shape), np.nan)
     for reference_m, code in zip(references_m, codes):
         points = tofsmith.points_m(estimates_m(code, 0.0, seed + 0x5eed).mean(axis=0), scene.lens)
@@ -94,7 +94,7 @@ def scan(
 
 
 def mean_ratio(errors: Errors, density: float, code: int, other: int) -> float:
-    """Mean error of a code over that of another, geometric mean over the objects."""
+    """Returns the ratio of the mean errors of two codes, geometric mean over the objects."""
     logs = [np.log(of_codes[code][0] / of_codes[other][0])
             for (_, od), of_codes in errors.items() if od == density]
     return float(np.exp(np.mean(logs)))

@@ -21,14 +21,14 @@ Errors = dict[float, dict[str, Any]]
 
 
 def reproduce(study: Study) -> None:
-    """A wall that faces the camera at 0.5 m."""
+    """Makes the figure: a wall that faces the camera at 0.5 m."""
     camera, codes = scanning_codes(study)
     width = study.pick(64, 24)
     wall: Any = tofsmith.built_in_scene("wall", width, 3 * width // 4)
     radial_per_z = tofsmith.radial_from_z(np.ones_like(wall.depth_m), wall.lens)
 
-    # Every code scans it behind every filter. The wall's depth is the code's own mean in most light:
-    # estimates that wrap to far depths behind stronger filters would move the mean itself.
+    # Every code scans it behind every filter. The true depth is the code's own mean in the
+    # brightest light, because wrapped estimates behind stronger filters would bias the mean.
     wall_m: dict[str, float] = {}
     errors: Errors = {density: {} for density in OPTICAL_DENSITIES}
     for density, of_codes in errors.items():

@@ -20,15 +20,15 @@ FAMILIES = ("hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "sinusoid-k4",
 
 
 def reproduce(study: Study) -> None:
-    """A target, and waveforms that cameras can generate for it."""
+    """Makes the figure: a target, and waveforms that cameras can generate for it."""
     unlimited, limited = paper_camera(PEAK), paper_camera(PEAK, F_MAX_IN_F0)
 
     # 1. The target: correlation function 3 of the Hamiltonian code K = 4.
     target = ideal_targets("hamiltonian-k4")[:, 2]
     n = len(target)
 
-    # 2. Its trivial factorization: a pulse of one sample, which is beyond any light source, and the
-    #    target itself. With the shortest pulse that the peak allows it is no longer exact.
+    # 2. Its trivial factorization: a pulse of one sample, which no light source can generate, and
+    #    the target itself. With the shortest pulse that the peak allows, it is not exact.
     def pulse_and_target(duty: float, samples: Any) -> Pair:
         pulse = Waveform.binary([[0, duty]], 1 / duty)
         return Pair(pulse, Waveform.sampled(samples), unlimited, samples)
@@ -38,8 +38,8 @@ def reproduce(study: Study) -> None:
     trivial_rms = max(pulse_and_target(1 / n, samples).residual_rms()
                       for family in FAMILIES for samples in ideal_targets(family).T)
 
-    # 3. Waveforms designed within the peak, without and with a band limit. The search must find the
-    #    answer by itself.
+    # 3. Waveforms designed within the peak, without and with a band limit. The search does not
+    #    know the answer.
     def designed(camera: Camera) -> tuple[Pair, float]:
         found, = tofsmith.factorize("hamiltonian-k4", camera, measurements=[2], keep_naive=False,
                                     random_starts=study.pick(30, 10), seed=study.seed)
@@ -77,8 +77,8 @@ def reproduce(study: Study) -> None:
 
 
 def shape(waveforms: tuple[Waveform, Waveform], samples: int) -> list[float]:
-    """Of modulation and demodulation: total variation over the maximum (2 for one pulse), and share of
-    samples within 1 % of 0 or of the maximum."""
+    """Returns for modulation and demodulation: total variation divided by the maximum (2 for one
+    pulse), and the share of samples within 1 % of 0 or of the maximum."""
     values = []
     for waveform, top in zip(waveforms, (waveforms[0].peak, 1.0)):
         x = waveform.cell_averages(samples)
@@ -88,7 +88,7 @@ def shape(waveforms: tuple[Waveform, Waveform], samples: int) -> list[float]:
 
 
 def total_variation_ablation(study: Study, camera: Camera) -> None:
-    """Medians over random starts of the alternation, for two targets."""
+    """Compares medians over random starts of the alternation, for two targets."""
     starts = study.pick(20, 6)
     columns = ("tv_m", "ends_m", "tv_d", "ends_d", "residual_rms")
     rows: list[dict[str, Any]] = []

@@ -18,7 +18,8 @@ LENGTHS = {3: 6, 4: 12, 5: 30}  # of the walk of each code: the peak that zero e
 
 
 def reproduce(study: Study) -> None:
-    """Every code of K = 3, 4 and 5 at every peak. The search must find the answers by itself."""
+    """Makes the figure: every code of K = 3, 4 and 5 at every peak. The search does not know the
+    answers."""
     found = {k: {peak: tofsmith.factorize(f"hamiltonian-k{k}", paper_camera(peak), seed=study.seed,
                                           random_starts=study.pick(30, 12), refined=study.pick(16, 3),
                                           keep_naive=False)
@@ -53,7 +54,7 @@ def worst_rms(codes: list[Factorization]) -> float:
 
 
 def state_k3(study: Study, found: dict[int, list[Factorization]]) -> None:
-    """The paper's statements on K = 3."""
+    """Checks the paper's statements on K = 3."""
     worst = max(worst_rms(found[peak]) for peak in (30, 15, 6))
     study.state(worst < ZERO_RMS, "K = 3: zero error from p = 6 on.",
                 f"Largest residual of all three codes at p = 30, 15 and 6: {worst:.1e} rms.")
@@ -78,7 +79,7 @@ def state_k3(study: Study, found: dict[int, list[Factorization]]) -> None:
 
 
 def state_supplement(study: Study, found: dict[int, dict[int, list[Factorization]]]) -> None:
-    """The supplement's statement on K = 4 and 5."""
+    """Checks the supplement's statement on K = 4 and 5."""
     holds = all((worst_rms(codes) < ZERO_RMS) == (peak >= LENGTHS[k])
                 for k, of_k in found.items() for peak, codes in of_k.items())
     texts = [f"K = {k} (L = {LENGTHS[k]}): " + ", ".join(f"{worst_rms(found[k][p]):.3f}" for p in PEAKS)

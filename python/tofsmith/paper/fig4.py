@@ -15,13 +15,13 @@ from ._study import FAILS, HOLDS, IN_PART, Study
 from .cameras import paper_camera
 from .surfaces import Panel, Panels, Surface, compare, together
 
-#: Peak factor and band limit [f0] of each camera. The paper draws the first three, as a, b and c;
-#: its supplement has the others.
+#: Peak factor and band limit [f0] of each camera. The first three are panels a, b and c of the
+#: paper; the others are in its supplement.
 LIMITS = {"p = 30": (30, 0), "p = 15, 10 f0": (15, 10), "p = 15, 5 f0": (15, 5),
           "p = 15": (15, 0), "p = 5": (5, 0), "p = 2": (2, 0)}
 DRAWN = tuple(LIMITS)[:3]
-#: Variance of read noise [e^2] and albedo: the paper's text and its authors' simulator differ, so all
-#: readings are measured.
+#: Variance of read noise [e^2] and albedo. The paper's text and its authors' simulator differ, so
+#: all readings are measured.
 READINGS = {"sd20": (400, 1.0), "var20": (20, 1.0), "sd20-albedo": (400, "uniform"),
             "var20-albedo": (20, "uniform")}
 ORDERS = (3, 4, 5)
@@ -31,7 +31,8 @@ BASELINES = (SINUSOID, MULTI, "square-k4", "pulsed-multifrequency-k5")
 
 
 def reproduce(study: Study) -> None:
-    """Every code on every camera under every reading; the statements on the drawn cameras."""
+    """Makes the figure: every code on every camera under every reading, and checks the statements
+    on the cameras of the paper."""
     readings = {reading: measure_reading(study, reading) for reading in READINGS}
     everything = readings["sd20"]
     panels = {title: everything[title] for title in DRAWN}
@@ -47,7 +48,7 @@ def reproduce(study: Study) -> None:
 
 
 def measure_reading(study: Study, reading: str) -> Panels:
-    """All codes on all cameras; codes are redesigned for the limits, whatever the reading."""
+    """Evaluates all codes on all cameras. The redesign depends only on the limits."""
     variance_e2, albedo = READINGS[reading]
 
     def measure(code: tofsmith.CodeSet, title: str) -> Surface:
@@ -60,7 +61,7 @@ def measure_reading(study: Study, reading: str) -> Panels:
             sensor={"read_noise_e": math.sqrt(variance_e2)}, operating={"albedo": albedo})
         return surfaces.measure_surface(study, code, camera, **trials)
 
-    # The codes before any limit, on a camera without.
+    # Codes without limits, on a camera without limits.
     families = [tofsmith.build_family(f"hamiltonian-k{k}", paper_camera(30)) for k in ORDERS]
     ideal = [measure(family.renamed(f"{family.name}-ideal"), DRAWN[0]) for family in families]
     panels = {}
@@ -78,7 +79,7 @@ def best_redesigned(panel: Panel) -> Surface:
 
 
 def state_baselines(study: Study, panels: Panels) -> None:
-    """The redesigned codes against sinusoid and multi-frequency."""
+    """Compares the redesigned codes with the sinusoid and multi-frequency codes."""
     all_codes, texts = [], []
     for name in REDESIGNED:
         of_name = [compare(panel[name], panel[SINUSOID], panel[MULTI]) for panel in panels.values()]
@@ -109,12 +110,12 @@ def state_baselines(study: Study, panels: Panels) -> None:
 
 
 def steepest(surface: Surface) -> float:
-    """Largest n of error ~ signal^-n between neighbouring signal levels."""
+    """Returns the largest n of error ~ signal^-n between neighbouring signal levels."""
     return float(np.max(-np.diff(np.log(surface.by_signal())) / np.diff(np.log(surface.signal))))
 
 
 def state_multi_frequency(study: Study, panels: Panels) -> None:
-    """The multi-frequency code at high and low signal, in a, b and c."""
+    """Checks the statements on the multi-frequency code at high and low signal, in a, b and c."""
     over_sinusoid, over_best, slopes = [], [], []
     for panel in panels.values():
         compared = (panel[MULTI], panel[SINUSOID], best_redesigned(panel))
@@ -139,14 +140,14 @@ def state_multi_frequency(study: Study, panels: Panels) -> None:
 
 
 def state_limits(study: Study, panels: Panels) -> None:
-    """Ideal codes at p = 30, and what tighter limits cost."""
+    """Checks the statements on ideal codes at p = 30, and on the loss due to tighter limits."""
     a, b, c = panels.values()
     texts, equal, close = [], [], []
     for k in ORDERS:
         ours, ideal = (a[f"hamiltonian-k{k}-{which}"].report for which in ("redesigned", "ideal"))
         texts.append(f"k{k}")
-        # 3 % are allowed for the choice of the origin, which is made from noisy trials; the circular
-        # error does not depend on it.
+        # Tolerance of 3 % for the choice of the origin from noisy trials; the circular error does
+        # not depend on it.
         for kind, most in (("linear", 1.03), ("circular", 1.01)):
             x, y = ours.of(kind), ideal.of(kind)
             ratio = x.geometric_mean_m / y.geometric_mean_m
@@ -167,7 +168,7 @@ def state_limits(study: Study, panels: Panels) -> None:
 
 
 def decode_by_unwrapping(study: Study) -> dict[str, dict[str, DepthErrorReport]]:
-    """The multi-frequency code decoded in three ways: same depths and noise."""
+    """Decodes the multi-frequency code in three ways, with the same depths and noise."""
     methods: dict[str, Any] = {"zncc": {"method": "zncc"}} | {
         weights: {"method": "unwrap", "unwrap_weights": weights} for weights in ("frequency", "variance")}
     cameras = {title: surfaces.with_light_levels(study, paper_camera(*LIMITS[title])) for title in DRAWN}
@@ -177,7 +178,7 @@ def decode_by_unwrapping(study: Study) -> dict[str, dict[str, DepthErrorReport]]
 
 
 def state_unwrapping(study: Study, decoded: dict[str, dict[str, DepthErrorReport]]) -> None:
-    """Our own statements: unwrapping against correlation with the same code."""
+    """Checks our own statements on unwrapping, compared with correlation for the same code."""
     free, limited = ({name: 1e3 * report.circular_mde_m[(report.signal_e_per_s > 0.99e5)
                                                         & (report.ambient_e_per_s < 101)].item()
                       for name, report in decoded[title].items()} for title in DRAWN[:2])

@@ -15,7 +15,7 @@ SAMPLES = 960
 
 
 def reproduce(study: Study) -> None:
-    """The window in time, its transfer function, and where that is 1/5."""
+    """Makes the figure: the window in time, its transfer function, and where that is 1/5."""
     figure = new_figure(7.2, 2.6)
     in_time, in_frequency = figure.subplots(1, 2)
     rows = []

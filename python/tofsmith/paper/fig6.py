@@ -15,7 +15,7 @@ SHOWN = (0, 2)  # the slowest code, and the fastest that still follows its targe
 
 
 def reproduce(study: Study) -> None:
-    """All five correlation functions, factorized within the band limit."""
+    """Makes the figure: all five correlation functions, factorized within the band limit."""
     camera = paper_camera(PEAK, F_MAX_IN_F0)
     found = tofsmith.factorize("hamiltonian-k5", camera, seed=study.seed,
                                random_starts=study.pick(30, 10))

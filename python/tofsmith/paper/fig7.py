@@ -16,9 +16,9 @@ from .bench import BASELINES, decoded_depths, emulate_range
 from .cameras import Light, paper_camera
 
 LIMITS = {"loose": (20, 20), "tight": (5, 5)}  # peak factor, band limit [f0]
-LIGHTS = {"high": Light(1e6, 1e4), "low": Light(3e4, 1e4)}  # what albedo 1 returns at the hand
+LIGHTS = {"high": Light(1e6, 1e4), "low": Light(3e4, 1e4)}  # signal of albedo 1 at the hand
 ALBEDO, SIZE_M, OUTLIER_M = 0.6, 0.19, 0.1
-CLEARLY = 1.1  # a gain that counts
+CLEARLY = 1.1  # smallest significant gain
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Trial:
 
 
 def seen_hand(study: Study) -> Any:
-    """The hand, or the user's mesh scaled to its size, without the empty border."""
+    """Returns the hand, or the user's mesh scaled to its size, without the empty border."""
     width = study.pick(360, 120)
     scene: Any
     if study.mesh is None:
@@ -64,7 +64,7 @@ def seen_hand(study: Study) -> Any:
 
 
 def reproduce(study: Study) -> None:
-    """The same hand with every code, limit and light."""
+    """Makes the figure: the same hand with every code, limit and light."""
     # 1. The hand, as the camera sees it.
     hand = seen_hand(study)
     distance_m = 0.5 if study.mesh is None else float(np.nanmedian(hand.depth_m))

@@ -18,7 +18,7 @@ BASELINES = {  # with the second buckets each exposure measures two phases
 
 
 def reproduce(study: Study) -> None:
-    """All codes on both cameras."""
+    """Makes the figure: all codes on both cameras."""
     panels = {f"p = {PEAK}, {limit} f0": measure_camera(study, limit) for limit in LIMITS_IN_F0}
 
     # 1. Statements of the paper.
@@ -44,7 +44,7 @@ def reproduce(study: Study) -> None:
 
 
 def measure_camera(study: Study, f_max_in_f0: float) -> Panel:
-    """Redesigned codes of 3 to 6 exposures, the baselines, and K = 4 with one tap."""
+    """Evaluates redesigned codes of 3 to 6 exposures, the baselines, and K = 4 with one tap."""
     one_tap = paper_camera(PEAK, f_max_in_f0)
     camera = one_tap.replace(name=f"{one_tap.name}-two-bucket", sensor={"taps": 2})
     codes = [study.redesigned(k, camera) for k in (3, 4, 5, 6)]

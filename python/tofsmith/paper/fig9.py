@@ -17,14 +17,14 @@ from .cameras import OPTICAL_DENSITIES, light_behind_filter
 
 
 def reproduce(study: Study) -> None:
-    """A pixel that sees a target at 0.7 m behind each filter."""
+    """Makes the figure: a pixel that sees a target at 0.7 m behind each filter."""
     # 1. The bench and its codes.
     camera = Camera("prototype")
     ours = study.redesigned(4, camera)
     baselines = [tofsmith.build_family(name, camera)
                  for name in ("sinusoid-k4", "square-k4", "multifrequency-k5")]
 
-    # 2. The modulation is delayed in steps over the whole period, and every delay measured often.
+    # 2. Delay the modulation in steps over the whole period, and measure each delay many times.
     measured = {code.name: [emulate_range(code, camera, light_behind_filter(density), target_m=0.7,
                                           shifts=study.pick(20, 5), estimates=study.pick(300, 30),
                                           seed=study.seed)

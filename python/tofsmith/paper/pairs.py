@@ -27,38 +27,39 @@ class Pair:
     target: Any
 
     def outputs(self, points: int) -> list[Any]:
-        """Waveforms behind the impulse responses of light and sensor, (points,) each."""
+        """Returns the waveforms after the impulse responses of light and sensor, (points,) each."""
         return [tofsmith.arm_output(waveform, self.camera, arm=arm, points=points)
                 for arm, waveform in (("light", self.modulation), ("sensor", self.demodulation))]
 
     def correlation(self, points: int) -> Any:
-        """Correlation function at equal steps of depth, (points,)."""
+        """Returns the correlation function at equal steps of depth, (points,)."""
         code = tofsmith.CodeSet.from_waveforms(
             [self.modulation], [self.demodulation], samples=self.camera.samples)
-        # A camera of any peak, so that waveforms beyond the limit can be compared, too.
+        # Increase the peak of the camera, to include waveforms beyond its limit.
         camera = self.camera.replace(light={"peak_factor": max(1.0, 1.001 * self.modulation.peak)})
         return tofsmith.ForwardModel(code, camera).correlation_table(points)[:, 0]
 
     def residual_rms(self) -> float:
-        """Root mean square over depth of correlation function minus target, linear between bins."""
+        """Returns the root mean square over depth of correlation function minus target, linear
+        between bins."""
         n = len(self.target)
         target = np.interp(np.arange(8 * n) / 8, np.arange(n + 1), closed(self.target))
         return float(np.sqrt(np.mean((self.correlation(8 * n) - target) ** 2)))
 
 
 def closed(values: Any) -> Any:
-    """A period with its end point."""
+    """Appends the end point to a period."""
     return np.append(values, values[0])
 
 
 def ideal_targets(family: str) -> Any:
-    """Correlation functions (N, K) of a family on a camera without limits."""
+    """Returns the correlation functions (N, K) of a family on a camera without limits."""
     camera = Camera("paper-30x", light={"peak_factor": 1000})
     return tofsmith.ForwardModel(family, camera).correlation_table()
 
 
 def centred(modulation: Waveform, demodulation: Waveform) -> tuple[Waveform, Waveform]:
-    """The same pair, delayed so that the middle of the longest pulse is at half the period."""
+    """Delays a pair so that the middle of the longest pulse is at half the period."""
     intervals = modulation.on_intervals
     rise, fall = intervals[np.argmax(intervals[:, 1] - intervals[:, 0]), :]
     delay = 0.5 - 0.5 * float(rise + fall)
@@ -66,8 +67,8 @@ def centred(modulation: Waveform, demodulation: Waveform) -> tuple[Waveform, Wav
 
 
 def pair_panels(pairs: dict[str, Pair], code: str) -> Figure:
-    """One row for each pair: nominal input (thin) and output (thick) of both arms, and correlation
-    function over the target (dotted)."""
+    """Plots one row per pair: nominal input (thin) and output (thick) of both arms, and the
+    correlation function with its target (dotted)."""
     figure = new_figure(7.2, 0.7 + 1.1 * len(pairs))
     axes = figure.subplots(len(pairs), 3, squeeze=False, sharex="col")
     for row, (title, pair) in zip(axes, pairs.items()):

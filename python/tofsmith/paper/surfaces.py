@@ -26,7 +26,7 @@ class Surface:
         return self.report.code
 
     def grid(self, values: str) -> Any:
-        """Values of the report, such as "linear_mde_m", over the light levels."""
+        """Returns values of the report, such as "linear_mde_m", over the light levels."""
         return getattr(self.report, values).reshape(len(self.signal), len(self.ambient))
 
     @property
@@ -43,11 +43,11 @@ class Surface:
 
     @property
     def mean_m(self) -> float:
-        """Geometric mean of the linear error over all light levels."""
+        """Returns the geometric mean of the linear error over all light levels."""
         return self.report.linear.geometric_mean_m
 
     def by_signal(self) -> Any:
-        """Geometric mean over ambient light, (signal,)."""
+        """Returns the geometric mean over ambient light, (signal,)."""
         return np.exp(np.log(self.linear_m).mean(axis=1))
 
 
@@ -57,19 +57,21 @@ Panels = dict[str, Panel]
 
 
 def with_light_levels(study: Study, camera: Camera) -> Camera:
-    """The paper's 5 x 5 light levels, 3 x 3 of them with --fast; judged by the linear error."""
+    """Returns the camera with the paper's 5 x 5 light levels (3 x 3 with --fast) and the linear
+    error."""
     levels: Any = study.pick({}, {"signal_e_per_s": [10**3.5, 1e4, 1e5], "ambient_e_per_s": [1e2, 1e4, 1e5]})
     return camera.replace(operating=levels | {"error": "linear"})
 
 
 def measure_surface(study: Study, code: CodeSet, camera: Camera, **trials: int) -> Surface:
-    """Depth error at every light level of the camera, to a relative standard error of 2 %."""
+    """Evaluates the depth error at every light level of the camera, to a relative standard error of
+    2 %."""
     counts: Any = study.pick({"trials": 8000, "max_trials": 50_000_000, "rotation_trials": 20000},
                         {"trials": 16000, "max_trials": 16000, "rotation_trials": 4000}) | trials
-    # 1. The best origin of depth, by other random numbers than it is judged by.
+    # 1. Find the best origin of depth, with other random numbers than in step 2.
     rotation, _ = tofsmith.best_rotation(code, camera, trials=counts.pop("rotation_trials"),
                                          seed=study.seed + 1)
-    # 2. As many trials at every light level as the standard error requires.
+    # 2. Evaluate with as many trials at every light level as the standard error requires.
     report = tofsmith.evaluate(code.rotated(rotation), camera, seed=study.seed + 2,
                                target_standard_error=study.pick(0.02, 0.1), **counts)
     return Surface(rotation, report)
@@ -77,8 +79,8 @@ def measure_surface(study: Study, code: CodeSet, camera: Camera, **trials: int) 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Error of another code over its own at all light levels, and at how many it is better, tied
-    (within two standard errors) and worse."""
+    """Ratio of the errors of another code and of this code at all light levels, and the numbers of
+    levels at which this code is better, tied (within two standard errors) and worse."""
 
     ratio: Any
     better: int
@@ -114,14 +116,15 @@ def compare(ours: Surface, *others: Surface) -> Comparison:
 
 
 def together(comparisons: Sequence[Comparison]) -> Comparison:
-    """Comparisons on several cameras as one."""
+    """Combines comparisons on several cameras."""
     return Comparison(np.concatenate([one.ratio.ravel() for one in comparisons]),
                       *(sum(getattr(one, count) for one in comparisons)
                         for count in ("better", "tied", "worse")))
 
 
 def draw_values(study: Study, panels: Panels) -> None:
-    """Pictures of every camera: maps of the linear error, and cuts at ambient light of 1e4 e/s."""
+    """Draws for every camera maps of the linear error, and sections at an ambient light of 1e4
+    e/s."""
     for title, panel in panels.items():
         reports = [surface.report for surface in panel.values()]
         name = title.replace(" ", "").replace(",", "-").replace("=", "")
@@ -132,7 +135,7 @@ def draw_values(study: Study, panels: Panels) -> None:
 
 
 def surface_rows(panels: Panels) -> list[dict[str, Any]]:
-    """One row per camera, code and light level, for a table."""
+    """Returns one row per camera, code and light level, for a table."""
     columns = ("signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m", "circular_mde_m")
     return [{"setting": title, "code": name, "rotation_bin": surface.rotation_bin}
             | dict(zip(columns, map(float, values)))
@@ -141,7 +144,8 @@ def surface_rows(panels: Panels) -> list[dict[str, Any]]:
 
 
 def mean_rows(panels: Panels, **setting: str) -> list[dict[str, Any]]:
-    """One row per camera and code: geometric means over all light levels, and named levels."""
+    """Returns one row per camera and code: geometric means over all light levels, and named
+    levels."""
     rows = []
     for title, panel in panels.items():
         for name, surface in panel.items():

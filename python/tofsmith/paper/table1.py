@@ -13,9 +13,9 @@ FAMILIES = ("sinusoid-k4", "square-k4", "multifrequency-k5", "hamiltonian-k3", "
 
 
 def reproduce(study: Study) -> None:
-    """Parameters, and the depth error with generators over that without."""
-    # 1. One camera file per line of the table. p = 15, the generators and the filters are the paper's;
-    #    the power (1 mW) and the other two peaks are ours.
+    """Makes the table: parameters, and the depth error with generators relative to that without."""
+    # 1. One camera file per line of the table. p = 15, the generators and the filters are from the
+    #    paper; the power (1 mW) and the other two peaks are our choice.
     camera = Camera("prototype")
     rows = []
     for peak in (15, 5, 30):

@@ -16,7 +16,7 @@ from .pairs import ideal_targets
 #: Cameras, and the range of iterations that the paper states for them.
 CLAIMS = {"without a band limit": ([paper_camera(30), paper_camera(15), paper_camera(5)], 5, 50),
           "with one of 10 f0 or 5 f0": ([paper_camera(15, 10), paper_camera(15, 5)], 3, 20)}
-#: When an alternation counts as settled: options of factorize(), and the line's dashes.
+#: Convergence criteria of the alternation: options of factorize(), and the line's dashes.
 RULES: dict[str, tuple[dict[str, Any], str]] = {
     "change < 1e-4": ({"objective_tolerance": 1e-4}, "-"),
     "change < 1e-6": ({"objective_tolerance": 1e-6}, "--"),
@@ -25,7 +25,7 @@ RULES: dict[str, tuple[dict[str, Any], str]] = {
 
 
 def reproduce(study: Study) -> None:
-    """Each statement by itself."""
+    """Checks each statement."""
     count_iterations(study)
     compare_sinusoids(study)
     check_bounds(study)
@@ -33,7 +33,7 @@ def reproduce(study: Study) -> None:
 
 
 def count_iterations(study: Study) -> None:
-    """Sec. 4 and 5: iterations of all random starts on every target of K = 3, 4 and 5."""
+    """Checks Sec. 4 and 5: iterations of all random starts on every target of K = 3, 4 and 5."""
     figure = new_figure(6.4, 3.0)
     axis = figure.subplots()
     for (words, (cameras, low, high)), colour in zip(CLAIMS.items(), ("#0072b2", "#d55e00")):
@@ -69,7 +69,7 @@ def count_iterations(study: Study) -> None:
 
 
 def compare_sinusoids(study: Study) -> None:
-    """Footnote 3: at a fixed total time, sinusoids perform alike for every K."""
+    """Checks footnote 3: at a fixed total time, sinusoids perform alike for every K."""
     orders = range(3, 9)
     rows, spread, deviation, bound_spread = [], [], [], []
     for signal, noise_e in ((1e5, 0), (1e5, 20), (1e4, 0), (1e4, 20)):
@@ -98,7 +98,7 @@ def compare_sinusoids(study: Study) -> None:
 
 
 def check_bounds(study: Study) -> None:
-    """Sec. 6.1: the output functions keep the bounds of the input functions."""
+    """Checks Sec. 6.1: the output functions keep the bounds of the input functions."""
     rows: list[dict[str, Any]] = []
     for camera in (paper_camera(15, 10), paper_camera(15, 5)):
         for k in (3, 4, 5):
@@ -121,7 +121,7 @@ def check_bounds(study: Study) -> None:
 
 
 def check_zero_error(study: Study) -> None:
-    """Fig. 4a: at p = 30 and without a band limit every scheme factorizes with zero error."""
+    """Checks Fig. 4a: at p = 30 without a band limit, every scheme factorizes with zero error."""
     camera = paper_camera(30)
     rms = {}
     for k in (3, 4, 5):  # factorized; the search does not know the answer
