@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error of a standard code on a built-in camera, next to what is possible.
+// Computes the depth error of a standard code on a built-in camera and its lower bound.
 #include <algorithm>
 #include <cstdio>
 

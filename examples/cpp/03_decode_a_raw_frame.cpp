@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth of a raw frame from a file: here one that is simulated first.
+// Decodes a raw frame from a file, which is simulated first.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,7 @@
 
 using namespace tofsmith;
 
-/// Points in the camera's frame of all pixels that have depth, with the decoder's confidence.
+/// Returns the points of all pixels with a depth in camera coordinates, with their confidence.
 PointCloud points_of(const DepthImage& image, const PinholeView& view) {
   PointCloud cloud;
   PointScalar confidence{.name = "confidence", .values = {}};
@@ -40,7 +40,7 @@ int main() {
   const CaptureOptions light{.signal_e_per_s = 1e6, .ambient_e_per_s = 1e4};
   write_raw_frames("raw.npy", capture(scene, code, camera, light), OutputPolicy::overwrite);
 
-  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));  // once
+  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));  // reusable
   const DepthImage image = decoder.decode(read_raw_frames("raw.npy"));
   std::vector<float> error_m;
   for (std::size_t i = 0; i < image.depth_m.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Waveforms whose correlation functions come close to ones of your own.
+// Computes waveforms that approximate given correlation functions.
 #include <cmath>
 #include <cstdio>
 

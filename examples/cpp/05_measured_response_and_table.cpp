@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A measured impulse response in place of a model, and a measured table in place of a code. Both
-// measurements are simulated here: use read_impulse_response() and read_measured_table() on yours.
+// Uses a measured impulse response instead of a model, and a measured table instead of a code. Both
+// measurements are simulated here. Read your own with read_impulse_response() and
+// read_measured_table().
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -12,7 +13,7 @@
 
 int main() {
   using namespace tofsmith;
-  // The light's answer to a short pulse: rises at once and rings off within 8 ns.
+  // Impulse response of the light: rises immediately and rings for 8 ns.
   ImpulseResponse measured{.kind = ImpulseResponse::Kind::file, .time_step_s = 0.25e-9};
   for (int i = 0; i < 48; ++i) {
     const double time_s = i * measured.time_step_s;
@@ -25,7 +26,7 @@ int main() {
   const double error_m = evaluate(code, camera, {.trials = 1000}).circular.geometric_mean_m.value;
   std::printf("square-k4 behind the measured response: %.1f mm\n", 1e3 * error_m);
 
-  // A delay sweep of 200 steps over the whole range, with a little disturbance.
+  // A delay sweep of 200 steps over the whole range, with small random errors.
   const ForwardModel truth(code, camera);
   MeasuredTable table;
   table.correlation = truth.correlation_table(200);

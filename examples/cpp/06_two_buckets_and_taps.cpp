@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// More values out of one exposure: two buckets, their difference, and a code from waveforms.
+// Measures several values per exposure: two buckets, their difference, and three taps.
 #include <cstdio>
 #include <utility>
 
@@ -27,7 +27,7 @@ void show_two_buckets() {
 
 int main() {
   show_two_buckets();
-  // Three exclusive taps that share one exposure, each open for a third of the period.
+  // Three taps of one exposure, each open for a third of the period.
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 120;
   camera.sensor.taps = 3;

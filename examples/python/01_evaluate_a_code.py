@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How far off are depths by a standard code on a standard camera?"""
+"""Computes the depth error of a standard code on a built-in camera."""
 
 import tofsmith
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Codes for a camera of your own. The search here is short: leave `optimize` out for a real one."""
+"""Designs codes for your camera. The search is shortened: omit `optimize` for a full search."""
 
 import tofsmith
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Depth of a raw frame from a file: here one that is simulated first."""
+"""Decodes a raw frame from a file, which is simulated first."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ scene = tofsmith.built_in_scene("table-top", width=160, height=120)
 raw = tofsmith.capture(scene, "hamiltonian-k4", camera, signal_e_per_s=1e6, ambient_e_per_s=1e4)
 tofsmith.write_raw("raw.npy", raw, overwrite=True)
 
-decoder = tofsmith.Decoder("hamiltonian-k4", camera)  # once for a camera and code
+decoder = tofsmith.Decoder("hamiltonian-k4", camera)  # reusable for all frames
 image = decoder.decode(tofsmith.read_raw("raw.npy")[0])
 error_m = np.abs(image.depth_m - scene.depth_m)
 print(f"{np.mean(image.status == tofsmith.PixelStatus.ok):.1%} of the pixels are ok, "

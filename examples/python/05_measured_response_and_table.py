@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""A measured impulse response in place of a model, and a measured table in place of a code.
+"""Uses a measured impulse response instead of a model, and a measured table instead of a code.
 
-Both measurements are simulated here: use read_impulse_response() and read_measured_table() on
-yours.
+Both measurements are simulated here. Read your own with read_impulse_response() and
+read_measured_table().
 """
 
 import numpy as np
 
 import tofsmith
 
-# The light's answer to a short pulse: rises at once and rings off within 8 ns.
+# Impulse response of the light: rises immediately and rings for 8 ns.
 step_s = 0.25e-9
 time_s = np.arange(48) * step_s
 response = np.exp(-time_s / 1.5e-9) * (1 + 0.3 * np.cos(2 * np.pi * time_s / 2e-9))
@@ -19,7 +19,7 @@ camera = tofsmith.Camera("paper-10f0", light={"impulse_response": measured})
 error_m = tofsmith.evaluate("square-k4", camera, trials=1000).circular.geometric_mean_m
 print(f"square-k4 behind the measured response: {error_m * 1e3:.1f} mm")
 
-# A delay sweep of 200 steps over the whole range, with a little disturbance.
+# A delay sweep of 200 steps over the whole range, with small random errors.
 truth = tofsmith.ForwardModel("square-k4", camera)
 n, k = np.mgrid[:200, :4]
 table = truth.correlation_table(200) + 1e-4 * np.sin(1.7 * n * n + k)

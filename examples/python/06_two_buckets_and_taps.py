@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""More values out of one exposure: two buckets, their difference, and a code from arrays."""
+"""Measures several values per exposure: two buckets, their difference, and three taps."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ for name, sensor in sensors.items():
     print(f"{name}: {code.exposures} exposures, {tofsmith.ForwardModel(code, camera).measurements} "
           f"measurements, {error_m * 1e3:.1f} mm")
 
-# Three exclusive taps that share one exposure, each open for a third of the period.
+# Three taps of one exposure, each open for a third of the period.
 camera = tofsmith.Camera("paper-10f0", samples=120, sensor={"taps": 3})
 third = np.arange(120) // 40
 gates = (third[:, None] == np.arange(3)).astype(float)  # (N, K)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Depth error over many cameras and codes, kept in a store that a second run goes on with."""
+"""Computes depth errors of several cameras and codes. A second run continues from the store."""
 
 import tofsmith
 

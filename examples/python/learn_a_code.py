@@ -1,15 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Learns a code together with a small decoder, by PyTorch over the gradients of tofsmith.torch, and
-compares both with what `optimize` designs for the same camera. Takes a minute or two on a core.
+"""Learns a code and a small decoder with PyTorch and the gradients of tofsmith.torch. Compares both
+with a code that `optimize` designs for the same camera. Takes one to two minutes on one core.
 
     PYTHONPATH=BUILD/python /usr/bin/python3 examples/python/learn_a_code.py [STEPS [CODES]]
 
-Many codes go downhill side by side, as one batch, from a family and from random ones; the best are
-changed and go on, and the best of all is refined together with a decoder: a network of two layers
-that reads from a pixel's measurements how much to trust them, the temperature of the soft decoder.
-Light stays within its peak and mean power, gates within 0 and 1, by how they are written, and get
-steeper until they only switch: what comes out is a code that the camera can play.
+The initial codes are a family code and random codes. They are optimized as one batch by gradient
+descent. After each round, the best codes are kept, and variations of them replace the others. The
+best code of the last round is refined together with a decoder: a network of two layers that
+computes the temperature of the soft decoder from the measurements of a pixel. The parametrization
+limits the light to its peak and mean power and the gates to [0, 1]. The waveforms become steeper
+during the optimization until they only switch on and off, as the camera requires.
 """
 
 import sys
@@ -32,8 +33,11 @@ lights = torch.tensor([(s, a) for s in camera.operating.signal_e_per_s
 
 
 def waveforms(parameters, steepness):
-    """Light of mean power 1 and gates (.., N, E): logistic functions of free numbers, the light's
-    less a level found by bisection, with a step of Newton's method that knows the gradient."""
+    """Returns light of mean power 1 and gates (..., N, E), logistic functions of the parameters.
+
+    Bisection finds the level that gives the light its mean power. A Newton step makes the level
+    differentiable.
+    """
     light, gates = (steepness * p for p in parameters)
     mean = 0.9999 / peak
     with torch.no_grad():
@@ -50,7 +54,7 @@ def waveforms(parameters, steepness):
 
 
 class Trust(torch.nn.Module):
-    """Temperature of the soft decoder [e^2] from the measurements of a pixel."""
+    """Computes the temperature of the soft decoder [e^2] from measurements (..., K)."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -64,7 +68,7 @@ class Trust(torch.nn.Module):
 
 
 def captured(table, pixels, seed):
-    """Measurements (.., lights x pixels, K) of depths anywhere in the range, and the depths."""
+    """Returns measurements (..., lights x pixels, K) of random depths, and these depths [m]."""
     places = torch.rand(len(lights) * pixels, generator=torch.Generator().manual_seed(seed))
     depth_m = camera.range_m * places
     signal, ambient = lights.repeat_interleave(pixels, 0).T
@@ -72,7 +76,7 @@ def captured(table, pixels, seed):
 
 
 def geometric_mean(error_m):
-    """Of the mean errors at all lights, (..): what `evaluate` says."""
+    """Returns the geometric mean over all lights of the mean errors (...), like `evaluate`."""
     return error_m.unflatten(-1, (len(lights), -1)).mean(-1).log().mean(-1).exp()
 
 
@@ -82,8 +86,10 @@ def circular_error_m(found_m, depth_m):
 
 
 def descend(parameters, steps, pixels, first_seed, trust=None, soft_share=0.4, rate=0.08):
-    """Adam downhill along the error of the soft decoder, ever colder, of ever steeper waveforms;
-    with a decoder, along what that errs too."""
+    """Minimizes the error of the soft decoder with Adam, and that of `trust` if one is given.
+
+    The temperature decreases and the waveforms become steeper during the optimization.
+    """
     groups = [{"params": parameters}]
     if trust:
         groups.append({"params": list(trust.parameters()), "lr": 0.005})
@@ -106,7 +112,7 @@ def descend(parameters, steps, pixels, first_seed, trust=None, soft_share=0.4, r
 
 
 def errors_of(parameters, pixels=300):
-    """Error [m] of every code, of the soft decoder at a low temperature."""
+    """Returns the error [m] of each code with the soft decoder at a low temperature."""
     with torch.no_grad():
         table = tst.measurement_table(*waveforms(parameters, steepest), camera)
         y, depth_m = captured(table, pixels, 2**40)
@@ -115,7 +121,7 @@ def errors_of(parameters, pixels=300):
 
 
 def smooth(codes):
-    """Random functions (codes, N, E) of six harmonics."""
+    """Returns random functions (codes, N, E) with six harmonics."""
     turns = 2 * torch.pi * torch.arange(camera.samples) / camera.samples
     waves = torch.stack([f(n * turns) for n in range(1, 7) for f in (torch.cos, torch.sin)], -1)
     values = waves @ torch.randn(codes, waves.shape[-1], exposures)
@@ -127,7 +133,7 @@ def leaves(parameters):
 
 
 def learn(steps, codes):
-    """Parameters of the best code, and its decoder."""
+    """Returns the parameters of the best code and its decoder."""
     family = tofsmith.build_family("hamiltonian-k4", camera)
     parameters = [smooth(codes), smooth(codes)]
     for p, waveform, most in zip(parameters, (family.modulation, family.demodulation), (peak, 1.0)):
@@ -139,7 +145,7 @@ def learn(steps, codes):
         errors_m = errors_of(parameters)
         best = errors_m.argsort()[:kept]
         print(f"round {r + 1}: best code errs {1e3 * errors_m[best[0]]:.1f} mm", file=sys.stderr)
-        if r + 1 < rounds:  # the best stay, and are changed
+        if r + 1 < rounds:  # keep the best codes and add variations of them
             parameters = [p[best].detach().repeat(-(-codes // kept), 1, 1)[:codes] for p in parameters]
             for p in parameters:
                 p[kept:] += 0.7 * smooth(codes - kept)
@@ -150,14 +156,17 @@ def learn(steps, codes):
 
 
 def switching(parameters):
-    """The waveforms as what they have come close to: on or off, with no more light than there is."""
+    """Returns waveforms that are only on or off, with a mean power of the light of at most 1."""
     light, gates = (w.detach().double() for w in waveforms(parameters, steepest))
     light = peak * (light > peak / 2).double()
     return light / light.mean(0).clamp(min=1.0), (gates > 0.5).double()
 
 
 def judged(code, pixels, trust=None):
-    """Error [m] of a code by captures of so many pixels at each light, with the learned decoder or with tofsmith's."""
+    """Returns the error [m] of a code, measured with `pixels` captured pixels at each light.
+
+    Uses the learned decoder `trust`, or tofsmith's decoder by default.
+    """
     with torch.no_grad():
         waves = (torch.as_tensor(w).float() for w in (code.modulation, code.demodulation))
         table = tst.measurement_table(*waves, camera)
