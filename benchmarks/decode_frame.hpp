@@ -20,7 +20,7 @@ enum class Scene {
   random,  ///< independent depths
 };
 
-/// In bins.
+/// Depth of each pixel of a scene [bins].
 inline std::vector<double> scene_depth_bins(Scene scene, int samples, FastRandom& random) {
   constexpr int patch_width = 80, patch_height = 60;
   std::vector<double> depth_bin(static_cast<std::size_t>(frame_pixels));
@@ -60,7 +60,7 @@ inline void append_pixel(const DecodingTable& table, double depth_bin, double si
   }
 }
 
-/// Raw values (H, W, K).
+/// Raw values (H, W, K) of a scene with noise.
 inline std::vector<float> noisy_frame(const DecodingTable& table, Scene scene,
                                       const LightLevel& light) {
   FastRandom random(7);

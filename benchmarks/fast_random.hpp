@@ -19,12 +19,12 @@ class FastRandom {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// In [0, 1).
+  /// Uniform number in [0, 1).
   double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// With uniform logarithm.
+  /// Number whose logarithm is uniform.
   double log_uniform(double low, double high) { return low * std::pow(high / low, uniform()); }
-  /// In [0, count).
+  /// Uniform integer in [0, count).
   int below(int count) { return static_cast<int>(((*this)() >> 32) * count >> 32); }
   /// Sum of four uniform numbers, with mean 0 and variance 1, within 3.5.
   double normal() {

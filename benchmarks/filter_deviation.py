@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How far the depth of repeated captures spreads, over the deviation that decoding predicts.
+"""Compares the spread of depths over repeated captures with the standard deviation that decoding
+predicts.
 
-    /usr/bin/python3 benchmarks/filter_deviation.py TOFSMITH CODE [S ..] [--frames N]
+    /usr/bin/python3 benchmarks/filter_deviation.py TOFSMITH CODE [S ...] [--frames N]
 
-A made scene of 320 x 240 pixels, whose signal is S [e/s] at white pixels of any depth: a flat part,
-a slanted one, a textured one that slants half as much, and stripes of two depths. Of each class of
-pixels are shown
+The synthetic scene of 320 x 240 pixels has a signal of S [e/s] at white pixels of any depth. It
+consists of a flat plane, a slanted plane, a textured plane with half the slope, and stripes of two
+depths. Prints for each class of pixels:
 
-    spread   root mean square of (depth - mean of the captures) / predicted deviation,
-    bias     the same of (mean of the captures - truth), without what the spread leaves in a mean,
-    other    the share of depths nearer another depth of the scene or in another lobe: left out, as
-             the deviation is that around the right peak.
+    spread   root mean square of (depth - mean over captures) / predicted deviation
+    bias     root mean square of (mean over captures - truth) / predicted deviation, without the
+             noise of the mean
+    other    share of depths that are closer to another depth of the scene or in another lobe;
+             spread and bias exclude them, since the deviation describes the correct peak only
 """
 
 import argparse
@@ -27,12 +29,12 @@ HEIGHT, WIDTH = 240, 320
 AMBIENT_E_PER_S = 1e4
 STRIPE_PX, STEP_M = 32, 0.6
 SLOPE_M = (0.004, 0.0015)  # per column and row
-CLEARANCE_PX = 26  # from where the parts meet
+CLEARANCE_PX = 26  # from the borders between the parts
 FILTERS = ("off", "light", "normal", "strong")
 
 
 def made_scene():
-    """Radial distance [m], albedo, and the classes of pixels as masks."""
+    """Returns the radial distance [m], the albedo, and the mask of each class of pixels."""
     y, x = np.mgrid[:HEIGHT, :WIDTH]
     top, left = y < HEIGHT // 2, x < WIDTH // 2
     across, down = x % (WIDTH // 2), y % (HEIGHT // 2)  # in the part
@@ -68,7 +70,7 @@ def run(program, *arguments):
 
 
 def decoded(program, raw, code, options):
-    """Depth and predicted deviation of all captures [m]."""
+    """Returns the depth and the predicted deviation of all captures [m] (frames, H, W)."""
     depth = raw.with_name("depth.npy")
     run(program, "decode", raw, "--code", code, *options, "--stack", "--outputs",
         "depth,deviation", "-o", depth)
@@ -77,7 +79,7 @@ def decoded(program, raw, code, options):
 
 
 def judged(depth, deviation, truth, part):
-    """Spread, bias and share of other depths over a part of the pixels."""
+    """Returns spread, bias and share of other depths of the pixels in the mask `part`."""
     z, s, t = depth[:, part], deviation[:, part], truth[part]
     near = np.isfinite(z) & np.isfinite(s) & (np.abs(z - t) < 0.45 * STEP_M)
     other = 1 - near.mean()

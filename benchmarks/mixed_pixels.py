@@ -4,7 +4,7 @@
 """Fraction of flying pixels at edges that `decode --mixed` detects, and of valid pixels that it
 removes.
 
-    /usr/bin/python3 benchmarks/mixed_pixels.py TOFSMITH CODE.code.json [S ..]
+    /usr/bin/python3 benchmarks/mixed_pixels.py TOFSMITH CODE.code.json [S ...]
 
 Uses the table-top scene with 320 x 240 pixels and a lens blur of half a pixel. Nine times as many
 rays determine the visible depths of each pixel. A pixel flies if its depth differs from the

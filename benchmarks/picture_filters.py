@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The filter beside filters of depth and of phasors, all on the same raw frames.
+"""Compares the filter with filters of depth images and of phasors on the same raw frames.
 
     scripts/packages.sh benchmark
     /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith --quick
@@ -8,15 +8,14 @@
     /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith \\
         --optimized OUT/codes/optimized-k5.code.json --data DIRECTORY
 
---empty measures only the shares of pixels with status ok: of pixels without a surface, by their
-distance from the nearest surface, and of pixels with one.
-OUT is what `tofsmith demo -o OUT` has written. With --data DIRECTORY there are RGB-D images and
-meshes as well; what is not there is named and left out.
+OUT is the output directory of `tofsmith demo -o OUT`. --data adds RGB-D images and meshes; missing
+files are reported and skipped. --empty measures only the shares of pixels with status ok: among
+pixels without a surface, by distance from the nearest surface, and among pixels with a surface.
 
-Every other filter has the parameters of its grid that give the least mean error of each single
-frame, found with the true depth, and knows which pixels see a surface. Ours has what it comes
-with. Errors are circular, of all pixels that have a true depth; pixels that a filter drops get the
-depth of the nearest one it keeps.
+Our filter has its default parameters. For each frame, the other filters have the parameters of
+their grid with the smallest mean error, which requires the true depth; their input marks the pixels
+that have a surface. Errors are circular errors of all pixels with a true depth. A pixel dropped by
+another filter gets the depth of the nearest pixel that this filter keeps.
 """
 
 import argparse
@@ -45,7 +44,7 @@ BUILT_IN = ("table-top", "hand", "room", "corner")
 EMPTY_SCENES = ("hand", "moving-hand", "ball")
 EMPTY_LEVELS_E_PER_S = (1e3, 3e3, 5e3, 1e4, 3e4, 1e5, 1e7)
 EMPTY_DISTANCES_PX = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 12), (13, 10**6))
-# Depth and image of each below --data; images in sRGB are .png, those in linear light .npy.
+# Depth and image files, relative to --data. PNG images are sRGB, NPY images are linear.
 RGB_D = {
     "bottles": ("pcl_tabletop/bottles_floor_depth_m.npy", "pcl_tabletop/bottles_floor_rgb.png"),
     "carton": ("pcl_tabletop/floor_bottles_carton_depth_m.npy",
@@ -58,7 +57,7 @@ MESHES = {"mesh-hand": "meshes/hand_lowres.obj", "mesh-spot": "meshes/spot_low_r
 
 
 class Camera:
-    """The command line, and the default camera as it shows there."""
+    """Runs the command line with the default camera."""
 
     def __init__(self, program, directory):
         self.program, self.directory = program, directory
@@ -71,7 +70,9 @@ class Camera:
             sys.exit(f"tofsmith {' '.join(map(str, arguments))}\n{done.stderr}")
 
     def capture(self, scene, code, signal, ambient, *options):
-        """File of raw measurements; true distance [m] (H, W), NaN without a surface."""
+        """Returns the file of raw measurements and the true distances [m] (H, W), NaN where a pixel
+        has no surface.
+        """
         raw, truth = self.directory / "raw.npy", self.directory / "truth.npy"
         self.run("simulate", *scene, "--code", code, "--signal", signal, "--ambient", ambient,
                  "-o", raw, "--truth", truth, *options)
@@ -85,13 +86,13 @@ class Camera:
         return np.load(depth).squeeze()
 
     def is_ok(self, raw, code, *options):
-        """Return the mask of pixels with status ok."""
+        """Returns the mask of pixels with status ok."""
         self.run("decode", raw, "--code", code, "-o", self.directory / "depth.npy", "--outputs",
                  "depth,status", *options)
         return np.load(self.directory / "depth-status.npy").squeeze() == 0
 
     def table(self, code, samples=1000):
-        """What one electron per second of signal at each depth of the range measures, (N, K)."""
+        """Returns the measurements (N, K) of a signal of 1 e/s at `samples` depths of the range."""
         depth = np.arange(samples) * anchors.RANGE_M / samples
         depth[0] = 1e-6
         np.save(self.directory / "ramp.npy", depth.reshape(1, samples).astype(np.float32))
@@ -100,7 +101,7 @@ class Camera:
         return np.load(raw).reshape(samples, -1).astype(np.float64) / 1e15
 
     def lit(self, name, scene, code, signal, *options):
-        """A capture with the signal at the scene's median depth."""
+        """Captures a scene with the given signal at its median depth."""
         if name not in self.medians_m:
             self.medians_m[name] = np.nanmedian(self.capture(scene, code, 1, 1)[1])
         return self.capture(scene, code, signal, AMBIENT_E_PER_S,
@@ -108,7 +109,7 @@ class Camera:
 
 
 def prepared(name, data, directory):
-    """Arguments for an RGB-D scene of at most 320 x 240 pixels, or None where its files are not."""
+    """Returns arguments of an RGB-D scene of up to 320 x 240 pixels, or None without its files."""
     depth_file, image_file = (data / part for part in RGB_D[name])
     if not depth_file.exists() or not image_file.exists():
         return None
@@ -123,7 +124,7 @@ def prepared(name, data, directory):
 
 
 def scenes(arguments, directory):
-    """Name, arguments of `simulate`, and whether the scene came from outside."""
+    """Returns names, arguments of `simulate`, and whether the scene is from --data."""
     if arguments.quick:
         return [("table-top", ("table-top", "--width", 160, "--height", 120), False)]
     size = ("--width", 320, "--height", 240)
@@ -144,7 +145,9 @@ def scenes(arguments, directory):
 
 
 def error_mm(depth, truth):
-    """Mean and median circular error [mm]; without depth a quarter of the range."""
+    """Returns the mean and median circular error [mm]; the error of a missing depth is a quarter of
+    the range.
+    """
     seen = np.isfinite(truth)
     off = np.abs(depth[seen] - truth[seen]) % anchors.RANGE_M
     off = np.where(np.isfinite(off), np.minimum(off, anchors.RANGE_M - off), anchors.RANGE_M / 4)
@@ -152,10 +155,10 @@ def error_mm(depth, truth):
 
 
 def edge_shifts_px(depth, truth, least_step_m=0.2, side=4):
-    """How far steps of depth moved along rows and columns [px].
+    """Returns the shifts of depth edges along rows and columns [px].
 
-    Steps have `side` pixels on each side that are level. A step is where the depth crosses the
-    middle of the true one, the nearest place if there are several; `side` off where it does not.
+    A true edge is a step with `side` level pixels on both sides. The shift is the distance to the
+    nearest place where the depth crosses the middle of the step, at most `side`.
     """
     shifts = []
     for z, t in ((depth, truth), (depth.T, truth.T)):
@@ -177,9 +180,9 @@ def edge_shifts_px(depth, truth, least_step_m=0.2, side=4):
 
 
 def plane_bias(camera, code, name, signal, frames):
-    """Pixels on planes, and the rms bias of their depth in units of its deviation over frames.
-
-    A pair for each of CLEARANCES_PX, how far edges, creases and the image's border are at least.
+    """Returns the number of pixels on planes and the rms bias of their depth, in units of its
+    standard deviation over frames, for each of CLEARANCES_PX: the minimum distance from edges,
+    creases and the border of the image.
     """
     scene = (name, "--width", 320, "--height", 240)
     raw, truth = camera.lit(f"{name} of planes", scene, code, signal, "--frames", frames)
@@ -195,13 +198,13 @@ def plane_bias(camera, code, name, signal, frames):
             found.append((int(part.sum()), math.nan))
             continue
         noise = variance[part].mean()
-        own = (mean[part] ** 2).mean() - noise / frames  # what the mean of the frames has of noise
+        own = (mean[part] ** 2).mean() - noise / frames  # subtracts the noise of the mean
         found.append((int(part.sum()), math.sqrt(max(own, 0) / noise)))
     return found
 
 
 def with_holes(camera, directory):
-    """Write a depth image of a wall with holes of 3 to 60 pixels and gaps of 4 to 24."""
+    """Writes a depth image of a wall with holes of 3 to 60 pixels and gaps of 4 to 24 pixels."""
     depth = np.full((240, 320), 1.5, np.float32)
     y, x = np.mgrid[:240, :320]
     for row, radius in ((50, 1), (50, 4), (50, 10), (50, 30)):
@@ -214,7 +217,7 @@ def with_holes(camera, directory):
 
 
 def empty_report(camera, code, frames):
-    """Print the shares of ok pixels without and with filters, by distance from a surface."""
+    """Prints the shares of ok pixels without and with filters, by distance from a surface."""
     near = [f"{a}" if a == b else f"{a}-{b}" if b < 1000 else f"{a} on" for a, b in
             EMPTY_DISTANCES_PX]
     print(f"\nok pixels in %, {label(code)}, {frames} frames\n")
@@ -242,7 +245,7 @@ def empty_report(camera, code, frames):
 
 
 def measured(camera, code, name, scene, signal, lens, shifts):
-    """Error [mm] (mean, median) of every method in one cell."""
+    """Returns the mean and median error [mm] of every method in one cell of the table."""
     raw, truth = camera.lit(name, scene, code, signal, *(LENS if lens else ()))
     measurements = np.load(raw).squeeze().astype(np.float64)
     alone = camera.decode(raw, code)
@@ -267,12 +270,12 @@ def measured(camera, code, name, scene, signal, lens, shifts):
 
 
 def label(code):
-    """A code's name, of a file too."""
+    """Returns the name of a code or of a code file."""
     return Path(code).name.removesuffix(".code.json")
 
 
 def report(code, cells):
-    """The table of one code: a row per cell, mean / median [mm] of each method, and the ratio."""
+    """Prints the mean / median error [mm] of each method for one code, and the ratio of errors."""
     names = sorted({name for errors in cells.values() for name in errors}, key=ORDER.index)
     print(f"\n## {label(code)}\n")
     print("| scene | S (e/s) | lens | " + " | ".join(names) + " | best other / normal |")
@@ -288,12 +291,14 @@ ORDER = ("alone", *anchors.NAMES, *OURS)
 
 
 def ratio(errors, strength="normal"):
-    """Mean error of the best of the others over ours."""
+    """Returns the mean error of the best other filter divided by that of our filter."""
     return min(e[0] for m, e in errors.items() if m not in OURS) / errors[strength][0]
 
 
 def summary(results, outside):
-    """Where the filter is 1.5 times as good at dim light outside, and where it is worse."""
+    """Prints the number of --data cells at dim light with a ratio of at least 1.5, and all cells
+    with a ratio below 1.
+    """
     print("\n## Summary\n")
     for code, cells in results.items():
         dim = {c: ratio(e) for c, e in cells.items()
@@ -312,7 +317,7 @@ def summary(results, outside):
 
 
 def edges_report(shifts):
-    """How far depth edges moved, by code, level and lens."""
+    """Prints the shifts of depth edges by code, light level and lens."""
     print("\nShift of depth edges (asked: median < 0.2 pixel)\n")
     print("| code | S (e/s) | lens | depth | edges | median (px) | beyond half a pixel |")
     print("|---|---|---|---|---|---|---|")
@@ -325,7 +330,7 @@ def edges_report(shifts):
 
 
 def planes_report(camera, code, levels, frames):
-    """Bias on planes, by scene and level."""
+    """Prints the bias on planes by scene and light level."""
     print(f"\nrms bias / sigma of `normal` on planes (asked < 0.1), {label(code)}, {frames} frames")
     print()
     columns = "".join(f" pixels {n} from any edge | bias |" for n in CLEARANCES_PX)

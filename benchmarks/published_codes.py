@@ -4,7 +4,7 @@
 """Compares published codes with codes of `design` for the same camera, and prints the table of
 docs/comparison.md. Needs NumPy.
 
-    published_codes.py TOFSMITH FOLDER .. [--camera paper-10f0] [--effort 1] [--store FILE.jsonl]
+    published_codes.py TOFSMITH FOLDER ... [--camera paper-10f0] [--effort 1] [--store FILE.jsonl]
 
 Codes are .npz files with modfs and demodfs, or pairs NAME-light.npy, NAME-gates.npy. If the second
 half of the columns is the complement of the first, they are two taps of one exposure. The peak of

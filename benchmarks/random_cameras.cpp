@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Are designed codes ever worse than the best baseline? Random cameras, each designed for, the
-// winner judged again beside the best baseline with trials that no part of the design has seen.
+// Compares designed codes with the best baseline for random cameras. The winner of each design and
+// the baseline are evaluated with new trials that the design did not use.
 //
 //   benchmark_random_cameras [CAMERAS] [SEED]
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace tofsmith;
 
-/// A camera as the trade has them: much narrower than random_camera(), which takes any values.
+/// A camera with parameters of commercial cameras, in contrast to random_camera().
 Camera random_usual_camera(std::uint64_t seed, std::uint64_t index) {
   RandomStream random(seed, index);
   Camera camera = built_in_camera("paper-10f0");

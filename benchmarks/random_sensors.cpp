@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Is a design of frequencies ever worse than a named set of frequencies, or than the first choice
-// of the usual rule of thumb? Random sensors; all codes are square waves, judged with fresh trials.
+// Compares designed frequencies with named sets of frequencies and with the first choice of the
+// usual rule of thumb, for random sensors. All codes are square waves, evaluated with new trials.
 //
 //   benchmark_random_sensors [SENSORS] [SEED]
 #include <fmt/format.h>

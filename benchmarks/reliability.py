@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reliability of `confidence`: the share of pixels in the right lobe against the mean confidence.
 
-    PYTHONPATH=BUILD/python /usr/bin/python3 benchmarks/reliability.py [--pixels N] [CODE ..]
+    PYTHONPATH=BUILD/python /usr/bin/python3 benchmarks/reliability.py [--pixels N] [CODE ...]
 
 Depths are uniform and signals log-uniform, from 0.1 to 300 standard deviations of the signal. With a
 filter, the scene consists of slanted tiles of 64 x 64 pixels with one signal each, from 0.01 to 3

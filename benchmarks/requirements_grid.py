@@ -7,7 +7,7 @@ apart, together with the family codes and the code of the result. The answer of 
 factor at which the smallest error equals the requested one (linear interpolation of logarithms).
 Targets: agreement within 2 %, at most 2 minutes for each search.
 
-    PYTHONPATH=build-dev/python requirements_grid.py [CASE ..]
+    PYTHONPATH=build-dev/python requirements_grid.py [CASE ...]
 """
 
 import sys

@@ -7,7 +7,7 @@ limit on the light or at most a fraction P of all photons per bin (then light an
 the response).
 
     benchmarks/rows.py [--tofsmith build/apps/tofsmith] [--rows 8] [--trials 20000] [--cells 0,1,..]
-                       [--codes FOLDER ..]
+                       [--codes FOLDER ...]
     benchmarks/rows.py --gated          8 exposures of one tap instead of rows, 100 photons in total
     benchmarks/rows.py --least SIGMA    smallest Cramer-Rao bounds of 4, 5 and 6 tones; needs NumPy
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""How much of a design is chance: designs of the same cameras by several seeds (`--method optimize` at
-its usual effort, with the exposures that are best there), each winner judged by the same fresh random
-numbers. Prints errors in mm and, for each camera, the spread: the largest over
-the least, less one. Asked: at most 1 % beyond four standard errors of judging.
+"""Measures how much the result of a design depends on its seed. Designs a code for each camera with
+several seeds (`--method optimize`, default effort, the best number of exposures) and evaluates the
+winners with the same new random numbers. Prints the errors in mm and the spread of each camera:
+largest error / smallest error - 1. Target: at most 1 % plus four standard errors of the evaluation.
 
-    seeds.py TOFSMITH [SEEDS [STORE.jsonl]]    10 seeds; designs in the store are not made again
+    seeds.py TOFSMITH [SEEDS [STORE.jsonl]]    10 seeds; designs in the store are reused
 
-Exits 1 where a spread is more than that.
+Exits with 1 if a spread exceeds the target.
 """
 
 import json
@@ -30,7 +30,7 @@ def run(*words):
 
 
 def designed(tool, camera, seed):
-    """Name, error and its standard error [m] of the winner."""
+    """Returns the name of the winner, its error and the standard error [m]."""
     taps, exposures, peak, band = camera
     words = ["--camera", "paper-10f0", "--threads", "1"]
     for key, value in (("sensor.taps", taps), ("light.peak_factor", peak), ("operating.error", '"circular"'),
