@@ -6,7 +6,7 @@
 # decoder's bins with qemu-user: the NEON kernels must find the same bins as on x86. Libraries for Arm
 # are unpacked into the build folder; the system is not changed.
 #
-#   scripts/arm64.sh [--floors NAME,NAME ..] [DIR]     build in DIR instead of build-arm64
+#   scripts/arm64.sh [--floors NAME,NAME,...] [DIR]    build in DIR instead of build-arm64
 #
 #   --floors NAMES   all tests of these folders of core: core, code, camera, scene, decode, simulate;
 #                    at least fifteen times slower than on x86

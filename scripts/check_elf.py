@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks with readelf that programs and libraries are hardened (cmake/TofsmithDefaults.cmake):
 
-    scripts/check_elf.py FILE ..
+    scripts/check_elf.py FILE ...
 
 Requirements: position-independent code; relocations read-only and resolved at start (RELRO,
 BIND_NOW); no executable stack and no segment that is both writable and executable; no text
 relocations; search paths only relative to $ORIGIN; stack protector; every exported function starts
-with ENDBR64 (CET, x86-64); and calls checked by _FORTIFY_SOURCE in at least one of the files. Prints
-what is missing and exits with 1.
+with ENDBR64 (CET, x86-64); and calls checked by _FORTIFY_SOURCE in at least one of the files.
+Prints all violations and exits with 1.
 """
 
 import re

@@ -5,7 +5,7 @@
 # Makes system calls of all commands that write files fail, kills and interrupts these commands, and
 # checks the remaining files: see docs/reliability.md. Files are in /dev/shm, to protect the disk.
 #
-#   scripts/faults.sh [--seconds N] [--seed S] [NAME ..]     600 s for all commands, or the named ones
+#   scripts/faults.sh [--seconds N] [--seed S] [NAME ...]   600 s for all commands or the named ones
 #
 # Prints the number of tests and all violations; exits with 1 if there are any.
 set -euo pipefail

@@ -6,7 +6,7 @@
 # The library makes the seeds. New inputs are stored in build-fuzz/corpus, where the next run
 # continues, and the number of executions in build-fuzz/tally.
 #
-#   scripts/fuzz.sh [--seconds N] [READER ..]     10 s for each reader, or the named ones
+#   scripts/fuzz.sh [--seconds N] [READER ...]    10 s for each reader, or the named ones
 #   scripts/fuzz.sh --total 1e8                   in rounds, until all runs together have this
 #                                                 number of executions; can be stopped and restarted
 #   scripts/fuzz.sh --list                        print the names of the readers

@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# The Debian packages of the project. Sourced by the other scripts; when run directly, it installs the
-# missing packages of the named groups:
+# The Debian packages of the project. Sourced by the other scripts; when run directly, it installs
+# the missing packages of the named groups:
 #
-#   scripts/packages.sh GROUP ...       install what is missing
+#   scripts/packages.sh GROUP ...       install missing packages
 #   scripts/packages.sh --list GROUP    print the names, one per line
 #
 # A group is an array packages_GROUP below.
@@ -145,7 +145,7 @@ debian_release() (
   printf '%s' "$VERSION_CODENAME"
 )
 
-# Packages on standard input, by their names in a release.
+# Translates package names on standard input to the names in a release.
 named_in_release() {
   awk -v release="$1" -v table="$packages_by_release" '
     BEGIN { rows = split(table, row, "\n")
@@ -156,7 +156,7 @@ named_in_release() {
     { print ($1 in name) ? name[$1] : $1 }'
 }
 
-# The widest vector instructions of this machine, as TOFSMITH_TARGETS takes them.
+# Prints the widest vector instructions of this machine, a value of TOFSMITH_TARGETS.
 own_target() {
   local flags target=SSE4
   flags=" $(grep -m 1 '^flags' /proc/cpuinfo || true) "
@@ -170,14 +170,14 @@ own_target() {
   printf '%s' "$target"
 }
 
-# The Debian release of this machine, or the newest one on which tofsmith is tested.
+# Prints the Debian release of this machine, or else the newest release with tests.
 this_or_newest_release() {
   local release
   release=$(debian_release)
   printf '%s' "${release:-${tofsmith_releases##* }}"
 }
 
-# The packages of one group by their names in that release, one a line.
+# Prints the packages of a group by their names in that release, one per line.
 packages_of() { list_group "$1" | named_in_release "$(this_or_newest_release)"; }
 list_group() {
   [[ " $(package_groups) " == *" $1 "* ]] ||
@@ -185,12 +185,12 @@ list_group() {
   local -n group="packages_$1"
   printf '%s\n' "${group[@]}"
 }
-# The names of all package groups.
+# Prints the names of all package groups.
 package_groups() {
   compgen -A variable packages_ | sed 's/^packages_//; /^by_release$/d' | paste -sd' '
 }
 
-# Those of the packages named on standard input that are not installed.
+# Reads package names from standard input and prints those that are not installed.
 missing_packages() {
   local package
   while read -r package; do
@@ -199,7 +199,7 @@ missing_packages() {
   done
 }
 
-# Installs what is missing of a group. Asks nothing, and does not touch apt when nothing is missing.
+# Installs the missing packages of a group without questions. Runs apt only if any are missing.
 install_packages() {
   local group=$1 list
   list=$(packages_of "$group")
@@ -224,13 +224,13 @@ apt-get install --no-install-recommends ${missing[*]}"
     sudo true </dev/null || tofsmith_die "must install packages and sudo does not let it: ${missing[*]}"
     as_root=(sudo "${as_root[@]}")
   fi
-  # A machine just started may be updating itself: wait for its lock.
+  # A new machine may be running automatic updates: wait for their lock.
   local -a apt=("${as_root[@]}" apt-get -q -y -o DPkg::Lock::Timeout=600)
 
-  # Packages of another architecture are found once dpkg knows of it.
+  # apt finds packages of another architecture only after it is added to dpkg.
   [[ " ${missing[*]}" != *:arm64* ]] || "${as_root[@]}" dpkg --add-architecture arm64
   printf 'Installing %d Debian packages: %s\n' "${#missing[@]}" "${missing[*]}"
-  # One broken third-party source fails the update but need not hide our packages.
+  # A broken third-party source makes the update fail, but our packages may still be found.
   "${apt[@]}" update </dev/null ||
     printf 'apt-get update failed; trying with the package lists as they are\n' >&2
   "${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null ||
@@ -238,8 +238,8 @@ apt-get install --no-install-recommends ${missing[*]}"
 See its messages above; tofsmith is tested on Debian ($tofsmith_releases)."
 }
 
-# apt-get with lists, cache and installed packages of its own in a folder, so that it can fetch packages
-# of another architecture or release without changing the system.
+# Runs apt-get with separate lists, cache and package status in a folder, to download packages of
+# another architecture or release without changing the system.
 private_apt() { # FOLDER ARCHITECTURE RELEASE ARGUMENTS ...
   local folder=$1 architecture=$2 release=$3
   shift 3
@@ -253,8 +253,8 @@ private_apt() { # FOLDER ARCHITECTURE RELEASE ARGUMENTS ...
     -o Debug::NoLocking=1 -o APT::Sandbox::User=root "$@" </dev/null
 }
 
-# A python3, a cmake or libraries of another origin (pyenv, conda) may come first on PATH, and CMake
-# searches beside what it finds there. What we installed is what we use.
+# Puts Debian's programs first on PATH. Otherwise a python3 or cmake of pyenv or conda may be used,
+# and CMake also searches for libraries near the programs on PATH.
 use_debian_tools() {
   export PATH="/usr/bin:/bin:$PATH"
 }

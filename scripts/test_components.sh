@@ -5,7 +5,7 @@
 # Configures, builds, tests and consumes core, and core with design, with only the required packages
 # installed: in a new Debian root made by debootstrap, which requires root permissions.
 #
-#   scripts/test_components.sh [--here] [COMPONENT ..]   (core design)
+#   scripts/test_components.sh [--here] [COMPONENT ...]   (core design)
 #
 # With --here, or without debootstrap or root permissions, it builds on this system, where CMake is
 # prevented from finding other packages, and skips the unit tests, which other checks run.

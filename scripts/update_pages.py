@@ -6,7 +6,7 @@
     scripts/update_pages.py TOFSMITH      the program; PYTHONPATH contains the Python package
 
 Blocks marked as `console` contain commands ("$ ...") and their results; blocks marked as `text`
-contain the result of the preceding Python block. A line "..." in a result stands for omitted lines:
+contain the result of the preceding Python block. A line "..." in a result replaces omitted lines;
 the number of lines above and below it is kept. The commands of a page run in one directory.
 Requires matplotlib and takes about two minutes.
 """
@@ -34,7 +34,7 @@ def run(command, directory, text=None):
 
 
 def shortened(lines, shown):
-    """Returns as many of the first and last lines as `shown` has above and below its "..."."""
+    """Shortens `lines` like `shown`: keeps the same number of lines before and after "..."."""
     if "..." not in shown:
         return lines
     above = shown.index("...")

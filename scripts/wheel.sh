@@ -18,7 +18,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=scripts/packages.sh
 source "$root/scripts/packages.sh"
 
-# Releases of Debian with the version of their Python.
+# Debian releases and the versions of their Python.
 releases=(bookworm:3.11 trixie:3.13)
 
 wanted='' directory=''
@@ -46,7 +46,7 @@ own=$(python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct)}
 export SOURCE_DATE_EPOCH
 
-# The headers of a release's Python and its pybind11, unpacked into a folder.
+# Unpacks the headers of a release's Python and of its pybind11 into a folder.
 fetch_headers() { # RELEASE VERSION FOLDER
   local release=$1 version=$2 folder=$3
   [[ ! -e $folder/complete ]] || return 0

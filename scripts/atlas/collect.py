@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Adds codes designed by sweeps to an atlas, if they are better than the existing ones.
 
-    collect.py ATLAS.txt SWEEP.json ..      exports of `tofsmith sweep` of scripts/atlas/*.toml
+    collect.py ATLAS.txt SWEEP.json ...     exports of `tofsmith sweep` of scripts/atlas/*.toml
 """
 
 import json
@@ -12,7 +12,7 @@ import sys
 
 HEAD = "tofsmith atlas 1"  # atlas_version of design.hpp
 FUNDAMENTAL_HZ = 15e6  # of the cameras of the sweeps
-PARTS = 100_000  # of the period
+PARTS = 100_000  # switching times are multiples of period / PARTS
 
 
 def short(number):

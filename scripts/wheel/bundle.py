@@ -45,10 +45,10 @@ REVIEWED = {
     "sqlite3": "blessing", "tomlplusplus": "MIT", "xz-utils": "0BSD", "yaml-cpp": "MIT",
     "zlib": "Zlib",
 }
-# HDF5 uses these to read from Amazon S3, libzip for encryption: functions that tofsmith never calls.
-# With all that libcurl depends on they would be twenty more libraries, and OpenSSL would get no
-# security updates inside a wheel. Their functions are replaced by ones that return 0, which both
-# HDF5 and libzip treat as a failure.
+# HDF5 needs these libraries for reading from Amazon S3, and libzip needs them for encryption.
+# tofsmith uses neither. With the dependencies of libcurl, they would add twenty libraries, and
+# OpenSSL inside a wheel would get no security updates. Their functions are replaced by functions
+# that return 0, which HDF5 and libzip treat as a failure.
 REPLACED = {"libcurl.so.4", "libcrypto.so.3"}
 OLDEST_C_LIBRARY = (2, 36)
 
@@ -111,7 +111,10 @@ def set_search_path(file, folder):
 
 
 def copy_libraries(package, directories):
-    """Copies all libraries into _prefix/lib, connects them, and returns where they came from."""
+    """Copies all libraries into _prefix/lib and adapts names and search paths in all files.
+
+    Returns the paths of the copied libraries outside `directories`.
+    """
     folder = package / "_prefix" / "lib"
     folder.mkdir(parents=True)
     programs = elf_files(package)
@@ -193,8 +196,8 @@ def set_tag(metadata, tag):
 def pack(tree, output):
     """Writes a wheel with its record of hashes; the same files make the same bytes.
 
-    Programs and libraries are compressed by LZMA, which pip reads as well as deflate: with deflate
-    they would be a third larger, most of it in Embree.
+    Programs and libraries are compressed with LZMA, which pip supports. With deflate they would be
+    a third larger, mostly because of Embree.
     """
     seconds = int(os.environ.get("SOURCE_DATE_EPOCH", "315532800"))  # 1980, the first of zip files
     date = time.gmtime(max(seconds, 315532800))[:6]

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Uses an installed wheel in the current directory, with every library inside it; plots if there is
-matplotlib. Run by scripts/wheel/try.sh."""
+"""Tests an installed wheel with all its libraries in the current directory, and plots if matplotlib
+is installed. Run by scripts/wheel/try.sh."""
 
 import base64
 import ctypes
