@@ -255,9 +255,9 @@ struct TemperatureDrift {
 
 /// Determines the drift with temperature from frames of a static scene.
 ///   1. Decode all frames, and use the pixels with status ok in all of them.
-///   2. Compute the offset of each frame: the median over pixels, weighted by one over the
-///   predicted
-///      variance, of depth minus the pixel's (circular) mean over frames. The same for log(signal).
+///   2. Compute the offset of each frame: the median over pixels, weighted by the inverse predicted
+///      variance, of depth minus the pixel's (circular) mean over frames. Do the same for
+///      log(signal).
 ///   3. Fit a line over each temperature by least squares. Standard errors follow from the scatter
 ///      of the frames around it, with Student's t of F - 2 degrees of freedom (F - 3 for two
 ///      temperatures). They thus include noise and other differences between frames. Drift with
@@ -266,10 +266,10 @@ struct TemperatureDrift {
 /// If the two temperatures are collinear (condition number above 30), only the first is fitted.
 /// Notes report this, a curved dependence, temperatures that hardly vary, and hysteresis.
 /// @param temperatures  finite
-/// @param camera        its own drift is ignored
-/// @throws std::invalid_argument if temperatures are not as many as frames, not finite or all the
-///         same, if there are fewer than 5 frames (6 for two temperatures), or no pixel decodes in
-///         all of them
+/// @param camera        its temperature drift is ignored
+/// @throws std::invalid_argument if the number of temperatures differs from the number of frames,
+///         temperatures are not finite or all equal, there are fewer than 5 frames (6 for two
+///         temperatures), or no pixel is decoded in all frames
 TemperatureDrift calibrate_temperature(const RawFrames& frames,
                                        const FrameTemperatures& temperatures, const CodeSet& code,
                                        const Camera& camera, const Progress& progress = {});

@@ -36,8 +36,8 @@ constexpr std::string_view name_of(DepthErrorKind kind) {
   return depth_error_kinds[static_cast<std::size_t>(kind)];
 }
 
-/// Multipath that a camera meets: one second return whose ratio and delay are uniform between their
-/// limits.
+/// Multipath light in the scenes of a camera: one second return, whose ratio and delay are uniform
+/// between their limits.
 struct OperatingMultipath {
   std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, smallest and largest
   std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, below the range [m]

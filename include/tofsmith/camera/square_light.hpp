@@ -15,19 +15,20 @@ namespace tofsmith {
 enum class LightWaveform { square };
 inline constexpr std::array<std::string_view, 1> light_waveforms = {"square"};
 
-/// Square waves that a sensor chip can generate, for the light and for its gates, which are open
-/// for half of the period. Only `design --method frequencies` depends on it.
+/// Square waves that a sensor chip can generate for its light and its gates. Gates are open for
+/// half of the period. Used by `design --method frequencies` only.
 struct SquareLight {
   LightWaveform waveform = LightWaveform::square;
   double duty = 0.5;
-  std::vector<double> duties;                       ///< that can be set; empty: the above
+  std::vector<double> duties;                       ///< available duties; empty: only `duty`
   std::optional<std::array<double, 2>> duty_range;  ///< smallest and largest; replaces a list
   std::optional<std::vector<double>> frequencies_hz;
-  std::optional<double> clock_hz;            ///< limits the frequencies
-  std::optional<std::vector<int>> dividers;  ///< of clock_hz, in place of frequencies_hz
+  std::optional<double> clock_hz;            ///< upper limit of the frequencies
+  std::optional<std::vector<int>> dividers;  ///< of clock_hz; replace frequencies_hz
   int phase_steps = 4;                       ///< phases are multiples of 1 / phase_steps periods
 
-  /// Modulation frequencies, the lowest first: those listed, or clock_hz over each divider.
+  /// Returns the modulation frequencies in ascending order: frequencies_hz, or clock_hz divided by
+  /// each divider.
   std::vector<double> modulation_frequencies_hz() const;
 
   /// @throws std::invalid_argument naming the field as light.*, value and rule
@@ -42,21 +43,21 @@ inline void describe(FieldVisitor& fields, SquareLight& square) {
                 square.waveform, light_waveforms);
   fields.value(Key("duty",
                    "Share of the period in which the square wave of the light is on; a list "
-                   "contains all that can be set",
+                   "contains all available values",
                    open(0, 1))
                    .usually(0.1, 0.5),
                NumberOrList{square.duty, square.duties});
-  fields.value(Key("duty_range", "Smallest and largest duty, in place of a list", open(0, 1)),
+  fields.value(Key("duty_range", "Smallest and largest duty, instead of a list", open(0, 1)),
                square.duty_range);
-  fields.value(Key("frequencies_hz", "Modulation frequencies that can be set", at_least(1e3)),
+  fields.value(Key("frequencies_hz", "Available modulation frequencies", at_least(1e3)),
                square.frequencies_hz);
-  fields.value(Key("clock_hz", "Clock from which the frequencies are divided, or their upper limit",
+  fields.value(Key("clock_hz", "Clock that `dividers` divide, or upper limit of the frequencies",
                    at_least(1e3)),
                square.clock_hz);
-  fields.value(Key("dividers", "Dividers of the clock, in place of frequencies_hz", closed(1, 1e6)),
+  fields.value(Key("dividers", "Dividers of the clock, instead of frequencies_hz", closed(1, 1e6)),
                square.dividers);
   fields.value(
-      Key("phase_steps", "Number of phases that one period of a frequency has", closed(3, 64)),
+      Key("phase_steps", "Number of available phases per period of a frequency", closed(3, 64)),
       square.phase_steps);
 }
 

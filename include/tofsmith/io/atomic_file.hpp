@@ -21,7 +21,7 @@ std::string file_name_of(std::string_view name);
 /// @throws IoError naming the directory if it cannot be created or is a file
 void make_output_directory(const std::filesystem::path& directory);
 
-/// Checks that an output is none of the files that the run reads, as writing would destroy it.
+/// Checks that an output does not overwrite an input file of the run.
 /// @param inputs  paths; names that are not files are ignored
 /// @throws IoError naming the output
 void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
