@@ -20,7 +20,7 @@ constexpr std::uint32_t multiplier_0 = 0xD2511F53, multiplier_2 = 0xCD9E8D57;
 constexpr std::uint32_t step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
 constexpr int rounds = 10;
 
-/// 64-bit words of which only the lower halves are used.
+/// 64-bit words; only the lower halves are used.
 using Wide = hn::CappedTag<std::uint64_t, 8>;
 using WideVector = hn::Vec<Wide>;
 

@@ -314,7 +314,8 @@ float added_square(const struct FilterParameters* p, const struct ResultParamete
   return square;
 }
 
-/// Returns true if the light added to a pixel can be its own, as find_own_light() on the CPU.
+/// Returns true if the light added to a pixel can come from the pixel, as find_own_light() on the
+/// CPU.
 bool is_own_light(const struct FilterParameters* p, const struct ResultParameters* r,
                   global float* planes, int at) {
   const float mean_noise = OWN_LIGHT_NOISE / (float)(2 * OWN_LIGHT_REACH + 1);

@@ -31,7 +31,7 @@ struct FilterGrid {
   }
 };
 inline constexpr int slope_reach = 12;  ///< of the pixels that determine a slope
-/// Rows by which windows exceed a frame, and columns, with room for a whole vector.
+/// Number of rows and columns by which windows extend beyond a frame. Columns include a vector.
 constexpr int margin_rows(int largest_step) { return std::max(2 * largest_step + 2, slope_reach); }
 constexpr int margin_columns(int largest_step) {
   return whole_vectors(margin_rows(largest_step)) + widest_vector;
@@ -178,7 +178,7 @@ inline constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.0
 inline constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f;
 inline constexpr float own_light_noise = 1.28f;
 
-/// Inputs of the test whether the averaged light of a pixel can be its own.
+/// Inputs of find_own_light().
 struct OwnLightTest {
   std::array<const float*, max_measurements> added{};     ///< (rank) planes
   std::array<const float*, max_measurements> measured{};  ///< (rank) planes of measured light
@@ -187,9 +187,10 @@ struct OwnLightTest {
   const float* variance = nullptr;  ///< of a coordinate of the measurements
   float limit_sigma = 0.0f;         ///< FilterOptions::own_light_sigma
 };
-/// Writes for a row 1 if the averaged light can be the pixel's own, and 0 if it cannot or if the
-/// pixel is not usable. It cannot if the pixels around have no light, or less than the average, so
-/// that dark pixels next to an edge do not receive light from its other side. Writes whole vectors.
+/// Tests for each pixel of a row whether the averaged light can come from the pixel itself. Writes
+/// 1 if it can, and 0 if it cannot or the pixel is not usable. It cannot if the surrounding pixels
+/// have no light, or less than the average. Dark pixels next to an edge thus receive no light from
+/// its other side. Writes whole vectors.
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own);
 
 }  // namespace tofsmith

@@ -35,7 +35,7 @@ static_assert(lit_reach <= slope_reach, "bars must end within the margins of pla
 inline constexpr float lit_pixel_sigma = 3.5f;
 /// Amplitude from which a bar proves light [standard deviations].
 inline constexpr float lit_bar_sigma = 4.0f;
-/// Least light of each bar, and of the mean of the 3 x 3 pixels around a pixel, relative to the
+/// Minimum light of each bar, and of the mean of the 3 x 3 pixels around a pixel, relative to the
 /// light added to the pixel.
 inline constexpr float lit_bar_share = 0.6f;
 /// The 3 x 3 pixels are only tested for more added light than this [standard deviations].

@@ -113,7 +113,7 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
 /// Mixes the near sum back in where far neighbours belong to another or a curved surface, although
 /// the test of pairs did not detect it. If the depths of both sums differ by more than noise
 /// explains, in the pixels around or along a line through the pixel, the share of the near sum
-/// minimizes the remaining bias and noise. Requires `difference` of the rows around.
+/// minimizes the remaining bias and noise. Requires `difference` of the surrounding rows.
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
 /// Mixes the near sum back in for bright pixels, before slopes are known: none below bright_sigma,
 /// all from twice that signal-to-noise ratio on. The depth of a bright near sum yields good slopes,
