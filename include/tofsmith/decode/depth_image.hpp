@@ -259,7 +259,7 @@ struct UnfilteredPixels {
 /// Finds pixels of a decoded frame that see two surfaces (flying pixels), as lenses cause them at
 /// depth edges.
 ///
-/// The candidate surfaces of a pixel are those pixels of its 7 x 7 neighbourhood whose depth agrees
+/// The candidate surfaces of a pixel are those pixels of its 9 x 9 neighbourhood whose depth agrees
 /// with most of their neighbours, along the local slope. A pixel whose depth matches none of
 /// these surfaces is mixed if the light of two of them,
 ///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0,
