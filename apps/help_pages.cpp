@@ -113,6 +113,11 @@ ValueText value_text(const CLI::Option& option) {
   const std::string kind = type.substr(0, colon);
   std::string rule = colon == std::string::npos ? "" : type.substr(colon + 1);
   if (rule.starts_with('{')) {
+    constexpr std::size_t max_choices = 60;
+    if (rule.size() > max_choices) {
+      const std::string names = rule.substr(1, rule.size() - 2);
+      return {"NAME", fmt::format("one of {}", fmt::join(CLI::detail::split(names, ','), ", "))};
+    }
     std::ranges::replace(rule, ',', '|');
     return {rule, ""};
   }
