@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the prose of this repository: python3 scripts/check_prose.py [PROGRAM]
+"""Checks the prose of this repository: python3 scripts/check_prose.py [--list] [PROGRAM]
 
-Reports phrases that make technical English hard to read where a folder contains more than 15 of
-them per 10,000 words, sentences of more than 40 words, lines of Markdown of more than 100
-characters and, with the path of the tofsmith program, lines of help of more than 100 characters.
-Prose means Markdown pages, comments and docstrings. `--list` prints every phrase that it finds.
+Fails if a folder contains more than 15 marked phrases per 10,000 words, phrases that make technical
+English hard to read. Fails for sentences of more than 40 words and lines of more than 100
+characters in Markdown and, with the path of the tofsmith program, for wider lines of help. Prose
+means Markdown pages, comments and docstrings. `--list` prints every marked phrase.
 """
 
 import ast
@@ -76,7 +76,7 @@ class Findings:
 
 def without_code(text):
     """Replaces code, formulas and addresses of links by one word or nothing."""
-    text = re.sub(r"`+[^`]*`+|\$[^$]*\$", "code", text)
+    text = re.sub(r"`+[^`]*`+|\$[^$]*\$", "Code", text)
     return re.sub(r"\]\([^)]*\)|<[^>]*>", "", text)
 
 
@@ -97,7 +97,9 @@ def check_markdown(path, text, findings):
             continue
         findings.add_line(path, number, without_code(stripped))
         is_table = stripped.startswith("|")
-        if not is_table and " " in stripped and not re.search(r"\]\(\S{40,}\)|https?://", line):
+        if re.match(r"\[[^]]*\]: ", stripped):  # the address of a link
+            continue
+        if not is_table and not re.search(r"^!\[|\]\(\S{40,}\)|https?://", stripped):
             findings.add_width(f"{path}:{number}", line)
         if not stripped or is_table or re.match(r"([-*+]|\d+\.|#+|>|<)\s*", stripped):
             finish()
@@ -137,16 +139,8 @@ def shell_comments(text):
 
 
 def check_comments(path, lines, findings):
-    """Checks comments; consecutive lines form a paragraph, which a blank line or a list ends."""
-    paragraph, start, last = [], 0, -1
-    for number, text in sorted(lines):
+    for number, text in lines:
         findings.add_line(path, number, without_code(text))
-        if number != last + 1 or not text or re.match(r"[-*@\\]|\d+\.", text):
-            findings.add_paragraph(path, start, without_code(" ".join(paragraph)))
-            paragraph, start = [], number
-        paragraph.append(text)
-        last = number
-    findings.add_paragraph(path, start, without_code(" ".join(paragraph)))
 
 
 READERS = {".cpp": cpp_comments, ".hpp": cpp_comments, ".h": cpp_comments, ".cl": cpp_comments,
