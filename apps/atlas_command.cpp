@@ -33,11 +33,11 @@ bool lies_in(double value, const std::string& limits, const char* option) {
   if (limits.find(':') == std::string::npos) {
     if (!CLI::detail::lexical_cast(limits, low))
       throw UsageError(
-          fmt::format("{}: found {}; expected a number, or two as 5:20", option, limits));
+          fmt::format("{}: found {}; expected a number, or a range such as 5:20", option, limits));
     high = low;
   } else if (!read_number_pair(limits, ':', low, high)) {
     throw UsageError(
-        fmt::format("{}: found {}; expected a number, or two as 5:20", option, limits));
+        fmt::format("{}: found {}; expected a number, or a range such as 5:20", option, limits));
   }
   return value >= low && value <= high;
 }
@@ -116,8 +116,9 @@ void print_entries(const Session& session, const std::vector<AtlasEntry>& entrie
                   shown.size(), code_atlas().size(),
                   arguments.exposures.empty() ? ", with the best number of exposures" : ""));
   if (const auto laws = law_rows(entries); laws.size() > 1)
-    session.say("error = (at 1) bandwidth^-a peak^-b, fitted to the cameras with a bandwidth:\n" +
-                text_table(laws));
+    session.say(
+        "error = (at 1) bandwidth^-a peak^-b, fitted to the cameras with limited bandwidth:\n" +
+        text_table(laws));
 }
 
 void run_atlas(const AtlasArguments& arguments, const Session& session) {
@@ -144,17 +145,19 @@ void run_atlas(const AtlasArguments& arguments, const Session& session) {
 void add_atlas_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<AtlasArguments>();
   CLI::App* command = app.add_subcommand(
-      "atlas", "list and plot the atlas of best codes: what bandwidth, peak, taps, exposures buy");
+      "atlas", "browse precomputed best codes by bandwidth, peak factor, taps and exposures");
   command->add_option("--taps", arguments->taps, "numbers of taps (1,2)")->delimiter(',');
   command->add_option("--exposures", arguments->exposures, "numbers of exposures (3,4)")
       ->delimiter(',');
-  command->add_option("--peak", arguments->peak, "a peak factor, or from:to");
-  command->add_option("--bandwidth", arguments->bandwidth,
-                      "bandwidth of both arms in f0, or from:to; 0: those without a limit");
-  command->add_option("--error", arguments->error, "the kind of error that codes were designed for")
+  command->add_option("--peak", arguments->peak, "peak factor, or a range from:to");
+  command->add_option(
+      "--bandwidth", arguments->bandwidth,
+      "bandwidth of both arms in multiples of f0, or a range from:to; 0: unlimited");
+  command
+      ->add_option("--error", arguments->error, "kind of depth error for which codes were designed")
       ->check(one_of({"linear", "circular"}));
   command->add_option("--file", arguments->file,
-                      "another atlas than the built-in one, as scripts/atlas.sh makes it");
+                      "atlas file, as written by scripts/atlas.sh (the built-in atlas)");
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv) or a page with figures (.html)");
   command->callback([arguments, &session] { run_atlas(*arguments, session); });

@@ -103,7 +103,7 @@ std::string bandwidth_text(const AtlasCamera& camera) {
 
 std::vector<std::vector<std::string>> law_rows(const std::vector<AtlasEntry>& entries) {
   std::vector<std::vector<std::string>> rows{
-      {"taps", "error", "exposures", "at 1 (mm)", "a", "b", "rms (%)", "most (%)", "codes"}};
+      {"taps", "error", "exposures", "at 1 (mm)", "a", "b", "rms (%)", "max (%)", "codes"}};
   for (const int taps : taps_of(entries))
     for (const DepthErrorKind kind : both_kinds) {
       std::map<int, std::vector<AtlasEntry>> by_exposures;
@@ -140,25 +140,24 @@ Page atlas_page(const std::vector<AtlasEntry>& entries, const std::string& comma
   Section figures{"Depth error", {}};
   figures.blocks.emplace_back(atlas_figure(
       best,
-      {"bandwidth", "What bandwidth buys", "bandwidth of both arms (f0)", true,
+      {"bandwidth", "Error over bandwidth", "bandwidth of both arms (f0)", true,
        [](const AtlasCamera& of) { return of.bandwidth_f0; }},
       "With the best number of exposures; geometric mean over peak factors.", colours));
   figures.blocks.emplace_back(
       atlas_figure(limited,
-                   {"peak", "What peak power buys", "peak factor", true,
+                   {"peak", "Error over peak power", "peak factor", true,
                     [](const AtlasCamera& of) { return of.peak_factor; }},
                    "With the best number of exposures; geometric mean over bandwidths.", colours));
   figures.blocks.emplace_back(
       atlas_figure(entries,
-                   {"exposures", "What exposures do", "exposures", false,
+                   {"exposures", "Error over exposures", "exposures", false,
                     [](const AtlasCamera& of) { return static_cast<double>(of.exposures); }},
                    "Geometric mean over peak factors and bandwidths.", colours));
   page.sections.push_back(std::move(figures));
-  page.sections.push_back(
-      {"Laws",
-       {laws_table(law_rows(entries),
-                   "Fitted to cameras with a bandwidth: error = (at 1) bandwidth^-a peak^-b, with "
-                   "residuals of its logarithm.")}});
+  page.sections.push_back({"Laws",
+                           {laws_table(law_rows(entries),
+                                       "Fitted to cameras with limited bandwidth: error = (at 1) "
+                                       "bandwidth^-a peak^-b, with residuals of the logarithm.")}});
   return page;
 }
 

@@ -13,9 +13,10 @@
 namespace tofsmith::apps {
 
 void CalibrateOutput::add_to(CLI::App& command) {
-  command.add_option("-o,--output", camera_path,
-                     "write the camera with what was found (.toml), for design, evaluate, ..");
-  command.add_option("--report", page_path, "write a page with pictures (.html)");
+  command.add_option(
+      "-o,--output", camera_path,
+      "write the calibrated camera (.toml), for design, evaluate and other commands");
+  command.add_option("--report", page_path, "write a page with figures (.html)");
 }
 
 void CalibrateOutput::check(const Session& session, const std::vector<std::string>& others) {
@@ -73,8 +74,10 @@ std::string note_lines(const std::vector<std::string>& notes) {
 }
 
 void add_calibrate_command(CLI::App& app, Session& session) {
-  CLI::App* command = app.add_subcommand(
-      "calibrate", "a camera as it is measured: impulse responses, correlation tables, noise");
+  CLI::App* command =
+      app.add_subcommand("calibrate",
+                         "calibrate a camera from measurements: impulse responses, correlation "
+                         "functions, noise, temperature drift, stray light");
   command->require_subcommand(1);
   command->footer(
       "Try: tofsmith calibrate impulse-response scope.csv -o mine.toml\n"

@@ -65,8 +65,7 @@ CorrelationCalibrationOptions options_for(const CorrelationArguments& arguments,
   CorrelationCalibrationOptions options = sweep_options(camera, sweep);
   if (!arguments.dark.empty()) options.dark = read_raw_frames(arguments.dark);
   if (!arguments.target_distance_m) return options;
-  if (!camera.lens)
-    throw UsageError("--target-distance-m needs the camera's [lens], which says where pixels look");
+  if (!camera.lens) throw UsageError("--target-distance-m requires the camera's [lens]");
   options.geometry_m = flat_target_geometry_m(*arguments.target_distance_m, camera,
                                               sweep.frames.height, sweep.frames.width);
   return options;
@@ -89,7 +88,7 @@ std::string brief(const IdealCodeFit& fit) {
   return fmt::format(
       "{}: residual {:.2f} % ({:.2f} % without a response), delay {:.4f} periods{}{}{}", fit.code,
       100 * fit.residual, 100 * fit.ideal_residual, fit.delay_periods,
-      fit.reversed ? ", delay runs backwards" : "", fit.inverted ? ", signs opposite" : "",
+      fit.reversed ? ", delay reversed" : "", fit.inverted ? ", signs inverted" : "",
       limited ? fmt::format(", {} on both arms, {} MHz", name_of(fit.response.kind),
                             estimate_text(fit.parameter_hz, 1e6))
               : "");
@@ -188,7 +187,7 @@ void run(CorrelationArguments& arguments, const Session& session) {
     return;
   }
   if (arguments.files.size() > 1)
-    throw UsageError("several files, one a measurement, need --reference; expected one SWEEP");
+    throw UsageError("several files, one per measurement, require --reference; expected one SWEEP");
   const DelaySweep sweep = load_sweep(arguments, base);
   CalibratedCorrelation found;
   try {
@@ -200,29 +199,31 @@ void run(CorrelationArguments& arguments, const Session& session) {
   const std::vector<CodeSet> codes = candidates(arguments, base, found.table.columns());
   std::vector<IdealCodeFit> fits;
   if (codes.empty())
-    found.notes.push_back(fmt::format(
-        "no built-in code of {} measurements on {} taps to compare with; --code names one",
-        found.table.columns(), base.sensor.taps));
+    found.notes.push_back(
+        fmt::format("no built-in code has {} measurements with {} taps; specify a code to compare "
+                    "with (--code)",
+                    found.table.columns(), base.sensor.taps));
   else
     fits = fit_ideal_codes(found.table.correlation, found.standard_error, base, codes);
   if (!fits.empty() && fits.front().residual > 0.1)
-    found.notes.push_back(
-        fmt::format("no ideal code fits: the best has a residual of {:.0f} %; --code names another",
-                    100 * fits.front().residual));
+    found.notes.push_back(fmt::format(
+        "no ideal code fits: the best has a residual of {:.0f} %; specify another code (--code)",
+        100 * fits.front().residual));
 
   session.print_json(document_of(found, fits));
   const double swing =
       (found.table.correlation.colwise().maxCoeff() - found.table.correlation.colwise().minCoeff())
           .maxCoeff();
-  session.say(fmt::format(
-      "a table of {} x {}: standard errors up to {:.3g} of a swing of {:.5g} raw numbers (noise "
-      "{:.3g} per number, from {}), model error {:.2g} % of the signal",
-      found.table.samples(), found.table.columns(), found.standard_error.maxCoeff(), swing,
-      found.noise_rms, found.noise_source, found.table.model_error_percent));
+  session.say(
+      fmt::format("table of {} x {}: standard errors up to {:.3g}, values span {:.5g} raw numbers "
+                  "(noise {:.3g} per number, from {}), model error {:.2g} % of the signal",
+                  found.table.samples(), found.table.columns(), found.standard_error.maxCoeff(),
+                  swing, found.noise_rms, found.noise_source, found.table.model_error_percent));
   if (!found.maps.empty())
-    session.say(fmt::format("maps of {} x {} pixels: offsets known to {}, gains to {:.2g} %",
-                            found.maps.gain.width, found.maps.gain.height,
-                            length_text(found.delay_error_m), 100 * found.gain_error));
+    session.say(
+        fmt::format("maps of {} x {} pixels: standard error of offsets {}, of gains {:.2g} %",
+                    found.maps.gain.width, found.maps.gain.height, length_text(found.delay_error_m),
+                    100 * found.gain_error));
   for (const IdealCodeFit& fit : fits) session.say(brief(fit));
   session.say(note_lines(found.notes));
   if (!arguments.table.empty()) {
@@ -236,7 +237,8 @@ void run(CorrelationArguments& arguments, const Session& session) {
   arguments.output.write_page(
       correlation_report(found, fits, arguments.file(), session.command_line), session);
   if (!arguments.output.camera_path.empty()) {
-    if (fits.empty()) throw UsageError("-o: no code was fitted, so that no response is known");
+    if (fits.empty())
+      throw UsageError("-o: no code was fitted, so the impulse responses are unknown");
     arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch), session);
   }
 }
@@ -247,12 +249,12 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
   auto arguments = std::make_shared<CorrelationArguments>();
   CLI::App* command = calibrate.add_subcommand(
       "correlation",
-      "correlation functions, pixel maps and responses from a flat target at known delays");
+      "correlation functions, pixel maps and impulse responses from a flat target at known delays");
   command
       ->add_option("SWEEP", arguments->files,
                    "a table of delay and K values (.csv .txt), a stack of frames (F,H,W,K) with "
-                   "--shifts, or an array (N,K) of one period (.npy .npz); with --reference frames "
-                   "as decode takes them, also one file for each measurement")
+                   "--shifts, or an array (N,K) of one period (.npy .npz); with --reference, raw "
+                   "frames as for decode, in one file or one file per measurement")
       ->required();
   command->add_option("--shifts", arguments->shifts,
                       "delay of each frame of a stack, one per line or .npy");
@@ -263,50 +265,53 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       ->capture_default_str();
   CLI::Option* reference = command->add_option(
       "--reference", arguments->reference,
-      "instead of delays: depth along the ray that the frames should show, in m "
-      "(.npy .npz .exr .pfm .png; NaN or 0: not known), or a distance for each "
-      "frame (.npy); the error of --code against it is found");
+      "calibrate with reference depth instead of delays: true depth in m (.npy .npz .exr .pfm "
+      ".png; NaN or 0: unknown), or one distance per frame (.npy); requires --code");
   command
-      ->add_option("--reference-kind", arguments->reference_kind,
-                   "the reference is depth along the ray (radial) or along the axis (z), which the "
-                   "camera's [lens] turns (as the file states, or radial)")
+      ->add_option(
+          "--reference-kind", arguments->reference_kind,
+          "kind of --reference: depth along the ray (radial) or along the optical axis (z), which "
+          "is converted with the camera's [lens] (as the file states, or radial)")
       ->needs(reference)
       ->check(one_of({"radial", "z"}));
   command
       ->add_option("--raw-format", arguments->raw_format,
-                   "the frames are a sensor's dump, as this .raw.toml file describes it")
+                   "file that describes headerless raw frames (.raw.toml)")
       ->needs(reference);
   command
       ->add_option("--dataset", arguments->dataset,
-                   "which array of an .npz, or data set of an .h5, the frames are")
+                   "array of an .npz or data set of an .h5 that contains the frames")
       ->needs(reference)
       ->group(for_experts);
-  command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
+  command->add_option("--dark", arguments->dark,
+                      "frames with the light off, under the same ambient light as the sweep");
   command
       ->add_option("--target-distance-m", arguments->target_distance_m,
-                   "distance of a flat target square to the axis: its slant is taken out of the "
-                   "offset map")
+                   "distance of a flat target perpendicular to the optical axis, whose depth "
+                   "variation is removed from the offset map")
       ->check(positive_number())
       ->group(for_experts);
   command
       ->add_option("--code", arguments->codes,
-                   "codes to compare with: families or files; default: all built-in ones")
+                   "codes to compare with: families or files (all built-in codes)")
       ->delimiter(',');
-  command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
+  command->add_option("--decimal", arguments->decimal, "decimal mark of a text file")
       ->check(one_of({"auto", "point", "comma"}))
       ->capture_default_str()
       ->group(for_experts);
-  command->add_option("--table-axes", arguments->axes, "axes of an array: nk or kn")
+  command
+      ->add_option("--table-axes", arguments->axes,
+                   "axes of an array: samples x measurements (nk) or measurements x samples (kn)")
       ->check(one_of({"nk", "kn"}))
       ->group(for_experts);
   command
       ->add_flag("--keep-end-point", arguments->keep_end_point,
-                 "the last row of an array that repeats the first is one of its own")
+                 "keep the last row of an array even if it equals the first")
       ->group(for_experts);
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   command->add_option("--table", arguments->table,
-                      "write the measured table (.npz), which decode takes for --code");
+                      "write the measured table (.npz), for decode --code");
   command->add_option("--offset-map", arguments->offset_map,
                       "write each pixel's offset in metres (.npy .npz .exr .pfm)");
   command->add_option("--gain-map", arguments->gain_map, "write each pixel's gain");

@@ -69,11 +69,12 @@ std::string lines_of(const CalibratedDepth& found) {
                  : fmt::format("{:<18} {:>10} {} mm\n", rows[i][0], rows[i][1], rows[i][2]);
   if (found.model_error_percent)
     lines += fmt::format("model error: {:.2g} % of the signal\n", *found.model_error_percent);
-  lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
+  lines += fmt::format("the reference covers {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
-    lines += fmt::format("; beyond, by {}", fmt::join(found.far_terms, ", "));
+    lines += fmt::format("; elsewhere the correction is extrapolated by {}",
+                         fmt::join(found.far_terms, ", "));
   if (found.known_share < 0.999 && found.far_rms_m)
-    lines += fmt::format(": {} on parts of the range held out", length_text(*found.far_rms_m));
+    lines += fmt::format(": {} rms on held-out parts of the range", length_text(*found.far_rms_m));
   return lines + "\n" + note_lines(found.notes);
 }
 
@@ -81,7 +82,7 @@ std::string lines_of(const CalibratedDepth& found) {
 
 void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Session& session) {
   if (arguments.codes.size() != 1)
-    throw UsageError("--reference needs --code, the one that the camera played");
+    throw UsageError("--reference requires --code, the code that the camera used");
   const CodeSet code = load_camera_code(arguments.codes.front(), arguments.camera, arguments.file);
   RawReadOptions reading;
   reading.dataset = arguments.dataset;

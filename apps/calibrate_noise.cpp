@@ -49,11 +49,11 @@ void run(NoiseArguments& arguments, const Session& session) {
   const bool reads_differences = base.sensor.readout == Readout::difference;
   if (reads_differences && arguments.code.empty())
     throw UsageError(
-        "calibrate noise: the camera reads differences, from whose mean shot noise does not "
-        "follow; expected --code, the code that was played, or frames of single taps "
-        "(--set sensor.readout=separate)");
+        "calibrate noise: the camera reads differences, whose mean does not determine the shot "
+        "noise; expected --code, the code that the camera used, or frames of single taps (--set "
+        "sensor.readout=separate)");
   if (!reads_differences && !arguments.code.empty())
-    throw UsageError("--code: goes with cameras that read differences (sensor.readout)");
+    throw UsageError("--code: is only valid with cameras that read differences (sensor.readout)");
   PhotonTransferOptions options = noise_options(base, !arguments.dark.empty());
   options.averaged = arguments.given.averaged;
   if (arguments.given.black_level_dn) options.black_level_dn = arguments.given.black_level_dn;
@@ -63,8 +63,8 @@ void run(NoiseArguments& arguments, const Session& session) {
   if (!arguments.dark.empty()) dark = read_raw_frames(arguments.dark);
   if (arguments.dark.empty() && !options.black_level_dn && !reads_differences)
     throw UsageError(
-        "calibrate noise: the black level is not known; expected --dark FILE, frames "
-        "with the light off, or --black-level DN");
+        "calibrate noise: the black level is unknown; expected --dark FILE, frames with the light "
+        "off, or --black-level DN");
   PhotonTransfer found;
   try {
     if (reads_differences) {
@@ -92,14 +92,14 @@ void add_calibrate_noise(CLI::App& calibrate, Session& session) {
       "noise", "gain, read noise, black level and full well from pairs of frames");
   command
       ->add_option("RAW", arguments->files,
-                   "raw frames (.npy .npz), (F,H,W,K): each two that follow one another of the "
-                   "same light; several levels of light in one file or several")
+                   "raw frames (.npy .npz), (F,H,W,K), in consecutive pairs of equal light; "
+                   "several light levels, in one or several files")
       ->required();
   command->add_option("--dark", arguments->dark, "pairs of frames with the light off");
   const FieldOptions options(*command, arguments->given);
   options.add("black_level_dn", "--black-level");
   command->add_option("--code", arguments->code,
-                      "of a camera that reads differences: the code that it played");
+                      "code that the camera used; required if it reads differences");
   options.add("averaged", "--averaged");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);

@@ -61,12 +61,11 @@ void run(ResponseArguments& arguments, const Session& session) {
     arguments.record.time_unit_s = seconds_per_unit(arguments.time_unit);
   ResponseRecord record = read_response_record(arguments.file, arguments.record);
   if (record.time_step_s > 1.0 / base.fundamental_frequency_hz)
-    throw IoError(
-        arguments.file,
-        fmt::format("found steps of {:.4g} s, longer than the camera's period of {:.4g} "
-                    "s; expected --time-step, the time between two values [s], or --time-unit "
-                    "if the unit of the times is another",
-                    record.time_step_s, 1.0 / base.fundamental_frequency_hz));
+    throw IoError(arguments.file,
+                  fmt::format("found steps of {:.4g} s, longer than the camera's period of {:.4g} "
+                              "s; expected --time-step, the time between two values [s], or "
+                              "--time-unit if the times have another unit",
+                              record.time_step_s, 1.0 / base.fundamental_frequency_hz));
   ResponseCalibrationOptions options{.fundamental_frequency_hz = base.fundamental_frequency_hz,
                                      .samples = base.samples};
   if (arguments.excitation != "auto") options.excitation = parse_excitation(arguments.excitation);
@@ -87,8 +86,8 @@ void run(ResponseArguments& arguments, const Session& session) {
                           result.snr_db, text_table(response_rows(result))));
   if (measured)
     session.say(
-        fmt::format("the response's centre comes {:.4g} ns after its first sample: decoded "
-                    "on a real camera, a constant {} to take off by calibration",
+        fmt::format("the centre of the response is {:.4g} ns after its first sample; on a real "
+                    "camera this is a constant depth offset of {}, which calibration removes",
                     1e9 * result.response_centre_s,
                     length_text(0.5 * speed_of_light_m_per_s * result.response_centre_s)));
   session.say(note_lines(result.notes));
@@ -104,13 +103,13 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
   auto arguments = std::make_shared<ResponseArguments>();
   CLI::App* command = calibrate.add_subcommand(
       "impulse-response",
-      "bandwidth and response of an arm from a record of its answer to a pulse or a step");
+      "bandwidth and impulse response of an arm from its recorded response to a pulse or step");
   command
       ->add_option("FILE", arguments->file,
                    "oscilloscope CSV (time, value), or a histogram (.npy or values alone)")
       ->required();
   arguments->camera.add_to(*command);
-  command->add_option("--excitation", arguments->excitation, "what the arm answered to")
+  command->add_option("--excitation", arguments->excitation, "excitation of the arm")
       ->check(one_of({"auto", "pulse", "step"}))
       ->capture_default_str();
   const FieldOptions fields(*command, arguments->record);
@@ -120,13 +119,15 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
       ->check(one_of({"s", "ms", "us", "ns", "ps"}));
   fields.add("decimal", "--decimal");
   command
-      ->add_option("--arm", arguments->arm,
-                   "whose response it is; system: that of both together, kept in the light's")
+      ->add_option(
+          "--arm", arguments->arm,
+          "arm with this response; system: both arms together, stored as the light's response")
       ->check(one_of({"light", "sensor", "system"}))
       ->capture_default_str();
   command
       ->add_option("--as", arguments->as,
-                   "what the camera gets: the measured response in a file beside it, or a fit")
+                   "form of the response in the camera: file (the measured response, stored next "
+                   "to the camera) or a fit")
       ->check(one_of({"file", "hann", "gaussian", "lowpass"}))
       ->capture_default_str();
   arguments->output.add_to(*command);

@@ -45,8 +45,8 @@ void run(const StrayLightArguments& arguments, const Session& session) {
   }
   session.print_json(document_of(found));
   session.say(fmt::format(
-      "{:.3f} % ± {:.3f} of all light is scattered, up to {:.0f} pixels away, as {} pixels around "
-      "a target of {} say\n{}",
+      "{:.3f} % ± {:.3f} of all light is scattered, up to {:.0f} pixels away, estimated from {} "
+      "pixels around a target of {} pixels\n{}",
       100.0 * found.total.value, 196.0 * found.total.standard_error, found.radius_px.back(),
       found.pixels, found.target_pixels, note_lines(found.notes)));
   if (!arguments.kernel.empty()) {
@@ -62,18 +62,18 @@ void run(const StrayLightArguments& arguments, const Session& session) {
 void add_calibrate_stray_light(CLI::App& calibrate, Session& session) {
   auto arguments = std::make_shared<StrayLightArguments>();
   CLI::App* command = calibrate.add_subcommand(
-      "stray-light", "light that the lens scatters, from frames of a small bright target");
+      "stray-light", "stray light of the lens, from frames of a small bright target");
   command
       ->add_option("RAW", arguments->file,
-                   "raw frames (.npy .npz .h5), (H,W,K) or (F,H,W,K), of a small bright target "
-                   "before black, not saturated")
+                   "raw frames (.npy .npz .h5), (H,W,K) or (F,H,W,K), of a small, bright, "
+                   "unsaturated target on a black background")
       ->required();
-  command->add_option("--dark", arguments->dark, "the same with the target covered");
+  command->add_option("--dark", arguments->dark, "frames with the target covered");
   arguments->camera.add_to(*command);
   command->add_option("-o,--output", arguments->kernel,
-                      "write the shares of a pixel's light that others get (.npy .npz .exr .pfm), "
-                      "for decode --stray-light");
-  command->add_option("--report", arguments->page, "write a page with pictures (.html)");
+                      "write the kernel, the shares of a pixel's light that other pixels receive "
+                      "(.npy .npz .exr .pfm), for decode --stray-light");
+  command->add_option("--report", arguments->page, "write a page with figures (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -66,7 +66,7 @@ std::vector<double> column(const NumberTable& table, Eigen::Index index) {
   return {table.values.col(index).begin(), table.values.col(index).end()};
 }
 
-/// Temperatures of the frames, and notes on how their file was read.
+/// Temperatures of the frames, and notes about the interpretation of their file.
 struct ReadTemperatures {
   FrameTemperatures of_frames;
   std::vector<std::string> notes;
@@ -143,31 +143,29 @@ void run(TemperatureArguments& arguments, const Session& session) {
 void add_calibrate_temperature(CLI::App& calibrate, Session& session) {
   auto arguments = std::make_shared<TemperatureArguments>();
   CLI::App* command = calibrate.add_subcommand(
-      "temperature", "drift of depth and signal per degree from frames of a still scene");
+      "temperature", "temperature drift of depth and signal, from frames of a static scene");
   command
-      ->add_option("RAW", arguments->file,
-                   "raw frames (.npy .npz), (F,H,W,K), of a scene that stands still")
+      ->add_option("RAW", arguments->file, "raw frames (.npy .npz), (F,H,W,K), of a static scene")
       ->required();
   command
       ->add_option("--temperatures", arguments->temperatures,
-                   "text of one column: the temperature of each frame [degrees C]; with "
-                   "--sensor-column, of several columns")
+                   "text file with the temperature of each frame [degrees C] in one column; with "
+                   "--sensor-column or --light-column, several columns")
       ->required();
   CLI::Option* const sensor_column = command->add_option(
       "--sensor-column", arguments->sensor_column,
-      "name or number (from 1) of the column with the temperature of the sensor: drifts with it "
-      "and with the light source are fitted together (one temperature)");
+      "name or number (from 1) of the column with the temperature of the sensor; the drifts with "
+      "both temperatures are fitted together (one temperature)");
   command->add_option("--light-column", arguments->light_column,
                       "name or number (from 1) of the column with the temperature of the light "
                       "source, or of the camera (the only other column)");
-  command->add_option("--code", arguments->code, "the code that the camera played")->required();
+  command->add_option("--code", arguments->code, "code that the camera used")->required();
   command->add_option("--reference-c", arguments->reference_c,
-                      "temperature at which the camera was calibrated otherwise, so that nothing "
-                      "changes there [degrees C] (the mean of the frames)");
+                      "reference temperature, at which depth and signal are not corrected: that of "
+                      "the other calibrations [degrees C] (the mean of the frames)");
   command
       ->add_option("--sensor-reference-c", arguments->sensor_reference_c,
-                   "the same for the temperature of the sensor [degrees C] (the mean of the "
-                   "frames)")
+                   "reference temperature of the sensor [degrees C] (the mean of the frames)")
       ->needs(sensor_column);
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);

@@ -36,7 +36,7 @@ void list_cameras(const Session& session) {
   }
   session.print_json(document);
   session.say("Built-in cameras:\n" + text +
-              "Begin a description of your own with `tofsmith cameras kinect-v2 > mine.toml`.");
+              "To describe your own camera, start with `tofsmith cameras kinect-v2 > mine.toml`.");
 }
 
 void show_camera(const Session& session, const std::string& name) {
@@ -53,7 +53,7 @@ void show_camera(const Session& session, const std::string& name) {
   session.say(toml);
 }
 
-/// Prints a camera file, or a camera with changed keys, with all defaults filled in.
+/// Prints a camera file, or a camera with changed keys, including all defaults.
 void show_changed(const Session& session, const std::string& name_or_path, Settings settings) {
   const Camera camera = load_camera(name_or_path, settings);
   session.print_json({{"name", camera.name},
@@ -64,8 +64,8 @@ void show_changed(const Session& session, const std::string& name_or_path, Setti
   toml.pop_back();  // say() ends the line
   std::string with;
   for (const std::string& setting : settings) with += ", " + setting;
-  session.say(fmt::format("# {}{} with every default filled in: range {:.2f} m\n{}", name_or_path,
-                          with, camera.range_m(), toml));
+  session.say(fmt::format("# {}{}, including all defaults: range {:.2f} m\n{}", name_or_path, with,
+                          camera.range_m(), toml));
 }
 
 /// Returns type, unit, range, condition and default of a key, such as "number [Hz], finite and > 0;
@@ -111,7 +111,7 @@ void list_keys(const Session& session, const std::string& json, const std::strin
 
 void show_raw_format(const Session& session, const std::string& name) {
   if (name.empty())
-    throw UsageError(fmt::format("--raw-format needs the NAME of a camera ({}), or --keys",
+    throw UsageError(fmt::format("--raw-format requires the NAME of a camera ({}), or --keys",
                                  fmt::join(built_in_raw_format_names(), ", ")));
   std::string toml = built_in_raw_format_toml(name);
   session.print_json({{"name", name}, {"raw_format", toml}});
@@ -126,15 +126,16 @@ void add_cameras_command(CLI::App& app, Session& session) {
   auto settings = std::make_shared<std::vector<std::string>>();
   auto raw_format = std::make_shared<bool>(false);
   auto keys = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand(
-      "cameras", "list the built-in cameras, or print one as TOML with its sources or defaults");
+  CLI::App* command =
+      app.add_subcommand("cameras", "list the built-in cameras, or print a camera as TOML");
   command->add_option("NAME", *name, "a built-in camera, or a camera file (.toml)");
   add_settings_option(*command, *settings);
-  command->add_flag("--raw-format", *raw_format,
-                    "print how its raw frames run instead, as `decode --raw-format` takes it");
+  command->add_flag(
+      "--raw-format", *raw_format,
+      "print the description of its raw frames instead (input for `decode --raw-format`)");
   command
       ->add_flag("--keys", *keys,
-                 "list all keys of a camera file, or with --raw-format of a raw format, with unit, "
+                 "list all keys of camera files, or of raw formats with --raw-format, with unit, "
                  "range and default")
       ->excludes("NAME", "--set");
   command->callback([name, settings, raw_format, keys, &session] {
@@ -142,7 +143,8 @@ void add_cameras_command(CLI::App& app, Session& session) {
       return list_keys(session, raw_format_keys_json(), "Keys of a raw format (.raw.toml)");
     if (*keys) return list_keys(session, camera_keys_json(), "Keys of a camera file");
     if (!settings->empty() && (*raw_format || name->empty()))
-      throw UsageError("--set changes the keys of the camera NAME that is printed");
+      throw UsageError(
+          "--set is only valid when a camera is printed: expected NAME, without --raw-format");
     if (*raw_format) return show_raw_format(session, *name);
     if (name->empty()) return list_cameras(session);
     if (!settings->empty() || std::filesystem::path(*name).extension() == ".toml")

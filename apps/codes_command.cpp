@@ -70,7 +70,7 @@ std::vector<std::vector<std::string>> waveform_rows(const CodeSet& code, std::st
   std::vector<std::vector<std::string>> rows{
       {std::string(value), "mod. duty", "mod. peak", "edges"}};
   if (code.is_rows())
-    rows[0].insert(rows[0].end(), {"least weight", "most weight"});
+    rows[0].insert(rows[0].end(), {"min weight", "max weight"});
   else if (code.is_signed())
     rows[0].insert(rows[0].end(), {"mean weight", "edges"});
   else
@@ -133,7 +133,7 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
       counted(harmonics_used(table), "harmonic"),
       text_table(waveform_rows(code, are_differences ? "tap value" : "measurement")), strips));
   if (!generators.empty())
-    session.say("Nominal and actual waveforms of the generators, ahead of the arms' responses:\n" +
+    session.say("Nominal and actual waveforms of the generators, before the impulse responses:\n" +
                 text_table(generator_report_rows(generators)));
 }
 
@@ -156,16 +156,16 @@ void add_codes_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<CodesArguments>();
   CLI::App* command = app.add_subcommand(
       "codes", "list the built-in code families, or print, plot and save one code");
-  command->add_option("NAME", arguments->name, "a family's name, or a code file");
+  command->add_option("NAME", arguments->name, "family or code file");
   command->add_option("-N,--samples", arguments->samples, "samples per period (the camera's)")
       ->check(CLI::Range(8, 65536));
   command->add_option("-o,--output", arguments->output,
-                      "save as .code.json, .npz, .csv, or as a page with plots, .html");
+                      "output file: .code.json, .npz, .csv, or .html (a page with plots)");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   command->callback([arguments, &session] {
     if (arguments->name.empty()) {
-      if (!arguments->output.empty()) throw UsageError("-o needs the NAME of a code");
+      if (!arguments->output.empty()) throw UsageError("-o requires the NAME of a code");
       return list(session);
     }
     if (arguments->samples > 0)

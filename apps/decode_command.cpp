@@ -56,7 +56,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   return request;
 }
 
-/// Decodes all frames; if it does not come to the end of several, says how far it came.
+/// Decodes all frames. If decoding of several frames fails, prints the number of decoded frames.
 DecodedRecording decode_all(const DecodeRequest& request, const FrameBackend& backend,
                             Session& session) {
   DecodedRecording result;
@@ -69,31 +69,33 @@ DecodedRecording decode_all(const DecodeRequest& request, const FrameBackend& ba
     if (session.tells_what_is_kept)
       fmt::print(stderr, "tofsmith: decoded {} of {} frames; {}\n", result.frames.size(),
                  result.frame_count,
-                 request.stack           ? "with --stack nothing is kept unless all are decoded"
-                 : result.frames.empty() ? "nothing is kept"
+                 request.stack ? "with --stack, files are written only after all frames are decoded"
+                 : result.frames.empty() ? "no files were written"
                                          : "their files are kept");
     throw;
   }
   return result;
 }
 
-/// Whether frames come from standard input and go to standard output.
+/// Returns true if frames are read from standard input and written to standard output.
+/// @throws UsageError for other uses of `-`
 bool reads_pipe(const DecodeArguments& arguments) {
   const bool from_pipe = std::ranges::find(arguments.raw, pipe_word) != arguments.raw.end();
   const bool to_pipe = arguments.output == pipe_word;
-  if (from_pipe && arguments.raw.size() > 1) throw UsageError("RAW -: expected it alone, or files");
+  if (from_pipe && arguments.raw.size() > 1)
+    throw UsageError("RAW -: cannot be combined with other input files");
   if (from_pipe != to_pipe)
     throw UsageError(
         fmt::format("{}: expected RAW - together with -o -: frames from standard input, planes to "
                     "standard output",
                     from_pipe ? "RAW -" : "-o -"));
   if (from_pipe && arguments.request.raw_format.empty())
-    throw UsageError("RAW -: --raw-format is needed, a file that says how frames run");
+    throw UsageError("RAW -: requires --raw-format, a file that describes the frames");
   return from_pipe;
 }
 
 void run(DecodeArguments& arguments, Session& session) {
-  reads_pipe(arguments);  // wrong usage comes before what files hold
+  reads_pipe(arguments);  // reports wrong usage before errors in files
   const std::optional<std::string> camera_source =
       arguments.camera.take_that_of(arguments.raw.front());
   const bool has_recorded_code = arguments.code.empty();
@@ -158,19 +160,17 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
   command
       .add_option(
           "RAW", arguments.raw,
-          "raw frames (.npy .npz .h5): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
-          "K files, one per measurement in their order, (H,W) or (F,H,W) each, or grey images "
-          "(.png .tiff .pgm); or - for frames "
-          "of --raw-format from standard input, with -o -")
+          "raw frames (.npy .npz .h5), (H,W,K) or (F,H,W,K); files of any format described by "
+          "--raw-format; K files, one per measurement in order, (H,W) or (F,H,W) each, or grey "
+          "images (.png .tiff .pgm); or -: standard input, with --raw-format and -o -")
       ->required();
   const FieldOptions request(command, arguments.request);
   CLI::Option* const layout = request.add("layout", "--layout");
   CLI::Option* const dataset = request.add("dataset", "--dataset")->group(for_experts);
   request.add("raw_format", "--raw-format")->excludes(layout)->excludes(dataset);
-  command.add_option(
-      "--code", arguments.code,
-      "the code that the camera used: a family or a file; or a measured table (.npz .npy .csv) "
-      "(the .code.json next to the raw frames)");
+  command.add_option("--code", arguments.code,
+                     "code that the camera used: a family, a code file or a measured table (.npz "
+                     ".npy .csv) (the .code.json next to the raw frames)");
 }
 
 /// Options of maps and stray light.
@@ -204,16 +204,15 @@ void add_status_options(const FieldOptions<DecodeOptions>& options) {
 /// Options of the output.
 void add_output_options(CLI::App& command, DecodeArguments& arguments) {
   command
-      .add_option(
-          "-o,--output", arguments.output,
-          "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd; several frames get numbers; - "
-          "writes the --outputs (depth) of each frame to standard output, as they are in "
-          ".npy without its header")
+      .add_option("-o,--output", arguments.output,
+                  "depth file: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd, numbered if there "
+                  "are several frames; -: write the --outputs (depth) of each frame to standard "
+                  "output, in the layout of .npy without its header")
       ->required();
   command
       .add_option("--rays", arguments.rays,
-                  "rays of points and z as the maker gives them, in place of the camera's "
-                  "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions")
+                  "map of rays, instead of the camera's [lens], for points and z (.npy): (H,W,2) "
+                  "with x/z and y/z, or (H,W,3) with directions")
       ->group(for_experts);
   const FieldOptions request(command, arguments.request);
   request.add("all_points", "--all-points")->group(for_experts);
@@ -227,7 +226,7 @@ void add_output_options(CLI::App& command, DecodeArguments& arguments) {
 
 void add_decode_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<DecodeArguments>();
-  CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
+  CLI::App* command = app.add_subcommand("decode", "decode depth from raw measurements");
   add_recording_options(*command, *arguments);
   arguments->camera.add_to(*command);
   arguments->camera.add_temperature_to(*command);

@@ -53,7 +53,8 @@ void write_output(std::span<const std::byte> bytes) {
 
 void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Session& session) {
   if (session.json)
-    throw UsageError("--json: standard output holds the frames of -o -; expected a file for it");
+    throw UsageError(
+        "--json: standard output contains the frames of -o -; expected an output file");
   if (isatty(STDOUT_FILENO) != 0)
     throw UsageError("-o -: standard output is a terminal; expected a pipe or a file");
   // A large pipe buffer avoids transferring a frame in many small pieces. Failure is harmless.
@@ -64,7 +65,7 @@ void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Sess
   const auto tell = [&] {
     fmt::print(stderr, "decoded {} frame{}{}\n", result.frames, result.frames == 1 ? "" : "s",
                result.seconds > 0.0
-                   ? fmt::format(", {} frames/s as they came",
+                   ? fmt::format(", {} frames/s as received",
                                  rate_text(static_cast<double>(result.frames) / result.seconds))
                    : "");
   };

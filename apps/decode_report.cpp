@@ -19,7 +19,7 @@ std::string kind_of(const DecodeRequest& request) {
   return request.kind == DepthKind::z ? "z-depth" : "radial distance";
 }
 
-/// "ok 76.10 %, low_signal 3.20 %, .."; "" without pixels.
+/// Returns a text such as "ok 76.10 %, low_signal 3.20 %"; "" without pixels.
 std::string status_text(const StatusCounts& statuses) {
   const auto pixels = static_cast<double>(statuses.pixels());
   std::string text;
@@ -32,7 +32,7 @@ std::string status_text(const StatusCounts& statuses) {
   return text;
 }
 
-/// "a: b", or "a" if there is nothing to add.
+/// Returns "text: status", or only the text if no pixels were counted.
 std::string with_status(const std::string& text, const StatusCounts& statuses) {
   const std::string status = status_text(statuses);
   return status.empty() ? text : fmt::format("{}: {}", text, status);
@@ -51,8 +51,8 @@ std::string frame_lines(const DecodeRequest& request, const DecodedRecording& re
                          result.frames[i]) +
              "\n";
   if (listed < frames)
-    lines +=
-        fmt::format(".. and {} more, to {}\n", frames - listed, result.files[frames - 1].string());
+    lines += fmt::format("... and {} more, up to {}\n", frames - listed,
+                         result.files[frames - 1].string());
   return lines;
 }
 

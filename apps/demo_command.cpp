@@ -184,10 +184,9 @@ void run(const DemoArguments& arguments, const Session& session) {
 void add_demo_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<DemoArguments>();
   CLI::App* command = app.add_subcommand(
-      "demo", "design codes, compare them, capture and decode a scene, write a report");
+      "demo", "design and compare codes, simulate and decode a scene, write a report");
   arguments->camera.add_to(*command);
-  command->add_option("-o,--output", arguments->output, "directory for everything")
-      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "output directory")->capture_default_str();
   command->add_option("--depth", arguments->scene.scene, scene_help)->capture_default_str();
   add_scene_options(*command, arguments->scene);
   const FieldOptions options(*command, arguments->options);

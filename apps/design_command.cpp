@@ -26,15 +26,14 @@
 namespace tofsmith::apps {
 namespace {
 
-/// Multipath that designed codes shall stand: `--multipath`, `--multipath-weight`,
+/// Options of multipath for which codes are designed: `--multipath`, `--multipath-weight`,
 /// `--two-return-weight`.
 class OperatingMultipathArguments {
  public:
-  /// @param options  whose weight of two returns is set
+  /// @param options  receives the weight of two returns
   void add_to(CLI::App& command, OptimizeOptions& options);
-  /// Puts what was asked for into operating.multipath, over what the camera says there.
-  /// @throws UsageError for what cannot be read or be, and for a weight on a camera without
-  /// multipath
+  /// Overrides operating.multipath of the camera by the given options.
+  /// @throws UsageError for invalid values, and for a weight on a camera without multipath
   void apply_to(Camera& camera) const;
 
  private:
@@ -43,7 +42,8 @@ class OperatingMultipathArguments {
   const CLI::Option* two_return_weight_ = nullptr;
 };
 
-/// One number, or two with a colon between: least and largest. Whether it is either.
+/// Reads one number, or two separated by a colon: minimum and maximum. Returns false for other
+/// text.
 bool read_limits(const std::string& text, std::array<double, 2>& limits) {
   if (text.find(':') != std::string::npos) return read_number_pair(text, ':', limits[0], limits[1]);
   if (!CLI::detail::lexical_cast(text, limits[0])) return false;
@@ -72,12 +72,12 @@ void require_operating_multipath(const Camera& camera, const char* option) {
 
 void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& options) {
   command.add_option("--multipath", returns_,
-                     "count with multipath, pixels that have a second return: "
-                     "ratio=.1:.5,delta=.5:3 (metres), each uniform between its limits; over "
-                     "[operating.multipath]");
+                     "design for pixels with a second return: ratio=0.1:0.5,delta=0.5:3 (metres), "
+                     "each uniform between its limits; overrides [operating.multipath]");
   command
       .add_option("--multipath-weight", weight_,
-                  "w of E1^(1-w) E2^w, the errors without and with multipath, in (0, 1)")
+                  "weight w in the objective E1^(1-w) E2^w, with the errors without (E1) and with "
+                  "multipath (E2)")
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
   two_return_weight_ =
       add_field_option(command, options, "two_return_weight", "--two-return-weight");
@@ -113,25 +113,28 @@ struct DesignArguments {
 DesignOptions options_for(const DesignArguments& arguments, const Camera& camera) {
   DesignOptions options = arguments.options;
   if (!arguments.target.empty() && !options.exposures.empty())
-    throw UsageError("--exposures goes with Hamiltonian targets; a --target says how many it has");
+    throw UsageError(
+        "--exposures is only valid with Hamiltonian targets; a --target determines its number of "
+        "exposures");
   if (options.robust && options.method != DesignMethod::optimize &&
       options.method != DesignMethod::best)
-    throw UsageError("--robust goes with --method optimize or best");
+    throw UsageError("--robust is only valid with --method optimize or best");
   if (!arguments.target.empty() && options.method != DesignMethod::factorize &&
       options.method != DesignMethod::best)
-    throw UsageError("--target goes with --method factorize or best");
+    throw UsageError("--target is only valid with --method factorize or best");
   if (arguments.normalize && !is_correlation_table(arguments.target))
-    throw UsageError("--normalize goes with a --target that is a table; codes are as they are");
+    throw UsageError("--normalize is only valid with a --target that is a table");
   if (camera.operating.multipath && options.robust)
     throw UsageError(
-        "--robust: found beside multipath (--multipath or [operating.multipath]); "
-        "expected one of them");
+        "--robust: found together with multipath (--multipath or [operating.multipath]); expected "
+        "one of them");
   if (arguments.effort == 0.0 && !arguments.target.empty())
-    throw UsageError("--effort 0 designs nothing: it goes without --target");
+    throw UsageError("--effort 0 does not design codes: it cannot be combined with --target");
   if (arguments.effort == 0.0 && options.method != DesignMethod::best &&
       options.method != DesignMethod::atlas)
-    throw UsageError(fmt::format("--effort 0 searches nothing: it goes without --method {}",
-                                 name_of(options.method)));
+    throw UsageError(
+        fmt::format("--effort 0 does not search: it cannot be combined with --method {}",
+                    name_of(options.method)));
   options = with_effort(std::move(options), arguments.effort);
   if (!arguments.target.empty())
     options.target = load_target(arguments.target, camera, arguments.normalize);
@@ -155,9 +158,9 @@ void run(const DesignArguments& arguments, const Session& session) {
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),
                   "already exists; use --force to replace the finished design, or another -o DIR "
-                  "(`tofsmith report` makes its page again)");
-  // Without its last file but with codes under way the directory is that of a run that was stopped,
-  // perhaps while it wrote its results: this one goes on.
+                  "(`tofsmith report` rebuilds its page)");
+  // A directory with finished codes but without design.json, which is written last, belongs to an
+  // interrupted run. This run resumes it.
   const bool goes_on =
       !directory.holds_design() && std::filesystem::exists(directory.path() / "finished");
   const OutputPolicy policy = goes_on ? OutputPolicy::overwrite : session.output_policy();
@@ -176,17 +179,17 @@ void run(const DesignArguments& arguments, const Session& session) {
 
 void add_design_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<DesignArguments>();
-  CLI::App* command = app.add_subcommand(
-      "design", "find the modulation and demodulation functions that suit a camera");
+  CLI::App* command =
+      app.add_subcommand("design", "design modulation and demodulation functions for a camera");
   arguments->camera.add_positional(*command);
   arguments->camera.add_to(*command);
   const FieldOptions options(*command, arguments->options);
   options.add("method", "--method");
   command->add_option("--target", arguments->target,
-                      "correlation functions to factorize: a family, a code file, or a table "
-                      "(.csv .npy .npz); default: Hamiltonian codes");
+                      "target correlation functions to factorize: a family, a code file or a table "
+                      "(.csv .npy .npz) (Hamiltonian codes)");
   command->add_flag("--normalize", arguments->normalize,
-                    "rescale a table's columns to [0, 1] before use");
+                    "rescale the columns of a target table to [0, 1]");
   options.add("exposures", "--exposures")->allow_extra_args();
   add_effort(*command, arguments->effort);
   options.add("atlas_cameras", "--atlas-cameras");
@@ -197,8 +200,8 @@ void add_design_command(CLI::App& app, Session& session) {
   options.add("trials", "--trials");
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command->add_option("-o,--output", arguments->output,
-                      "directory for codes, figures and the report; an interrupted run resumes "
-                      "(tofsmith-design, or the next tofsmith-design-N)");
+                      "output directory for codes and report; repeating the command resumes an "
+                      "interrupted run (tofsmith-design, or the next free tofsmith-design-N)");
   command->callback([arguments, &session] {
     if (arguments->output.empty()) arguments->output = default_output();
     session.directory = arguments->output;

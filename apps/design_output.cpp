@@ -21,7 +21,7 @@ void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResu
     const OperatingMultipathReport& report = *order[i]->multipath;
     rows[i + 1].push_back(estimate_mm_text(report.single_path.of(kind)));
     rows[i + 1].push_back(report.two_return ? estimate_mm_text(report.two_return->circular_m)
-                                            : "cannot");
+                                            : "unsupported");
   }
 }
 
@@ -43,7 +43,8 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
       tied += (tied.empty() ? "" : ", ") + c.code.name();
   }
   if (!tied.empty() && !camera.operating.multipath)
-    text += "\n  within two standard errors of it: " + tied + " (more --trials tell them apart)";
+    text += "\n  within two standard errors of the best: " + tied +
+            " (increase --trials to distinguish them)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
       text +=
@@ -71,10 +72,10 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)
     session.say(
-        "each code at its best origin of depth; `evaluate` takes it as it is, or moves it "
-        "with --best-rotation");
+        "each code is evaluated at its best origin of depth; `evaluate` keeps its origin unless "
+        "--best-rotation is given");
   session.say(verdict(camera, result));
-  for (const std::string& reason : result.left_out) session.say("  left out: " + reason);
+  for (const std::string& reason : result.left_out) session.say("  excluded: " + reason);
 }
 
 void write_report(const Session& session, const std::filesystem::path& directory,

@@ -51,10 +51,10 @@ void DeviceArguments::add_to(CLI::App& command) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          "OpenCL device that averages, filters and decodes: cpu (none); gpu, the first one; auto, "
-          "the first GPU, but cpu for small frames and other methods; or a number or part of a "
-          "name from list, which prints the devices. Only zncc runs on devices, with the same "
-          "results")
+          "device for averaging, filtering and decoding: cpu; gpu: the first OpenCL GPU; auto: the "
+          "first GPU, but cpu for small frames and for methods other than zncc; an index or part "
+          "of a name from list; list: print the OpenCL devices and exit. Devices support only "
+          "zncc, with the same results as cpu")
       ->default_str(name_)
       ->group(for_experts);
 }

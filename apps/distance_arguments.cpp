@@ -15,17 +15,17 @@ void DistanceArguments::add_to(CLI::App& command) {
   CLI::Option* distance =
       command
           .add_option("--distance", distances_m_,
-                      "at surfaces this far away [m], 1,2,5, instead of the camera's operating "
-                      "points: light from its [optics]")
+                      "surface distances in metres, such as 1,2,5, which replace the camera's "
+                      "operating points; light levels follow from its [optics]")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(positive_number())
           ->transform(number_in("m"));
-  command.add_option("--albedo", albedo_, "of those surfaces")
+  command.add_option("--albedo", albedo_, "albedo of these surfaces")
       ->check(positive_number(1.0))
       ->capture_default_str()
       ->needs(distance);
-  command.add_option("--klux", klux_, "sunlight on those surfaces [klx]")
+  command.add_option("--klux", klux_, "sunlight on these surfaces [klx]")
       ->check(number_from_0_on())
       ->transform(number_in("klx"))
       ->needs(distance);
@@ -33,19 +33,21 @@ void DistanceArguments::add_to(CLI::App& command) {
 
 Camera DistanceArguments::at(const Camera& camera, const Session& session) const {
   if (!is_asked()) return camera;
-  constexpr double brightest_klux = 200.0;  // the sun at noon: 130
+  constexpr double brightest_klux = 200.0;  // sunlight at noon: 130 klx
   if (klux_ && *klux_ > brightest_klux)
-    session.say(
-        fmt::format("note: --klux {:g} is brighter than the sun, 130 klx: is it in lux?", *klux_));
+    session.say(fmt::format(
+        "note: --klux {:g} exceeds sunlight (130 klx at noon); check that the unit is klx, not lux",
+        *klux_));
   Camera judged = at_distances(camera, distances_m_, albedo_, klux_);
   for (const double distance_m : distances_m_) {
     const OperatingPoint light = judged.optics->light_at(distance_m, albedo_);
-    session.say(fmt::format("{:.4g} m, albedo {:.3g}: S = {:.4g} e/s, A = {:.4g} e/s{}", distance_m,
-                            albedo_, light.signal_e_per_s, light.ambient_e_per_s,
-                            distance_m < camera.range_m()
-                                ? std::string()
-                                : fmt::format("; beyond the range of {:.4g} m, where depths repeat",
-                                              camera.range_m())));
+    session.say(
+        fmt::format("{:.4g} m, albedo {:.3g}: S = {:.4g} e/s, A = {:.4g} e/s{}", distance_m,
+                    albedo_, light.signal_e_per_s, light.ambient_e_per_s,
+                    distance_m < camera.range_m()
+                        ? std::string()
+                        : fmt::format("; beyond the unambiguous range of {:.4g} m, so depths wrap",
+                                      camera.range_m())));
   }
   return judged;
 }

@@ -45,7 +45,7 @@ constexpr std::array quantities = {
     Quantity{"mismatch", &RobustnessOptions::tap_mismatch, false},
 };
 
-/// "50ps", "5 ns", "3%", "0.03" in SI units; NaN for anything else.
+/// Converts a text such as "50ps", "5 ns", "3%" or "0.03" to SI units; NaN if it is invalid.
 double value_of(std::string_view text, bool is_time) {
   using Unit = std::pair<std::string_view, double>;
   constexpr std::array<Unit, 5> times = {
@@ -64,9 +64,9 @@ double value_of(std::string_view text, bool is_time) {
   return is_time ? scaled(times) : scaled(shares);
 }
 
-/// What `--perturb jitter=50ps,clock=5ns,droop=3%` says: these changes, each alone and all
-/// together, and no other.
-/// @throws UsageError naming the word, what was found and what was expected
+/// Parses `--perturb jitter=50ps,clock=5ns,droop=3%`: each of these changes alone, and all
+/// together.
+/// @throws UsageError
 RobustnessOptions parse_perturbations(std::string_view text) {
   RobustnessOptions options{
       .bandwidth = 0.0, .peak = 0.0, .edge_jitter_s = 0.0, .tap_mismatch = 0.0, .together = true};
@@ -130,35 +130,35 @@ std::string true_depths_text(const Camera& camera, const EvaluateOptions& option
                                                   : "on bins";
 }
 
-/// "25 light levels (S = 1e+03 .. 1e+05, A = 100 .. 1e+05 e/s)"
+/// Returns the number of light levels and their ranges of signal and ambient light.
 std::string light_levels_text(const OperatingRange& operating) {
   const auto span = [](const std::vector<double>& e_per_s) {
     const auto [least, most] = std::ranges::minmax(e_per_s);
     return least == most ? fmt::format("{:.3g}", least)
-                         : fmt::format("{:.3g} .. {:.3g}", least, most);
+                         : fmt::format("{:.3g} to {:.3g}", least, most);
   };
   return fmt::format("{} light levels of the camera (S = {}, A = {} e/s)",
                      operating.signal_e_per_s.size() * operating.ambient_e_per_s.size(),
                      span(operating.signal_e_per_s), span(operating.ambient_e_per_s));
 }
 
-/// Whether somewhere a bound is larger than the error that it bounds by more than noise.
+/// Returns true if the Cramer-Rao bound significantly exceeds the error at some operating point.
 bool exceeds_error(const EvaluatedCode& code) {
   return std::ranges::any_of(code.error.points, [](const PointDepthError& p) {
     return std::isfinite(p.cramer_rao_mae_m) && 0.9 * p.cramer_rao_mae_m > p.circular_mde_m.value;
   });
 }
 
-/// What a reader must know of points that reached the most trials before the target.
+/// Prints a note if operating points reached the maximum number of trials before the target.
 void note_missed_targets(const Session& session, const std::vector<EvaluatedCode>& codes,
                          const EvaluateOptions& options) {
   for (const EvaluatedCode& code : codes)
     if (code.error.points_short_of_target > 0)
-      session.say(fmt::format(
-          "note: {}: {} of {} operating points stay short of a standard error of {:.3g} % after "
-          "{} trials; raise --max-trials or the target",
-          code.error.code, code.error.points_short_of_target, code.error.points.size(),
-          100.0 * options.target_standard_error, options.max_trials));
+      session.say(
+          fmt::format("note: {}: {} of {} operating points did not reach a standard error of "
+                      "{:.3g} % within {} trials; increase --max-trials or the target",
+                      code.error.code, code.error.points_short_of_target, code.error.points.size(),
+                      100.0 * options.target_standard_error, options.max_trials));
 }
 
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
@@ -171,22 +171,22 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
     session.say(text_table(zncc_comparison_rows(codes, every_level)));
   if (const auto judged = judged_codes(codes); !judged.empty())
     session.say(text_table(robustness_rows(judged)));
-  session.say(fmt::format(
-      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is one "
-      "standard error; (x) is the circular error over the bound",
-      trials_text(codes, options), options.seed, camera.samples, true_depths_text(camera, options),
-      name_of(options.method)));
+  session.say(
+      fmt::format("{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is "
+                  "one standard error; factors in parentheses are circular error / bound",
+                  trials_text(codes, options), options.seed, camera.samples,
+                  true_depths_text(camera, options), name_of(options.method)));
   if (codes.front().error.points.size() > 2 && !every_level)
-    session.say(fmt::format("all {}: --every-level, or -o FILE (.csv .json .html)",
+    session.say(fmt::format("to print all {}, use --every-level or -o FILE (.csv .json .html)",
                             light_levels_text(camera.operating)));
   if (std::ranges::any_of(codes, exceeds_error))
     session.say(
-        "bounds above the error (below 1x) hold for decoders without bias; an error ends with the "
-        "range, and such a bound does not");
+        "factors below 1x: the bound assumes an unbiased decoder and ignores that the unambiguous "
+        "range limits the error");
   note_missed_targets(session, codes, options);
 }
 
-/// Where to write, looked at before the long work.
+/// Checks the output before the long work.
 void check_output(const std::filesystem::path& path, const Session& session) {
   if (path.empty()) return;
   const std::string extension = path.extension().string();
@@ -196,8 +196,8 @@ void check_output(const std::filesystem::path& path, const Session& session) {
   session.check_output(path);
 }
 
-/// Depth error of each code, which is moved to its best origin first if that was asked for; by zncc
-/// beside maximum likelihood, on the same depths and noise.
+/// Evaluates each code, at its best origin if requested. Maximum likelihood is compared with zncc
+/// on the same depths and noise.
 std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camera& camera,
                                         const EvaluateArguments& arguments) {
   std::vector<EvaluatedCode> evaluated;
@@ -223,7 +223,7 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
   return evaluated;
 }
 
-/// Errors on perturbed cameras, by the same decoder, from the same seed, in as many trials.
+/// Evaluates codes on perturbed cameras with the same decoder, seed and number of trials.
 void judge_robustness(std::vector<EvaluatedCode>& evaluated, const std::vector<CodeSet>& codes,
                       const Camera& camera, const EvaluateOptions& options,
                       RobustnessOptions perturbed) {
@@ -258,11 +258,13 @@ void run(EvaluateArguments& arguments, const Session& session) {
   arguments.options.validate();
   check_output(arguments.output, session);
   if (arguments.robustness && !arguments.perturb.empty())
-    throw UsageError("--robustness and --perturb: choose one; --perturb says what to change");
+    throw UsageError(
+        "--robustness and --perturb cannot be combined; --perturb specifies the perturbations");
   std::optional<RobustnessOptions> perturbed;
   if (arguments.robustness) perturbed.emplace();
   if (!arguments.perturb.empty()) perturbed = parse_perturbations(arguments.perturb);
-  if (perturbed) static_cast<void>(perturbations(camera, *perturbed));  // refused before long work
+  if (perturbed)
+    static_cast<void>(perturbations(camera, *perturbed));  // validates before long work
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));
@@ -282,10 +284,11 @@ void run(EvaluateArguments& arguments, const Session& session) {
 void add_evaluate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand(
-      "evaluate", "depth error of codes at every operating point of a camera, with bounds");
+      "evaluate",
+      "evaluate the depth error of codes at all operating points of a camera, with lower bounds");
   command
       ->add_option("CODE", arguments->codes,
-                   "families, or code files (.code.json .npz .csv; a pair LIGHT.npy,GATES.npy)")
+                   "families or code files (.code.json .npz .csv, or a pair LIGHT.npy,GATES.npy)")
       ->required();
   arguments->camera.add_to(*command);
   const FieldOptions options(*command, arguments->options);
@@ -297,21 +300,23 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   arguments->method.add_to(*command);
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command
-      ->add_flag("--on-bins", arguments->on_bins,
-                 "true depths on bins only (flatters codes; for comparison with others)")
+      ->add_flag(
+          "--on-bins", arguments->on_bins,
+          "true depths on bins only (underestimates errors; for comparison with other tools)")
       ->group(for_experts);
   options.add("sub_bin", "!--no-sub-bin")->group(for_experts);
   options.add("clip_to_open_sensor", "--clip-to-open-sensor")->group(for_experts);
   command
       ->add_flag("--best-rotation", arguments->best_rotation,
-                 "move each code's origin of depth to where its linear error is least")
+                 "shift the depth origin of each code to minimize its linear error")
       ->group(for_experts);
   command->add_flag("--robustness", arguments->robustness,
-                    "also judge each code on perturbed cameras: bandwidth ±20 %, peak ±10 %, "
-                    "50 ps edge jitter, 2 % tap mismatch");
-  command->add_option("--perturb", arguments->perturb,
-                      "also judge each code on cameras with each of these changes and with all at "
-                      "once: jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");
+                    "also evaluate each code on perturbed cameras: bandwidth ±20 %, peak ±10 %, 50 "
+                    "ps edge jitter, 2 % tap mismatch");
+  command->add_option(
+      "--perturb", arguments->perturb,
+      "also evaluate each code with each of these perturbations, and with all together: "
+      "jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");
   arguments->taps.add_to(*command);
   command->add_flag("--every-level", arguments->every_level,
                     "print a row for every light level, not only the mean, the best and the worst");

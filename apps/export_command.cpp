@@ -38,7 +38,7 @@ bool is_one_file(const ExportRequest& request) {
 }
 
 void say_report(const Session& session, const ExportedCode& exported) {
-  session.say("Nominal and actual waveforms of the hardware, ahead of the arms' responses:\n" +
+  session.say("Nominal and actual waveforms of the hardware, before the impulse responses:\n" +
               text_table(generator_report_rows(exported.generators)));
   if (!exported.loss) return;
   const DepthErrorKind kind = exported.actual.operating.error;
@@ -101,11 +101,12 @@ std::string format_list() {
 
 void add_export_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "waveforms as files for generators and pattern memories, and what their limits cost");
+  CLI::App* command =
+      app.add_subcommand("export",
+                         "write waveform files for generators and pattern memories, and evaluate "
+                         "the depth error that their limits cause");
   ExportOptions& options = arguments->request.options;
-  command->add_option("CODE", arguments->code, "a family or a code file (.code.json .npz .csv)")
+  command->add_option("CODE", arguments->code, "family or code file (.code.json .npz .csv)")
       ->required();
   const FieldOptions fields(*command, options);
   fields.add("format", "--format")->required();
@@ -119,18 +120,18 @@ void add_export_command(CLI::App& app, Session& session) {
   fields.add("periods", "--periods");
   command
       ->add_option("--volts", arguments->volts,
-                   "LOW,HIGH: output at no light and no gain, and at peak light and full gain [V] "
-                   "(0,1)")
+                   "output voltages LOW,HIGH for zero and for peak light or full gain [V] (0,1)")
       ->delimiter(',')
       ->expected(2);
   const FieldOptions evaluate(*command, arguments->evaluate);
   evaluate.add("trials", "--trials");
   evaluate.add("seed", "--seed");
-  command->add_flag("--no-loss", arguments->no_loss, "do not measure what it costs in depth error");
+  command->add_flag("--no-loss", arguments->no_loss,
+                    "do not evaluate the depth error with the exported waveforms");
   command
       ->add_option("-o,--output", arguments->output,
-                   "a directory: all files, manifest.json and report.html; or one file, of formats "
-                   "that hold all waveforms in one")
+                   "directory for all files, manifest.json and report.html; or one file, for "
+                   "formats that contain all waveforms")
       ->required();
   command->footer(format_list());
   command->callback([arguments, &session] { run(*arguments, session); });

@@ -54,7 +54,7 @@ void add_settings(CLI::App& command, const char* argument, const char* whose, CL
                   std::vector<std::string>& settings) {
   command
       .add_option(argument, settings,
-                  fmt::format("KEY=VALUE of {}, for experts, as often as needed: {}", whose,
+                  fmt::format("KEY=VALUE of {} (repeatable); keys: {}", whose,
                               fmt::join(keys_of<Options>(), ", ")))
       ->allow_extra_args(false)
       ->needs(with)
@@ -70,21 +70,20 @@ void FilterArguments::add_to(CLI::App& command) {
   CLI::Option* const filter =
       command
           .add_option("--filter", strength_,
-                      "add the measurements of neighbours that see the same depth before decoding: "
-                      "light, normal or strong (off)")
+                      "spatial filter, which averages measurements of neighbouring pixels at the "
+                      "same depth before decoding: light, normal or strong (off)")
           ->check(one_of(strengths));
-  add_settings<FilterOptions>(command, "--filter-set", "the filter", filter, settings_);
+  add_settings<FilterOptions>(command, "--filter-set", "the spatial filter", filter, settings_);
   CLI::Option* const time_filter =
       command
-          .add_option(
-              "--time-filter", max_frames_,
-              "add to each pixel's measurements those of the frames before, as long as they "
-              "stay the same: as many as this, about (off)")
+          .add_option("--time-filter", max_frames_,
+                      "temporal filter, which averages each pixel over about this many frames "
+                      "while it does not change (off)")
           ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
   add_field_option(command, time_options_, "look_ahead", "--look-ahead")
       ->needs(time_filter)
       ->group(for_experts);
-  add_settings<TimeFilterOptions>(command, "--time-filter-set", "the filter in time", time_filter,
+  add_settings<TimeFilterOptions>(command, "--time-filter-set", "the temporal filter", time_filter,
                                   time_settings_);
 }
 

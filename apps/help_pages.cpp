@@ -127,7 +127,7 @@ ValueText value_text(const CLI::Option& option) {
   return {is_number ? "NUMBER" : "VALUE", rule};
 }
 
-/// Returns rule, default and conditions of an option, which are not part of its description.
+/// Returns the rule, default and conditions of an option, which its description does not contain.
 std::string remarks(const CLI::Option& option, const std::string& rule) {
   std::vector<std::string> all;
   if (!rule.empty()) all.push_back(rule);
@@ -140,7 +140,8 @@ std::string remarks(const CLI::Option& option, const std::string& rule) {
   for (const CLI::Option* other : option.get_needs())
     all.push_back("needs " + option_names(*other));
   for (const CLI::Option* other : option.get_excludes())
-    all.push_back("not with " + option_names(*other));
+    all.push_back("not with " +
+                  (other->get_positional() ? other->get_single_name() : option_names(*other)));
   return all.empty() ? "" : fmt::format(" ({})", fmt::join(all, "; "));
 }
 

@@ -7,8 +7,8 @@
 
 namespace tofsmith::apps {
 
-/// Group of options that `--help` leaves out and `--help-all` shows: `->group(for_experts)` where
-/// an option is declared. Each command has about fifteen others, which a test counts.
+/// Group of options that only `--help-all` shows: declare them with `->group(for_experts)`. A test
+/// limits the number of all other options to about fifteen per command.
 inline constexpr const char* for_experts = "For experts";
 
 /// Formatter of `--help` and `--help-all`: options in sections by task, wrapped to the terminal.

@@ -29,8 +29,8 @@ fs::path lab_page() {
     if (fs::is_regular_file(place, ignored)) return place;
   }
   throw IoError(places.front().lexically_normal().string(),
-                "there is no page: this tofsmith was built without it; scripts/lab.sh of its "
-                "sources makes one (scripts/lab.sh -o lab.html)");
+                "does not exist, because this tofsmith was built without the lab page; build it in "
+                "the source tree with scripts/lab.sh -o lab.html");
 }
 
 std::string content_of(const fs::path& path) {
@@ -45,7 +45,7 @@ void run(const std::string& output, const Session& session) {
   const std::string content = content_of(lab_page());
   write_file_atomically(output, content, session.output_policy());
   session.print_json({{"output", output}, {"bytes", content.size()}});
-  session.say(fmt::format("wrote {}; open it in a browser, it needs no network", output));
+  session.say(fmt::format("wrote {}; open it in a browser (no network required)", output));
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ void run(const std::string& output, const Session& session) {
 void add_lab_command(CLI::App& app, Session& session) {
   auto output = std::make_shared<std::string>("lab.html");
   CLI::App* command = app.add_subcommand(
-      "lab", "write the lab: one page for a browser, to try cameras and codes in");
+      "lab", "write the lab, an interactive web page for exploring cameras and codes");
   command->add_option("-o,--output", *output, "HTML file")->capture_default_str();
   command->callback([output, &session] { run(*output, session); });
 }

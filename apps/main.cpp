@@ -46,19 +46,19 @@ std::string as_typed(int argc, char** argv) {
   return line;
 }
 
-/// The subcommand that was typed, or the program itself.
+/// Returns the selected subcommand, or the program itself.
 const CLI::App& chosen(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : chosen(*subcommands.front());
 }
 
-/// " calibrate noise" for a subcommand of a subcommand.
+/// Returns the names of a command and its parents, such as " calibrate noise".
 std::string words_of(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
   return parent == nullptr ? std::string() : words_of(*parent) + " " + command.get_name();
 }
 
-/// Names of all options with a value, of the program and of every command below it.
+/// Adds the names of all options with a value, of the program and of all its subcommands.
 void add_options_with_values(const CLI::App& app, std::set<std::string>& names) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_type_size() == 0) continue;
@@ -69,8 +69,8 @@ void add_options_with_values(const CLI::App& app, std::set<std::string>& names) 
     add_options_with_values(*command, names);
 }
 
-/// Commands treat an empty file name as one that was not given, and CLI11 takes the next word as
-/// the value of `--output=`.
+/// Rejects empty values: commands treat an empty file name as missing, and CLI11 uses the next word
+/// as the value of `--output=`.
 void refuse_empty_values(const CLI::App& app, int argc, char** argv) {
   std::set<std::string> options;
   add_options_with_values(app, options);
@@ -83,7 +83,7 @@ void refuse_empty_values(const CLI::App& app, int argc, char** argv) {
   }
 }
 
-/// What could have been meant: commands where none was given, options elsewhere.
+/// Returns the names to suggest for an unknown word: options or commands.
 std::vector<std::string> known_words(const CLI::App& app, bool options) {
   std::vector<std::string> words;
   for (const CLI::App* scope : {&chosen(app), &app})
@@ -96,8 +96,8 @@ std::vector<std::string> known_words(const CLI::App& app, bool options) {
   return words;
 }
 
-/// Returns the camera key with the name of an option, "sensor.taps" for "--taps"; "" if there is
-/// none.
+/// Returns the camera key with the name of an option, such as "sensor.taps" for "--taps"; "" if no
+/// key matches.
 std::string camera_key_of(std::string option) {
   option = option.substr(0, option.find('='));
   option.erase(0, option.find_first_not_of('-'));
@@ -108,7 +108,7 @@ std::string camera_key_of(std::string option) {
   return "";
 }
 
-/// What is wrong with the arguments, in one sentence.
+/// Returns a one-sentence description of the error in the arguments.
 std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> rest = app.remaining(true);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || rest.empty()) return error.what();
@@ -124,7 +124,7 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = fmt::format("{} '{}'",
                                  option    ? "unknown option"
                                  : command ? "unknown command"
-                                           : "unexpected",
+                                           : "unexpected argument",
                                  word);
   if (!near.empty()) return text + fmt::format("; did you mean {}?", near);
   return command ? text + fmt::format("; expected one of {}", fmt::join(known, ", ")) : text;
@@ -136,7 +136,7 @@ int refuse_usage(const CLI::App& app, const std::string& problem) {
   return exit_usage;
 }
 
-/// A full disk may show only now.
+/// Flushes standard output. A full disk may be detected only here.
 int finish_output() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   fmt::print(stderr, "tofsmith: standard output: cannot write: {}\n",
@@ -144,7 +144,7 @@ int finish_output() {
   return exit_failed;
 }
 
-/// What work that was interrupted leaves behind.
+/// Returns which output an interrupted command keeps.
 std::string what_is_kept(const Session& session) {
   std::error_code ignored;
   const bool kept = std::filesystem::is_directory(session.directory, ignored) &&
@@ -153,17 +153,18 @@ std::string what_is_kept(const Session& session) {
   if (kept || stored)
     return fmt::format("; finished {} are kept in {}{}", kept ? "files" : "items",
                        session.directory.string(),
-                       session.force ? "" : ", and the same command goes on from there");
+                       session.force ? "" : ", and the same command resumes from there");
   return session.tells_what_is_kept ? "" : "; nothing was written";
 }
 
 int stop_interrupted(const Session& session, bool is_done) {
   fmt::print(stderr, "tofsmith: interrupted{}\n",
-             is_done ? ", when all was done" : what_is_kept(session));
+             is_done ? "; all work was already done" : what_is_kept(session));
   return exit_interrupted;
 }
 
-/// TOFSMITH_TARGET names the instruction set to use, so that machines that differ give equal bits.
+/// Selects the instruction set named by TOFSMITH_TARGET, so that different machines give
+/// bit-identical results.
 void pin_target() {
   const char* const name = std::getenv("TOFSMITH_TARGET");
   if (name == nullptr || *name == '\0') return;
@@ -184,17 +185,17 @@ int run(int argc, char** argv) {
       "continuous-wave time-of-flight cameras."};
   app.name("tofsmith");
   app.formatter(std::make_shared<HelpPages>());
-  app.set_help_flag("-h,--help", "print the usual options and exit");
-  app.set_help_all_flag("--help-all", "print every option, also those for experts, and exit");
+  app.set_help_flag("-h,--help", "print the common options and exit");
+  app.set_help_all_flag("--help-all", "print all options, including advanced ones, and exit");
   app.set_version_flag("--version", [] { return to_text(build_info()); });
   bool list_commands = false;
-  app.add_flag("--list-commands", list_commands)->group("");  // manual pages are made from it
+  app.add_flag("--list-commands", list_commands)->group("");  // input for the manual pages
   app.require_subcommand(0, 1);
   app.fallthrough();
-  app.add_flag("--json", session.json, "print one JSON document on stdout and nothing else there");
-  app.add_flag_callback("--quiet", silence_progress, "no progress on standard error");
+  app.add_flag("--json", session.json, "print one JSON document, and nothing else, on stdout");
+  app.add_flag_callback("--quiet", silence_progress, "do not print progress on standard error");
   app.add_flag("--force", session.force, "overwrite existing output files");
-  app.add_option("--threads", session.threads, "threads to use; 0 = every core")
+  app.add_option("--threads", session.threads, "number of threads; 0: all cores")
       ->check(CLI::Range(0, 1024));
   std::unique_ptr<ThreadLimit> thread_limit;
   app.parse_complete_callback(
@@ -225,7 +226,7 @@ int run(int argc, char** argv) {
   }
 }
 
-/// Destructors of JSON take memory; where there is none, no exception leaves them.
+/// Destructors of JSON allocate memory; a failed allocation there terminates the program.
 [[noreturn]] void stop_without_memory() {
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
@@ -234,7 +235,7 @@ int run(int argc, char** argv) {
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
     ::_exit(exit_failed);
   } catch (...) {
-    std::abort();  // a fault of the program
+    std::abort();  // a bug in the program
   }
   std::abort();  // no exception is handled
 }
@@ -253,8 +254,8 @@ int run_and_tell(int argc, char** argv) {
   return interrupted() ? exit_interrupted : exit_failed;
 }
 
-/// Tiles of pixels stand on the stack. Where that is small (`ulimit -s`), a thread has one as large
-/// as usual.
+/// Pixel tiles are stored on the stack. If the stack is small (`ulimit -s`), runs the program in a
+/// thread with a stack of the usual size.
 int run_on_enough_stack(int argc, char** argv) {
   constexpr std::size_t enough_bytes = std::size_t{1} << 21, usual_bytes = std::size_t{1} << 23;
   struct rlimit limit {};
@@ -275,7 +276,7 @@ int run_on_enough_stack(int argc, char** argv) {
   ::pthread_attr_init(&attributes);
   ::pthread_attr_setstacksize(&attributes, usual_bytes);
 #ifdef __GLIBC__
-  ::pthread_setattr_default_np(&attributes);  // and so have those that it starts
+  ::pthread_setattr_default_np(&attributes);  // also for the threads that it starts
 #endif
   const bool started = ::pthread_create(&thread, &attributes, start, &work) == 0;
   ::pthread_attr_destroy(&attributes);

@@ -23,9 +23,8 @@ class MultipathArguments {
     fields.add("tail_m", "--tail-length")->group(for_experts);
     CLI::Option* bayes = command
                              .add_flag("--bayes", bayes_,
-                                       "two-return, tail: depth is the posterior median under a "
-                                       "prior, where one return does not "
-                                       "explain the pixel")
+                                       "for two-return and tail: use the posterior median of depth "
+                                       "under a prior if one return does not explain the pixel")
                              ->group(for_experts);
     const FieldOptions prior(command, prior_);
     prior.add("single_probability", "--prior-single")->needs(bayes)->group(for_experts);

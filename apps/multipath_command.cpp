@@ -36,7 +36,7 @@ struct MultipathCommandArguments {
   std::string output;
 };
 
-/// Captures and decodes the scene with the first code; none without a scene.
+/// Captures and decodes the scene with the first code; returns none without a scene.
 std::optional<MultipathScene> lit_scene(const MultipathCommandArguments& arguments,
                                         const std::vector<CodeSet>& codes, const Camera& camera) {
   if (arguments.scene.scene.empty()) return std::nullopt;
@@ -54,10 +54,10 @@ std::optional<MultipathScene> lit_scene(const MultipathCommandArguments& argumen
 
 Page multipath_page(const Camera& camera, const std::vector<MultipathErrorReport>& reports,
                     const MultipathErrorOptions& options, const MultipathScene* scene) {
-  Page page{.title = "Where light comes back twice",
+  Page page{.title = "Depth error with multipath",
             .subtitle = "camera " + camera.name,
             .sections = {multipath_section(reports)},
-            .footer = fmt::format("{} trials per place, seed {}", options.trials, options.seed)};
+            .footer = fmt::format("{} trials per cell, seed {}", options.trials, options.seed)};
   if (scene) page.sections.push_back(multipath_scene_section(*scene, camera));
   return page;
 }
@@ -71,12 +71,12 @@ void print(const Session& session, const Camera& camera,
   if (scene) session.say(text_table(multipath_scene_rows(*scene)));
   for (const MultipathErrorReport& report : reports)
     if (!report.why_no_two_returns.empty())
-      session.say(
-          fmt::format("{}: no two-return decoding: {}", report.code, report.why_no_two_returns));
-  session.say(fmt::format(
-      "{} trials per place, seed {}, A = {:.3g} e/s, N = {}; 1: single-path, 2: two returns or "
-      "tail; gain: error 1 over error 2",
-      options.trials, options.seed, options.ambient_e_per_s, camera.samples));
+      session.say(fmt::format("{}: two-return decoding is not possible: {}", report.code,
+                              report.why_no_two_returns));
+  session.say(
+      fmt::format("{} trials per cell, seed {}, A = {:.3g} e/s, N = {}; 1: single-path decoding, "
+                  "2: two-return or tail decoding; gain: error 1 / error 2",
+                  options.trials, options.seed, options.ambient_e_per_s, camera.samples));
 }
 
 void run(const MultipathCommandArguments& arguments, const Session& session) {
@@ -111,14 +111,12 @@ void run(const MultipathCommandArguments& arguments, const Session& session) {
 void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
   CLI::Option* scene =
       command.add_option("--scene", arguments.scene.scene,
-                         "also a scene whose surfaces light each other, decoded by the first code "
-                         "at the highest of --signals: built-in (see `tofsmith scene`), scene file "
-                         "(.toml) or mesh");
+                         "also evaluate a scene with light reflected between its surfaces, decoded "
+                         "with the first code at the highest of --signals: built-in scene (see "
+                         "`tofsmith scene`), scene file (.toml) or mesh");
   add_field_option(command, arguments.scene, "width", "--width")->needs(scene);
   add_field_option(command, arguments.scene, "height", "--height")->needs(scene);
-  command
-      .add_option("--bounce-rays", arguments.bounce.rays,
-                  "rays by which each pixel gathers bounced light")
+  command.add_option("--bounce-rays", arguments.bounce.rays, "rays per pixel for bounced light")
       ->check(CLI::Range(16, 65536))
       ->capture_default_str()
       ->needs(scene)
@@ -130,10 +128,10 @@ void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
 void add_multipath_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<MultipathCommandArguments>();
   MultipathErrorOptions& options = arguments->options;
-  CLI::App* command = app.add_subcommand(
-      "multipath",
-      "bias and error of direct depth behind a second return or a tail, single-path against "
-      "two-return decoding, with the Cramer-Rao bound");
+  CLI::App* command =
+      app.add_subcommand("multipath",
+                         "evaluate codes under multipath: bias and error with a second return or "
+                         "an exponential tail, for single-path and two-return decoding");
   command->add_option("CODE", arguments->codes, "families or code files (.code.json .npz .csv)")
       ->required();
   arguments->camera.add_to(*command);
@@ -149,7 +147,7 @@ void add_multipath_command(CLI::App& app, Session& session) {
   add_scene(*command, *arguments);
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,
-                      "write all figures (.json) or a page (.html)");
+                      "write all results (.json) or a page (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -14,8 +14,8 @@
 
 namespace tofsmith::apps {
 
-/// Reads two numbers parted by a character, such as "3/8" or "1e3:1e5"; whether the text holds
-/// them.
+/// Reads two numbers separated by a character, such as "3/8" or "1e3:1e5". Returns false for other
+/// text.
 template <typename Number>
 bool read_number_pair(const std::string& text, char separator, Number& first, Number& second) {
   const std::size_t at = text.find(separator);
@@ -23,8 +23,8 @@ bool read_number_pair(const std::string& text, char separator, Number& first, Nu
          CLI::detail::lexical_cast(text.substr(at + 1), second);
 }
 
-/// Rewrites the value of an option, such as "20MHz", as a number in its unit; of an integer, "1e4"
-/// as "10000".
+/// Returns a validator that converts a value such as "20MHz" to a number in the option's unit, and
+/// for integers "1e4" to "10000".
 inline CLI::Validator number_in(std::string_view unit, bool is_integer = false) {
   CLI::Validator rewrite;
   rewrite.operation([unit, is_integer](std::string& text) {
@@ -43,7 +43,7 @@ inline CLI::Validator number_in(std::string_view unit, bool is_integer = false) 
   return rewrite;
 }
 
-/// Checks the number of an option; what breaks the rule is refused with "found -1; must be > 0".
+/// Returns a validator that rejects other numbers with a message such as "found -1; must be > 0".
 inline CLI::Validator number_that(const std::string& rule, std::function<bool(double)> holds) {
   return {[rule, holds = std::move(holds)](const std::string& text) {
             double value = 0.0;
@@ -54,7 +54,7 @@ inline CLI::Validator number_that(const std::string& rule, std::function<bool(do
           rule};
 }
 
-/// NaN breaks each of these rules.
+/// The following validators reject NaN.
 inline CLI::Validator positive_number() {
   return number_that("> 0 and finite",
                      [](double value) { return value > 0.0 && std::isfinite(value); });
@@ -68,7 +68,7 @@ inline CLI::Validator number_from_0_on() {
                      [](double value) { return value >= 0.0 && std::isfinite(value); });
 }
 
-/// A share in [least, most), which may be written as a percentage: "1%" becomes "0.01".
+/// Returns a validator for a share in [min, max), which converts a percentage: "1%" to "0.01".
 inline CLI::Validator share_or_percentage(double min, double max) {
   const std::string rule = fmt::format("a share in [{}, {}), such as 0.01 or 1%", min, max);
   return {[=](std::string& text) {

@@ -40,7 +40,7 @@ bool is_control(std::string_view character) {
 std::string printed(std::string_view message, std::size_t longest) {
   std::string text;
   for (std::size_t at = 0; at < message.size();) {
-    if (text.size() > longest) return text + fmt::format(" .. ({} bytes)", message.size());
+    if (text.size() > longest) return text + fmt::format(" ... ({} bytes)", message.size());
     const std::size_t length = utf8_length(message.substr(at));
     if (length == 0 || is_control(message.substr(at, length))) {
       fmt::format_to(std::back_inserter(text), "\\x{:02x}",

@@ -25,8 +25,9 @@ constexpr const char* debian_python = "/usr/bin/python3";
 constexpr const char* bootstrap =
     "import importlib.util, runpy, sys\n"
     "if importlib.util.find_spec('tofsmith') is None:\n"
-    "    sys.exit(f'tofsmith: {sys.executable} finds no package tofsmith, which this command "
-    "needs; '\n"
+    "    sys.exit(f'tofsmith: {sys.executable} cannot find the package tofsmith, which this "
+    "command "
+    "requires; '\n"
     "             'on Debian: apt install python3-tofsmith')\n"
     "try:\n"
     "    runpy.run_module(sys.argv.pop(1), run_name='__main__', alter_sys=True)\n"
@@ -82,7 +83,7 @@ void run_python_module(const std::string& module, const std::string& input,
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   ::execvp(python.c_str(), pointers.data());
-  fail(python, "cannot be started; this command needs Python with the package tofsmith");
+  fail(python, "cannot be started; this command requires Python with the package tofsmith");
 }
 
 }  // namespace tofsmith::apps

@@ -81,8 +81,8 @@ std::string recorded_code(const fs::path& raw) {
   const fs::path beside = code_beside(raw);
   if (is_file(beside)) return beside.string();
   throw UsageError(
-      fmt::format("--code is required, because there is no {} next to the raw frames; expected a "
-                  "family (`tofsmith codes` lists them), a code file or a measured table",
+      fmt::format("--code is required, because {} does not exist next to the raw frames; expected "
+                  "a family (`tofsmith codes` lists them), a code file or a measured table",
                   beside.string()));
 }
 

@@ -44,7 +44,7 @@ void add_report_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command =
       app.add_subcommand("report", "build the report page of a design or demo directory");
-  command->add_option("DIR", arguments->directory, "directory made by design -o or demo -o")
+  command->add_option("DIR", arguments->directory, "output directory of design or demo")
       ->required();
   command->add_option("-o,--output", arguments->output, "HTML file (DIR/report.html)");
   command->callback([arguments, &session] { run(*arguments, session); });

@@ -39,19 +39,20 @@ std::vector<std::string> python_arguments(const ReproduceArguments& arguments,
 void add_reproduce_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ReproduceArguments>();
   CLI::App* command = app.add_subcommand(
-      "reproduce", "figures and statements of the paper, by python3 -m tofsmith.paper");
+      "reproduce",
+      "reproduce figures and statements of the paper (runs python3 -m tofsmith.paper)");
   command
       ->add_option("FIGURE", arguments->figures,
-                   "one or several of all, fig2 to fig11, table1 and text")
+                   "one or several of: all, fig2 to fig11, table1, text")
       ->required();
-  command->add_flag("--fast", arguments->fast, "coarse: larger errors in less time");
+  command->add_flag("--fast", arguments->fast, "faster, with larger statistical errors");
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--mesh", arguments->mesh,
-                      "for fig7, instead of the modelled hand (.obj .ply .stl, of any size)");
+                      "mesh for fig7, instead of the modelled hand (.obj .ply .stl, of any size)");
   command
       ->add_option("-o,--output", arguments->output,
-                   "directory; figures that are finished there are not made again (--force does)")
+                   "output directory; finished figures are computed again only with --force")
       ->capture_default_str();
   command->callback([arguments, &session] {
     run_python_module("tofsmith.paper", "", python_arguments(*arguments, session));

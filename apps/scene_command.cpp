@@ -25,7 +25,7 @@
 namespace tofsmith::apps {
 namespace {
 
-/// The scene as a page: radial distance and returned light.
+/// Returns a page with the radial distance and the returned light of a scene.
 Page preview_page(const SceneImage& scene, const std::string& name) {
   Image<float> light(scene.height(), scene.width());
   for (std::size_t i = 0; i < light.size(); ++i)
@@ -127,7 +127,7 @@ void run(const SceneArguments& arguments, const Session& session) {
   const std::string& output = arguments.output;
   if (arguments.scene.scene.empty()) {
     if (!output.empty())
-      throw UsageError("-o needs a SCENE; `tofsmith scene` lists those built in");
+      throw UsageError("-o requires a SCENE; `tofsmith scene` lists the built-in scenes");
     return list_scenes(session);
   }
   const Camera camera = arguments.camera.load();
@@ -145,17 +145,18 @@ void run(const SceneArguments& arguments, const Session& session) {
 
 void add_scene_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SceneArguments>();
-  CLI::App* command = app.add_subcommand("scene", "look at a scene, or list those built in");
+  CLI::App* command = app.add_subcommand("scene", "preview a scene, or list the built-in scenes");
   command->add_option("SCENE", arguments->scene.scene, scene_help);
   add_scene_options(*command, arguments->scene);
   arguments->camera.add_to(*command);
   command
       ->add_option("--time-s", arguments->scene.time_s,
-                   "when to look at a scene that moves [s]: frame 0 begins at 0")
+                   "time at which a moving scene is rendered [s]; frame 0 begins at 0")
       ->capture_default_str();
-  command->add_option("-o,--output", arguments->output,
-                      "directory for depth, z-depth, albedo, cosine, what is beyond the range, and "
-                      "a preview; or one file for the radial distance (.npy .npz .exr .pfm .png)");
+  command->add_option(
+      "-o,--output", arguments->output,
+      "directory for depth, z-depth, albedo, cosine, a mask of pixels beyond the range and a "
+      "preview; or one file for the radial distance (.npy .npz .exr .pfm .png)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

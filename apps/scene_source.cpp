@@ -50,8 +50,7 @@ LoadedScene scene_of(const SceneSource& source, const Camera& camera) {
 std::string albedo_remark(const LoadedScene& scene) {
   if (scene.brightest_albedo <= 1.0f) return "";
   return fmt::format(
-      "note: the brightest albedo of the picture is {:.4g}, more than all light; all of it was "
-      "divided by that",
+      "note: the largest albedo of the image is {:.4g}, above 1; all albedos were divided by it",
       scene.brightest_albedo);
 }
 
@@ -59,8 +58,8 @@ MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera
                                   BounceOptions options, const Progress& progress) {
   if (!scene.staged)
     throw UsageError(
-        fmt::format("bounced light: found {}, a depth image; expected surfaces that light can meet "
-                    "out of view: a built-in scene, a scene file (.toml) or a mesh",
+        fmt::format("bounced light: found {}, a depth image; expected a scene with surfaces "
+                    "outside the view: a built-in scene, a scene file (.toml) or a mesh",
                     scene.name));
   options.range_m = camera.range_m();
   return bounced_light(*scene.staged, options, progress, embree_search());

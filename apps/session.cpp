@@ -25,7 +25,7 @@ UsageError wrong_option(const std::invalid_argument& error) {
   for (const std::string_view field : {"min_depth_m ", "max_depth_m "})
     if (text.starts_with(field)) text.erase(field.size() - 3, 2);
   const auto end = std::find(text.begin(), text.end(), ' ');
-  // A key of the camera is none.
+  // Keys of the camera, which contain a dot, are not options.
   if (std::find(text.begin(), end, '.') != end) return UsageError(text);
   std::replace(text.begin(), end, '_', '-');
   return UsageError("--" + text);
@@ -73,32 +73,32 @@ OutputPolicy Session::check_outputs(const std::vector<std::filesystem::path>& pa
 void add_settings_option(CLI::App& command, std::vector<std::string>& settings) {
   command
       .add_option("--set", settings,
-                  "override a key of the camera, e.g. --set light.peak_factor=5; without a value, "
-                  "--set sensor.adc_bits=, leave it out (repeatable)")
+                  "override a camera key, e.g. --set light.peak_factor=5; an empty value, as in "
+                  "--set sensor.adc_bits=, removes the key (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
 }
 
 void CameraArguments::add_to(CLI::App& command) {
-  option = command.add_option("--camera", name, "camera: a TOML file or a built-in name")
+  option = command.add_option("--camera", name, "camera file (.toml) or name of a built-in camera")
                ->capture_default_str();
   add_settings_option(command, settings);
 }
 
 void CameraArguments::add_positional(CLI::App& command) {
-  command.add_option("CAMERA", name, "camera: a TOML file or a built-in name");
+  command.add_option("CAMERA", name, "camera file (.toml) or name of a built-in camera");
 }
 
 void CameraArguments::add_temperature_to(CLI::App& command) {
   command
       .add_option("--temperature", temperature_c,
-                  "of the camera [degrees C]: depth and signal change as its [temperature] "
-                  "says (temperature.now_c, or the reference)")
+                  "temperature of the camera [degrees C], for the corrections in its [temperature] "
+                  "(temperature.now_c, or the reference)")
       ->transform(number_in("degrees C"))
       ->group(for_experts);
   command
       .add_option("--sensor-temperature", sensor_temperature_c,
-                  "of the sensor [degrees C], for a camera with [temperature.sensor] "
+                  "temperature of the sensor [degrees C], for cameras with [temperature.sensor] "
                   "(temperature.sensor.now_c, or the reference)")
       ->group(for_experts);
 }
@@ -124,17 +124,17 @@ Camera CameraArguments::load() const {
   if (temperature_c) {
     if (!camera.temperature)
       throw UsageError(
-          fmt::format("--temperature: {} has no [temperature]; expected a camera of "
+          fmt::format("--temperature: {} has no [temperature]; expected a camera file from "
                       "`tofsmith calibrate temperature ... -o camera.toml`",
                       name));
     camera.temperature->now_c = temperature_c;
   }
   if (sensor_temperature_c) {
     if (!camera.temperature || !camera.temperature->sensor)
-      throw UsageError(
-          fmt::format("--sensor-temperature: {} has no [temperature.sensor]; expected a camera of "
-                      "`tofsmith calibrate temperature ... --sensor-column NAME -o camera.toml`",
-                      name));
+      throw UsageError(fmt::format(
+          "--sensor-temperature: {} has no [temperature.sensor]; expected a camera file from "
+          "`tofsmith calibrate temperature ... --sensor-column NAME -o camera.toml`",
+          name));
     camera.temperature->sensor->now_c = sensor_temperature_c;
   }
   if (temperature_c || sensor_temperature_c) camera.validate();
@@ -152,7 +152,7 @@ std::string time_text(double seconds) {
 
 std::string rate_text(double per_second) { return plain_number(per_second, 3); }
 
-/// Characters of UTF-8 text.
+/// Returns the number of characters of UTF-8 text.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));

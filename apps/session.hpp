@@ -16,50 +16,50 @@
 
 namespace tofsmith::apps {
 
-/// Wrong usage that only shows once the arguments are looked at together: exit 2.
+/// Error in the combination of arguments; the program exits with code 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What the library refuses by a field's name, by that of its option: "--offset-m = nan; ..".
+/// Converts an error that names a field to one that names its option: "--offset-m = nan; ...".
 UsageError wrong_option(const std::invalid_argument& error);
 
-/// What every subcommand shares: flags, how to print, how to write.
+/// State shared by all subcommands: flags, printing and output policy.
 struct Session {
-  bool json = false;                ///< one JSON document on stdout and nothing else there
+  bool json = false;                ///< print one JSON document, and nothing else, on stdout
   bool force = false;               ///< overwrite output files
-  bool tells_what_is_kept = false;  ///< the command says what an interrupt leaves, if anything
-  int threads = 0;                  ///< 0 = every core
+  bool tells_what_is_kept = false;  ///< the command itself reports which output is kept
+  int threads = 0;                  ///< 0: all cores
   std::string command_line;         ///< as typed, for reports
-  std::vector<std::string> words;   ///< as typed, after the program
-  std::filesystem::path directory;  ///< or store in which finished work is kept, if it is
+  std::vector<std::string> words;   ///< as typed, without the name of the program
+  std::filesystem::path directory;  ///< or store that keeps finished work; empty: none
 
   OutputPolicy output_policy() const {
     return force ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
   }
-  /// Prints lines for people, as printed() shows them; nothing with --json.
+  /// Prints human-readable lines, sanitized by printed(); nothing with --json.
   void say(std::string_view line) const;
-  /// Prints the document with --json. Text that is not UTF-8 (a file's name) is made so.
+  /// Prints the document if --json is given. Invalid UTF-8 (in file names) is replaced.
   void print_json(const nlohmann::ordered_json& document) const;
-  /// Prints a finished document with --json.
+  /// Prints a serialized document if --json is given.
   void print_document(std::string_view document) const;
 
-  /// Fails before long work, not after it, when its output could not be written, or is a file that
-  /// another word of the command names, also through links: not even --force replaces that.
-  /// @throws IoError as write_file_atomically() would, or check_not_input()
-  /// @param policy  other than that of the session
+  /// Checks before long work that an output can be written, and that it is not an input named by
+  /// another argument (also through links), which not even --force replaces.
+  /// @param policy  overrides the policy of the session
+  /// @throws IoError as write_file_atomically() and check_not_input()
   void check_output(const std::filesystem::path& path,
                     std::optional<OutputPolicy> policy = std::nullopt) const;
-  /// The same for outputs that one run writes one after the other.
-  /// @return how each is to be written: see policy_to_go_on()
+  /// Checks several outputs that one run writes in this order.
+  /// @return the policy for writing each of them, see policy_to_go_on()
   OutputPolicy check_outputs(const std::vector<std::filesystem::path>& paths) const;
 };
 
-/// `--set key=value`, which changes keys of a camera.
+/// Adds `--set key=value`, which changes keys of a camera.
 void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
 
-/// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.
+/// Options that select a camera: a positional or `--camera` (name or file), and `--set key=value`.
 struct CameraArguments {
   std::string name = std::string(default_camera_name);
   std::vector<std::string> settings;
@@ -79,11 +79,11 @@ struct CameraArguments {
 
   /// Adds `--camera` and `--set` to a subcommand.
   void add_to(CLI::App& command);
-  /// Adds `--temperature` and `--sensor-temperature`, too.
+  /// Adds `--temperature` and `--sensor-temperature`.
   void add_temperature_to(CLI::App& command);
   /// Adds a positional CAMERA.
   void add_positional(CLI::App& command);
-  /// @throws IoError; UsageError for a temperature without the keys for it in the camera
+  /// @throws IoError; UsageError for a temperature if the camera lacks its keys
   Camera load() const;
 
  private:
@@ -97,7 +97,7 @@ std::filesystem::path camera_beside(const std::filesystem::path& raw);
 /// Returns a note with the prefix "note: ", unless it already begins with it or with "warning: ".
 std::string marked_note(const std::string& note);
 
-/// "13.2 ms", "4.1 s".
+/// Returns a duration such as "13.2 ms" or "4.1 s".
 std::string time_text(double seconds);
 
 /// Returns a rate with three digits and no exponent: "8.53", "1204".

@@ -36,30 +36,31 @@
 namespace tofsmith::apps {
 namespace {
 
-/// What `simulate` makes of many scenes.
+/// Request to simulate several scenes.
 struct TrainingSetRequest {
   std::vector<std::string> scenes;  ///< folders, lists (.txt) and files
-  SceneSource source;               ///< how each is to be read
+  SceneSource source;               ///< specifies how each scene is read
   std::filesystem::path directory;
   TrainingSetOptions options;
 };
 
-/// Whether that is more than one scene.
+/// Returns true if the arguments name more than one scene.
 bool are_many_scenes(const std::vector<std::string>& scenes) {
   std::error_code ignored;
   return scenes.size() > 1 || std::filesystem::is_directory(scenes.front(), ignored) ||
          std::filesystem::path(scenes.front()).extension() == ".txt";
 }
 
+/// Returns the range of a light level.
 /// @param what   "signal" or "ambient"
-/// @param range  "a:b", or "" for a fixed level
-/// @param level  that the user gave; else `usual`
-/// @throws UsageError if the range is none, or there is a level beside it
+/// @param range  "a:b"; "": fixed level
+/// @param level  fixed level; none: `usual`
+/// @throws UsageError for an invalid range, and for both a range and a level
 LightRange light_range(const std::string& what, const std::string& range,
                        std::optional<double> level, double usual) {
   const std::string option = fmt::format("--{}-range", what);
   if (range.empty()) return {level.value_or(usual), level.value_or(usual)};
-  if (level) throw UsageError(fmt::format("{}: expected no --{} beside it", option, what));
+  if (level) throw UsageError(fmt::format("{}: cannot be combined with --{}", option, what));
   LightRange parsed;
   if (!read_number_pair(range, ':', parsed.low_e_per_s, parsed.high_e_per_s) ||
       parsed.broken_rule(what))
@@ -70,7 +71,8 @@ LightRange light_range(const std::string& what, const std::string& range,
   return parsed;
 }
 
-/// Writes and tells. @throws as write_training_set(); std::runtime_error if some scenes failed
+/// Simulates the scenes and prints a summary.
+/// @throws as write_training_set(); std::runtime_error if some scenes failed
 void make_training_set(const TrainingSetRequest& request, const CodeSet& code, const Camera& camera,
                        Session& session) {
   const std::vector<TrainingScene> scenes = training_scenes(request.scenes);
@@ -93,12 +95,11 @@ void make_training_set(const TrainingSetRequest& request, const CodeSet& code, c
                       {"written", run.written},
                       {"kept", run.kept},
                       {"failures", run.failures}});
-  session.say(fmt::format("wrote {}: {} scenes, {} of them now, {} kept", run.index.string(),
+  session.say(fmt::format("wrote {}: {} scenes, {} new, {} kept", run.index.string(),
                           run.written + run.kept, run.written, run.kept));
   if (!run.failures.empty())
     throw std::runtime_error(
-        fmt::format("{} of {} scenes failed, the others are there; the first: "
-                    "{}",
+        fmt::format("{} of {} scenes failed, and the others were written; first failure: {}",
                     run.failures.size(), run.scenes, run.failures.front()));
 }
 
@@ -116,14 +117,14 @@ struct SimulateArguments {
   std::string output, truth, truth_near, truth_far;
 };
 
-/// What one scene gave.
+/// Simulated capture of one scene.
 struct CapturedScene {
   StagedCapture capture;
-  SceneLight light;  ///< of the longer ways
+  SceneLight light;  ///< multipath light
   bool is_still = true;
 };
 
-/// An image as it is, shapes through the camera's lens.
+/// Captures a scene: a depth image pixel by pixel, shapes through the camera's lens.
 CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene& scene,
                           const CodeSet& code, const Camera& camera) {
   CapturedScene captured;
@@ -152,7 +153,7 @@ CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene&
   return captured;
 }
 
-/// Depths that are true, where they were asked for.
+/// Writes the requested ground truth.
 void write_truth(const SimulateArguments& arguments, const CapturedScene& captured,
                  OutputPolicy policy) {
   const StagedCapture& made = captured.capture;
@@ -181,42 +182,45 @@ void write_truth(const SimulateArguments& arguments, const CapturedScene& captur
                           captured.light, policy);
 }
 
-/// What a scene or a lens cannot give.
+/// Checks that the scene and the lens support the requested ground truth.
+/// @throws UsageError
 void check_truth(const SimulateArguments& arguments, const LoadedScene& scene,
                  const Camera& camera) {
   if (!scene.staged && !(arguments.truth_near.empty() && arguments.truth_far.empty()))
     throw UsageError(
-        fmt::format("--truth-near, --truth-far: found {}, a depth image; expected shapes: a "
-                    "built-in scene, a scene file (.toml) or a mesh",
+        fmt::format("--truth-near, --truth-far: found {}, a depth image; expected a built-in "
+                    "scene, a scene file (.toml) or a mesh",
                     scene.name));
   if (scene.staged && !scene.staged->is_still()) {
     for (const auto& [option, file] :
          {std::pair("--truth", arguments.truth), std::pair("--truth-near", arguments.truth_near),
           std::pair("--truth-far", arguments.truth_far)})
       if (!file.empty() && std::filesystem::path(file).extension() != ".npy")
-        throw UsageError(fmt::format(
-            "{} {}: {} moves; expected a file .npy, for a depth of every frame (F, H, W)", option,
-            file, scene.name));
+        throw UsageError(
+            fmt::format("{} {}: the scene {} moves; expected a .npy file, for the depth of every "
+                        "frame (F, H, W)",
+                        option, file, scene.name));
     if (!arguments.returns.truth().empty())
-      throw UsageError(fmt::format(
-          "--truth-multipath: {} moves; expected a scene that stands still", scene.name));
+      throw UsageError(fmt::format("--truth-multipath: the scene {} moves; expected a static scene",
+                                   scene.name));
   }
   if (!arguments.returns.truth().empty() && camera.blur && camera.blur->pixel_samples > 1)
     throw UsageError(
-        fmt::format("--truth-multipath: found lens.pixel_samples = {}; expected 1, as it lists the "
-                    "returns of one ray a pixel",
+        fmt::format("--truth-multipath: found lens.pixel_samples = {}; expected 1, because the "
+                    "file contains the returns of one ray per pixel",
                     camera.blur->pixel_samples));
 }
 
 void simulate_set(const SimulateArguments& arguments, Session& session) {
   if (!(arguments.truth.empty() && arguments.truth_near.empty() && arguments.truth_far.empty()))
-    throw UsageError("--truth: the truth of many scenes is always written");
+    throw UsageError(
+        "--truth: is not valid with several scenes, whose ground truth is always written");
   if (arguments.returns.is_used())
     throw UsageError(
         "--multipath, --tail, --multipath-file, --transient, --bounces, --truth-multipath: found "
-        "many scenes; expected one");
+        "several scenes; expected one");
   if (!arguments.stray_light.empty())
-    throw UsageError("--stray-light: found many scenes; expected one");
+    throw UsageError("--stray-light: found several scenes; expected one");
   const Camera camera = arguments.camera.load();
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
   make_training_set(
@@ -232,23 +236,25 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
       load_camera_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
 }
 
-/// Rejects options that need many scenes.
+/// Rejects options that are only valid with several scenes.
 void check_is_of_one_scene(const SimulateArguments& arguments) {
   for (const auto& [option, value] : {std::pair("--signal-range", arguments.signal_range),
                                       std::pair("--ambient-range", arguments.ambient_range),
                                       std::pair("--shard", arguments.shard)})
     if (!value.empty())
-      throw UsageError(fmt::format("{}: needs a folder, a list (.txt) or several scenes", option));
+      throw UsageError(
+          fmt::format("{}: is only valid with a folder, a list (.txt) or several scenes", option));
 }
 
-/// Returns false if the file next to the frames is the camera that was named.
+/// Returns false if the camera file next to the frames is the camera argument itself.
 bool leaves_camera(const SimulateArguments& arguments) {
   std::error_code ignored;
   return !std::filesystem::equivalent(camera_beside(arguments.output), arguments.camera.name,
                                       ignored);
 }
 
-/// Returns false if the file next to the frames is the code that was named, or holds the same code.
+/// Returns false if the code file next to the frames is the code argument itself, or has the same
+/// content.
 bool leaves_code(const SimulateArguments& arguments, const CodeSet& code) {
   std::error_code ignored;
   if (std::filesystem::equivalent(code_beside(arguments.output), arguments.code, ignored))
@@ -257,10 +263,10 @@ bool leaves_code(const SimulateArguments& arguments, const CodeSet& code) {
   return std::string(std::istreambuf_iterator<char>(before), {}) != code_to_json(code);
 }
 
-/// Returns the beginning of the camera file next to the frames. A file that begins so may be
+/// Returns the first line of the camera file next to the frames. Files with this line may be
 /// replaced.
 std::string camera_heading(const SimulateArguments& arguments) {
-  return fmt::format("# of {}, by tofsmith simulate",
+  return fmt::format("# camera of {}, written by tofsmith simulate",
                      std::filesystem::path(arguments.output).filename().string());
 }
 
@@ -273,7 +279,7 @@ OutputPolicy camera_policy(const SimulateArguments& arguments, const Session& se
                                                         : session.output_policy();
 }
 
-/// Writes the code and the camera for decoding, with the lens through which the scene was seen.
+/// Writes the code and the camera for decoding, with the lens of the simulated view.
 void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeSet& code,
                   const PinholeView& view, const Session& session) {
   if (leaves_code(arguments, code))
@@ -349,8 +355,8 @@ void run(SimulateArguments& arguments, Session& session) {
   if (!(lens_setting(scene.view) ==
         lens_setting(view_of(camera.lens, scene.image.width(), scene.image.height()))))
     session.say(
-        fmt::format("note: {} contains its lens; with another --camera, points and z-depth "
-                    "need --set '{}'",
+        fmt::format("note: {} contains the lens of this view; with another --camera, points and "
+                    "z-depth require --set '{}'",
                     camera_beside(arguments.output).string(), lens_setting(scene.view)));
 }
 
@@ -358,34 +364,39 @@ void run(SimulateArguments& arguments, Session& session) {
 
 void add_simulate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand("simulate", "raw measurements of a scene, or of many");
+  CLI::App* command =
+      app.add_subcommand("simulate", "simulate raw measurements of one or several scenes");
   command
       ->add_option("SCENE", arguments->scenes,
-                   std::string(scene_help) + "; many: a folder, a list (.txt) or several")
+                   std::string(scene_help) +
+                       "; several scenes: a folder, a list (.txt) or several arguments")
       ->required();
   add_scene_options(*command, arguments->scene);
-  command->add_option("--code", arguments->code, "a family or a code file")->required();
+  command->add_option("--code", arguments->code, "family or code file")->required();
   arguments->camera.add_to(*command);
   arguments->camera.add_temperature_to(*command);
   arguments->taps.add_to(*command);
   command
       ->add_option("--signal", arguments->signal_e_per_s,
-                   "signal of albedo 1 at the reference distance [e/s] (by the camera's "
+                   "signal of albedo 1 at the reference distance [e/s] (from the camera's "
                    "[optics], or the middle of its operating points)")
       ->transform(number_in("e/s"));
   command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (as --signal)")
       ->transform(number_in("e/s"));
   command
-      ->add_option("--signal-range", arguments->signal_range,
-                   "a:b, of many scenes: draw --signal of each log-uniformly")
+      ->add_option(
+          "--signal-range", arguments->signal_range,
+          "a:b, with several scenes: draw the signal of each log-uniformly from a to b [e/s]")
       ->group(for_experts);
   command
       ->add_option("--ambient-range", arguments->ambient_range,
-                   "a:b, of many scenes: draw --ambient of each log-uniformly")
+                   "a:b, with several scenes: draw the ambient light of each log-uniformly from a "
+                   "to b [e/s]")
       ->group(for_experts);
   command
-      ->add_option("--shard", arguments->shard,
-                   "i/n, of many scenes: only the i-th of n parts, into the same directory")
+      ->add_option(
+          "--shard", arguments->shard,
+          "i/n, with several scenes: simulate only the i-th of n parts, into the same directory")
       ->group(for_experts);
   const FieldOptions options(*command, arguments->options);
   options.add("reference_distance_m", "--reference-distance")->group(for_experts);
@@ -394,21 +405,23 @@ void add_simulate_command(CLI::App& app, Session& session) {
   options.add("seed", "--seed");
   command
       ->add_option("-o,--output", arguments->output,
-                   "raw frames (.npy .npz); of many scenes a directory")
+                   "raw frames (.npy .npz); with several scenes, a directory")
       ->required();
   command
       ->add_option("--stray-light", arguments->stray_light,
-                   "light that the lens scatters, as calibrate stray-light finds it (.npy .npz "
-                   ".exr .pfm); decode --stray-light takes it off again")
+                   "kernel of the lens's stray light to simulate, from calibrate stray-light (.npy "
+                   ".npz .exr .pfm); decode --stray-light removes it")
       ->group(for_experts);
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
   command
       ->add_option("--truth-near", arguments->truth_near,
-                   "also write the nearest distance of which a pixel gets light, of shapes")
+                   "also write the nearest distance from which each pixel receives light; not for "
+                   "depth images")
       ->group(for_experts);
   command
-      ->add_option("--truth-far", arguments->truth_far,
-                   "also write the farthest; a lens mixes both: see docs/scenes.md")
+      ->add_option(
+          "--truth-far", arguments->truth_far,
+          "also write the farthest distance from which each pixel receives light (docs/scenes.md)")
       ->group(for_experts);
   arguments->returns.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });

@@ -38,15 +38,16 @@ MultipathReturn parse_multipath_return(const std::string& text) {
 
 void MultipathLightArguments::add_to(CLI::App& command) {
   command.add_option("--multipath", multipath_,
-                     "a return behind every direct one: delta=METRES,ratio=NUMBER; several in "
-                     "order of their delays");
+                     "add a second return to every pixel: delta=METRES,ratio=NUMBER (repeatable, "
+                     "in order of delay)");
   CLI::Option* tail =
       command
           .add_option("--tail", tail_m_,
-                      "light that trails off behind every direct return: its mean delay [m]")
+                      "add an exponential tail to every pixel, with this mean delay [m]")
           ->check(positive_number())
           ->group(for_experts);
-  command.add_option("--tail-ratio", tail_ratio_, "all light of the tail over the direct return's")
+  command
+      .add_option("--tail-ratio", tail_ratio_, "light of the tail relative to the direct return")
       ->check(number_from_0_on())
       ->capture_default_str()
       ->needs(tail)
@@ -57,39 +58,38 @@ void MultipathLightArguments::add_to(CLI::App& command) {
       ->group(for_experts);
   CLI::Option* transient = command
                                .add_option("--transient", transient_,
-                                           "light by time, over which each pixel's signal is "
-                                           "spread: a histogram (T,) for all pixels "
-                                           "or (H,W,T) (.npy)")
+                                           "histogram of light over time by which the signal is "
+                                           "spread (.npy): (T,) for all pixels, or (H,W,T)")
                                ->group(for_experts);
-  command.add_option("--transient-bin-s", transient_bin_s_, "time that one of its bins takes [s]")
+  command
+      .add_option("--transient-bin-s", transient_bin_s_, "duration of one bin of --transient [s]")
       ->check(positive_number())
       ->needs(transient)
       ->group(for_experts);
   command
       .add_option("--transient-origin", transient_origin_,
-                  "what is at the pixel's depth: the histogram's first bin, or its peak")
+                  "bin of --transient at the depth of the pixel: the first one, or the peak")
       ->check(one_of({"first", "peak"}))
       ->capture_default_str()
       ->needs(transient)
       ->group(for_experts);
   command
       .add_option("--transient-background", transient_background_,
-                  "constant counts to take off each histogram first")
+                  "constant background to subtract from each histogram first")
       ->check(one_of({"none", "median"}))
       ->capture_default_str()
       ->needs(transient)
       ->group(for_experts);
-  CLI::Option* bounces =
-      command
-          .add_option("--bounces", bounces_,
-                      "1: also light that one other surface of the scene sends on, gathered by "
-                      "rays; 0: none")
-          ->check(CLI::Range(0, 1))
-          ->capture_default_str();
+  CLI::Option* bounces = command
+                             .add_option("--bounces", bounces_,
+                                         "1: add light reflected by one other surface of the "
+                                         "scene, computed by ray tracing; 0: none")
+                             ->check(CLI::Range(0, 1))
+                             ->capture_default_str();
   command
-      .add_option("--bounce-rays", bounce_.rays,
-                  "rays by which each pixel gathers it; noise falls a little faster than their "
-                  "square root")
+      .add_option(
+          "--bounce-rays", bounce_.rays,
+          "rays per pixel for --bounces; noise decreases slightly faster than 1 / sqrt(rays)")
       ->check(CLI::Range(16, 65536))
       ->capture_default_str()
       ->needs(bounces)
@@ -104,8 +104,8 @@ MultipathReturns MultipathLightArguments::bounced(const LoadedScene& scene,
                                                   const Camera& camera) const {
   if (!multipath_.empty() || !returns_.empty() || !transient_.empty())
     throw UsageError(
-        "--bounces: found beside --multipath, --multipath-file or --transient; expected one of "
-        "them");
+        "--bounces: found together with --multipath, --multipath-file or --transient; expected one "
+        "of them");
   return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
 }
 
@@ -113,13 +113,13 @@ SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera
   const SceneImage& scene = loaded.image;
   if (!transient_.empty() && (!multipath_.empty() || tail_m_ || !returns_.empty()))
     throw UsageError(
-        "--transient: found beside --multipath, --tail or --multipath-file; expected alone, as it "
-        "holds all light of a pixel");
+        "--transient: found together with --multipath, --tail or --multipath-file; expected none "
+        "of them, because --transient contains all light of a pixel");
   if (!returns_.empty() && !multipath_.empty())
-    throw UsageError("--multipath-file: found beside --multipath; expected one of them");
+    throw UsageError("--multipath-file: found together with --multipath; expected one of them");
   if (!transient_.empty() && !transient_bin_s_)
     throw UsageError(
-        "--transient: found no --transient-bin-s; expected the time of one bin in seconds");
+        "--transient: found no --transient-bin-s; expected the duration of one bin in seconds");
   SceneLight light;
   if (!multipath_.empty()) {
     std::vector<MultipathReturn> behind;

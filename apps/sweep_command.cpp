@@ -49,7 +49,7 @@ OutputPolicy check_outputs(const SweepArguments& arguments, const Session& sessi
 WorkList read_list(const SweepArguments& arguments) {
   WorkList list(read_sweep_toml(arguments.sweep));
   if (list.size() > max_items_unasked && !arguments.yes)
-    throw UsageError(fmt::format("{}: makes {:.3g} items; --yes to go on with more than {:.3g}",
+    throw UsageError(fmt::format("{}: found {:.3g} items; expected at most {:.3g}, or --yes",
                                  arguments.sweep, static_cast<double>(list.size()),
                                  static_cast<double>(max_items_unasked)));
   return list;
@@ -123,7 +123,7 @@ void run(const SweepArguments& arguments, Session& session) {
   write_outputs(arguments, list, keys, store, counts, policy, session);
   print(arguments, list.size(), counts, done, session);
   if (!done.failures.empty())
-    throw std::runtime_error(fmt::format("{} of {} items failed; the first: {}",
+    throw std::runtime_error(fmt::format("{} of {} items failed; first failure: {}",
                                          done.failures.size(), list.size(), done.failures.front()));
 }
 
@@ -148,25 +148,27 @@ void merge(const MergeArguments& arguments, Session& session) {
 void add_sweep_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand(
-      "sweep", "depth error over cameras, codes, light levels and seeds, kept in a store");
-  command->add_option("SWEEP", arguments->sweep,
-                      "TOML file: camera, codes, and an [[axis]] for all that varies");
+      "sweep",
+      "evaluate depth errors over cameras, codes, light levels and seeds, with results in a store");
+  command->add_option(
+      "SWEEP", arguments->sweep,
+      "sweep file (.toml) with camera, codes and an [[axis]] for each varied quantity");
   command->add_option("--store", arguments->store,
-                      "SQLite file of results; what is finished there is not computed again");
+                      "SQLite file for results; finished items are not computed again");
   command->add_flag("--status", arguments->status,
-                    "compute nothing: list, export and report what is finished");
+                    "do not compute: list, export and report finished items");
   command->add_option("--export", arguments->exports, "write results (.csv .json .npz; repeatable)")
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--report", arguments->report, "write a page (.html)");
   command->add_option("--shard", arguments->shard,
-                      "i/n: compute only the i-th of n parts, to merge their stores later");
-  command->add_flag("--yes", arguments->yes, "go on even with more than 1e7 items");
+                      "i/n: compute only the i-th of n parts, whose stores sweep merge combines");
+  command->add_flag("--yes", arguments->yes, "allow more than 1e7 items");
 
   auto merging = std::make_shared<MergeArguments>();
-  CLI::App* merger = command->add_subcommand("merge", "makes one store of several");
-  merger->add_option("OUT", merging->output, "the new store")->required();
-  merger->add_option("STORE", merging->parts, "stores of the parts")->required();
+  CLI::App* merger = command->add_subcommand("merge", "merge several stores into one");
+  merger->add_option("OUT", merging->output, "new store")->required();
+  merger->add_option("STORE", merging->parts, "stores to merge")->required();
   merger->callback([merging, &session] { merge(*merging, session); });
   command->callback([arguments, command, &session] {
     if (command->get_subcommands().empty()) run(*arguments, session);

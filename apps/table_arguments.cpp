@@ -33,30 +33,30 @@ std::vector<int> order_of(const std::vector<int>& given, const Camera& camera, i
 void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--range-m", range_m_,
-                  "depth of the period of a measured table in metres (the camera's)")
+                  "unambiguous range of a measured table in metres (the camera's)")
       ->check(positive_number(1e6))
       ->transform(number_in("m"))
       ->group(for_experts);
   command
       .add_option("--ambient", ambient_,
-                  "what constant light adds to the columns of a measured table: as much to each "
-                  "(unless the file says), as much as their mean, or nothing")
+                  "ambient light in the columns of a measured table: equal in all (default, unless "
+                  "the file specifies it), proportional to their mean, or none")
       ->check(one_of({"equal", "mean", "none"}))
       ->group(for_experts);
   command
-      .add_option("--table-axes", axes_,
-                  "axes of a measured table: samples by measurements (nk), or the other way (kn)")
+      .add_option(
+          "--table-axes", axes_,
+          "axes of a measured table: samples x measurements (nk) or measurements x samples (kn)")
       ->check(one_of({"nk", "kn"}))
       ->group(for_experts);
   command
-      .add_option("--order", order_,
-                  "exposures of the code or table in the order in which frames have them: 0,3,2,1")
+      .add_option("--order", order_, "order of the code's exposures in the frames, such as 0,3,2,1")
       ->delimiter(',');
   command.add_flag("--reverse", reversed_,
-                   "delay runs against what code, camera or table say: near is far");
+                   "reverse the direction of delay, for frames in which near and far are swapped");
   command
       .add_flag("--keep-end-point", keep_end_point_,
-                "keep a measured table's last sample though it equals the first")
+                "keep the last sample of a measured table even if it equals the first")
       ->group(for_experts);
 }
 
@@ -68,9 +68,10 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                 : keep_end_point_   ? "--keep-end-point"
                                                     : nullptr;
   if (of_tables && !names_measured_table(code)) {
-    load_camera_code(code, camera, taps.file_options());  // what is wrong with it comes first
+    load_camera_code(code, camera, taps.file_options());  // reports an invalid code first
     throw UsageError(
-        fmt::format("{} goes with a measured table; {} is a code, which the camera says all of",
+        fmt::format("{} is only valid with a measured table; {} is a code, for which the camera "
+                    "determines these values",
                     of_tables, code));
   }
   DecodingTableOptions options{.file = taps.file_options(),

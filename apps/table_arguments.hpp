@@ -15,19 +15,19 @@ namespace tofsmith::apps {
 /// Table for a decoder, with the source of its range.
 struct DecodingSource : LoadedDecodingTable {
   std::string range_source;  ///< source of the range, as text
-  bool tell_range = false;   ///< the range may not be the one that the user expects
+  bool tell_range = false;   ///< print the range, because it may be unexpected
   std::vector<int> order;    ///< exposures of the code in the order of the table
 };
 
-/// What a measured table's file does not say: `--range-m`, `--ambient`, `--table-axes`,
-/// `--keep-end-point`; and of codes, too, `--order` and `--reverse`.
+/// Options for measured tables, `--range-m`, `--ambient`, `--table-axes` and `--keep-end-point`,
+/// which files of tables do not contain, and for tables and codes, `--order` and `--reverse`.
 class TableArguments {
  public:
   void add_to(CLI::App& command);
-  /// The table of a family, a code's file, or measured correlation functions.
-  /// @throws IoError as load_decoding_table(); UsageError if a code is given what only measured
-  ///         tables need
-  /// @param default_camera  nobody chose the camera
+  /// Returns the table of a family, a code file or measured correlation functions.
+  /// @param default_camera  the user did not select a camera
+  /// @throws IoError as load_decoding_table(); UsageError for a code with options of measured
+  /// tables
   DecodingSource load(const std::string& code, const Camera& camera, bool default_camera,
                       const TapArguments& taps) const;
 

@@ -31,8 +31,11 @@ struct TapArguments {
   std::string order;
 
   void add_to(CLI::App& command) {
-    command.add_option("--taps", taps, "taps of an NPZ code (the camera's)")->group(for_experts);
-    command.add_option("--tap-order", order, "how an NPZ code's columns run; never guessed")
+    command.add_option("--taps", taps, "number of taps of an NPZ code (the camera's)")
+        ->group(for_experts);
+    command
+        .add_option("--tap-order", order,
+                    "column order of an NPZ code with several taps (not detected automatically)")
         ->check(one_of({"blocked", "interleaved"}))
         ->group(for_experts);
   }

@@ -40,9 +40,10 @@ void check_usage(const UploadArguments& arguments) {
   if (arguments.address.empty() && !arguments.dry_run)
     throw UsageError("found no --instrument; expected its address, such as 192.168.1.7");
   if (arguments.dry_run && arguments.model.empty())
-    throw UsageError("--dry-run asks no instrument what it is; expected --model NAME with it");
+    throw UsageError("--dry-run does not query the instrument; expected --model NAME");
   if (arguments.selection.light_channel == 0 && arguments.selection.sensor_channel == 0)
-    throw UsageError("found --channel-light 0 and --channel-sensor 0; expected one to play");
+    throw UsageError(
+        "found --channel-light 0 and --channel-sensor 0; expected at least one channel");
 }
 
 /// Converts failures to usage errors.
@@ -175,11 +176,10 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
   fields.add("periods", "--periods")->group(for_experts);
   command
       .add_option("--volts", arguments.volts,
-                  "LOW,HIGH: output at no light and no gain, and at peak light and full gain [V] "
-                  "(0,1)")
+                  "output voltages LOW,HIGH for zero and for peak light or full gain [V] (0,1)")
       ->delimiter(',')
       ->expected(2);
-  command.add_option("--load", arguments.load, "ohms that the volts are for, or inf")
+  command.add_option("--load", arguments.load, "load impedance in ohms, or inf")
       ->capture_default_str();
   const FieldOptions selection(command, arguments.selection);
   selection.add("exposure", "--exposure");
@@ -191,7 +191,7 @@ void add_family_options(CLI::App& command, UploadArguments& arguments) {
   const FieldOptions request(command, arguments.request);
   request.add("true_arb", "--true-arb")->group(for_experts);
   request.add("wave_header", "--wave-header")->group(for_experts);
-  command.add_option("--filter", arguments.filter, "Keysight: of the output")
+  command.add_option("--filter", arguments.filter, "output filter; only with a Keysight")
       ->check(one_of({"step", "normal", "off"}))
       ->capture_default_str()
       ->group(for_experts);
@@ -202,8 +202,9 @@ void add_family_options(CLI::App& command, UploadArguments& arguments) {
 void add_upload_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<UploadArguments>();
   CLI::App* command = app.add_subcommand(
-      "upload", "play a code on a generator in the network: load, set, read back and compare");
-  command->add_option("CODE", arguments->code, "a family or a code file (.code.json .npz .csv)")
+      "upload",
+      "upload a code to a waveform generator over the network, and verify it by reading it back");
+  command->add_option("CODE", arguments->code, "family or code file (.code.json .npz .csv)")
       ->required();
   command->add_option(
       "--instrument", arguments->address,
@@ -216,9 +217,9 @@ void add_upload_command(CLI::App& app, Session& session) {
   arguments->taps.add_to(*command);
   add_waveform_options(*command, *arguments);
   command->add_option("--model", arguments->model,
-                      "treat the instrument as this one, such as SDG2042X, 33522 or AFG3022");
+                      "model to assume for the instrument, such as SDG2042X, 33522 or AFG3022");
   add_family_options(*command, *arguments);
-  command->add_option("--timeout", arguments->timeout_s, "longest wait for an answer [s]")
+  command->add_option("--timeout", arguments->timeout_s, "timeout for a reply [s]")
       ->check(positive_number(3600.0))
       ->capture_default_str()
       ->group(for_experts);
@@ -227,7 +228,7 @@ void add_upload_command(CLI::App& app, Session& session) {
   request.add("reset", "!--no-reset")->group(for_experts);
   request.add("output_on", "--output-on");
   command->add_flag("--dry-run", arguments->dry_run,
-                    "print what would be sent to --model; connect to nothing");
+                    "print the commands for --model without connecting");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -26,7 +26,7 @@ tofsmith simulate table-top --code hamiltonian-k4 --signal 1e5 --width 64 --heig
 tofsmith decode captured.npz --code hamiltonian-k4 -o decoded.exr
 tofsmith design paper-10f0 --effort 0 -o designed >design.log
 [[ -s decoded.exr && -s designed/report.html ]]
-tofsmith lab -o lab.html 2>lab.log || grep -q 'there is no page' lab.log
+tofsmith lab -o lab.html 2>lab.log || grep -q 'built without the lab page' lab.log
 env/bin/pip uninstall -q -y tofsmith
 ! compgen -G 'env/lib/python3*/site-packages/tofsmith*' || { echo "pip uninstall left files" >&2 && exit 1; }
 echo "Installed, used and uninstalled $(basename "$wheel")"

@@ -33,7 +33,7 @@ class Atlas(CommandLineTest):
         self.assertEqual(float(rows[0]["circular_m"]), codes[0]["circular_m"])
         text = self.do("atlas", "--taps", "1", "--exposures", "4", "-o", "a.html")
         self.assertIn("bandwidth^-a peak^-b", text)
-        self.assertIn("What bandwidth buys", self.bytes_of("a.html").decode())
+        self.assertIn("Error over bandwidth", self.bytes_of("a.html").decode())
 
     def test_rejects_other_versions_damage_and_unknown_words(self):
         self.write("one.txt", ONE)

@@ -158,7 +158,7 @@ class Calibrate(BenchRecordsTest):
         self.refuse([*arguments, "--perturb", "jiter=50ps"], "jitter=VALUE", code=2)
         self.refuse([*arguments, "--perturb", "jitter=50"], "with its unit", code=2)
         self.refuse([*arguments, "--perturb", "droop=300%"], "share in (0, 1)", code=2)
-        self.refuse([*arguments, "--perturb", "droop=3%", "--robustness"], "choose one", code=2)
+        self.refuse([*arguments, "--perturb", "droop=3%", "--robustness"], "cannot be combined", code=2)
         self.refuse([*arguments, "--perturb", "clock=60ns"], "points per period")
 
 

@@ -55,7 +55,7 @@ class Commands(CommandLineTest):
                              "arducam-tof", "--code", "sinusoid-k4", "-o", "depth.npy")
         self.assertEqual((found["height"], found["width"]), (180, 240))
         self.refuse(["cameras", "kinect-v2", "--raw-format"], "interleaved", "arducam-tof")
-        self.refuse(["cameras", "--raw-format"], "needs the NAME", code=2)
+        self.refuse(["cameras", "--raw-format"], "requires the NAME", code=2)
 
     def test_camera_keys_are_listed_with_unit_range_and_default(self):
         keys = {key["key"]: key for key in self.do_json("cameras", "--keys")}
@@ -246,7 +246,7 @@ class Commands(CommandLineTest):
         self.assertNotIn("note", self.do(*look))
         picture[1, 2] = 2706
         np.save(self.path("picture.npy"), picture)
-        note = "note: the brightest albedo of the picture is 2706"
+        note = "note: the largest albedo of the image is 2706"
         self.assertIn(note, self.do(*look))
         self.assertIn(note, self.do("simulate", *look[1:], "--code", "sinusoid-k4", "-o", "r.npy"))
 

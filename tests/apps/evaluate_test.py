@@ -22,7 +22,8 @@ class Evaluate(CommandLineTest):
             for line, error_m in ((first + 1, min(points[code])), (first + 2, max(points[code]))):
                 self.assertIn(code, lines[line])
                 self.assertAlmostEqual(float(lines[line].split()[5]) / error_m, 1e3, delta=1)
-        self.assertIn("all 25 light levels of the camera (S = 1e+03 .. 1e+05, A = 100 .. 1e+05 e/s): --every-level", "\n".join(lines))
+        self.assertIn("all 25 light levels of the camera (S = 1e+03 to 1e+05, A = 100 to 1e+05 e/s), "
+                      "use --every-level", "\n".join(lines))
         full = [lines[i] for i in (0, 2, 3, 5, 6)]  # without means, which have no bounds
         self.assertEqual(len({len(line) for line in full}), 1)  # columns are aligned
         lines = self.do("evaluate", *codes, *FAST, "--every-level").splitlines()
@@ -49,7 +50,7 @@ class Evaluate(CommandLineTest):
     def test_levels_that_miss_the_target_are_reported(self):
         text = self.do("evaluate", "sinusoid-k4", *FAST, "--target-standard-error", "0.1%",
                        "--max-trials", "3000")
-        self.assertIn("25 of 25 operating points stay short of a standard error of 0.1 %", text)
+        self.assertIn("25 of 25 operating points did not reach a standard error of 0.1 %", text)
         self.assertIn("3000 trials", text)
 
     def test_the_method_is_reported(self):

@@ -20,7 +20,7 @@ class Interrupts(CommandLineTest):
         process.send_signal(signal.SIGINT)
         out, error = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (130, b""), error)
-        kept = (f"; finished files are kept in {directory}, and the same command goes on from there"
+        kept = (f"; finished files are kept in {directory}, and the same command resumes from there"
                 if directory else "; nothing was written")
         self.assertEqual(error.decode(), f"tofsmith: interrupted{kept}\n")
         self.assertFalse([name for name in self.files() if ".tofsmith" in name])

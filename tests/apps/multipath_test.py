@@ -30,7 +30,7 @@ class Multipath(CommandLineTest):
                 (["--bounce-rays", "64"], ["--bounce-rays", "--bounces"]),
                 (["--bounces", "1", "--bounce-rays", "8"], ["--bounce-rays", "8"]),
                 (["--bounces", "1", "--multipath", "delta=1,ratio=.3"],
-                 ["--bounces: found beside --multipath", "expected one of them"]),
+                 ["--bounces: found together with --multipath", "expected one of them"]),
                 (["--multipath", "delta=1"], ["found no ratio", "delta=METRES"]),
                 (["--multipath", "delta=a,ratio=.3"], ["found 'delta=a'"]),
                 (["--tail", "0"], ["--tail", "found 0; must be > 0"]),
@@ -38,7 +38,7 @@ class Multipath(CommandLineTest):
             self.refuse([*SIMULATE, *arguments], *words, code=2)
         np.save(self.path("z.npy"), np.ones((6, 8)))
         self.refuse(["simulate", "z.npy", *TWO_BUCKETS, "-o", "r.npy", "--bounces", "1"],
-                    "a depth image; expected surfaces", code=2)
+                    "a depth image; expected a scene with surfaces", code=2)
         self.refuse(["multipath", "hamiltonian-k5", "--width", "8"], "--width", "--scene", code=2)
         self.refuse(["multipath", "hamiltonian-k5", "-o", "m.csv"],
                     "-o m.csv: unknown extension; expected .json or .html", code=2)
@@ -58,7 +58,7 @@ class Multipath(CommandLineTest):
                     "--two-return-weight", ">= 0", code=2)
         self.refuse(["design", "--multipath", "ratio=.3", "--multipath-weight", "1"],
                     "--multipath-weight", "in (0, 1)", code=2)
-        self.refuse(["design", "--multipath", "ratio=.3", "--robust"], "--robust: found beside",
+        self.refuse(["design", "--multipath", "ratio=.3", "--robust"], "--robust: found together",
                     code=2)
 
     def test_rejected_values(self):

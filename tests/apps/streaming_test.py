@@ -287,7 +287,7 @@ class Interrupts(CommandLineTest):
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         error = self.end(process, 130)
-        self.assertIn("with --stack nothing is kept unless all are decoded", error)
+        self.assertIn("with --stack, files are written only after all frames are decoded", error)
         self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         self.assertEqual(self.files(), ["raw.npy"])
 

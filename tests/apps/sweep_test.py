@@ -125,7 +125,7 @@ class Sweep(CommandLineTest):
         self.assertEqual((process.returncode, out), (130, b""))
         self.assertEqual(error.decode(),
                          "tofsmith: interrupted; finished items are kept in s.sqlite, and the same "
-                         "command goes on from there\n")
+                         "command resumes from there\n")
         self.assertEqual(self.sweep("s.sqlite", "--status")["running"], 0)
 
     def as_reader(self):

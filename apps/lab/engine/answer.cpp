@@ -143,9 +143,13 @@ Reply answer(std::string_view request, const Progress& progress) {
   } catch (const InvalidArgument& error) {
     return error_reply(error.what(), error.field());
   } catch (const std::bad_alloc&) {
-    return error_reply("this needs more memory than a page has; ask for fewer samples or pixels");
+    return error_reply(
+        "this requires more memory than a web page can use; reduce the number of samples or "
+        "pixels");
   } catch (const std::length_error&) {
-    return error_reply("this needs more memory than a page has; ask for fewer samples or pixels");
+    return error_reply(
+        "this requires more memory than a web page can use; reduce the number of samples or "
+        "pixels");
   } catch (const std::exception& error) {
     return error_reply(error.what());
   }

@@ -18,13 +18,13 @@ namespace tofsmith::lab {
 
 namespace {
 
-/// Position on the period, in [0, 1).
+/// Wraps a position to the period [0, 1).
 double wrapped(double position) {
   position -= std::floor(position);
   return position < 1.0 ? position : 0.0;
 }
 
-/// [rise, fall, rise, ..], each in [0, 1).
+/// Returns [rise, fall, rise, ...], each in [0, 1).
 std::vector<double> edges_of(const Waveform& waveform) {
   std::vector<double> edges;
   for (const OnInterval& on : waveform.on_intervals())
@@ -39,7 +39,7 @@ bool is_behind_a_response(const ImpulseResponse& response) {
   return response.kind != ImpulseResponse::Kind::none;
 }
 
-/// Share of a table's variance about its mean that its curve in space keeps.
+/// Returns the share of a table's variance that its three-dimensional curve retains.
 double variance_kept(const Eigen::MatrixXd& table, const Eigen::MatrixXd& curve) {
   const auto about_mean = [](const Eigen::MatrixXd& m) {
     return (m.rowwise() - m.colwise().mean()).squaredNorm();
@@ -55,12 +55,12 @@ Json edges_json(const CodeSet& code, bool is_light) {
   return edges;
 }
 
-/// The waveform with an edge moved, as far as its neighbours let it.
-/// @param gap  that stays between two edges [periods]
+/// Returns the intervals of a waveform with one edge moved, at most to the neighbouring edges.
+/// @param gap  minimum distance between two edges [periods]
 std::vector<OnInterval> moved_edge(const Waveform& waveform, std::size_t edge, double position,
                                    double gap) {
   std::vector<OnInterval> on = waveform.on_intervals();
-  // Edges one after the other, without the jump at the end of the period.
+  // Consecutive edges, not wrapped at the end of the period.
   std::vector<double> line;
   for (const OnInterval& interval : on) {
     line.push_back(interval.rise);
@@ -81,7 +81,7 @@ std::vector<OnInterval> moved_edge(const Waveform& waveform, std::size_t edge, d
   return on;
 }
 
-/// Whether b is 1 - a, up to rounding.
+/// Returns true if b equals 1 - a up to rounding.
 bool are_complements(const Waveform& a, const Waveform& b, int samples) {
   const Eigen::VectorXd sum = a.cell_averages(samples) + b.cell_averages(samples);
   return (sum.array() - 1.0).abs().maxCoeff() < 1e-9;
@@ -116,7 +116,7 @@ Answer code_answer(const CodeSet& code, const Camera& camera) {
   answer["measurements"] = model.measurements();
   answer["peak"] = code.peak();
   answer["range_m"] = camera.range_m();
-  // As `tofsmith codes` has them.
+  // The same values as in `tofsmith codes`.
   answer["coding_curve_length"] = coding_curve_length(fine_table);
   answer["coding_curve_rank"] = coding_curve_rank(fine_table);
   answer["harmonics_99_percent"] = harmonics_used(fine_table);
@@ -141,7 +141,7 @@ Answer code_answer(const CodeSet& code, const Camera& camera) {
 CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePlace& place,
                         double position) {
   require(place.measurement >= 0 && place.measurement < code.measurements(), "measurement",
-          place.measurement, fmt::format("expected one of 0 to {}", code.measurements() - 1));
+          place.measurement, fmt::format("expected 0 to {}", code.measurements() - 1));
   std::vector<Waveform> light, gates;
   for (int e = 0; e < code.exposures(); ++e) light.push_back(code.modulation(e));
   for (int i = 0; i < code.measurements(); ++i) gates.push_back(code.demodulation(i));
@@ -150,9 +150,9 @@ CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePla
   Waveform& waveform = place.is_light ? light[exposure] : gates[gate];
   const std::vector<double> edges = edges_of(waveform);
   require(!edges.empty(), place.is_light ? "light" : "gate", place.measurement,
-          "has no edges: it is no waveform of two levels");
+          "has no edges, because the waveform is not binary");
   require(place.edge < edges.size(), "edge", place.edge,
-          fmt::format("expected one of 0 to {}", edges.size() - 1));
+          fmt::format("expected 0 to {}", edges.size() - 1));
 
   const double gap = 0.25 / code.samples();
   const std::vector<OnInterval> on = moved_edge(waveform, place.edge, position, gap);

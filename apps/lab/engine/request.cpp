@@ -27,7 +27,7 @@ void Request::refuse(const char* name, const char* expected) const {
   std::string text = found == json_.end()
                          ? "nothing"
                          : found->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  if (text.size() > 60) text = text.substr(0, 60) + "..";
+  if (text.size() > 60) text = text.substr(0, 60) + "...";
   throw InvalidArgument({name, text, fmt::format("expected {}", expected)});
 }
 

@@ -61,7 +61,7 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE const char* tofsmith_lab_answer(const char* request) {
   using namespace tofsmith::lab;
   constexpr const char* too_large =
-      R"({"error":{"message":"this needs more memory than a page has"}})";
+      R"({"error":{"message":"this requires more memory than a web page can use"}})";
   try {
     current = {};
     current = answer(request, tell);

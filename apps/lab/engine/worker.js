@@ -35,7 +35,7 @@ function answer(request) {
   const text = JSON.stringify(request);
   const bytes = engine.lengthBytesUTF8(text) + 1;
   const place = engine._malloc(bytes);
-  if (place === 0) return {error: {message: "this needs more memory than a page has"}};
+  if (place === 0) return {error: {message: "this requires more memory than a web page can use"}};
   engine.stringToUTF8(text, place, bytes);
   let reply;
   try {
