@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Reads the arrays of documents: plain lists, or long ones packed by src/report/figure_json.cpp.
+// Arrays of documents: plain lists, or packed by src/report/figure_json.cpp.
 
 async function inflated(base64) {
   const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -8,7 +8,7 @@ async function inflated(base64) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Returns the numbers of a list (null: NaN) or packed array {count, row, low, step, words}. */
+/** Decodes a list, with null for NaN, or a packed array {count, row, low, step, words}. */
 export async function unpacked(array) {
   if (Array.isArray(array)) return Float64Array.from(array, (value) => value ?? NaN);
   const {count, row, low, step} = array, planes = await inflated(array.words);

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a page other than figures: text, settings, tables, commands.
+// Blocks of a page other than figures: text, settings, tables, commands.
 
 import {copyText, element, saveText} from './dom.js';
 import {csvOf} from './export.js';
 
-/** Converts text with `code` between backticks to elements. */
+/** Converts text with `code` in backticks to nodes. */
 export const inline = (text) => text.split(/`([^`]+)`/).map(
     (part, i) => (i % 2 ? element('code', {}, part) : part));
 
@@ -15,7 +15,7 @@ const pairs = (name) => ({entries}) => element(
         ([key, value]) => element(
             'div', {}, element('dt', {}, key), element('dd', {}, value))));
 
-const unbrokenLetters = 40;  // longest cell without line breaks
+const unbrokenLetters = 40;  // longer cells are sentences, which may wrap
 
 function tableOf({id, title, caption, columns, rows, highlighted}) {
   const cell = (tag, c, ...content) => element(tag, {
@@ -57,7 +57,7 @@ function codeOf({text}) {
   const copy = element('button', {
     type: 'button',
     onclick: async () => {
-      copy.textContent = await copyText(text) ? 'Copied' : 'Select and copy';
+      copy.textContent = await copyText(text) ? 'Copied' : 'Copy by hand';
     }
   }, 'Copy');
   return element(

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Maps values to colours, and draws the colour bar.
+// Mapping of values to colours, and the colour bar.
 
 import {colourMaps, cssColour} from './colours.js';
 import {element} from './dom.js';
 import {shortText} from './numbers.js';
 
-/** Draws a colour bar: {title, low, high: texts of its ends, colour(place)}. */
+/** Returns a colour bar. Content: {title, low, high: texts of the ends, colour(place)}. */
 export function colourBar({title, low, high, colour}) {
   const strip = element('canvas', {
     width: 128,
@@ -24,12 +24,12 @@ export function colourBar({title, low, high, colour}) {
       element('div', {}, element('span', {}, low), strip, element('span', {}, high)));
 }
 
-const shades = 512;  // size of a lookup table
+const shades = 512;  // size of the lookup table
 
 /** Returns the quantile of sorted values. */
 const quantile = (sorted, share) => sorted[Math.round(share * (sorted.length - 1))];
 
-/** Returns the limits of a colour scale of a document for these arrays of values. */
+/** Returns the range of a document's colour scale for these arrays of values. */
 function fittedRange({range, map, log, clip}, arrays) {
   if (range) return range;
   const isSigned = map === 'diverging';
@@ -45,8 +45,8 @@ function fittedRange({range, map, log, clip}, arrays) {
 }
 
 /**
- * Converts a scale of a document, {label, unit, map, log, range, clip}, for arrays of values to
- * {colour(value): [r, g, b] or null, text(value), bar: arguments of colourBar()}.
+ * Converts a colour scale of a document, {label, unit, map, log, range, clip}, for these values.
+ * Returns {colour(value): [r, g, b] or null, text(value), bar: content of colourBar()}.
  */
 export function scaleOf(scale, arrays) {
   const [low, high] = fittedRange(scale, arrays), colour = colourMaps[scale.map];

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Colours of series and values in figures.
+// Colours of series and colour maps of values.
 
 /** Returns the colour of the i-th series, for style attributes. */
 export const seriesColour = (i) => `var(--s${i % 7})`;
 
-/** Dashes that distinguish series of the same colour. */
+/** Returns the dash pattern that distinguishes series of the same colour. */
 export const seriesDash = (i) => ['', '7 4', '2 3', '8 3 2 3'][Math.floor(i / 7) % 4];
 
 const viridis = [
@@ -27,20 +27,20 @@ function between(stops, place) {
   return stops[i].map((v, c) => Math.round(v + (at - i) * (stops[i + 1][c] - v)));
 }
 
-/** Returns red, green and blue at a place in [0, 1] on the scale from dark blue to yellow. */
+/** Returns red, green and blue at a position in [0, 1] of the map from dark blue to yellow. */
 export const sequentialColour = (place) => between(viridis, place);
 
-/** Returns red, green and blue at a place in [0, 1] on the scale from blue over white to red. */
+/** Returns red, green and blue at a position in [0, 1] of the map from blue over white to red. */
 export const divergingColour = (place) => between(diverging, place);
 
-/** Functions from a place in [0, 1] to a colour, by their names in documents. */
+/** Colour maps by their names in documents: functions of a position in [0, 1]. */
 export const colourMaps = {
   viridis: sequentialColour,
   cividis: (place) => between(cividis, place),
   diverging: divergingColour
 };
 
-/** Formats red, green and blue as a CSS colour. */
+/** Converts red, green and blue to a CSS colour. */
 export const cssColour = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
 /** Returns true if text on this colour must be light. */

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Creates elements of the page and announces changes to screen readers.
+// Elements of the page, and announcements to screen readers.
 
 const svgNamespace = 'http://www.w3.org/2000/svg';
 
@@ -19,21 +19,21 @@ function filled(node, attributes, children) {
   return node;
 }
 
-/** Creates an HTML element with attributes (`onclick` etc. are listeners) and children. */
+/** Creates an HTML element. Attributes such as `onclick` add listeners. */
 export const element = (name, attributes = {}, ...children) =>
     filled(document.createElement(name), attributes, children);
 
-/** Creates an SVG element with attributes and children. */
+/** Creates an SVG element. */
 export const drawn = (name, attributes = {}, ...children) =>
     filled(document.createElementNS(svgNamespace, name), attributes, children);
 
-/** Announces a sentence to screen readers. */
+/** Announces a text to screen readers. */
 export function announce(text) {
   const status = byId('status');
   status.textContent = status.textContent === text ? text + '\u00a0' : text;
 }
 
-/** Shows a message above the page until the user closes it; an empty message hides it. */
+/** Shows a message above the page until it is dismissed; an empty text hides it. */
 export function notice(text) {
   const place = byId('notice');
   place.hidden = !text;
@@ -43,13 +43,13 @@ export function notice(text) {
             element('span', {}, text),
             element(
                 'button',
-                {type: 'button', 'aria-label': 'Put the message away', onclick: () => notice('')},
+                {type: 'button', 'aria-label': 'Dismiss this message', onclick: () => notice('')},
                 'OK')
           ] :
           []));
 }
 
-/** Shows a problem at its field, or removes it. */
+/** Shows an error message in an element; an empty text hides it. */
 export function showProblem(place, text) {
   place.hidden = !text;
   if (place.textContent !== (text ?? '')) place.textContent = text ?? '';
@@ -57,22 +57,22 @@ export function showProblem(place, text) {
 
 const widths = new WeakMap();
 
-/** Calls `redraw()` now and when the element's width changes. */
+/** Calls `redraw()` initially and whenever the element's width changes. */
 export function onWidth(node, redraw) {
   new ResizeObserver(([entry]) => {
     const width = Math.floor(entry.contentRect.width);
     if (width === widthOf(node)) return;
     widths.set(node, width);
-    if (width > 0) drawSoon(node, redraw);  // deferred, since drawing changes observed heights
+    if (width > 0) drawSoon(node, redraw);  // deferred, because it changes observed heights
   }).observe(node);
 }
 
-/** Returns the stored width of an observed element in pixels, which causes no layout. */
+/** Returns the last observed width of such an element in pixels, without forcing a layout. */
 export const widthOf = (node) => widths.get(node) ?? 0;
 
 const drawings = new Map();
 
-/** Draws once before the next frame, for any number of calls. */
+/** Draws before the next frame; repeated requests of an owner draw once. */
 export function drawSoon(owner, draw) {
   if (!drawings.size)
     requestAnimationFrame(() => {
@@ -85,7 +85,7 @@ export function drawSoon(owner, draw) {
 
 const probe = element('span', {hidden: true}), colours = new Map();
 
-/** Returns the current value of a style sheet's colour, for canvases. */
+/** Returns the current value of a colour variable, for canvases. */
 export function colourOf(name) {
   if (!probe.isConnected) document.body.append(probe);
   if (!colours.has(name)) {
@@ -95,20 +95,20 @@ export function colourOf(name) {
   return colours.get(name);
 }
 
-/** Discards stored colours after a change of the theme. */
+/** Clears the cached colours after a change of the theme. */
 export const forgetColours = () => colours.clear();
 
-/** Offers a text for download. */
+/** Downloads a text as a file. */
 export const saveText = (text, name, type) => saveBlob(new Blob([text], {type}), name);
 
-/** Offers bytes for download. */
+/** Downloads a blob as a file. */
 export function saveBlob(blob, name) {
   const address = URL.createObjectURL(blob);
   element('a', {href: address, download: name}).click();
   setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-/** Copies a text to the clipboard and returns true if the browser allowed it. */
+/** Copies a text to the clipboard. Returns false if the browser does not allow it. */
 export async function copyText(text) {
   try {
     await navigator.clipboard.writeText(text);

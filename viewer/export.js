@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Exports figures as SVG and PNG files, and data as CSV.
+// Export of figures as SVG and PNG, and of data as CSV.
 
 import {drawn, element} from './dom.js';
 
@@ -9,7 +9,7 @@ const quoted = (value) => {
   return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 };
 
-/** Formats rows as comma-separated values. */
+/** Converts rows to comma-separated values. */
 export const csvOf = (rows) => rows.map((row) => row.map(quoted).join(',') + '\n').join('');
 
 const styles = [
@@ -17,7 +17,7 @@ const styles = [
   'font-family', 'font-weight', 'visibility'
 ];
 
-/** Copies an SVG element with its computed styles, so that it needs no style sheet. */
+/** Returns a copy of an SVG element with inline styles. */
 function inked(svg) {
   const copy = svg.cloneNode(true);
   const from = [svg, ...svg.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
@@ -30,7 +30,7 @@ function inked(svg) {
   return copy;
 }
 
-/** Returns the lines of a text node: [{text, box}]. Lines break after spaces and hyphens. */
+/** Returns the lines of a text node, which break after spaces and hyphens: [{text, box}]. */
 function linesOf(node) {
   const content = node.textContent, range = document.createRange(), lines = [];
   for (const {index, 0: part} of content.matchAll(/[^\s-]*-|[^\s-]+/g)) {
@@ -57,7 +57,7 @@ function textsOf(root) {
   return texts;
 }
 
-/** Returns the SVG file of a figure in its present state. */
+/** Returns a figure in its current state as the text of an SVG file. */
 export function svgOf(root) {
   const frame = root.getBoundingClientRect();
   const placed = (box) => ({x: box.left - frame.left, y: box.top - frame.top});
@@ -105,7 +105,7 @@ export function svgOf(root) {
   return new XMLSerializer().serializeToString(page);
 }
 
-/** Returns a figure as a PNG image, with two pixels for each pixel of the page. */
+/** Returns a figure in its current state as a PNG image at twice the resolution. */
 export async function pngOf(root) {
   const {width, height} = root.getBoundingClientRect(), picture = new Image();
   picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svgOf(root))}`;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Draws the figures of a document: lines, maps, images, curves and clouds.
+// Draws the figures of a document: lines, maps, images, curves and point clouds.
 
 import {unpacked} from './arrays.js';
 import {inline} from './blocks.js';
@@ -14,7 +14,7 @@ import {Picture} from './picture.js';
 import {legendOf, LinePlot, paddedRange} from './plot.js';
 import {Space, SpaceView} from './space.js';
 
-// The palette of documents; the theme has a light and a dark shade of each colour.
+// Palette of documents. The theme replaces each colour by a light or dark shade.
 const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000'];
 const referenceColour = '#8a8f98';
 const dashes = {
@@ -49,7 +49,7 @@ function axisSpec(axis, values) {
   };
 }
 
-/** Returns the x values of a series: a list, or {count, from, to} at equal distances. */
+/** Returns the x values of a series: a list, or equidistant values {count, from, to}. */
 const placesIn = (x) => (Array.isArray(x) ?
     x :
     Array.from({length: x.count}, (_, i) => x.from + i * (x.to - x.from) / (x.count - 1)));
@@ -65,7 +65,7 @@ const seriesSpec = (one) => ({
   width: one.width
 });
 
-/** Returns the limits of an x axis, the range of the data without margins. */
+/** Returns an x axis whose range equals the range of the data, without padding. */
 function tightRange(axis, values) {
   if (axis.range) return axis;
   const [low, high] = rangeOf(values, axis.log);
@@ -93,7 +93,7 @@ function drawLines(block, body) {
       y: axisSpec(column.y, heights)
     };
   });
-  const isFront = Boolean(body.closest('.front'));  // the first screen has little room
+  const isFront = Boolean(body.closest('.front'));  // the first screen has little space
   const rowHeight = Math.max(isFront ? 33 : 42, Math.min(84, (isFront ? 200 : 320) / rows.length));
   rows.forEach((row, r) => columns.forEach((column, c) => {
     const plot = new LinePlot(), {x, y} = axes[c], isLast = r === rows.length - 1;
@@ -120,7 +120,7 @@ function drawLines(block, body) {
   ];
 }
 
-// Formats a number in a cell of a map.
+// Text of a value in a map cell.
 const cellText = (value) => (Math.abs(value) >= 1e4 ? value.toExponential(1) : shortText(value, 3));
 
 function panelGrid(columns, count) {
@@ -157,7 +157,7 @@ function drawMap({alt, columns, show_values, x, y, colours, panels}, body) {
   ];
 }
 
-/** Returns the planes of an image figure, [{values, before}], or their errors for a reference. */
+/** Returns planes [{values, before}] of an image figure and, with a reference, differences. */
 async function planesOf({panels, reference}) {
   const planes = await Promise.all(panels.map(async (panel) => ({
     values: await unpacked(panel.values),
@@ -210,7 +210,7 @@ async function drawImages(block, body) {
   ];
 }
 
-/** Creates buttons of which one is selected: [[name, action], ...]. */
+/** Returns buttons of which one is selected: [[name, action], ...]. */
 function choiceOf(choices) {
   const buttons = choices.map(([name, act]) => element('button', {
                                 type: 'button',
@@ -224,7 +224,7 @@ function choiceOf(choices) {
   return element('div', {class: 'choice', role: 'group', 'aria-label': 'Values to show'}, ...buttons);
 }
 
-/** Moves the border between the pictures before and after. */
+/** Returns a slider for the border between the `before` and `after` images. */
 function sliderOf({before_name: left, after_name: right}, pictures) {
   const input = element('input', {
     type: 'range',
@@ -254,7 +254,7 @@ function sliderOf({before_name: left, after_name: right}, pictures) {
 
 const middle = ([low, high]) => (low + high) / 2;
 
-/** Returns the points of all panels relative to their centre: {points: (N, 3) arrays, ranges}. */
+/** Centres the points of all panels together. Returns {points: arrays of (N, 3), ranges}. */
 function centred(places) {
   const ranges = [0, 1, 2].map((axis) => rangeOf(places.map((one) => one[axis])));
   const centre = ranges.map(middle);
@@ -305,7 +305,7 @@ async function drawCurves(block, body) {
   return rowsOf(panels, places, values, titleOf(block.colours));
 }
 
-// Clouds use the camera's frame: x right, y down, z forward. Drawings have z up.
+// Point clouds are in camera coordinates: x right, y down, z forward. Drawings have z up.
 async function drawClouds(block, body) {
   const {panels} = block, places = await placesOf(panels);
   const values = await Promise.all(panels.map((panel) => unpacked(panel.values)));
@@ -329,7 +329,7 @@ async function drawClouds(block, body) {
   return rowsOf(panels, places, values, titleOf(block.colours));
 }
 
-/** Functions that draw a figure in an element and return a function for the rows of its data. */
+/** Functions that draw a figure into an element and return a function for its CSV rows. */
 export const kinds = {
   lines: drawLines,
   map: drawMap,
@@ -338,7 +338,7 @@ export const kinds = {
   cloud: drawClouds
 };
 
-/** Returns the node of a figure and a function that draws it and returns a promise. */
+/** Returns {node, draw}: the element of a figure, and the asynchronous function that draws it. */
 export function figureBlock(block) {
   const body = element('div', {class: 'body'});
   const caption = element('p', {class: 'caption'}, ...inline(block.caption));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Draws values by row and column as coloured cells with text.
+// Heat map: a table of coloured cells with their values as text.
 
 import {colourBar} from './colour_bar.js';
 import {cssColour, isDark} from './colours.js';
@@ -8,9 +8,9 @@ import {announce, drawn, drawSoon, element, onWidth, widthOf} from './dom.js';
 import {axisOf, frameOf, innerOf, ValueBox} from './plot.js';
 
 /**
- * A heat map that adapts to its width. Specification: {label, columns, rows: texts of the ticks,
- * values: row by row, colour(value): [r, g, b] or null, cellText(value), details(column, row):
- * lines, titles: {x, y}, height, scale: colour bar or null, current: [column, row] or null,
+ * Heat map that adapts to its width. Content: {label, columns, rows: texts of the ticks, values: in
+ * row-major order, colour(value): [r, g, b] or null, cellText(value), details(column, row): lines,
+ * titles: {x, y}, height, scale: colour bar or null, current: [column, row] or null,
  * choose(column, row) or null}.
  */
 export class HeatMap {
@@ -30,12 +30,12 @@ export class HeatMap {
     onWidth(this.node, () => this.#draw());
   }
 
-  /** Shows another specification. */
+  /** Replaces the content. */
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute(
         'aria-label',
-        `${spec.label}. Arrow keys read cells${spec.choose ? ', Enter chooses one' : ''}.`);
+        `${spec.label}. Arrow keys read cells${spec.choose ? ', Enter selects one' : ''}.`);
     this.scale.replaceChildren(...(spec.scale ? [colourBar(spec.scale)] : []));
     drawSoon(this, () => this.#draw());
   }
@@ -113,7 +113,7 @@ export class HeatMap {
   }
 }
 
-/** Draws an axis of names; if there is not enough room, every n-th name. */
+/** Returns an axis of names; if space is limited, only every n-th name. */
 function levels(texts, room) {
   const wide = 10 + 6.2 * Math.max(...texts.map((text) => text.length));
   const step = Math.max(1, Math.ceil(Number.isFinite(room) ? wide / room : texts.length / 12));

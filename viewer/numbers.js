@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Formats numbers and places the ticks of axes.
+// Number formats and axis ticks.
 
 const superscripts = {
   '-': '\u207b',
@@ -16,11 +16,11 @@ const superscripts = {
   9: '\u2079'
 };
 
-/** Formats an integer power of 10. */
+/** Returns 10 to an integer power as text. */
 export const powerText = (power) =>
     '10' + Array.from(String(power), (c) => superscripts[c]).join('');
 
-/** Formats a number with at most `digits` significant digits and no trailing zeros. */
+/** Formats a number with at most this many significant digits, without trailing zeros. */
 export function shortText(value, digits = 4) {
   if (!Number.isFinite(value)) return Number.isNaN(value) ? 'none' : String(value);
   const text = String(Number(value.toPrecision(digits)));
@@ -28,7 +28,7 @@ export function shortText(value, digits = 4) {
 }
 
 /**
- * Formats a number with exactly `digits` significant digits, for tables; without an exponent below
+ * Formats a number for tables, with exactly this many significant digits; without an exponent below
  * 1e6.
  */
 export function fixedText(value, digits) {
@@ -40,8 +40,8 @@ export function fixedText(value, digits) {
 }
 
 /**
- * Formats a number for an input field: all digits, and for large and small numbers an exponent that
- * is a multiple of three.
+ * Formats a number for input fields: all digits, with an exponent in steps of three for large and
+ * small numbers.
  */
 export function fieldText(value) {
   if (value === null || value === undefined) return '';
@@ -53,12 +53,12 @@ export function fieldText(value) {
   return `${Number((value / 10 ** power).toPrecision(15))}e${power}`;
 }
 
-/** Formats metres with a suitable unit. */
+/** Formats a length, given in metres, in millimetres or metres. */
 export const lengthText = (metres, digits = 4) => Math.abs(metres) < 1 ?
     `${shortText(metres * 1e3, digits)} mm` :
     `${shortText(metres, digits)} m`;
 
-/** Formats a rate of electrons, for axes and lists. */
+/** Formats an electron rate for axes and lists. */
 export function rateText(value) {
   if (!(value > 0)) return shortText(value);
   const power = Math.floor(Math.log10(value) + 1e-6), front = shortText(value / 10 ** power, 2);
@@ -79,9 +79,9 @@ export function linearTicks(low, high, count) {
           ({value, text: Math.abs(value) >= 1e6 ? shortText(value) : value.toFixed(decimals)}));
 }
 
-/** Returns the powers of ten within [low, high]; if there are few, also 2 and 5 times these. */
+/** Returns powers of ten within [low, high]; if there are few, also 2 and 5 times these. */
 export function logarithmicTicks(low, high) {
-  if (high / low < 4) return linearTicks(low, high, 4);  // contains less than one 1-2-5 step
+  if (high / low < 4) return linearTicks(low, high, 4);  // too few steps of 1, 2, 5
   const ticks = [];
   const isPlain = low >= 1e-3 && high <= 1e5;
   const few = Math.log10(high / low) < 2.2;
@@ -95,13 +95,13 @@ export function logarithmicTicks(low, high) {
   return few ? ticks : ticks.filter((_, i) => i % step === 0);
 }
 
-/** Returns every n-th number of a row, as many as a picture can show. */
+/** Returns every n-th value, with the smallest n that leaves at most `most` values. */
 export function thinned(values, most) {
   const step = Math.ceil(values.length / most);
   return step < 2 ? values : values.filter((_, i) => i % step === 0);
 }
 
-/** Returns the smallest and the largest finite value. */
+/** Returns the minimum and the maximum finite value. */
 export function rangeOf(arrays, positive = false) {
   let low = Infinity, high = -Infinity;
   for (const array of arrays)

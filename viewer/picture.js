@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Shows a plane as pixels, the value under the pointer, and optionally another plane on the left.
+// Image of one plane, with the value under the pointer and a movable border to a second plane.
 
 import {colourBar} from './colour_bar.js';
 import {element} from './dom.js';
 import {ValueBox} from './plot.js';
 
 /**
- * A plane. Specification: {label, title, note, width, height, values, before: values to the left
+ * Image of a plane. Content: {label, title, note, width, height, values, before: values to the left
  * of split() or null, colour(value) -> [r, g, b] or null, scale: colour bar or null, text(value,
  * index)}.
  */
@@ -26,7 +26,7 @@ export class Picture {
     this.node.addEventListener('pointerleave', () => this.value.hide());
   }
 
-  /** Shows another specification. */
+  /** Replaces the content. */
   show(spec) {
     this.spec = spec;
     this.canvas.width = spec.width;

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Draws lines with axes, a legend, and values at the pointer or by arrow keys.
+// Line plots with a legend and values that the pointer or the arrow keys select.
 
 import {announce, drawn, drawSoon, element, onWidth, widthOf} from './dom.js';
 import {linearTicks, logarithmicTicks, shortText} from './numbers.js';
 
-let clips = 0;  // number of clip paths: part of their ids
+let clips = 0;  // number of clip paths, for their ids
 
-/** Creates an axis, which maps values to pixels, with its ticks. */
+/** Returns an axis: its mapping between values and pixels, and its ticks. */
 export function axisOf(
     {range: [low, high], log = false, ticks = null, isWhole = false}, [from, to], count) {
   const most = isWhole ? Math.min(count, high - low) : count;
@@ -24,7 +24,7 @@ export function axisOf(
   };
 }
 
-/** Returns a range for an axis with a margin around the data. */
+/** Returns an axis range with padding around the data. */
 export function paddedRange([low, high], log = false) {
   if (log) {
     const room = Math.max((high / low) ** 0.06, 1.02);
@@ -34,7 +34,7 @@ export function paddedRange([low, high], log = false) {
   return [low - room, high + room];
 }
 
-/** A box that shows a value near a point of the plot. */
+/** Box that shows a value next to a point of a plot. */
 export class ValueBox {
   constructor(plot) {
     this.plot = plot;
@@ -63,11 +63,11 @@ const margin = {
   bottom: 40
 };
 
-/** Returns the margins of a plot, narrower in a grid or without a title. */
+/** Returns the margins of a plot, which are narrower in a grid or without a title. */
 const marginsOf = ({isCompact, isBare, left}) =>
     ({...margin, left: left ?? (isCompact ? 50 : margin.left), bottom: isBare ? 8 : margin.bottom});
 
-/** Draws the frame of a plot: grid, ticks and titles of both axes. `layout`: see marginsOf. */
+/** Returns grid, ticks and titles of both axes. `layout`: see marginsOf. */
 export function frameOf(x, y, titles, width, height, layout = {}) {
   const room = marginsOf(layout);
   const [left, right, top, bottom] =
@@ -127,7 +127,7 @@ function pathOf(series, x, y) {
   return path;
 }
 
-/** Draws the dots of a series with error bars. */
+/** Returns the markers of a series with error bars. */
 function marksOf(series, x, y) {
   const marks = [];
   const style = `stroke:${series.colour};fill:${series.colour}`;
@@ -172,7 +172,7 @@ function sampleOf({colour, dash, mark, width = 1.8}) {
       /markers/.test(mark) ? dot : null);
 }
 
-/** Draws a legend: each name with a sample of each of its styles. */
+/** Returns a legend: each name with a sample of each of its line styles. */
 export function legendOf(series) {
   const names = new Map();
   for (const one of series) {
@@ -186,7 +186,7 @@ export function legendOf(series) {
                      'li', {}, ...Array.from(styles.values(), sampleOf), element('span', {}, name))));
 }
 
-/** Returns the index of the value of an increasing list that is nearest to `value` in pixels. */
+/** Returns the index of the value in an increasing list that is nearest to `value` in pixels. */
 function nearest(values, value, axis) {
   let best = 0;
   const at = axis.at(value), gap = (i) => Math.abs(axis.at(values[i]) - at);
@@ -195,7 +195,7 @@ function nearest(values, value, axis) {
   return best;
 }
 
-/** Returns the index of a series at a place; for steps, of the last one that starts before it. */
+/** Returns the index of a series at a position; for steps, the last one that begins before it. */
 function indexAt(series, value, axis) {
   if (series.mark !== 'steps') return nearest(series.x, value, axis);
   const after = series.x.findIndex((x) => x > value);
@@ -203,16 +203,15 @@ function indexAt(series, value, axis) {
 }
 
 /**
- * A plot of lines that adapts to its width. Dragging selects a part of the x axis; a double click
- * shows the full axis again.
+ * Line plot that adapts to its width. Dragging zooms the x axis; a double click resets the zoom.
  *
- * Specification: {label, height, x: {title, range, log, unit, text}, y: {...}, series: [{name, x,
- * y, error, mark, colour, dash, width, band: [low, high]}], hasLegend, isCompact, isBare}.
+ * Content: {label, height, x: {title, range, log, unit, text}, y: {...}, series: [{name, x, y,
+ * error, mark, colour, dash, width, band: [low, high]}], hasLegend, isCompact, isBare}.
  */
 export class LinePlot {
   #spec = null;
   #index = null;
-  #zoomed = null;  // the visible part of the x axis
+  #zoomed = null;  // visible range of the x axis
   #begin = null;   // start of a drag
 
   constructor() {
@@ -232,7 +231,7 @@ export class LinePlot {
     onWidth(this.node, () => this.#draw());
   }
 
-  /** Shows another specification. */
+  /** Replaces the content. */
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute('aria-label', `${spec.label}. Arrow keys read values.`);

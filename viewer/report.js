@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Shows the document of a page: title, sections, and figures as they scroll into view.
+// Renders a page from its document. Figures are drawn when they scroll into view.
 
 import {blockOf} from './blocks.js';
 import {byId, element} from './dom.js';
@@ -11,7 +11,7 @@ const status = window.tofsmithFigures = {total: 0, rendered: 0, errors: []};
 addEventListener('error', (event) => status.errors.push(String(event.message)));
 addEventListener('unhandledrejection', (event) => status.errors.push(String(event.reason)));
 
-const drawings = new Map();  // functions that draw a figure once, by its node
+const drawings = new Map();  // functions that draw each figure once, by node
 
 function nodeOf(block) {
   if (!(block.kind in kinds)) return blockOf(block);
@@ -44,7 +44,7 @@ function show({title, subtitle, footer, sections}) {
           subtitle ? element('p', {class: 'subtitle'}, subtitle) : null),
       theme);
   byId('page').append(
-      title ? header : '',  // a page with one figure has no header
+      title ? header : '',  // pages of a single figure have no title
       element('main', {}, ...sections.map(sectionOf)),
       footer ? element('footer', {}, footer) : '');
   startTheme(theme);

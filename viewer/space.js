@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Draws curves and points in space on a canvas; pointer and keys rotate the view.
+// Curves and points in three dimensions on a canvas, which the pointer and keys rotate.
 
 import {colourOf, drawSoon, element, forgetColours, onWidth, widthOf} from './dom.js';
 
@@ -11,7 +11,7 @@ const start = {
 };
 const views = new Set();
 
-/** A direction of view, which several drawings can share. */
+/** Viewing direction shared by several drawings, which rotate together. */
 export class SpaceView {
   constructor(direction = {}) {
     this.start = {...start, ...direction};
@@ -37,9 +37,8 @@ export class SpaceView {
   }
 
   /**
-   * Returns a function that maps a point to its position in a picture and its distance. Points are
-   * in a sphere of this radius or, if given, in a box of these half lengths, which fits the picture
-   * in the initial direction.
+   * Returns a function that projects a point to pixels and its distance. Points are in a sphere of
+   * this radius or, if given, in a box of these half lengths, which fits in the initial direction.
    */
   projection(width, height, {radius, box}) {
     const [sy, cy, sp, cp] =
@@ -55,7 +54,7 @@ export class SpaceView {
   }
 }
 
-/** Returns the half width and half height of a box seen in a direction. */
+/** Returns half the width and height of a box in a viewing direction. */
 function shadowOf([x, y, z], {yaw, pitch}) {
   const sy = Math.abs(Math.sin(yaw)), cy = Math.abs(Math.cos(yaw));
   const away = sy * x + cy * y;
@@ -70,9 +69,9 @@ addEventListener('themechange', redrawAll);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
 
 /**
- * A drawing. Specification: {label, view, points: (N, 3) in one array around the origin, colour(i):
- * CSS colour of a point, isCurve: closed curve or points, pointSize, radius or box of all points
- * (see projection), axes: [{title, from, to}], height}.
+ * Three-dimensional drawing. Content: {label, view, points: (N, 3) as one array around the origin,
+ * colour(i): CSS colour of a point, isCurve: closed curve or points, pointSize, radius or box of
+ * all points (see projection), axes: [{title, from, to}], height}.
  */
 export class Space {
   #spec = null;
@@ -89,7 +88,7 @@ export class Space {
     onWidth(this.node, () => this.draw());
   }
 
-  /** Shows another specification; null hides the drawing. */
+  /** Replaces the content; null: removes the drawing from its view. */
   show(spec) {
     this.#spec?.view.spaces.delete(this);
     this.#spec = spec;
@@ -97,7 +96,7 @@ export class Space {
     spec.view.spaces.add(this);
     this.canvas.setAttribute(
         'aria-label',
-        `${spec.label}. Arrow keys turn it, plus and minus change its size, 0 turns it back.`);
+        `${spec.label}. Arrow keys rotate it, plus and minus zoom, 0 resets the view.`);
     drawSoon(this, () => this.draw());
   }
 
@@ -134,7 +133,7 @@ export class Space {
     this.last = [event.clientX, event.clientY];
   }
 
-  /** Draws the view in the present direction. */
+  /** Draws the content in the current viewing direction. */
   draw() {
     const width = widthOf(this.node), spec = this.#spec;
     if (!spec || width < 20) return;

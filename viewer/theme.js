@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Selects the light or dark theme, or the theme of the system.
+// Colour theme: light, dark, or the system setting.
 
 const themes = ['auto', 'light', 'dark'];
 const names = {
@@ -13,12 +13,12 @@ const place = 'tofsmith-lab-theme';
 function kept() {
   try {
     return localStorage.getItem(place);
-  } catch {  // pages from files may lack storage
+  } catch {  // local files may have no storage
     return null;
   }
 }
 
-/** Makes a button switch between the themes, starting with the one chosen last. */
+/** Makes a button cycle through the themes. Starts with the theme that was last selected. */
 export function startTheme(button) {
   const show = (theme) => {
     if (theme === 'auto')
@@ -36,7 +36,7 @@ export function startTheme(button) {
     try {
       localStorage.setItem(place, next);
     } catch {
-      // the choice is lost with the page
+      // without storage, the selection is lost when the page is closed
     }
     show(next);
   });

@@ -58,7 +58,7 @@ self.onmessage = async ({data}) => {
       engine = await start(data.start);
       self.postMessage({ready: true});
     } catch (error) {
-      self.postMessage({error: {message: `the engine does not start: ${error.message}`}});
+      self.postMessage({error: {message: `the engine cannot start: ${error.message}`}});
     }
     return;
   }

@@ -45,7 +45,7 @@ export class Columns {
   }
 }
 
-const mostPoints = 2048;  // of a line in a figure
+const mostPoints = 2048;  // maximum number of points of a line
 
 const rowOf = ({values, shape}, k) => values.subarray(k * shape[1], (k + 1) * shape[1]);
 
@@ -218,7 +218,7 @@ export class CodesView {
         element(
             'label', {
               class: 'pick',
-              title: 'The scene shows this code; new ones take its place when there are four'
+              title: 'The scene uses this code; if there are four codes, a new one replaces it'
             },
             pick, `Code ${i + 1}${isChosen ? ', in the scene' : ''}`),
         element('div', {class: 'row'}, select, other),
@@ -274,7 +274,7 @@ export class CodesView {
     if (!code || !source) return;
     const kept = code.curve_variance_kept === undefined ?
         '' :
-        `${shortText(100 * code.curve_variance_kept, 3)} % of its variance`;
+        `${shortText(100 * code.curve_variance_kept, 3)} % of its variance shown`;
     this.waveforms.title(i, code.name, 'light above, gate below');
     this.correlation.title(i, code.name);
     this.curves.title(i, code.name, kept);

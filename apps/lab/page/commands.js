@@ -16,7 +16,7 @@ export class Commands {
   }
 
   #strip(place) {
-    const text = element('pre', {tabindex: 0, 'aria-label': 'The command that gives the same'}),
+    const text = element('pre', {tabindex: 0, 'aria-label': 'Equivalent command'}),
           files = element('p', {class: 'files'});
     const copy = element(
         'button', {
@@ -26,7 +26,7 @@ export class Commands {
             const isCopied = await copyText(text.textContent);
             copy.textContent = isCopied ? 'Copied' : 'Copy by hand';
             announce(
-                isCopied ? 'The command is copied.' : 'The browser does not let the page copy.');
+                isCopied ? 'Copied the command.' : 'The browser does not allow the page to copy.');
             setTimeout(() => {
               copy.textContent = 'Copy';
             }, 1500);
@@ -75,7 +75,7 @@ export class Commands {
           ...shown.filter((code) => code.file !== undefined).map(codeWord)
         ];
         files.textContent =
-            needed.length ? `It reads ${needed.join(', ')}: save that from this page first.` : '';
+            needed.length ? `First save from this page: ${needed.join(', ')}.` : '';
       } catch (error) {
         if (!(error instanceof Outdated)) text.textContent = `no command: ${error.message}`;
       }

@@ -6,7 +6,7 @@ import {announce, byId, element, showProblem} from '../../../viewer/dom.js';
 import {Engine, Outdated} from './engine.js';
 import {lengthText} from '../../../viewer/numbers.js';
 
-const efforts = [['0', 'a known code'], ['0.1', 'a first look'], ['0.3', 'short'], ['1', 'usual']];
+const efforts = [['0', 'known codes only'], ['0.1', 'quick'], ['0.3', 'short'], ['1', 'default']];
 
 /** The design section of the page. */
 export class DesignView {
@@ -49,12 +49,12 @@ export class DesignView {
   async #run() {
     if (this.engine || !this.lab.camera) return;
     showProblem(this.problem, '');
-    this.text.textContent = 'begins';
+    this.text.textContent = 'starting';
     this.explanation.replaceChildren();
     this.bar.removeAttribute('value');
     this.engine = new Engine(this.startWorker, 1);
     this.#busy(true);
-    announce('The design begins.');
+    announce('The design has started.');
     try {
       const asked = {
         camera: this.lab.camera.toml,
@@ -70,11 +70,11 @@ export class DesignView {
       this.text.textContent = `${name}: ${error}`;
       this.explanation.replaceChildren(
           ...[answer.explanation ?? []].flat().map((text) => element('p', {}, text)));
-      announce(`The design is ready: ${name}, ${error}.`);
+      announce(`The design is finished: ${name}, ${error}.`);
     } catch (error) {
-      this.text.textContent = error instanceof Outdated ? 'cancelled; nothing is changed' : '';
+      this.text.textContent = error instanceof Outdated ? 'cancelled; nothing changed' : '';
       if (error instanceof Outdated)
-        announce('The design is cancelled; nothing is changed.');
+        announce('The design was cancelled; nothing changed.');
       else
         showProblem(this.problem, error.message);
     }

@@ -22,12 +22,13 @@ const simdModule = Uint8Array.of(
 /** Describes the missing feature of an unsupported browser; null if it is supported. */
 export function missingFeature() {
   if (typeof WebAssembly !== 'object')
-    return 'This browser has no WebAssembly, which the lab computes with.';
+    return 'This browser does not support WebAssembly, which the lab requires.';
   if (!WebAssembly.validate(simdModule))
-    return 'This browser has WebAssembly without SIMD, which the lab needs. ' +
-        'Browsers since 2023 have it: Chromium 91, Firefox 89, Safari 16.4.';
+    return 'This browser does not support SIMD in WebAssembly, which the lab requires. ' +
+        'It is available in Chromium 91, Firefox 89, Safari 16.4 and later.';
   if (typeof DecompressionStream !== 'function' || typeof Worker !== 'function')
-    return 'This browser is too old for the lab: Chromium 123, Firefox 120, Safari 17.5 will do.';
+    return 'This browser is too old for the lab, which requires Chromium 123, Firefox 120 or ' +
+        'Safari 17.5.';
   return null;
 }
 

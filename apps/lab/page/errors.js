@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Depth error over light: the table of `tofsmith evaluate`, a map per code, and curves with bounds.
+// Depth error by light level: the table of `tofsmith evaluate`, a map per code, curves with bounds.
 
 import {Columns} from './codes.js';
 import {scaleOf} from '../../../viewer/colour_bar.js';
@@ -61,7 +61,7 @@ export class ErrorsView {
     showProblem(
         byId('error-problem'),
         isSeed ? '' :
-                 `seed: found ${input.value || 'nothing'}; expected a whole number, 0 or more`);
+                 `seed: found ${input.value || 'nothing'}; expected an integer >= 0`);
     if (isSeed)
       this.lab.store.change((state) => {
         state.seed = Number(input.value);
@@ -106,7 +106,7 @@ export class ErrorsView {
           element(
               'th', {scope: 'row'},
               element('span', {class: 'row-dot', style: `background:${seriesColour(i)}`}),
-              problem ? `${one.name}, before the problem` : one.name),
+              problem ? `${one.name}, before the error` : one.name),
           cell(String(one.measurements)),
           ...['linear', 'circular'].map(
               (which) =>
@@ -115,12 +115,12 @@ export class ErrorsView {
           cell(fixedText(100 * Math.max(...one.points.map((p) => p.outlier_rate)), 3)));
     };
     const head = [
-      'code', 'K', 'linear (mm)', 'circular (mm)', 'best circular (mm)', 'at signal, ambient (e/s)',
-      'outliers up to (%)'
+      'code', 'K', 'linear (mm)', 'circular (mm)', 'lowest circular (mm)',
+      'at signal, ambient (e/s)', 'max outliers (%)'
     ];
     const levels = known[0].one.points.length;
     const caption = `Geometric mean over ${levels} light levels; \u00b1 is one standard error. ` +
-        `The camera is judged by the ${kind} error.`;
+        `Designs for this camera minimize the ${kind} error.`;
     byId('error-table')
         .replaceChildren(element(
             'table', {}, element('caption', {}, element('span', {}, caption)),

@@ -63,8 +63,8 @@ class Field {
           type: 'button',
           class: 'back',
           hidden: true,
-          'aria-label': `Set ${nameOf(field)} back`,
-          title: 'Set back',
+          'aria-label': `Reset ${nameOf(field)}`,
+          title: 'Reset',
           onclick: () => panel.reset(this.key)
         },
         '\u21ba');
@@ -226,8 +226,8 @@ export class FieldPanel {
               'details', {class: 'experts', 'data-section': section, open: open.has(section)},
               element(
                   'summary', {},
-                  usual.length ? `${experts.length} more for experts` :
-                                 `${experts.length} keys for experts`),
+                  usual.length ? `${experts.length} more (advanced)` :
+                                 `${experts.length} keys (advanced)`),
               ...experts) :
                                  null;
       return element(

@@ -45,7 +45,7 @@ export class Files {
     for (const file of files) {
       try {
         await this.#takeOne(file);
-        announce(`${file.name} is read.`);
+        announce(`${file.name} was loaded.`);
       } catch (error) {
         problems.push(`${file.name}: ${error.message}`);
       }
@@ -56,16 +56,17 @@ export class Files {
   async #takeOne(file) {
     if (file.size > maxFileBytes)
       throw new Error(
-          `${sizeText(file.size)} is too large; expected at most ${sizeText(maxFileBytes)}`);
-    if (file.size === 0) throw new Error('the file is empty');
+          `found ${sizeText(file.size)}; expected at most ${sizeText(maxFileBytes)}`);
+    if (file.size === 0)
+      throw new Error('found an empty file; expected a camera (TOML) or a code (JSON)');
     const bytes = new Uint8Array(await file.arrayBuffer());
     if (bytes.subarray(0, 4096).includes(0))
-      throw new Error('neither a camera (TOML) nor a code (JSON): it is binary');
+      throw new Error('found a binary file; expected a camera (TOML) or a code (JSON)');
     let text;
     try {
       text = new TextDecoder('utf-8', {fatal: true}).decode(bytes);
     } catch {
-      throw new Error('neither a camera (TOML) nor a code (JSON): it is not UTF-8 text');
+      throw new Error('found text that is not UTF-8; expected a camera (TOML) or a code (JSON)');
     }
     if (/^\s*\{/.test(text))
       await this.#takeCode(file, text);
@@ -75,7 +76,7 @@ export class Files {
 
   async #takeCode(file, text) {
     const {camera, engine} = this.lab;
-    if (!camera) throw new Error('there is no camera yet to play it');
+    if (!camera) throw new Error('found no camera for this code; wait until the lab has started');
     const answer = await engine.call('code', {camera: camera.toml, code: askedCode({file: text})});
     this.lab.addCode({name: answer.name || file.name.replace(/(\.code)?\.json$/i, ''), file: text});
   }

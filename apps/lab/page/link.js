@@ -47,11 +47,13 @@ async function limitedText(response) {
 export async function stateOf(hash) {
   if (hash.length < 2) return {};
   const found = /^#(\d+)\.([\w-]*)$/.exec(hash);
-  if (!found) return {problem: 'This link is not one of the lab; it starts fresh.'};
+  if (!found)
+    return {problem: 'This is not a link of the lab; the lab starts in its initial state.'};
   if (Number(found[1]) !== linkVersion)
     return {
       problem:
-          `This link is of version ${found[1]}; this page reads ${linkVersion} and starts fresh.`
+          `This link has version ${found[1]}; expected ${linkVersion}. The lab starts in its ` +
+          'initial state.'
     };
   try {
     const binary = atob(found[2].replaceAll('-', '+').replaceAll('_', '/'));
@@ -59,9 +61,10 @@ export async function stateOf(hash) {
     const state =
         JSON.parse(await limitedText(await through(bytes, new DecompressionStream('deflate-raw'))));
     const problem = problemOf(state);
-    return problem ? {problem: `This link is damaged (${problem}); the lab starts fresh.`} :
-                     {state};
+    return problem ?
+        {problem: `This link is damaged (${problem}); the lab starts in its initial state.`} :
+        {state};
   } catch {
-    return {problem: 'This link is damaged or cut off; the lab starts fresh.'};
+    return {problem: 'This link is damaged or truncated; the lab starts in its initial state.'};
   }
 }

@@ -78,13 +78,13 @@ function startTools(lab) {
   byId('link').addEventListener('click', async () => {
     const hash = await linkOf(store.state);
     if (!hash)
-      return notice('This state is too large for a link: save its camera and codes as files.');
+      return notice('This state is too large for a link. Save the camera and codes as files.');
     history.replaceState(null, '', hash);
     const isCopied = await copyText(location.href);
-    byId('link').textContent = isCopied ? 'Copied' : 'In the address';
+    byId('link').textContent = isCopied ? 'Copied' : 'In address bar';
     announce(
-        isCopied ? 'A link to this state is copied.' :
-                   'The address bar holds a link to this state.');
+        isCopied ? 'Copied a link to this state.' :
+                   'The address bar contains a link to this state.');
     setTimeout(() => {
       byId('link').textContent = 'Link';
     }, 1500);
@@ -151,7 +151,7 @@ async function begin() {
     engine.call('about', {}),
     new Promise(
         (_, reject) => setTimeout(
-            () => reject(new Error('its engine does not answer')), 1000 * patienceSeconds))
+            () => reject(new Error('the engine does not respond')), 1000 * patienceSeconds))
   ]);
   const store = new Store(state ?? firstState()), lab = new Lab(store, engine);
   startCamera(lab, about);
@@ -175,4 +175,4 @@ async function begin() {
   window.tofsmithLab = {store, lab, engine};  // for tests and the console
 }
 
-begin().catch((error) => stop(`The lab cannot begin: ${error.message}`));
+begin().catch((error) => stop(`The lab cannot start: ${error.message}`));

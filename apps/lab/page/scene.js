@@ -48,7 +48,8 @@ export class SceneView {
       if (value === undefined) {
         event.target.setAttribute('aria-invalid', 'true');
         showProblem(
-            byId('scene-problem'), `${key}: found ${text}; expected a number >= 0, or nothing`);
+            byId('scene-problem'),
+            `${key}: found ${text}; expected a number >= 0 or an empty field`);
         return;
       }
       event.target.setAttribute('aria-invalid', 'false');
@@ -71,10 +72,10 @@ export class SceneView {
       width: choice('scene-width', widths, 'width', Number),
       signal: element(
           'input',
-          {id: 'scene-signal', size: 8, placeholder: 'usual', onchange: put('signal', rate)}),
+          {id: 'scene-signal', size: 8, placeholder: 'default', onchange: put('signal', rate)}),
       ambient: element(
           'input',
-          {id: 'scene-ambient', size: 8, placeholder: 'usual', onchange: put('ambient', rate)}),
+          {id: 'scene-ambient', size: 8, placeholder: 'default', onchange: put('ambient', rate)}),
     };
     const texts = {
       name: 'Scene',
@@ -155,16 +156,16 @@ export class SceneView {
     pictures.truth.show(
         depthSpec(truth, 'True depth', scene.name, `True depth of the scene ${scene.name}`));
     pictures.depth.show(depthSpec(
-        alone.depth_m.values, 'Depth', 'each pixel alone',
-        `Depth decoded with ${name}, each pixel alone`));
+        alone.depth_m.values, 'Depth', 'unfiltered',
+        `Depth decoded with ${name}, unfiltered`));
     pictures.error.show(
-        errorSpec(errors, 'Error', mean(alone), `Depth error, each pixel alone, ${mean(alone)}`));
+        errorSpec(errors, 'Error', mean(alone), `Depth error, unfiltered, ${mean(alone)}`));
     pictures.plan.show({
       ...size,
       values: deviations,
       title: 'Predicted deviation',
-      note: 'each pixel alone',
-      label: 'Deviation of depth that the decoder predicts',
+      note: 'unfiltered',
+      label: 'Standard deviation of depth, as predicted by the decoder',
       colour: (v) => sequentialColour((v - scale[0]) / (scale[1] - scale[0] || 1)),
       scale: barOf('deviation', scale, sequentialColour),
       text: (v) => `deviation ${lengthText(v)}`
@@ -175,13 +176,13 @@ export class SceneView {
     pictures.filteredError.show(errorSpec(
         filteredErrors, 'Error', `${mean(filtered)}, filter ${scene.filter}`,
         `Depth error with the filter, ${mean(filtered)}`));
-    const each = (text) => `${text(alone)} alone, ${text(filtered)} filtered`;
+    const each = (text) => `${text(alone)} unfiltered, ${text(filtered)} filtered`;
     const share = ({ok_share: ok}) => `${shortText(100 * ok, 3)} %`;
     const rates =
         [alone.signal_e_per_s, alone.ambient_e_per_s].map((rate) => `${shortText(rate)} e/s`);
     byId('scene-figures').textContent =
-        `Code ${name}; signal ${rates[0]}, ambient ${rates[1]} at the reference. ` +
+        `Code ${name}; signal ${rates[0]}, ambient ${rates[1]} at the reference distance. ` +
         `Median error ${each((one) => lengthText(one.median_error_m, 3))}; ` +
-        `pixels that are ok ${each(share)}.`;
+        `pixels with status ok: ${each(share)}.`;
   }
 }

@@ -158,7 +158,7 @@ class Page(LabTest):
             edge.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight', bubbles: true, cancelable: true}));
             await settled();""")
         self.assertIn("hamiltonian-k4-edited.code.json", self.text("[data-command=evaluate] pre"))
-        self.assertIn("from this page first", self.text("[data-command=evaluate] .files"))
+        self.assertIn("First save from this page", self.text("[data-command=evaluate] .files"))
 
     def test_invalid_values_are_reported_at_the_field_and_the_picture_stays(self):
         for text in ("nan", "inf", "-1", "1e400", "five", ""):
@@ -182,7 +182,7 @@ class Page(LabTest):
     def test_an_unknown_family_is_reported_at_its_code(self):
         self.run_script("enter(byId('family-0'), '?'); enter(byId('other-0'), '<img src=x onerror=alert(1)>'); await settled();")
         self.assertIn("<img", self.text(".slot .problem"))
-        self.assertIn("before the problem", self.text("#error-table tbody tr"))
+        self.assertIn("before the error", self.text("#error-table tbody tr"))
         self.assertEqual(self.driver.execute_script("return document.querySelectorAll('figure.pale').length"), 4)
         self.assertEqual(self.driver.execute_script("return document.querySelectorAll('main img').length"), 0)
 
@@ -214,7 +214,7 @@ class Files(LabTest):
             self.driver.execute_script("File.prototype.arrayBuffer = File.prototype.text = File.prototype.stream = () => { throw new Error('it was read'); };")
             self.driver.find_element("id", "files").send_keys(str(big))
             self.wait("!document.getElementById('notice').hidden")
-        self.assertIn("1.0 GB is too large", self.text("#notice"))
+        self.assertIn("found 1.0 GB; expected at most", self.text("#notice"))
 
     def test_a_camera_and_a_code_are_loaded_and_saved(self):
         self.run_script("""
@@ -258,7 +258,7 @@ class Links(LabTest):
             return "#1." + base64.urlsafe_b64encode(data).decode().rstrip("=")
 
         first = self.state()
-        for fragment, word in (("#0.abc", "version 0"), ("#99.abc", "version 99"), ("#nonsense", "not one"), ("#1.%00", "not one"), ("#1.AAAA", "damaged"),
+        for fragment, word in (("#0.abc", "version 0"), ("#99.abc", "version 99"), ("#nonsense", "not a link"), ("#1.%00", "not a link"), ("#1.AAAA", "damaged"),
                                (packed({}), "damaged"), (packed({**first, "codes": []}), "its codes"), (packed({**first, "seed": None}), "its trials or seed"),
                                (packed({**first, "camera": {"built_in": "paper-10f0", "changes": "x" * 3000000}}), "damaged")):
             self.open(fragment, settle=False)
@@ -318,7 +318,7 @@ class Readers(LabTest):
         self.assertEqual(fitting, [False, False, True])
 
     def test_most_pixels_of_the_first_scene_are_ok(self):
-        self.assertRegex(self.text("#scene-figures"), r"pixels that are ok 9\d[.\d]* % alone, (9|100)")
+        self.assertRegex(self.text("#scene-figures"), r"pixels with status ok: 9\d[.\d]* % unfiltered, (9|100)")
 
     def test_every_field_has_an_explanation(self):
         texts = self.run_script("return [...document.querySelectorAll('.field .doc')].map((doc) => doc.textContent);")
