@@ -49,7 +49,7 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
                                     int width) {
   if (!camera.lens)
     throw std::invalid_argument(
-        "target_distance_m needs the camera's [lens], which says where pixels look");
+        "target_distance_m requires the camera's [lens], which defines the ray of each pixel");
   const PixelRays rays = rays_of(camera.lens, view_of(camera.lens, width, height));
   Image<float> geometry_m(height, width);
   for (int row = 0; row < height; ++row)
@@ -60,9 +60,9 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
 }
 
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames) {
-  require(!camera.sensor.is_signed(), "sensor.demodulation", "signed",
-          "must be \"gain\" to calibrate noise: what a mixer gathers does not say how much light "
-          "makes its noise");
+  require(
+      !camera.sensor.is_signed(), "sensor.demodulation", "signed",
+      "must be \"gain\" to calibrate noise: the mean of a mixer does not determine its shot noise");
   PhotonTransferOptions options{.adc_bits = camera.sensor.adc_bits};
   if (!has_dark_frames || camera.sensor.readout == Readout::difference)
     options.black_level_dn = camera.sensor.black_level_dn;

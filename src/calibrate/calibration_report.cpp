@@ -58,7 +58,7 @@ std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found) {
                     found.full_well_e ? estimate_text(*found.full_well_e, 1) : "not reached"});
   }
   rows.push_back({"sensor.adc_bits", fmt::format("{}", found.adc_bits)});
-  rows.push_back({"chi^2 per freedom", fmt::format("{:.3g}", found.reduced_chi2)});
+  rows.push_back({"chi^2 per degree of freedom", fmt::format("{:.3g}", found.reduced_chi2)});
   return rows;
 }
 
@@ -90,19 +90,15 @@ Page response_report(const CalibratedResponse& found, const std::string& source,
     }
   }
   Section section{"Impulse response",
-                  {table_of_rows("fits", "Fits to the record itself.", response_rows(found), {0})}};
-  section.blocks.push_back(line_figure({.id = "record",
-                                        .title = "Record and fit",
-                                        .caption = "As measured, with the kind that fits best."},
-                                       recorded, {.label = "time", .unit = "ns"},
-                                       {.label = "record"}));
-  section.blocks.push_back(
-      line_figure({.id = "response",
-                   .title = "Response",
-                   .caption = "De-noised, its centre of gravity at 0, of sum 1."},
-                  {response}, {.label = "time", .unit = "ns"}, {.label = "response"}));
+                  {table_of_rows("fits", "Fits to the record.", response_rows(found), {0})}};
+  section.blocks.push_back(line_figure(
+      {.id = "record", .title = "Record and fit", .caption = "Measured record and the best fit."},
+      recorded, {.label = "time", .unit = "ns"}, {.label = "record"}));
+  section.blocks.push_back(line_figure(
+      {.id = "response", .title = "Response", .caption = "Denoised, centred at 0, with sum 1."},
+      {response}, {.label = "time", .unit = "ns"}, {.label = "response"}));
   section.blocks.push_back(line_figure({.id = "transfer",
-                                        .title = "What passes",
+                                        .title = "Transfer function",
                                         .caption = "Amplitude by frequency; -3 dB is 0.707."},
                                        {passed, fitted}, {.label = "frequency", .unit = "MHz"},
                                        {.label = "amplitude", .from_zero = true}));
@@ -132,14 +128,14 @@ Page noise_report(const PhotonTransfer& found, const std::string& command_line) 
   }
   std::vector<Series> series{used, line};
   if (!left.x.empty()) series.push_back(left);
-  Section section{"Noise",
-                  {table_of_rows("noise", "Found, with standard errors.", noise_rows(found), {0})}};
+  Section section{
+      "Noise", {table_of_rows("noise", "Estimates with standard errors.", noise_rows(found), {0})}};
   section.blocks.push_back(line_figure(
       {.id = "photon-transfer",
        .title = "Photon transfer",
        .caption =
-           fmt::format("Variance in time of each pair and measurement over {}. The slope is "
-                       "one over the gain, the height at black the read noise.",
+           fmt::format("Temporal variance of each pair and measurement over {}. The slope is 1 / "
+                       "gain; the value at the black level is the squared read noise.",
                        found.buckets > 1 ? "the light that both buckets collected" : "its mean")},
       series, {.label = found.buckets > 1 ? "light" : "mean", .unit = "DN"},
       {.label = "variance", .unit = "DN^2", .from_zero = true}));

@@ -47,7 +47,7 @@ std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::M
     const double left = std::sqrt((b + ratio * a).squaredNorm() / size2);
     if (left > 0.02)
       notes.push_back(fmt::format(
-          "taps of exposure {} are not opposite: {:.2g} % of their change does not cancel",
+          "taps of exposure {} are not complementary: {:.2g} % of their change does not cancel",
           exposure, 100 * left));
   }
   return mismatch;
@@ -272,22 +272,22 @@ void add_notes(const Workbench& bench, const CorrelationCalibrationOptions& opti
                CalibratedCorrelation& result) {
   auto& notes = result.notes;
   if (bench.groups.has_repeats())
-    notes.push_back(fmt::format(
-        "{} of {} frames repeat a delay (a whole period apart counts as one): they were averaged",
-        bench.raw.frames - bench.groups.count(), bench.raw.frames));
+    notes.push_back(
+        fmt::format("{} of {} frames repeat a delay (modulo the period) and were averaged",
+                    bench.raw.frames - bench.groups.count(), bench.raw.frames));
   if (!bench.groups.from_zero)
-    notes.push_back(fmt::format(
-        "the delays are not steps of a period from 0: the table of {} rows is the series of {} "
-        "harmonics through them",
-        bench.groups.count(), bench.basis.harmonics()));
+    notes.push_back(
+        fmt::format("the delays are not equal steps of a period from 0; the table of {} rows is a "
+                    "Fourier series of {} harmonics fitted to them",
+                    bench.groups.count(), bench.basis.harmonics()));
   if (!result.drift_known)
     notes.emplace_back(
-        "drift of light or level is unknown: measure the first delay again at the end");
+        "drift of light and level is unknown; to determine it, measure the first delay again at "
+        "the end");
   else if (result.drift_corrected)
     notes.push_back(
         fmt::format("over the sweep the light changed by {:+.3g} ± {:.1g} % and the level by "
-                    "{:+.3g} ± {:.1g} "
-                    "raw numbers: taken out as straight lines",
+                    "{:+.3g} ± {:.1g} raw numbers; both were corrected as linear drifts",
                     100 * result.light_drift.value, 100 * result.light_drift.standard_error,
                     result.level_drift.value, result.level_drift.standard_error));
   if (result.dead.total() > 0)
@@ -297,16 +297,16 @@ void add_notes(const Workbench& bench, const CorrelationCalibrationOptions& opti
         result.dead.low));
   if (options.dark.frames == 0)
     notes.emplace_back(
-        "no frames with the light off: black level as the camera says, ambient light taken as "
-        "equal for all measurements");
+        "no frames with the light off: the black level is the camera's, and ambient light is "
+        "assumed equal for all measurements");
   if (result.noise_source == "high harmonics")
     notes.emplace_back(
-        "errors come from the upper half of the harmonics, taken to be noise: repeat delays or "
-        "give frames for better ones");
+        "errors were estimated from the upper half of the harmonics, assumed to be noise; repeat "
+        "delays or provide frames for better estimates");
   if (bench.live.size() > 1 && options.geometry_m.empty())
     notes.emplace_back(
-        "the offset map holds the slant of the target too; --target-distance-m takes that of a "
-        "flat one out, with the camera's [lens]");
+        "the offset map includes the depth variation of the target; --target-distance-m removes "
+        "that of a flat target, with the camera's [lens]");
 }
 
 }  // namespace
@@ -320,12 +320,12 @@ void CorrelationCalibrationOptions::validate(const DelaySweep& sweep) const {
   require(exposure_s.size() == 0 ||
               (exposure_s.size() == frames.measurements && exposure_s.minCoeff() > 0.0),
           "exposure_s", exposure_s.size(),
-          fmt::format("must be {} times > 0", frames.measurements));
+          fmt::format("must be {} exposure times > 0", frames.measurements));
   require(dark.frames == 0 || (dark.height == frames.height && dark.width == frames.width &&
                                dark.measurements == frames.measurements),
           "dark frames", fmt::format("({}, {}, {})", dark.height, dark.width, dark.measurements),
-          fmt::format("must be ({}, {}, {}) as the sweep", frames.height, frames.width,
-                      frames.measurements));
+          fmt::format("must be ({}, {}, {}), the shape of the sweep's frames", frames.height,
+                      frames.width, frames.measurements));
   require(geometry_m.empty() ||
               (geometry_m.height == frames.height && geometry_m.width == frames.width),
           "geometry", fmt::format("{} x {}", geometry_m.height, geometry_m.width),

@@ -37,13 +37,13 @@ Figure table_figure(const CalibratedCorrelation& found, const std::vector<IdealC
   }
   return line_figure({.id = "table",
                       .title = "Measured correlation functions",
-                      .caption = "Bars are 4 standard errors; dashed lines the ideal code that "
-                                 "fits best, behind the fitted response."},
+                      .caption = "Bars: 4 standard errors. Dashed: best-fitting ideal code with "
+                                 "the fitted impulse responses."},
                      series, {.label = "delay", .unit = "periods"}, {.label = "raw number"});
 }
 
 Figure harmonics_figure(const IdealCodeFit& fit) {
-  Series measured{.name = "measured over ideal", .mark = Mark::markers};
+  Series measured{.name = "measured / ideal", .mark = Mark::markers};
   for (const HarmonicRatio& h : fit.harmonics) {
     measured.x.push_back(h.harmonic);
     measured.y.push_back(h.ratio.value);
@@ -59,7 +59,7 @@ Figure harmonics_figure(const IdealCodeFit& fit) {
 
 Table fits_table(const std::vector<IdealCodeFit>& fits) {
   Table table{.id = "codes",
-              .caption = "Ideal codes against the table.",
+              .caption = "Fits of ideal codes to the table.",
               .columns = {{"code"},
                           {"left (%)", true},
                           {"without response (%)", true},
@@ -99,7 +99,7 @@ Page correlation_report(const CalibratedCorrelation& found, const std::vector<Id
     maps.blocks.push_back(
         image_figure({.id = "gain-map",
                       .title = "Gain",
-                      .caption = "Response of each pixel over the mean response."},
+                      .caption = "Response of each pixel relative to the mean response."},
                      {{.pixels = found.maps.gain}}, {.label = "gain", .clip_fraction = 0.01}));
     page.sections.push_back(std::move(maps));
   }

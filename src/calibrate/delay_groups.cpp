@@ -68,7 +68,7 @@ DelayGroups delay_groups(const std::vector<double>& delay_periods) {
 void require_whole_period(const DelayGroups& groups) {
   constexpr int min_groups = 8;
   require(groups.count() >= min_groups, "delays", groups.count(),
-          fmt::format("must be at least {} different ones within the period", min_groups));
+          fmt::format("must be at least {} different delays within the period", min_groups));
   std::vector<double> gaps;
   for (int g = 0; g < groups.count(); ++g) {
     const auto i = static_cast<std::size_t>(g);
@@ -83,7 +83,7 @@ void require_whole_period(const DelayGroups& groups) {
   const double end = groups.place[static_cast<std::size_t>(widest)] + gap - usual;
   require(false, "delays",
           fmt::format("{:.4g} periods long in steps of {:.4g}", groups.span_periods, usual),
-          fmt::format("must run through a whole period without a gap: those from {:.4g} to {:.4g} "
+          fmt::format("must cover a whole period without a gap: delays from {:.4g} to {:.4g} "
                       "periods are missing, {:.0f} more steps",
                       begin, end, std::max(1.0, std::round(gap / usual) - 1)));
 }

@@ -113,7 +113,7 @@ void DelaySweep::validate() const {
   const auto needed = static_cast<std::size_t>(frames.frames) * frames.pixels_per_frame() *
                       static_cast<std::size_t>(frames.measurements);
   require(needed > 0 && frames.values.size() == needed, "frames", frames.values.size(),
-          "must hold F x H x W x K values");
+          "must have F x H x W x K values");
   require_whole_period(delay_groups(delay_periods));
 }
 
@@ -121,9 +121,9 @@ DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepO
   DelaySweep sweep;
   if (is_number_table(path)) {
     if (!options.shifts.empty())
-      throw IoError(path.string(),
-                    "is a table, whose first column is the delay; expected no "
-                    "list of shifts beside it");
+      throw IoError(
+          path.string(),
+          "is a table, whose first column is the delay; expected no separate list of shifts");
     sweep = read_text(path, options);
   } else if (!options.shifts.empty()) {
     sweep = read_stack(path, options);
@@ -132,8 +132,8 @@ DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepO
     sweep.frames = frames_of(file.table.correlation);
     sweep.notes = file.notes;
     const int count = file.table.samples();
-    sweep.notes.push_back(fmt::format("{}: its {} rows were taken as equal steps of one period",
-                                      path.string(), count));
+    sweep.notes.push_back(fmt::format(
+        "{}: its {} rows were interpreted as equal steps of one period", path.string(), count));
     for (int n = 0; n < count; ++n) sweep.delay_periods.push_back(static_cast<double>(n) / count);
   }
   try {

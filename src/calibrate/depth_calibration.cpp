@@ -180,10 +180,10 @@ int degree_within(const DepthFit& fit, std::vector<std::string>& notes) {
   const double share =
       std::min((bottom - top + 1.0) / fit.height, (right - left + 1.0) / fit.width);
   if (share > 0.7) return max_error_degree;
-  notes.push_back(fmt::format(
-      "the reference spans {:.0f} % of the image's rows or columns: beyond them the field over "
-      "rows and columns is {}",
-      100.0 * share, share > 0.3 ? "a plane" : "constant"));
+  notes.push_back(
+      fmt::format("the reference spans {:.0f} % of the image's rows or columns, so the error field "
+                  "over rows and columns is extrapolated as {}",
+                  100.0 * share, share > 0.3 ? "a plane" : "constant"));
   return share > 0.3 ? 1 : 0;
 }
 
@@ -221,7 +221,7 @@ std::optional<double> model_error_percent(const RawFrames& frames, const DepthFi
   double steps_done = 0.0;
   const auto is_enough = [&](double percent) {
     constexpr double allowed_share = 0.01, steps = 8.0;
-    report(progress, steps_done++ / steps, "finding the model error");
+    report(progress, steps_done++ / steps, "estimating the model error");
     Decoder(table, {.model_error_percent = percent})
         .decode(view_of_frame(raw, 0), {.status = status.data(), .residual = residual.data()});
     const auto inconsistent = std::ranges::count(status, PixelStatus::inconsistent);
@@ -252,50 +252,49 @@ void turn_backwards(MeasuredTable& table, std::vector<ReferenceSample>& samples,
 void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
                const Eigen::VectorXd& fitted_m, double covered, const Chosen& chosen,
                CalibratedDepth& result) {
-  if (result.reversed) result.notes.push_back("delay runs backwards: the table written does, too");
+  if (result.reversed) result.notes.push_back("delay is reversed, also in the table");
   const auto [nearest, farthest] =
       std::ranges::minmax(each(fit.samples, [](const auto& s) { return s.reference_m; }));
   if (covered > 0.1 && farthest - nearest < 1e-3 * fit.range_m)
-    result.notes.push_back(fmt::format(
-        "the reference is {:.4g} m everywhere, but depths spread over {:.0f} % of the range: is it "
-        "of this scene? A number for each frame is the distance of a flat target",
-        nearest, 100.0 * covered));
+    result.notes.push_back(
+        fmt::format("the reference is {:.4g} m everywhere, but depths spread over {:.0f} % of the "
+                    "range; check that it shows this scene. One number per frame is interpreted as "
+                    "the distance of a flat target",
+                    nearest, 100.0 * covered));
   constexpr double usual_share = 0.03;
   if (result.rms_before_m > usual_share * fit.range_m)
     result.notes.push_back(
-        fmt::format("depth is off by {:.2g} % of the range (rms, about its mean), more than "
-                    "cameras wiggle: are "
-                    "frequency, code and order of exposures those of these frames?",
+        fmt::format("depth is off by {:.2g} % of the range (rms, around its mean), more than usual "
+                    "wiggling; check frequency, code and order of exposures",
                     100.0 * result.rms_before_m / fit.range_m));
   const auto reference_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
   if (covered < 0.05 &&
       quantile_of(reference_m, 0.95) - quantile_of(reference_m, 0.05) > 0.05 * fit.range_m)
     result.notes.push_back(
-        "the decoded depth hardly changes where the reference does: are code and order of "
-        "exposures those of these frames? Only an offset and a field "
-        "over "
-        "the image were looked for");
+        "the decoded depth hardly changes with the reference; check code and order of exposures. "
+        "Only an offset and a field over the image were fitted");
   else if (covered < 0.05)
     result.notes.push_back(
-        "the reference hardly changes: only an offset and a field over the image were looked for, "
-        "at this distance");
+        "the reference hardly changes; only an offset and a field over the image were fitted, at "
+        "this distance");
   else if (result.known_share < 0.999)
-    result.notes.push_back(fmt::format(
-        "known from the reference: {:.0f} % of the range; in the rest the correction is the "
-        "model's word, of {} terms",
-        100.0 * result.known_share, result.far_terms.size()));
+    result.notes.push_back(
+        fmt::format("the reference covers {:.0f} % of the range; elsewhere the correction is "
+                    "extrapolated by a model of {} terms",
+                    100.0 * result.known_share, result.far_terms.size()));
   if (!result.rms_m)
     result.notes.push_back(
-        "too few pixels have weight to hold some of them out: only the smallest set of terms was "
-        "used, and the remaining error is not known");
+        "too few pixels have weight for cross-validation; only the smallest set of terms was used, "
+        "and the remaining error is unknown");
   if (result.far_rms_m && result.known_share < 0.999 && chosen.skipped_parts > 0)
-    result.notes.push_back(fmt::format(
-        "{} of the 4 quarters of the reference's range contain no depths to hold out: terms beyond "
-        "the known range were chosen with the other quarters",
-        chosen.skipped_parts));
+    result.notes.push_back(
+        fmt::format("{} of the 4 quarters of the reference's range contain no depths to hold out; "
+                    "terms for extrapolation were selected with the other quarters",
+                    chosen.skipped_parts));
   if (result.outlier_share > 0.3)
-    result.notes.push_back(fmt::format("{:.0f} % of the pixels fit nothing and were left out",
-                                       100.0 * result.outlier_share));
+    result.notes.push_back(
+        fmt::format("{:.0f} % of the pixels do not fit the model and were excluded",
+                    100.0 * result.outlier_share));
   std::vector<double> expected_m;
   for (Eigen::Index i = 0; i < fit.size(); ++i)
     expected_m.push_back(fit.samples[static_cast<std::size_t>(i)].depth_m - fit.start_m -
@@ -303,13 +302,13 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
   constexpr double usual_percent = 10.0;
   if (!result.model_error_percent)
     result.notes.push_back(
-        "the model error is not known: the code has no degrees of freedom beyond depth, signal and "
-        "ambient light");
+        "the model error is unknown, because the code has no degrees of freedom beyond depth, "
+        "signal and ambient light");
   else if (*result.model_error_percent > usual_percent)
-    result.notes.push_back(fmt::format(
-        "no depth explains the measurements to better than {:.0f} % of the signal: do code, "
-        "order of exposures and noise of the camera match these frames?",
-        *result.model_error_percent));
+    result.notes.push_back(
+        fmt::format("no depth explains the measurements to better than {:.0f} % of the signal; "
+                    "check code, order of exposures and the camera's noise",
+                    *result.model_error_percent));
   if (auto note = shift_note(fit.samples, reference, expected_m, fit.range_m, fit.scale_m))
     result.notes.push_back(*note);
 }
@@ -317,7 +316,7 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
 /// Converts z-depth to depth along the camera's rays. Images of other sizes are rejected later.
 ReferenceDepth along_rays(ReferenceDepth z, const Camera& camera, int height, int width) {
   require(camera.lens.has_value(), "lens", "none",
-          "must say where pixels look, so that a reference along the axis can be turned");
+          "is required to convert a reference along the axis to distances along the rays");
   const PixelRays rays = rays_of(camera.lens, view_of(camera.lens, width, height));
   for (Image<float>& depth_m : z.depth_m) {
     if (depth_m.size() == 1) depth_m = Image<float>(height, width, depth_m.pixels.front());
@@ -390,7 +389,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   solve_robustly(all.columns(), 10, fit);
 
   // Choose terms by cross-validation and fit only those.
-  report(parts[1], 0.5, "choosing terms");
+  report(parts[1], 0.5, "selecting terms");
   const Chosen chosen = choose(fit, highest, all.degree, !result.frequencies.empty());
   const std::vector<int> far_columns = chosen.beyond.columns(), columns = chosen.known.columns();
   const Eigen::VectorXd far = solve_robustly(far_columns, 4, fit);

@@ -15,11 +15,11 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the correction in the middle of the image minus the mean error [mm].
+/// Returns the correction in the middle of the image, without the mean error [mm].
 std::vector<Series> correction_curves(const CalibratedDepth& found) {
   ColourAssignment colours;
-  Series known{.name = "taken off", .style = colours.style("taken off")};
-  Series beyond{.name = "taken off, the model's word", .style = colours.style("taken off")};
+  Series known{.name = "correction", .style = colours.style("correction")};
+  Series beyond{.name = "correction, extrapolated", .style = colours.style("correction")};
   beyond.style.dash = Dash::dash;
   const DepthCorrection& correction = *found.table.correction;
   const std::vector<double>& depths = found.picture.depth_m;
@@ -55,12 +55,12 @@ Figure error_figure(const CalibratedDepth& found) {
   std::vector<Series> series = correction_curves(found);
   for (const Series& curve : series) colours.style(curve.name);
   series.push_back(points("error", found.picture.before_m));
-  series.push_back(points("left over", found.picture.after_m));
+  series.push_back(points("remaining error", found.picture.after_m));
   return line_figure({.id = "error-over-depth",
                       .title = "Depth error over depth",
-                      .caption = "Less its mean; the curve is that of the image's middle at the "
-                                 "usual signal, points are means over the whole image."},
-                     series, {.label = "depth as decoded", .unit = "m"},
+                      .caption = "Without its mean. Curve: correction in the middle of the image "
+                                 "at the usual signal. Points: means over the image."},
+                     series, {.label = "decoded depth", .unit = "m"},
                      {.label = "depth error", .unit = "mm"});
 }
 
@@ -96,8 +96,7 @@ std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& fou
   }
   if (mingled > 0)
     rows.push_back(
-        {fmt::format("{} more, which this part of the range does not tell apart", mingled), "",
-         ""});
+        {fmt::format("{} more, which this part of the range cannot separate", mingled), "", ""});
   return rows;
 }
 
@@ -120,16 +119,17 @@ std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& foun
                     fmt::format("± {:.3f}", 1.96e3 * its.offset_m.standard_error),
                     fmt::format("{:.4f}", its.contrast.value),
                     fmt::format("± {:.4f}", 1.96 * its.contrast.standard_error),
-                    harmonics.empty() ? "none beyond the model" : harmonics});
+                    harmonics.empty() ? "none" : harmonics});
   }
   return rows;
 }
 
 std::string depth_error_text(const CalibratedDepth& found) {
-  return fmt::format("depth is {:+.4g} m off in the mean, {} rms around it; {}", found.mean_error_m,
+  return fmt::format("mean offset {:+.4g} m, residual {} rms; {}", found.mean_error_m,
                      length_text(found.rms_before_m),
-                     found.rms_m ? length_text(*found.rms_m) + " on blocks held out once corrected"
-                                 : "remaining error not known");
+                     found.rms_m
+                         ? length_text(*found.rms_m) + " rms on held-out blocks after correction"
+                         : "remaining error unknown");
 }
 
 Page depth_report(const CalibratedDepth& found, const std::string& source,
@@ -144,22 +144,21 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
         {.label = "depth error", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.02});
   };
   if (!found.frequencies.empty())
-    page.sections.push_back(
-        {"Frequencies",
-         {table_of_rows("frequencies",
-                        "Offset that the camera adds to depth, contrast relative to the camera's "
-                        "model and harmonics beyond it, of each frequency.",
-                        frequency_rows(found), {5})}});
+    page.sections.push_back({"Frequencies",
+                             {table_of_rows("frequencies",
+                                            "Depth offset, contrast relative to the camera's "
+                                            "model, and additional harmonics of each frequency.",
+                                            frequency_rows(found), {5})}});
   page.sections.push_back(
       {"Over depth",
-       {error_figure(found), table_of_rows("terms",
-                                           "Terms of the error in the known part of the range, "
-                                           "with 95 % intervals.",
-                                           depth_term_rows(found), {0})}});
+       {error_figure(found),
+        table_of_rows("terms",
+                      "Terms of the error in the covered part of the range, with 95 % intervals.",
+                      depth_term_rows(found), {0})}});
   page.sections.push_back(
       {"Over the image",
        {image("error-image", "Depth error",
-              "Less its mean, over all frames; pixels that fit nothing are left out.")}});
+              "Without its mean, over all frames. Pixels that do not fit the model are empty.")}});
   return finished_calibration_page(std::move(page), found.notes, command_line);
 }
 
@@ -185,10 +184,13 @@ Page temperature_report(const TemperatureDrift& found, const std::string& source
   section.blocks.push_back(drift_figure(
       {.id = "depth-over-temperature",
        .title = "Depth",
-       .caption = "Of each frame against the mean of all: median over pixels."},
+       .caption = "Difference of each frame to the mean of all frames: median over pixels."},
       found, found.offset_m, found.offset_m_per_c, 1e3, {.label = "depth change", .unit = "mm"}));
   section.blocks.push_back(drift_figure(
-      {.id = "signal-over-temperature", .title = "Signal", .caption = "Its logarithm, likewise."},
+      {.id = "signal-over-temperature",
+       .title = "Signal",
+       .caption = "Logarithm of the signal: difference of each frame to the mean of all frames, "
+                  "median over pixels."},
       found, found.log_signal, found.signal_per_c, 1e2, {.label = "signal change", .unit = "%"}));
   return finished_calibration_page({.title = fmt::format("Drift with temperature of {}", source),
                                     .subtitle = fmt::format("{} frames around {:.1f} degrees C",
@@ -201,7 +203,9 @@ Page stray_light_report(const CalibratedStrayLight& found, const std::string& so
                         const std::string& command_line) {
   ColourAssignment colours;
   Series shares{.name = "share", .mark = Mark::line_and_markers, .style = colours.style("share")};
-  Table table{.caption = "Share of a pixel's light in each pixel so far away, with 95 % intervals.",
+  Table table{.caption =
+                  "Share of a pixel's light that each pixel at this distance receives, with 95 % "
+                  "intervals.",
               .columns = {{"distance (px)", true}, {"share (ppm)", true}, {"95 % (ppm)", true}}};
   for (std::size_t j = 0; j < found.share.size(); ++j) {
     shares.x.push_back(found.radius_px[j]);
@@ -212,12 +216,12 @@ Page stray_light_report(const CalibratedStrayLight& found, const std::string& so
                           fmt::format("± {:.3f}", 1.96e6 * found.share[j].standard_error)});
   }
   Section section{"Stray light", {}};
-  section.blocks.push_back(
-      line_figure({.id = "share-over-distance",
-                   .title = "Share over distance",
-                   .caption = "Of a pixel's light, in each pixel so far away."},
-                  {shares}, {.label = "distance", .unit = "px", .logarithmic = true},
-                  {.label = "share", .unit = "ppm"}));
+  section.blocks.push_back(line_figure(
+      {.id = "share-over-distance",
+       .title = "Share over distance",
+       .caption = "Share of a pixel's light that each pixel at this distance receives."},
+      {shares}, {.label = "distance", .unit = "px", .logarithmic = true},
+      {.label = "share", .unit = "ppm"}));
   section.blocks.push_back(std::move(table));
   return finished_calibration_page(
       {.title = fmt::format("Stray light in {}", source),

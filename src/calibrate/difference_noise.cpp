@@ -171,7 +171,7 @@ PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFr
   if (dark.frames > 0) check_pairs(dark, levels.front(), "dark");
   require(levels.front().measurements == table.measurements(), "measurements of the frames",
           levels.front().measurements,
-          fmt::format("must be {} as the code's", table.measurements()));
+          fmt::format("must be {}, like the code", table.measurements()));
 
   PhotonTransfer result;
   result.buckets = buckets;
@@ -192,15 +192,15 @@ PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFr
               std::max(result.saturation_dn, std::abs(static_cast<double>(value)));
     }
   if (too_bright > 0)
-    result.notes.push_back(fmt::format(
-        "{} pixels were left out: one of their buckets comes within 5 % of its converter's last "
-        "number, which differences do not show",
-        too_bright));
+    result.notes.push_back(
+        fmt::format("{} pixels were excluded, because one of their buckets comes within 5 % of the "
+                    "converter's maximum, which differences do not show",
+                    too_bright));
   set_adc_bits(options, result.saturation_dn, result);
   fit_photon_transfer(result);
   result.notes.emplace_back(
-      "the light was taken to be the camera's own: light from elsewhere makes noise that counts as "
-      "read noise, if it is in all frames, or as a smaller gain");
+      "all light was assumed to be the camera's own: shot noise of other light appears as read "
+      "noise if it is in all frames, and otherwise as a smaller gain");
   return result;
 }
 

@@ -208,10 +208,10 @@ void add_fit(const HarmonicFit& fit, std::size_t frequency, double period_m,
   if (!fit.is_determined(fundamental))
     notes.push_back(fmt::format("{}: the offset is not determined by these frames", name));
   if (!unknown.empty())
-    notes.push_back(fmt::format(
-        "{}: harmonics {} are not determined by these frames and stay as in the camera's model; "
-        "depths that cover its period, {:.3g} m, determine them",
-        name, list_of(unknown), period_m));
+    notes.push_back(
+        fmt::format("{}: harmonics {} are not determined by these frames and remain as in the "
+                    "camera's model; depths over its whole period, {:.3g} m, determine them",
+                    name, list_of(unknown), period_m));
 }
 
 /// Returns the frequencies of a code in units of f0, in increasing order.

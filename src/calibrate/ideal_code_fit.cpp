@@ -219,7 +219,7 @@ std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
     fits.push_back(std::move(fit));
   }
   require(!fits.empty(), "codes", codes.size(),
-          fmt::format("must hold one of {} measurements, as the table has", table.cols()));
+          fmt::format("must contain a code of {} measurements, as in the table", table.cols()));
   std::ranges::stable_sort(fits, {}, &IdealCodeFit::residual);
   return fits;
 }

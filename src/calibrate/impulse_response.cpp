@@ -93,8 +93,8 @@ void unroll(CalibratedResponse& result, Eigen::VectorXd& values) {
   values = std::move(rolled);
   result.record.start_time_s -= static_cast<double>(move) * result.record.time_step_s;
   result.notes.emplace_back(
-      "the pulse runs across the ends of the record, which was taken for a whole period and turned "
-      "round");
+      "the pulse extends over the ends of the record, which was assumed to be a whole period and "
+      "rotated");
 }
 
 struct Place {
@@ -137,9 +137,9 @@ Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitatio
   if (ahead >= min_samples) return values.head(ahead);
   const Index behind = values.size() - (place.centre + 3 * reach);
   if (excitation == Excitation::pulse && behind >= min_samples) return values.tail(behind);
-  require(false, "record", fmt::format("{} quiet values ahead", std::max<Index>(0, ahead)),
-          fmt::format("must show the level ahead of the response: at least {} values, 3 widths "
-                      "before it",
+  require(false, "record", fmt::format("{} values before the response", std::max<Index>(0, ahead)),
+          fmt::format("must contain the level before the response: at least {} values that end 3 "
+                      "widths before it",
                       min_samples));
   return {};
 }
@@ -157,7 +157,7 @@ std::pair<Index, Index> support_of(const Eigen::VectorXd& response, const Place&
     last = i;
   }
   require(last >= first, "record", "noise",
-          "must hold a response that stands out of its noise by 4 standard deviations");
+          "must contain a response that exceeds its noise by 4 standard deviations");
   const auto room = static_cast<Index>(std::ceil(2 * place.width));
   return {std::max<Index>(0, first - room), std::min(smooth.size() - 1, last + room)};
 }
@@ -265,7 +265,7 @@ bool CalibratedResponse::fit_is_good() const {
 double bandwidth_hz(const ImpulseResponse& response) {
   response.validate("response");
   require(response.kind != ImpulseResponse::Kind::none, "response.kind", "none",
-          "must be a response, whose bandwidth is finite");
+          "must be a response with a finite bandwidth");
   // Frequency step: 1/64 of a scale at which every kind has negligible loss.
   const double scale_hz =
       response.kind == ImpulseResponse::Kind::hann ? response.f_max_hz
@@ -275,7 +275,7 @@ double bandwidth_hz(const ImpulseResponse& response) {
   const double level = std::numbers::sqrt2 / 2;
   double low_hz = 0.0, high_hz = scale_hz / 64;
   for (int i = 0; std::abs(response.transfer(high_hz)) > level; ++i) {
-    require(i < 1 << 22, "response", "all-pass", "must have a bandwidth");
+    require(i < 1 << 22, "response", "all-pass", "must have a finite bandwidth");
     low_hz = high_hz;
     high_hz += scale_hz / 64;
   }
@@ -289,10 +289,10 @@ double bandwidth_hz(const ImpulseResponse& response) {
 CalibratedResponse calibrate_impulse_response(ResponseRecord record,
                                               const ResponseCalibrationOptions& options) {
   options.validate();
-  require(record.values.size() >= 16, "record", record.values.size(), "must hold >= 16 values");
+  require(record.values.size() >= 16, "record", record.values.size(), "must have >= 16 values");
   require(record.values.allFinite(), "record", "not finite", "must be finite");
   require(record.values.maxCoeff() > record.values.minCoeff(), "record", "constant",
-          "must hold a response");
+          "must contain a response");
   CalibratedResponse result;
   result.notes = record.notes;
   result.record = std::move(record);
@@ -322,8 +322,8 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   if (result.noise_rms < 1e-5 * result.height) {
     result.noise_rms = 1e-3 * result.height;
     result.notes.emplace_back(
-        "the level ahead of the response has no noise at all, so that the record was processed "
-        "before: its noise was taken to be 1/1000 of its height");
+        "the level before the response has no noise, so the record was processed before; its noise "
+        "was assumed to be 1/1000 of its height");
   }
   result.snr_db = 20 * std::log10(result.height / result.noise_rms);
   Eigen::VectorXd variance =
@@ -349,19 +349,18 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.peaks = peaks_of(result.response, denoised.noise_rms);
   for (std::size_t i = 1; i < result.peaks.size(); ++i)
     result.notes.push_back(fmt::format(
-        "{} peak of {:.2f} times the highest, {:+.4g} ns from it, was kept: an inner reflection "
-        "or a second path gives one; cut it from the record if it is not the arm's",
+        "{} peak of {:.2f} times the highest, {:+.4g} ns from it, was kept; remove it from the "
+        "record if it is a reflection or second path outside the arm",
         i == 1 ? "a second" : "another", result.peaks[i].height, 1e9 * result.peaks[i].time_s));
   if (const Index clipped = is_step ? 0 : clipped_values(values); clipped > 0)
-    result.notes.push_back(
-        fmt::format("the top of the pulse is flat: {} values in a row equal {:.4g}. If the "
-                    "oscilloscope clipped it, the bandwidth is too low: measure again with more "
-                    "volts per division",
-                    clipped, sign * values.maxCoeff()));
+    result.notes.push_back(fmt::format(
+        "the top of the pulse is flat: {} consecutive values equal {:.4g}. If the oscilloscope "
+        "clipped the pulse, the bandwidth is too low; measure again with more volts per division",
+        clipped, sign * values.maxCoeff()));
   if (!result.fit_is_good())
     result.notes.push_back(fmt::format(
         "no parametric kind describes the record to its noise (best {}, residual {:.2g} % of the "
-        "height, noise {:.2g} %): take the measured response",
+        "height, noise {:.2g} %); use the measured response (--as file)",
         name_of(result.fits.front().response.kind), 100 * result.fits.front().residual_rms,
         100 * result.noise_rms / result.height));
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
@@ -369,14 +368,13 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   const bool is_short = std::ranges::all_of(
       result.peaks, [&](const auto& peak) { return std::abs(peak.time_s) < 2 * grid_s; });
   if (width_s < 2 * grid_s && is_short)
-    result.notes.push_back(fmt::format(
-        "the response, {:.3g} ns wide, is shorter than two of the camera's time samples of {:.3g} "
-        "ns: it hardly changes anything there",
-        1e9 * width_s, 1e9 * grid_s));
+    result.notes.push_back(
+        fmt::format("the response, {:.3g} ns wide, is shorter than two of the camera's time "
+                    "samples of {:.3g} ns and has hardly any effect",
+                    1e9 * width_s, 1e9 * grid_s));
   if (result.snr_db < 20)
     result.notes.push_back(
-        fmt::format("the record's signal is only {:.0f} dB above its noise; "
-                    "average more of them",
+        fmt::format("the record's signal is only {:.0f} dB above its noise; average more records",
                     result.snr_db));
   result.background *= sign;
   return result;

@@ -63,12 +63,12 @@ double limit_of(const std::vector<RawFrames>& levels, bool& piled_up) {
 
 void check_pairs(const RawFrames& raw, const RawFrames& first, const char* name) {
   require(raw.frames >= 2 && raw.frames % 2 == 0, fmt::format("{} frames", name), raw.frames,
-          "must be pairs of the same light: an even number, at least 2");
+          "must be pairs of equal light: an even number, at least 2");
   require(raw.height == first.height && raw.width == first.width &&
               raw.measurements == first.measurements,
           fmt::format("{} size", name),
           fmt::format("({}, {}, {})", raw.height, raw.width, raw.measurements),
-          fmt::format("must be ({}, {}, {}) as the first", first.height, first.width,
+          fmt::format("must be ({}, {}, {}), like the first", first.height, first.width,
                       first.measurements));
   require(raw.pixels_per_frame() >= 16, fmt::format("{} pixels", name), raw.pixels_per_frame(),
           "must be >= 16");
@@ -136,9 +136,9 @@ void set_black_level(const RawFrames& dark, const PhotonTransferOptions& options
     result.black_level_dn = {*options.black_level_dn, 0.0};
     return;
   }
-  require(
-      dark.frames > 0, "dark frames", 0,
-      "must be given, or the black level: it does not follow from the line of variance over mean");
+  require(dark.frames > 0, "dark frames", 0,
+          "must be > 0, or the black level must be given, because the line of variance over mean "
+          "does not determine it");
   RunningStatistics mean;
   for (const float value : dark.values)
     if (std::isfinite(value)) mean.add(static_cast<double>(value));
@@ -155,14 +155,14 @@ void set_full_well(bool piled_up, PhotonTransfer& result) {
   const double last_dn = std::exp2(result.adc_bits) - 1.0;
   if (!piled_up) {
     result.notes.emplace_back(
-        "no frame reaches saturation: the full well is not known; add brighter ones");
+        "no frame is saturated, so the full well is unknown; add brighter frames");
     return;
   }
   if (result.saturation_dn >= last_dn - 0.5) {
-    result.notes.push_back(fmt::format(
-        "frames saturate at the converter's last number {:.0f}: the full well is beyond it, at "
-        "least {:.4g} e",
-        last_dn, (last_dn - result.black_level_dn.value) * result.gain_e_per_dn.value));
+    result.notes.push_back(
+        fmt::format("frames saturate at the converter's maximum {:.0f}, so the full well is "
+                    "larger: at least {:.4g} e",
+                    last_dn, (last_dn - result.black_level_dn.value) * result.gain_e_per_dn.value));
     return;
   }
   const double span_dn = result.saturation_dn - result.black_level_dn.value;
@@ -177,7 +177,7 @@ void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
   // A number contains the read noise of all buckets.
   const double a = line.value[0] / result.buckets, b = line.value[1];
   require(b > 0.0 && b > 3 * std::sqrt(line.covariance(1, 1)), "rise of variance with the mean", b,
-          "must be > 0 by 3 standard errors: the levels must differ in light");
+          "must be > 0 by 3 standard errors: the light levels must differ");
   // Increase the errors if points scatter more than their pixel numbers predict.
   const Eigen::DiagonalMatrix<double, 2> of_one(1.0 / result.buckets, 1.0);
   const Eigen::Matrix2d covariance =
@@ -201,22 +201,22 @@ void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
 void set_adc_bits(const PhotonTransferOptions& options, double highest_dn, PhotonTransfer& result) {
   result.adc_bits = options.adc_bits.value_or(min_usual_bits(highest_dn));
   if (!options.adc_bits)
-    result.notes.push_back(
-        fmt::format("the camera does not say adc_bits; {} bits hold the highest number {:.0f}",
-                    result.adc_bits, highest_dn));
+    result.notes.push_back(fmt::format(
+        "adc_bits is not set in the camera; assumed {} bits, which hold the largest value {:.0f}",
+        result.adc_bits, highest_dn));
 }
 
 void fit_photon_transfer(PhotonTransfer& result) {
   const auto fitted =
       std::ranges::count_if(result.points, [](const auto& p) { return !p.saturated; });
-  require(fitted >= 3, "pairs below saturation", fitted, "must be >= 3, dark ones included");
+  require(fitted >= 3, "pairs below saturation", fitted, "must be >= 3, including dark pairs");
   const FittedLine line = fit_line(result);
   result.reduced_chi2 = line.reduced_chi2;
   set_gain_and_read_noise(line, result);
   if (result.reduced_chi2 > 3)
     result.notes.push_back(fmt::format(
-        "the points scatter {:.2g} times as much as their errors: light that flickers within a "
-        "frame, a response that is not linear, or raw numbers that are not those of {}",
+        "the points scatter {:.2g} times as much as their errors; check for flickering light, a "
+        "nonlinear response, or raw numbers that are not from {}",
         std::sqrt(result.reduced_chi2), result.buckets > 1 ? "this code" : "single taps"));
 }
 

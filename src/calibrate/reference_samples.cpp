@@ -66,10 +66,10 @@ void require_same_size(const RawFrames& frames, const ReferenceDepth& reference)
   require(images == 1 || images == frames.frames, "reference", fmt::format("{} images", images),
           fmt::format("must be one, or one for each of the {} frames", frames.frames));
   for (const Image<float>& image : reference.depth_m)
-    require(
-        image.size() == 1 || (image.height == frames.height && image.width == frames.width),
-        "reference", fmt::format("{} x {}", image.height, image.width),
-        fmt::format("must be {} x {} as the frames, or one distance", frames.height, frames.width));
+    require(image.size() == 1 || (image.height == frames.height && image.width == frames.width),
+            "reference", fmt::format("{} x {}", image.height, image.width),
+            fmt::format("must be {} x {}, like the frames, or one distance", frames.height,
+                        frames.width));
 }
 
 double reference_at(const ReferenceDepth& reference, int frame, int row, int column) {
@@ -118,7 +118,7 @@ std::vector<ReferenceSample> reference_samples(const RawFrames& frames,
                                                const Progress& progress) {
   std::vector<ReferenceSample> samples = decoded_samples(frames, reference, table, progress);
   require(samples.size() >= min_compared, "reference", fmt::format("{} pixels", samples.size()),
-          fmt::format("must have depth in at least {} pixels that decode", min_compared));
+          fmt::format("must have depth in at least {} pixels with a decoded depth", min_compared));
   return samples;
 }
 
@@ -163,18 +163,18 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
   };
   for (const Flip& flip :
        {Flip{true, false, "flipped top to bottom"}, Flip{false, true, "mirrored left to right"},
-        Flip{true, true, "turned by 180 degrees"}})
+        Flip{true, true, "rotated by 180 degrees"}})
     for (const double direction : {1.0, -1.0}) {
       const double other_m = scatter_of(samples, range_m, direction, [&](const ReferenceSample& s) {
         return reference_at(reference, s.frame, flip.rows ? height - 1 - s.row : s.row,
                             flip.columns ? width - 1 - s.column : s.column);
       });
       require(other_m > 0.3 * scatter_m, "reference", flip.name,
-              "must show what the frames show, pixel by pixel");
+              "must show the same scene as the frames, pixel by pixel");
     }
   require(found >= differs, "reference", fmt::format("agreement {:.2f}", found),
-          "must agree with the decoded depth but for an offset, >= 0.6: is it of this scene, along "
-          "the ray, in metres, and is --code what the camera plays, in this order?");
+          "must be >= 0.6, apart from an offset; check that the reference shows this scene, in "
+          "metres along the ray, and check --code and the order of exposures");
   return sign < 0.0;
 }
 
@@ -212,8 +212,8 @@ std::optional<std::string> shift_note(const std::vector<ReferenceSample>& sample
   if (best == middle || cost[static_cast<std::size_t>(best)] > 0.85 * cost[middle])
     return std::nullopt;
   return fmt::format(
-      "the reference looks shifted: {} rows and {} columns farther on it fits {:.0f} % better at "
-      "edges; shift it back",
+      "the reference seems to be shifted: {} rows and {} columns farther on, it fits {:.0f} % "
+      "better at edges; shift it back",
       best / side - reach, best % side - reach,
       100.0 * (1.0 - cost[static_cast<std::size_t>(best)] / cost[middle]));
 }

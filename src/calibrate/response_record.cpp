@@ -50,9 +50,9 @@ void set_times(ResponseRecord& record, const Eigen::VectorXd& time_s,
     const double gap_s = time_s[i] - time_s[i - 1];
     const std::string place = fmt::format("{}:{}", file, lines[static_cast<std::size_t>(i)]);
     if (!(gap_s > 0.0))
-      throw IoError(place, fmt::format("found the time {:.9g} s after {:.9g} s; expected times "
-                                       "that rise",
-                                       time_s[i], time_s[i - 1]));
+      throw IoError(place,
+                    fmt::format("found the time {:.9g} s after {:.9g} s; expected increasing times",
+                                time_s[i], time_s[i - 1]));
     if (gap_s > longest_gap * step_s)
       throw IoError(place, fmt::format("found a gap of {:.4g} s between two times; expected at "
                                        "most {:.0f} steps of {:.4g} s",
@@ -71,15 +71,15 @@ void set_times(ResponseRecord& record, const Eigen::VectorXd& time_s,
   if (strayed <= equal_steps * mean_step_s) return;
   if (strayed <= mean_step_s && largest <= 0.5 * step_s) {
     record.notes.push_back(
-        fmt::format("{}: its times stray from equal steps by up to {:.2g} of a step and the values "
-                    "were resampled along straight lines",
+        fmt::format("{}: its times deviate from equal steps by up to {:.2g} of a step, and the "
+                    "values were resampled by linear interpolation",
                     file, strayed / mean_step_s));
   } else {
     record.time_step_s = step_s;
-    record.notes.push_back(fmt::format(
-        "{}: its times are not equally spaced (steps off by up to {:.3g} of {:.4g} s); the values "
-        "were resampled along straight lines",
-        file, largest / step_s, step_s));
+    record.notes.push_back(
+        fmt::format("{}: its times are not equally spaced (steps off by up to {:.3g} of {:.4g} s); "
+                    "the values were resampled by linear interpolation",
+                    file, largest / step_s, step_s));
   }
   record.values = resampled(time_s, record.values, record.time_step_s);
 }

@@ -78,7 +78,7 @@ Scene scene_of(const Eigen::MatrixXd& numbers, const Eigen::MatrixXd& seen, doub
   for (Eigen::Index p = 0; p < numbers.rows(); ++p)
     if (const double norm = numbers.row(p).norm(); std::isfinite(norm) && norm > most)
       most = norm, brightest = p;
-  require(brightest >= 0, "frames", "dark", "must show a bright target before black");
+  require(brightest >= 0, "frames", "dark", "must show a bright target on a black background");
   const std::vector<double> first = along(numbers, numbers.row(brightest));
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(numbers.cols());
   for (std::size_t p = 0; p < first.size(); ++p)
@@ -88,13 +88,13 @@ Scene scene_of(const Eigen::MatrixXd& numbers, const Eigen::MatrixXd& seen, doub
       require(seen.row(static_cast<Eigen::Index>(p)).maxCoeff() < clipped, "target",
               fmt::format("pixel ({}, {}) saturated", p / static_cast<std::size_t>(width),
                           p % static_cast<std::size_t>(width)),
-              "must not be: expose less and average more frames");
+              "must not be saturated; reduce the exposure and average more frames");
     }
   const double share = static_cast<double>(scene.target.size()) / static_cast<double>(first.size());
   require(scene.target.size() >= 4, "target", fmt::format("{} pixels", scene.target.size()),
           "must be at least 4 pixels");
   require(share <= 0.25, "target", fmt::format("{:.0f} % of the image", 100.0 * share),
-          "must be at most a quarter of it: a small bright one before black");
+          "must be at most a quarter of the image: a small bright target on a black background");
   scene.light = along(numbers, mean / static_cast<double>(scene.target.size()));
 
   Image<std::uint8_t> near(height, width);
@@ -127,7 +127,7 @@ std::vector<double> nodes_of(const Scene& scene) {
   for (double r = first_radius_px; nodes.empty() || nodes.back() < farthest; r *= radius_step)
     nodes.push_back(r);
   require(nodes.size() >= 2, "image", fmt::format("{} x {}", scene.height, scene.width),
-          "must reach farther around the target");
+          "must extend farther around the target");
   return nodes;
 }
 
@@ -163,7 +163,7 @@ CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFra
   require(dark.frames == 0 || (dark.height == frames.height && dark.width == frames.width &&
                                dark.measurements == frames.measurements),
           "dark size", fmt::format("({}, {}, {})", dark.height, dark.width, dark.measurements),
-          fmt::format("must be ({}, {}, {}) as the frames", frames.height, frames.width,
+          fmt::format("must be ({}, {}, {}), like the frames", frames.height, frames.width,
                       frames.measurements));
   const Eigen::MatrixXd seen = mean_of(frames);
   Eigen::MatrixXd numbers = seen;
@@ -194,7 +194,7 @@ CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFra
     const Eigen::MatrixXd made = made_by_nodes(scene, nodes, target, reach_px);
     const Eigen::LLT<Eigen::MatrixXd> normal(made.transpose() * made);
     require(normal.info() == Eigen::Success, "pixels around the target", result.pixels,
-            "do not tell the distances apart");
+            "cannot separate the distances");
     shares = normal.solve(made.transpose() * observed);
     // Noise differs between pixels and is estimated from their residuals, corrected for leverage
     // (HC3 of MacKinnon and White 1985).
@@ -210,7 +210,7 @@ CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFra
     double sum = 0.0;
     for (const float value : result.kernel.pixels) sum += static_cast<double>(value);
     require(sum < 0.5, "light scattered", sum,
-            "must be < 0.5 of all: the surroundings of the target are not black");
+            "must be < 0.5 of all light: the surroundings of the target are not black");
     const Image<float> stray =
         PaddedConvolution(result.kernel, scene.height, scene.width).apply(target);
     for (const std::size_t p : scene.target)
@@ -232,11 +232,10 @@ CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFra
     if (share.value < -3.0 * share.standard_error) ++negative;
   if (negative > 0)
     result.notes.push_back(fmt::format(
-        "{} of {} distances have less light than none: what is in the dark is not taken off "
-        "rightly (--dark)",
+        "{} of {} distances have significantly negative light; check the dark frames (--dark)",
         negative, nodes.size()));
   if (result.total.value < 3.0 * result.total.standard_error)
-    result.notes.emplace_back("no stray light stands out of the noise");
+    result.notes.emplace_back("the stray light is not significant");
   return result;
 }
 

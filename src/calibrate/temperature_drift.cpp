@@ -170,7 +170,7 @@ void compare_frames(const std::vector<DepthImage>& images, double range_m,
     }
   }
   require(result.pixels > 0, "pixels", result.pixels,
-          "there must be some that decode with status ok in every frame");
+          "must be >= 1: pixels with status ok in every frame");
   for (std::size_t f = 0; f < count; ++f) {
     result.offset_m.push_back(weighted_median(std::move(offsets[f])));
     result.log_signal.push_back(weighted_median(std::move(signals[f])));
@@ -228,9 +228,8 @@ void note_temperatures(const std::vector<double>& temperature_c, std::vector<std
   constexpr double hottest_c = 200.0;
   if (*least > hottest_c)
     notes.push_back(
-        fmt::format("temperatures from {:.4g} on are hotter than cameras get: are they in kelvin? "
-                    "--temperature "
-                    "is in degrees C",
+        fmt::format("temperatures of {:.4g} and more are implausible for cameras; check that they "
+                    "are in degrees C, not kelvin",
                     *least));
 }
 
@@ -239,18 +238,17 @@ void note_lines(bool has_sensor, TemperatureDrift& result) {
   for (const auto& [what, second] :
        {std::pair("offset", result.offset_m_per_c2), std::pair("signal", result.signal_per_c2)})
     if (is_significant(second))
-      result.notes.push_back(
-          fmt::format("{} is curved over temperature: a line does not describe it", what));
+      result.notes.push_back(fmt::format("{} is not linear in temperature", what));
   if (result.hysteresis_m && is_significant(*result.hysteresis_m))
-    result.notes.push_back(fmt::format(
-        "hysteresis: at the same temperature, depth is {:+.3g} ± {:.2g} mm farther while "
-        "the temperature rises than while it falls, so that the thermometer leads or "
-        "lags the part that drifts. {}",
-        1e3 * result.hysteresis_m->value,
-        1e3 * result.interval_factor * result.hysteresis_m->standard_error,
-        has_sensor ? "Record slower changes"
-                   : "Record slower changes, or fit the temperatures of light "
-                     "source and sensor together"));
+    result.notes.push_back(
+        fmt::format("hysteresis: at the same temperature, depth is {:+.3g} ± {:.2g} mm larger "
+                    "while the temperature rises than while it falls, so the thermometer leads or "
+                    "lags the part that drifts. {}",
+                    1e3 * result.hysteresis_m->value,
+                    1e3 * result.interval_factor * result.hysteresis_m->standard_error,
+                    has_sensor ? "Record slower changes"
+                               : "Record slower changes, or fit the temperatures of light "
+                                 "source and sensor together"));
 }
 
 }  // namespace
@@ -285,7 +283,7 @@ Camera with_temperature(Camera camera, const TemperatureDrift& found,
                                    .offset_m_per_c = found.offset_m_per_c.value,
                                    .signal_per_c = found.signal_per_c.value};
   require(found.sensor || !sensor_reference_c, "sensor_reference_c",
-          sensor_reference_c.value_or(0.0), "needs a drift with the sensor's temperature");
+          sensor_reference_c.value_or(0.0), "requires a drift with the sensor's temperature");
   if (found.sensor)
     camera.temperature->sensor =
         SensorTemperature{.reference_c = sensor_reference_c.value_or(found.sensor->mean_c),

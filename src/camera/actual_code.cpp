@@ -47,8 +47,8 @@ std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform&
   const double needed = std::ceil(pulses / nominal.duty() * (1.0 - 1e-9));
   return broken(
       fmt::format("code {} modulation {} duty", code.name(), e), nominal.duty(),
-      fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
-                  "period; {:.0f} points or more, {:.4g} MHz, can",
+      fmt::format("has no pulse that light.generator can output: its points are 1/{} of a period; "
+                  "expected {:.0f} points or more, {:.4g} MHz",
                   generator.points_per_period(frequency_hz), needed, 1e-6 * needed * frequency_hz));
 }
 

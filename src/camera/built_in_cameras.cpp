@@ -131,7 +131,7 @@ std::vector<Entry> entries() {
   constexpr const char* melexis = "Melexis MLX75027 datasheet, as in mlx75027_config's registers";
   return {
       {{std::string(default_camera_name),
-        "typical parts in a room: 1 W, 100 MHz",
+        "typical components, indoors: 1 W, 100 MHz",
         "hamiltonian-k4",
         {}},
        indoor_camera()},
@@ -169,7 +169,7 @@ std::vector<Entry> entries() {
         "Melexis MLX75027, VGA: 80 and 100 MHz, four phases each",
         "multifrequency-4x4-5x4",
         {{"fundamental_frequency_hz",
-          std::string(melexis) + ": 4 to 100 MHz; that it is these two is assumed"},
+          std::string(melexis) + ": 4 to 100 MHz; these two are assumed"},
          {"exposure_s", std::string(melexis) + ": 1 ms a phase by default"},
          {"light.frequencies_hz",
           std::string(melexis) + ": 4 to 100 MHz; listed are the multiples of 20 MHz"},

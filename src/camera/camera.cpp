@@ -21,25 +21,25 @@ namespace {
 void validate_adc(const Sensor& sensor) {
   if (sensor.adc_bits)
     require(sensor.gain_e_per_dn.has_value(), "sensor.adc_bits", *sensor.adc_bits,
-            "needs sensor.gain_e_per_dn beside it");
+            "requires sensor.gain_e_per_dn");
   if (sensor.gain_e_per_dn)
     require(sensor.adc_bits.has_value(), "sensor.gain_e_per_dn", *sensor.gain_e_per_dn,
-            "needs sensor.adc_bits beside it");
+            "requires sensor.adc_bits");
   if (sensor.black_level_dn) {
     require(sensor.adc_bits.has_value(), "sensor.black_level_dn", *sensor.black_level_dn,
-            "needs sensor.adc_bits beside it");
+            "requires sensor.adc_bits");
     require(*sensor.black_level_dn < std::exp2(*sensor.adc_bits), "sensor.black_level_dn",
-            *sensor.black_level_dn, "must be below the largest count");
+            *sensor.black_level_dn, "must be below 2^sensor.adc_bits");
   }
 }
 
-/// Rejects properties of taps for rows, which are sums of counts.
+/// Rows are sums of counts and support no properties of taps.
 void validate_rows(const Sensor& sensor) {
   const auto require_none = [](bool none, const char* field, const char* value) {
-    require(none, field, value, "does not go with sensor.readout = \"rows\"");
+    require(none, field, value, "cannot be combined with sensor.readout = \"rows\"");
   };
   require(sensor.taps == 1, "sensor.taps", sensor.taps,
-          "must be 1 with sensor.readout = \"rows\": a code has as many rows as it has");
+          "must be 1 with sensor.readout = \"rows\"; the code determines the number of rows");
   require(sensor.tap_mismatch == 0.0, "sensor.tap_mismatch", sensor.tap_mismatch,
           "must be 0 with sensor.readout = \"rows\"");
   require_none(!sensor.generator, "sensor.generator", "a generator");
@@ -47,8 +47,7 @@ void validate_rows(const Sensor& sensor) {
   require_none(!sensor.adc_bits, "sensor.adc_bits", "a converter");
 }
 
-/// Rejects properties that a mixer does not have. It outputs one signed number per exposure, and
-/// its weight alone determines how much light is used.
+/// A mixer returns one signed number and has no drain.
 void validate_mixer(const Sensor& sensor) {
   const char* const beside = "sensor.demodulation = \"signed\"";
   require(sensor.taps == 1, "sensor.taps", sensor.taps,
@@ -57,15 +56,14 @@ void validate_mixer(const Sensor& sensor) {
           sensor.readout == Readout::rows ? "rows" : "difference",
           fmt::format("must be \"separate\" with {}: {}", beside,
                       sensor.readout == Readout::rows
-                          ? "rows of one exposure have weights of any sign already"
-                          : "a mixer's number is the difference already"));
-  require(sensor.drain, "sensor.drain", "false",
-          fmt::format("must be left out with {}: a mixer weighs all light, and has no taps that "
-                      "could throw charge away",
-                      beside));
+                          ? "rows of one exposure already have signed weights"
+                          : "the number of a mixer is already a difference"));
+  require(
+      sensor.drain, "sensor.drain", "false",
+      fmt::format("must be omitted with {}: a mixer weights all light and has no drain", beside));
   require(!sensor.adc_bits || !sensor.black_level_dn || *sensor.black_level_dn > 0.0,
           "sensor.black_level_dn", 0.0,
-          fmt::format("must be > 0 with {}, or left out for counts of both signs", beside));
+          fmt::format("must be > 0 with {}, or omitted for signed counts", beside));
 }
 
 void validate_sensor(const Sensor& sensor) {
@@ -79,9 +77,9 @@ void validate_sensor(const Sensor& sensor) {
   if (sensor.integration_times_s)
     require_distinct("sensor.integration_times_s", *sensor.integration_times_s);
   require(sensor.drain || sensor.mixes_taps(), "sensor.drain", "false",
-          "needs sensor.taps >= 2: one tap that is always open measures nothing");
+          "requires sensor.taps >= 2: a single tap that is always open does not measure depth");
   require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",
-          "needs sensor.taps = 2");
+          "requires sensor.taps = 2");
   if (sensor.readout == Readout::rows) validate_rows(sensor);
   if (sensor.is_signed()) validate_mixer(sensor);
 }
@@ -99,12 +97,12 @@ void validate_depths(const OperatingRange& range, double range_m) {
   constexpr std::size_t max_parts = 10000;
   const std::vector<double>& weights = *range.depths;
   require(!weights.empty(), "operating.depths", "[]", "must list at least one weight");
-  require(weights.size() <= max_parts, "operating.depths",
-          fmt::format("{} weights", weights.size()),
-          fmt::format("must be at most {}, of equal parts of the working distance or range",
-                      max_parts));
+  require(
+      weights.size() <= max_parts, "operating.depths", fmt::format("{} weights", weights.size()),
+      fmt::format("must be at most {}, one for each equal part of the working distance or range",
+                  max_parts));
   require(*std::max_element(weights.begin(), weights.end()) > 0.0, "operating.depths",
-          "weights that are all 0", "must have one > 0: some depth must occur");
+          "weights that are all 0", "must have one > 0");
 }
 
 void validate_operating(const OperatingRange& range, double range_m) {
@@ -142,7 +140,7 @@ void OperatingMultipath::validate(double range_m) const {
     return fmt::format("[{}, {}]", ends[0], ends[1]);
   };
   require(ratio[1] >= ratio[0], "operating.multipath.ratio", limits(ratio),
-          "must be [least, largest] with least <= largest");
+          "must be [min, max] with min <= max");
   require(delay_m[1] >= delay_m[0] && delay_m[1] < range_m, "operating.multipath.delay_m",
           limits(delay_m),
           fmt::format("must be [shortest, longest] with shortest <= longest and below the "
@@ -212,13 +210,15 @@ Eigen::VectorXcd Camera::sensor_transfer(int highest) const {
 
 void Playback::validate(int taps) const {
   check_ranges(*this, "playback.");
-  require(!inverted || taps <= 2, "playback.inverted", "true", "goes with one or two taps");
+  require(!inverted || taps <= 2, "playback.inverted", "true",
+          "is only valid with one or two taps");
   std::vector<int> sorted = order;
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t e = 0; e < sorted.size(); ++e)
     require(sorted[e] == static_cast<int>(e), "playback.order",
             fmt::format("{}", fmt::join(order, ", ")),
-            "must hold each of 0, 1, .. once: the code's exposures as they are played");
+            "must list each of 0, 1, ... once: the code's exposures in the order in which the "
+            "camera captures them");
   const int given =
       (offset_m != 0.0 || !offsets_m.empty()) + !offset_rad.empty() + !offset_counts.empty();
   require(given <= 1, "playback.offset_m", fmt::format("{} kinds of offset", given),
@@ -243,8 +243,8 @@ void check_signal_gain(const std::string& prefix, const auto& temperature) {
   constexpr double max_gain = 1e3;
   require(gain <= max_gain && gain >= 1.0 / max_gain, prefix + "signal_per_c",
           temperature.signal_per_c,
-          fmt::format("makes the signal {:.3g} times that at the reference, {} degrees away; "
-                      "expected a factor from 0.001 to 1000",
+          fmt::format("gives {:.3g} times the signal at the reference temperature, {} degrees "
+                      "away; expected a factor from 0.001 to 1000",
                       gain, temperature.above_reference_c()));
 }
 
@@ -266,12 +266,12 @@ void Camera::validate() const {
   if (sensor.generator) sensor.generator->validate("sensor.generator", fundamental_frequency_hz);
   if (lens && !lens->rays.empty()) {
     require(*lens == Lens{.rays = lens->rays}, "lens.rays", lens->rays,
-            "must not be given together with a pinhole, which it replaces");
+            "must not be given together with keys of a pinhole, which it replaces");
   } else if (lens) {
     if (lens->distortion) lens->distortion->validate("lens.distortion");
     require(lens->width_px.has_value() == lens->height_px.has_value(), "lens.width_px",
             lens->width_px ? fmt::format("{}", *lens->width_px) : "none",
-            "goes with lens.height_px: both or neither");
+            "requires lens.height_px: set both or neither");
   }
   if (blur) blur->validate();
   if (optics) optics->validate();
@@ -284,7 +284,7 @@ void Camera::validate() const {
           fmt::format("must be <= {} with sensor.readout = \"rows\"", max_time_bins));
   require(!playback || !(playback->inverted || playback->reversed), "playback",
           playback && playback->inverted ? "inverted" : "reversed",
-          "does not go with sensor.readout = \"rows\"");
+          "cannot be combined with sensor.readout = \"rows\"");
 }
 
 namespace {
@@ -345,24 +345,24 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
   const bool is_of_rows = camera.sensor.readout == Readout::rows;
   if (code.is_rows() && !is_of_rows)
     return broken(what + " receiver", "rows of one exposure",
-                  "needs a camera with sensor.readout = \"rows\"");
+                  "requires a camera with sensor.readout = \"rows\"");
   if (!code.is_rows() && is_of_rows)
-    return broken(what + " receiver", "taps of exposures",
-                  "is not for a camera with sensor.readout = \"rows\", which needs rows of one "
-                  "exposure");
+    return broken(
+        what + " receiver", "taps of exposures",
+        "is not supported with sensor.readout = \"rows\", which requires rows of one exposure");
   if (code.is_signed() && !camera.sensor.is_signed())
     return broken(what + " receiver", "a mixer",
-                  "needs a camera with sensor.demodulation = \"signed\"");
+                  "requires a camera with sensor.demodulation = \"signed\"");
   if (!code.is_signed() && camera.sensor.is_signed() && !code.is_rows())
     return broken(what + " receiver", "taps with gains in [0, 1]",
-                  "is not for a camera with sensor.demodulation = \"signed\", which needs weights "
-                  "in [-1, 1]: a family by its name, or a file of signed demodulations");
+                  "is not supported with sensor.demodulation = \"signed\", which requires weights "
+                  "in [-1, 1]: use a family or a file of signed demodulations");
   if (!is_of_rows && code.taps() != camera.sensor.taps)
     return broken(what + " taps", code.taps(),
                   fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
   if (code.samples() != camera.samples)
     return broken(what + " samples", code.samples(),
-                  fmt::format("must equal the camera's samples = {}; give the camera samples={}",
+                  fmt::format("must equal the camera's samples = {}; set samples={} in the camera",
                               camera.samples, code.samples()));
   if (!(code.peak() <= camera.light.peak_factor * (1 + 1e-9)))
     return broken(

@@ -160,7 +160,7 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
       return;
     }
   require(pairs <= max_pairs, "switching times", pairs,
-          "must be 2^27 pairs of modulation and demodulation at most, or lie on a common grid");
+          "must be at most 2^27 pairs of modulation and demodulation, or lie on a common grid");
   const Integral integral(d);
   corners_ = corner_positions(d, m);
   values_.reserve(corners_.size());

@@ -77,8 +77,8 @@ void validate_edge_grid(const std::string& field, double edge_grid_s, double fre
   const double steps = 1.0 / (edge_grid_s * frequency_hz);
   require(steps >= 2.0 - 1e-6 && steps <= max_points && std::abs(steps - std::round(steps)) <= 1e-6,
           field, edge_grid_s,
-          fmt::format("must divide the period of fundamental_frequency_hz = {} into 2 .. {:.0f} "
-                      "whole steps{}",
+          fmt::format("must divide the period of fundamental_frequency_hz = {} into 2 to {:.0f} "
+                      "integer steps{}",
                       frequency_hz, max_points,
                       steps >= 2.0 && steps <= max_points
                           ? fmt::format(" (it gives {:.6g}; {:.9g} s would give {:.0f})", steps,
@@ -103,7 +103,7 @@ void Generator::validate(std::string_view field, double fundamental_frequency_hz
   const double points = max_points_per_period(sample_rate_hz, fundamental_frequency_hz);
   require(points >= 2.0 && (table_points || points <= max_points), prefix + "sample_rate_hz",
           sample_rate_hz,
-          fmt::format("must give 2 .. {:.0f} points per period at fundamental_frequency_hz = {}",
+          fmt::format("must give 2 to {:.0f} points per period at fundamental_frequency_hz = {}",
                       max_points, fundamental_frequency_hz));
   if (edge_grid_s)
     validate_edge_grid(prefix + "edge_grid_s", *edge_grid_s, fundamental_frequency_hz);
@@ -144,7 +144,7 @@ Waveform generator_table(const Waveform& waveform, const Generator& generator,
                          double fundamental_frequency_hz) {
   generator.validate("generator", fundamental_frequency_hz);
   require(waveform.minimum() >= -1e-9, "waveform minimum", waveform.minimum(),
-          "must be >= 0: a generator's levels run from 0 to the peak");
+          "must be >= 0: the levels of a generator range from 0 to the peak");
   const int points = generator.points_in_table(fundamental_frequency_hz);
   if (!waveform.is_binary())
     return Waveform::sampled(rounded_amplitudes(waveform.values_at_middles(points), waveform.peak(),

@@ -69,7 +69,7 @@ void ImpulseResponse::validate(std::string_view field) const {
   check_ranges(*this, std::string(field) + ".");
   if (kind != Kind::file) return;
   const std::string name = fmt::format("{}.samples", field);
-  require(!samples.empty(), name, "empty", "must hold at least one sample");
+  require(!samples.empty(), name, "empty", "must have at least one sample");
   const double total = std::accumulate(samples.begin(), samples.end(), 0.0);
   require(total > 0.0, name + " sum", total, "must be > 0");
 }

@@ -16,7 +16,7 @@ double LensBlur::disc_radius_px(double distance_m) const {
 void LensBlur::validate() const {
   check_ranges(*this, "lens.");
   require(kind != Kind::disc || focus_distance_m > focal_length_m, "lens.focus_distance_m",
-          focus_distance_m, "must be > lens.focal_length_m: nothing nearer is ever sharp");
+          focus_distance_m, "must be > lens.focal_length_m");
 }
 
 }  // namespace tofsmith

@@ -71,7 +71,7 @@ Eigen::VectorXd row_weights(const Transient& transient, double range_m, int poin
 void ExponentialTail::validate(double range_m) const {
   require(std::isfinite(mean_delay_m) && mean_delay_m > 0.0 && mean_delay_m <= range_m,
           "tail: mean_delay_m", mean_delay_m,
-          "must be > 0 and no longer than the period, " + fmt::format("{:f}", range_m) + " m");
+          "must be > 0 and at most the unambiguous range, " + fmt::format("{:f}", range_m) + " m");
   require(std::isfinite(ratio) && ratio >= 0.0, "tail: ratio", ratio, "must be finite and >= 0");
 }
 
@@ -98,8 +98,8 @@ void Transient::validate(double range_m) const {
   require(total() > 0.0, "transient: light of all bins", total(), "must be > 0");
   const double length_m = bin_m * static_cast<double>(light.size());
   require(length_m <= range_m * (1.0 + 1e-9), "transient: length [m]", length_m,
-          "must be no longer than the period, " + fmt::format("{:f}", range_m) +
-              " m; cut it, or let the camera's fundamental_frequency_hz be lower");
+          "must be at most the unambiguous range, " + fmt::format("{:f}", range_m) +
+              " m; truncate it, or reduce the camera's fundamental_frequency_hz");
 }
 
 Eigen::MatrixXd tap_tail_table(const ForwardModel& model, const ExponentialTail& tail,

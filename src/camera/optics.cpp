@@ -89,7 +89,7 @@ double Optics::source_power_for_w(double signal_e_per_s, double distance_m, doub
 Camera at_distances(Camera camera, std::vector<double> distances_m, double albedo,
                     std::optional<double> klux) {
   require(camera.optics.has_value(), "optics", "none",
-          "must be given to know the light at a distance: source_power_w, wavelength_m, "
+          "is required to compute the light at a distance: set source_power_w, wavelength_m, "
           "field_of_view_deg, f_number, pixel_pitch_m, quantum_efficiency");
   require(!distances_m.empty(), "distances_m", "none", "must be at least one");
   if (klux) {
@@ -126,17 +126,17 @@ void Optics::validate() const {
     require(*filter_width_m < 2.0 * wavelength_m, "optics.filter_width_m", *filter_width_m,
             "must be below twice the wavelength");
   require(!sunlight_klux || !sunlight_w_per_m2_nm, "optics.sunlight_klux",
-          sunlight_klux.value_or(0.0), "must be left out where sunlight_w_per_m2_nm is given");
+          sunlight_klux.value_or(0.0), "must be omitted if sunlight_w_per_m2_nm is given");
   if (sunlight_klux) {
     const double half_m = filter_width_m.value_or(0.0) / 2.0;
     require(wavelength_m - half_m >= sun_first_m && wavelength_m + half_m <= sun_last_m,
             "optics.wavelength_m", wavelength_m,
-            fmt::format("must be such that the filter passes within {:.0f} to {:.0f} nm, where "
-                        "sunlight is known by its klux; give sunlight_w_per_m2_nm instead",
+            fmt::format("must place the filter within {:.0f} to {:.0f} nm, where the spectrum of "
+                        "sunlight is known; otherwise set sunlight_w_per_m2_nm",
                         1e9 * sun_first_m, 1e9 * sun_last_m));
   }
   require(filter_width_m || !(sunlight_klux || sunlight_w_per_m2_nm), "optics.filter_width_m",
-          "none", "is needed with sunlight: the light that the filter lets through");
+          "none", "is required with sunlight, to compute the light that passes the filter");
 }
 
 }  // namespace tofsmith

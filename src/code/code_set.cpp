@@ -80,7 +80,7 @@ CodeSet CodeSet::create_rows(std::string name, Waveform light, const Eigen::Matr
   CodeSet code;
   for (Eigen::Index k = 0; k < rows.cols(); ++k) {
     require(!rows.col(k).isZero(0.0), fmt::format("row {}", k), "all zero",
-            "must weigh some time bin");
+            "must have a nonzero weight");
     code.demodulation_.push_back(Waveform::sampled(rows.col(k)));
   }
   code.name_ = std::move(name);
@@ -93,7 +93,7 @@ CodeSet CodeSet::create_rows(std::string name, Waveform light, const Eigen::Matr
 
 CodeSet CodeSet::create_rows(std::string name, const Eigen::VectorXd& light, Eigen::MatrixXd rows) {
   require(light.size() > 0 && light.allFinite(), "light", "empty, NaN or infinite",
-          "must hold finite samples");
+          "must be finite and not empty");
   require(light.minCoeff() >= 0.0, "light minimum", light.minCoeff(), "must not be negative");
   require(light.mean() > 0.0, "light mean", light.mean(), "must be > 0");
   if (rows.rows() != light.size() && rows.cols() == light.size()) rows.transposeInPlace();
@@ -194,7 +194,7 @@ CodeSet CodeSet::with_exposure_shares(std::vector<double> shares) const {
 
 CodeSet CodeSet::with_two_buckets() const {
   require(taps_ == 1 && !is_signed_, "taps", is_signed_ ? "of a mixer" : fmt::format("{}", taps_),
-          "only a code for one tap can be given a second bucket");
+          "must be 1: a second bucket can only be added to codes for one tap");
   std::vector<Waveform> demodulation;
   for (const Waveform& d : demodulation_) {
     demodulation.push_back(d);
@@ -208,26 +208,27 @@ CodeSet CodeSet::with_two_buckets() const {
 
 CodeSet CodeSet::with_signed_weights() const {
   require(taps_ == 1 && !is_rows_, "taps", taps_,
-          "only a code for one tap can be played by a mixer");
+          "must be 1: only codes for one tap can be converted to a mixer");
   for (int i = 0; i < measurements(); ++i)
     require(!demodulation(i).is_binary() || demodulation(i).on_intervals().empty() ||
                 std::abs(demodulation(i).level() - 1.0) <= tolerance,
             fmt::format("demodulation {} level", i), demodulation(i).level(),
-            "must be 1 to be played by a mixer, which switches between -1 and 1");
+            "must be 1 for a mixer, which switches between -1 and 1");
   CodeSet code = *this;
   code.is_signed_ = true;
   return code;
 }
 
 CodeSet CodeSet::signed_of_buckets() const {
-  require(taps_ == 2, "taps", taps_, "only a code for two buckets can be played by a mixer");
+  require(taps_ == 2, "taps", taps_,
+          "must be 2: only codes for two buckets can be converted to a mixer");
   std::vector<Waveform> drive;
   for (int i = 0; i < measurements(); i += 2) {
     const Eigen::VectorXd sum =
         demodulation(i).cell_averages(samples_) + demodulation(i + 1).cell_averages(samples_);
     const double farthest = (sum.array() - 1.0).abs().maxCoeff();
     require(farthest <= 1e-6, fmt::format("sum over taps of exposure {}", i / 2), 1.0 - farthest,
-            "must be 1 to be played by a mixer");
+            "must be 1 for a mixer");
     drive.push_back(demodulation(i));
   }
   CodeSet code = create(name_, samples_, 1, modulation_, std::move(drive)).with_signed_weights();
@@ -237,7 +238,7 @@ CodeSet CodeSet::signed_of_buckets() const {
 }
 
 CodeSet CodeSet::buckets_of_signed() const {
-  require(is_signed_, "code", name_, "must be one of a mixer");
+  require(is_signed_, "code", name_, "must be a code for a mixer");
   CodeSet code = *this;
   code.is_signed_ = false;
   return code.with_two_buckets();

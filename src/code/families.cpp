@@ -131,13 +131,13 @@ std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                                     const FamilyOptions& options) {
   if (options.taps > 2 && !member.has_phase_steps)
     return broken("taps", options.taps,
-                  fmt::format("the family is for one tap or two buckets; for {0} taps there are "
-                              "sinusoid-k{0} and square-k{0}",
+                  fmt::format("this family supports one tap or two buckets; for {0} taps use "
+                              "sinusoid-k{0} or square-k{0}",
                               options.taps));
   const std::optional<BrokenRule> misfit = member.misfit(options);
   if (!misfit) return std::nullopt;
   return broken("code", name,
-                fmt::format("{}; `tofsmith codes` lists what there is, such as {}", misfit->text(),
+                fmt::format("{}; `tofsmith codes` lists the families, such as {}", misfit->text(),
                             nearest_word(name, examples())));
 }
 
@@ -189,19 +189,19 @@ std::vector<FamilyDescription> list_families() {
   return {
       {"sinusoid-kK", "sinusoid-k4", "sinusoids, K phase steps"},
       {"square-kK", "square-k4", "square waves, K phase steps"},
-      {"hamiltonian-kK", "hamiltonian-k4", "Hamiltonian walk on the K-cube, K = 3 .. 10"},
+      {"hamiltonian-kK", "hamiltonian-k4", "Hamiltonian walk on the K-cube, K = 3 to 10"},
       {"multifrequency-k5", "multifrequency-k5", "sinusoids: 3 steps at f0 and 2 at 7 f0"},
-      {"multifrequency-FxS-..", "multifrequency-1x4-5x4", "sinusoids: S steps at F x f0, .."},
+      {"multifrequency-FxS-..", "multifrequency-1x4-5x4", "sinusoids: S steps at F x f0, ..."},
       {"pulsed-multifrequency-k5", "pulsed-multifrequency-k5",
        "pulses and squares: 3 steps at f0, a quadrature pair at 3 f0"},
       {"pulsed-multifrequency-k5-qQ", "pulsed-multifrequency-k5-q5",
-       "the same with the pair at Q f0"},
+       "pulses and squares: 3 steps at f0, a quadrature pair at Q f0"},
       {"pulsed-multifrequency-k4", "pulsed-multifrequency-k4",
-       "quadrature pairs at f0 and 3 f0, for two buckets; -qQ as above"},
-      {"gray-kK", "gray-k4", "binary-reflected Gray code of 2^K cells, K = 3 .. 10"},
+       "quadrature pairs at f0 and 3 f0 (or Q f0 with -qQ), for two buckets"},
+      {"gray-kK", "gray-k4", "binary-reflected Gray code of 2^K cells, K = 3 to 10"},
       {"single-ramp-k3", "single-ramp-k3", "rising ramp, open gate, background"},
       {"double-ramp-k3", "double-ramp-k3", "rising ramp, falling ramp, background"},
-      {"fourier-kK", "fourier-k8", "rows of one exposure: cosines and sines at f0, 2 f0, .."},
+      {"fourier-kK", "fourier-k8", "rows of one exposure: cosines and sines at f0, 2 f0, ..."},
       {"histogram-kK", "histogram-k8", "rows of one exposure: K time gates, a coarse histogram"},
   };
 }

@@ -23,7 +23,7 @@ std::optional<BrokenRule> options_misfit(const FamilyOptions& options) {
   if (!(options.peak_factor >= 1.0))
     return broken("peak_factor", options.peak_factor, "must be >= 1");
   if (options.taps != 1 && options.taps < 3)
-    return broken("taps", options.taps, "must be 1, or >= 3 for taps that share an exposure");
+    return broken("taps", options.taps, "must be 1, or >= 3 for exclusive taps");
   return std::nullopt;
 }
 

@@ -17,19 +17,17 @@ std::optional<BrokenRule> not_rows(const CodeSet& code) {
   const std::string what = "code " + code.name();
   if (code.is_rows()) return std::nullopt;
   if (code.taps() != 1)
-    return broken(what + " taps", code.taps(), "must be 1 to become rows of one exposure");
+    return broken(what + " taps", code.taps(), "must be 1 for rows of one exposure");
   if (code.measurements() < 2 || code.measurements() > max_exposure_rows)
-    return broken(
-        what + " measurements", code.measurements(),
-        fmt::format("must be in [2, {}] to become rows of one exposure", max_exposure_rows));
+    return broken(what + " measurements", code.measurements(),
+                  fmt::format("must be in [2, {}] for rows of one exposure", max_exposure_rows));
   for (int i = 0; i < code.measurements(); ++i) {
     if (!(code.modulation(i) == code.modulation(0)))
-      return broken(fmt::format("{} modulation {}", what, i),
-                    "other light than that of modulation 0",
-                    "all rows of one exposure see the same light");
+      return broken(fmt::format("{} modulation {}", what, i), "different from modulation 0",
+                    "must be equal: all rows of one exposure share one modulation");
     if (code.demodulation(i).peak() == 0.0)
       return broken(fmt::format("{} demodulation {}", what, i), "all zero",
-                    "a row must weigh some time bin");
+                    "must have a nonzero weight");
   }
   return std::nullopt;
 }
@@ -85,7 +83,8 @@ std::optional<BrokenRule> histogram_rows_misfit(int rows, const FamilyOptions& o
   if (!options.exact_grid || options.samples % rows == 0) return std::nullopt;
   return broken(
       "samples", options.samples,
-      fmt::format("histogram-k{0} needs a multiple of {0} so that no gate is rounded", rows));
+      fmt::format("must be a multiple of {0} for histogram-k{0}, whose gates must not be rounded",
+                  rows));
 }
 
 CodeSet histogram_rows(int rows, const FamilyOptions& options) {

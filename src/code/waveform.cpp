@@ -118,7 +118,7 @@ Waveform Waveform::cosines(Eigen::VectorXcd coefficients) {
     require(std::isfinite(coefficients[n].real()) && std::isfinite(coefficients[n].imag()),
             fmt::format("coefficient {}", n), "NaN or infinite", "must be finite");
   require(coefficients[0].imag() == 0.0, "coefficient 0", coefficients[0].imag(),
-          "must be real: it is the mean");
+          "must be real, because it is the mean");
   Waveform waveform;
   waveform.coefficients_ = std::move(coefficients);
   return waveform;
@@ -335,10 +335,10 @@ Waveform Waveform::delayed(double periods) const {
 
 Waveform Waveform::complement() const {
   require(minimum() >= -1e-12 && peak() <= 1.0 + 1e-12, "peak", peak(),
-          "a complement needs values in [0, 1]");
+          "must be in [0, 1] for a complement");
   if (!is_binary()) return scaled(1.0, -1.0);
   if (on_.empty()) return constant(1.0);
-  require(level_ == 1.0, "level", level_, "the complement of a binary waveform needs level 1");
+  require(level_ == 1.0, "level", level_, "must be 1 for the complement of a binary waveform");
   std::vector<OnInterval> off;
   for (std::size_t i = 0; i < on_.size(); ++i) {
     const bool last = i + 1 == on_.size();

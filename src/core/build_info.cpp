@@ -45,10 +45,8 @@ BuildInfo build_info() {
 
 std::string to_text(const BuildInfo& info) {
   return fmt::format(
-      "tofsmith {} (commit {})\n"
-      "built by {}, {}, {} library\n"
-      "kernels for {}; here runs {}\n"
-      "with {}",
+      "tofsmith {} (commit {})\nbuilt by {}, {}, {} library\nkernels for {}; this computer uses "
+      "{}\nwith {}",
       info.version, info.commit, info.compiler, info.build_type, info.library,
       fmt::join(info.targets, " "), dispatch_target(),
       info.features.empty() ? "no optional features"

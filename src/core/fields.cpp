@@ -16,10 +16,12 @@ namespace tofsmith {
 std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
                           std::string_view word) {
   const auto at = std::find(words.begin(), words.end(), word);
-  if (at == words.end())
+  if (at == words.end()) {
+    const std::string others = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, ", "));
     reject(field, word,
-           fmt::format("must be {} or {}", fmt::join(words.begin(), words.end() - 1, ", "),
-                       words.back()));
+           others.empty() ? fmt::format("must be {}", words.back())
+                          : fmt::format("must be {} or {}", others, words.back()));
+  }
   return static_cast<std::size_t>(at - words.begin());
 }
 

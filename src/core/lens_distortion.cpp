@@ -202,14 +202,14 @@ void LensDistortion::validate(std::string_view field) const {
     require(count == 4 || count == 5 || count == 8 || count == 12 || count == 14, field, shown,
             "must be 4, 5, 8, 12 or 14 numbers: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]");
   else if (model == DistortionModel::fisheye)
-    require(count == 4, field, shown, "must be 4 numbers of a fisheye: k1 k2 k3 k4");
+    require(count == 4, field, shown, "must be the 4 numbers of a fisheye model: k1 k2 k3 k4");
   else
     require(count == 8, field, shown, "must be 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
   require(std::all_of(coefficients.begin(), coefficients.end(),
                       [](double c) { return std::isfinite(c); }),
           field, shown, "must be finite");
   require(count < 14 || (coefficients[12] == 0.0 && coefficients[13] == 0.0), field, shown,
-          "must have a tilt of 0, its last two numbers: a tilted sensor is not supported");
+          "must have a tilt of 0 (the last two numbers): tilted sensors are not supported");
 }
 
 }  // namespace tofsmith

@@ -31,7 +31,7 @@ void validate_markers(const std::vector<double>& list, const std::string& field)
   for (const double number : list) {
     require(!std::isfinite(number) || std::abs(number) <= largest, field, number,
             "each must be in [-2^53, 2^53], NaN or infinite");
-    require(!names(before, number), field, number, "must be named once");
+    require(!names(before, number), field, number, "must be listed once");
     before.push_back(number);
   }
 }
@@ -45,8 +45,7 @@ void RawMarkers::validate() const {
   validate_markers(saturated, "raw.saturated");
   validate_markers(invalid, "raw.invalid");
   for (const double number : invalid)
-    require(!mean_saturated(number), "raw.invalid", number,
-            "must not be in raw.saturated, too: a number has one meaning");
+    require(!mean_saturated(number), "raw.invalid", number, "must not be in raw.saturated as well");
 }
 
 bool operator==(const RawMarkers& a, const RawMarkers& b) {

@@ -19,9 +19,9 @@ void UnusualNumbers::visit(const Key& key, const Value& value) {
     if (number * far >= key.usual_low && number <= key.usual_high * far) return;
     std::string unit(unit_of_key(key.name));
     if (!unit.empty()) unit.insert(0, " ");
-    notes.push_back(
-        fmt::format("{}{} = {:g}{}; most cameras have {:g} to {:g}{}: is the unit right?", prefix(),
-                    key.name, number, unit, key.usual_low, key.usual_high, unit));
+    notes.push_back(fmt::format("{}{} = {:g}{}; most cameras have {:g} to {:g}{}; check the unit",
+                                prefix(), key.name, number, unit, key.usual_low, key.usual_high,
+                                unit));
   };
   std::visit(Overloaded{
                  [&](int* number) { check(*number); },

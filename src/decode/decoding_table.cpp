@@ -42,7 +42,7 @@ void require_list(const Eigen::VectorXd& values, const char* field, double minim
 std::optional<BrokenRule> count_not_decodable(const DecodingTable& table) {
   if (table.measurements() >= 2 && table.measurements() <= max_measurements) return std::nullopt;
   return broken("measurements", table.measurements(),
-                "must be in [3, 64] (2 are enough where ambient light cancels)");
+                "must be in [3, 64] (or 2, if ambient light cancels)");
 }
 
 std::optional<BrokenRule> correlation_not_decodable(const DecodingTable& table) {
@@ -225,7 +225,8 @@ DecodingTable whitened(const DecodingTable& table) {
 
 void require_exposures(const DecodingTable& table, std::string_view what) {
   require(!table.has_rows(), "sensor.readout", "rows",
-          std::string(what) + " takes independent measurements; rows are decoded by zncc or ml");
+          std::string(what) +
+              " requires independent measurements; rows can only be decoded by zncc or ml");
 }
 
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {

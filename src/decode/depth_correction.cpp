@@ -63,10 +63,11 @@ void validate_terms(const DepthErrorTerms& terms, const std::string& name) {
   };
   require(std::isfinite(terms.offset_m), name + ".offset_m", terms.offset_m, "must be finite");
   rule(terms.harmonic_m.size() % 2 == 0 && terms.harmonic_m.size() <= 64, "harmonic_m",
-       terms.harmonic_m.size(), "must be two for each of at most 32 harmonics");
+       terms.harmonic_m.size(), "must have two entries for each of at most 32 harmonics");
   rule(is_field_size(terms.field_m.size()) && terms.field_m.size() <= 65, "field_m",
-       terms.field_m.size(), "must be d + 1 for each degree d from 1 to at most 10");
-  rule(terms.signal_m.size() <= 4, "signal_m", terms.signal_m.size(), "must be at most 4");
+       terms.field_m.size(), "must have d + 1 entries for each degree d from 1 to at most 10");
+  rule(terms.signal_m.size() <= 4, "signal_m", terms.signal_m.size(),
+       "must have at most 4 entries");
   rule(terms.harmonic_m.allFinite() && terms.field_m.allFinite() && terms.signal_m.allFinite(),
        "terms", terms.harmonic_m.size(), "must be finite");
 }
@@ -117,12 +118,13 @@ void apply(const DepthCorrection& correction, double range_m, const DecodedView&
            int height, int width, std::size_t first, std::size_t count) {
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
   const auto text = [](int h, int w) { return std::to_string(h) + " x " + std::to_string(w); };
-  require(
-      correction.height == height && correction.width == width, "frame size", text(height, width),
-      "must be that of the table's depth correction, " + text(correction.height, correction.width));
+  require(correction.height == height && correction.width == width, "frame size",
+          text(height, width),
+          "must equal that of the table's depth correction, " +
+              text(correction.height, correction.width));
   if (!decoded.depth_m) return;
   require(!correction.needs_signal() || decoded.signal_e_per_s, "signal_e_per_s", "null",
-          "is needed: the depth correction has terms in the signal");
+          "is required, because the depth correction depends on the signal");
   parallel_for_blocks(static_cast<std::int64_t>(count), 4096, [&](IndexRange range) {
     for (std::int64_t i = range.begin; i < range.end; ++i) {
       const auto at = static_cast<std::size_t>(i);

@@ -63,7 +63,7 @@ Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
   Eigen::VectorXd shared(values.size() / 2);
   for (Eigen::Index i = 0; i < shared.size(); ++i) {
     require(values[2 * i] == values[2 * i + 1], field, values[2 * i + 1],
-            "must be the same for both taps where their difference is read out");
+            "must be equal for both taps if their difference is read out");
     shared[i] = values[2 * i];
   }
   return shared;
@@ -96,7 +96,7 @@ MeasuredTable MeasuredTable::in_order(const Eigen::VectorXi& source) const {
 void MeasuredTable::validate() const {
   require(columns() >= 1, "columns of the measured table", columns(), "must be >= 1");
   require(!differences || taps == 1, "taps of the measured table", taps,
-          "must be 1 where its columns are differences");
+          "must be 1 if its columns are differences");
   require(taps >= 1 && columns() % taps == 0, "columns of the measured table", columns(),
           "must be a multiple of taps = " + std::to_string(taps));
   require_one_each(ambient_gain, "ambient_gain", columns());
@@ -135,15 +135,16 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Sensor& sensor = camera.sensor;
   const int columns = measured.columns();
   require(sensor.readout != Readout::rows, "sensor.readout", "rows",
-          "must be separate or difference: what a measured table says of noise is that of taps");
+          "must be separate or difference, because the noise model of a measured table is that of "
+          "taps");
   const bool differs = sensor.subtracts();
   require(!measured.differences || differs, "readout", "separate",
-          "must be difference: the measured table is one of differences of taps");
+          "must be difference, because the measured table contains differences of taps");
   require(!sensor.is_signed() || measured.differences, "differences of the measured table", 0,
-          "must be 1 with sensor.demodulation = \"signed\": its columns are of both signs");
+          "must be 1 with sensor.demodulation = \"signed\", whose measurements are signed");
   const bool subtracts = differs && !measured.differences;
   require(!subtracts || measured.taps == 2, "taps of the measured table", measured.taps,
-          "must be 2 where the camera reads differences");
+          "must be 2 if the camera reads differences");
   const Eigen::MatrixXd readout =
       readout_matrix(columns, subtracts ? Readout::difference : Readout::separate);
   const Eigen::MatrixXd sums = readout.cwiseAbs();

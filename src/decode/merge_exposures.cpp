@@ -115,11 +115,11 @@ void check_exposures(std::span<const double> exposures, const std::string& field
   require(exposures.size() >= 2, field, exposures.size(), "must be at least 2");
   for (const double e : exposures)
     require(std::isfinite(e) && e >= 1.0 && e <= 1e6, field, e,
-            "each must be from 1 to 1e6: so many times the shortest, which the camera's "
-            "exposure_s is of");
+            "each must be in [1, 1e6]: the ratio to the shortest exposure, which is the camera's "
+            "exposure_s");
   require(*std::min_element(exposures.begin(), exposures.end()) == 1.0, field,
           *std::min_element(exposures.begin(), exposures.end()),
-          "the shortest must be 1: the camera's exposure_s");
+          "must contain 1: the shortest exposure, which is the camera's exposure_s");
 }
 
 void merge_exposures(std::span<const RawView> stored, std::span<const double> exposures,
@@ -129,7 +129,7 @@ void merge_exposures(std::span<const RawView> stored, std::span<const double> ex
   for (std::size_t f = 0; f < stored.size(); ++f)
     frames.push_back(mark_raw(stored[f], table.marking, buffers[f]));
   check_exposures(exposures, "exposures");
-  require_exposures(table, "what merges exposures");
+  require_exposures(table, "merging exposures");
   require(frames.size() == exposures.size(), "frames", frames.size(),
           fmt::format("must be {}, one for each exposure", exposures.size()));
   const RawView& first = frames.front();
@@ -137,7 +137,7 @@ void merge_exposures(std::span<const RawView> stored, std::span<const double> ex
     require(raw.height == first.height && raw.width == first.width &&
                 raw.measurements == table.measurements(),
             "frame size", fmt::format("({}, {}, {})", raw.height, raw.width, raw.measurements),
-            fmt::format("must be ({}, {}, {}) as the first's and the table's", first.height,
+            fmt::format("must be ({}, {}, {}), like the first frame and the table", first.height,
                         first.width, table.measurements()));
   const auto measurements = static_cast<std::size_t>(table.measurements());
   merged.values.frames = 1;

@@ -37,10 +37,9 @@ void validate_map(const Image<float>& map, const char* field, int height, int wi
 void require_within(const Image<float>& map, const char* field, std::size_t first,
                     std::size_t count) {
   if (map.empty()) return;
-  require(
-      first <= map.size() && count <= map.size() - first, field,
-      std::to_string(map.size()) + " pixels",
-      "must reach over pixels " + std::to_string(first) + " to " + std::to_string(first + count));
+  require(first <= map.size() && count <= map.size() - first, field,
+          std::to_string(map.size()) + " pixels",
+          "must cover pixels " + std::to_string(first) + " to " + std::to_string(first + count));
 }
 
 /// Wraps a depth to [0, range); NaN remains NaN.

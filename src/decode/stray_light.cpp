@@ -36,7 +36,7 @@ struct StrayLight::Plan {
 StrayLight::StrayLight(Image<float> kernel) : kernel_(std::move(kernel)) {
   require(kernel_.height % 2 == 1 && kernel_.width % 2 == 1, "kernel size",
           fmt::format("{} x {}", kernel_.height, kernel_.width),
-          "must be odd: its middle is the pixel itself");
+          "must be odd, with the pixel itself in the middle");
   for (const float value : kernel_.pixels)
     require(std::isfinite(value) && value >= 0.0F, "kernel", value,
             "each must be finite and >= 0: a share of a pixel's light");
@@ -92,7 +92,7 @@ void StrayLight::remove(const RawView& stored, const DecodingTable& table, RawFr
   const MarkedRaw marked(stored, table.marking);
   const RawView& raw = marked.view();
   require(raw.measurements == table.measurements(), "measurements", raw.measurements,
-          fmt::format("must be {} as the table's", table.measurements()));
+          fmt::format("must be {}, like the table's", table.measurements()));
   const Plan& plan = plan_of(raw.height, raw.width);
   const auto measurements = static_cast<std::size_t>(raw.measurements);
   clean.frames = 1;

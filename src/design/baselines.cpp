@@ -167,9 +167,9 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
   const std::string worse = fmt::format(
-      "by {} or {} trials per operating point err more than {} times as much as the best",
+      "in {} or {} trials per operating point, the error is more than {} times that of the best",
       trials_per_point(camera) / share_looked_at, trials_per_point(camera), contending);
-  const std::string beside = fmt::format("{} others err less", max_contenders);
+  const std::string beside = fmt::format("{} other codes have smaller errors", max_contenders);
   for (const std::size_t i : order)
     if (!(errors_m[i] <= contending * errors_m[order.front()]))
       found.left_out[worse].push_back(names[i]);
@@ -220,7 +220,7 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
 void add_atlas_codes(const Contenders& contenders, DesignResult& result) {
   for (std::size_t i = 0; i < std::min(max_atlas_codes, contenders.codes.size()); ++i)
     result.candidates.push_back({.code = contenders.codes[i], .method = "atlas"});
-  leave_out(result, contenders, "codes of the atlas");
+  leave_out(result, contenders, "atlas codes");
 }
 
 void add_baselines(const Camera& camera, const DesignOptions& options,

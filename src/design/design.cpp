@@ -157,8 +157,9 @@ void require_exposures(const Camera& camera, const DesignOptions& options) {
     for (const int rows : options.exposures)
       require(rows >= min_designed_rows && rows <= max_exposure_rows, "DesignOptions::exposures",
               rows,
-              fmt::format("must be in [{}, {}] on a camera that reads rows: how many to design",
-                          min_designed_rows, max_exposure_rows));
+              fmt::format(
+                  "must be in [{}, {}] for a camera that reads rows: the number of rows to design",
+                  min_designed_rows, max_exposure_rows));
     return;
   }
   for (const int exposures : options.exposures)

@@ -13,14 +13,14 @@ void DesignOptions::validate() const {
     require(std::count(exposures.begin(), exposures.end(), e) == 1, "DesignOptions::exposures", e,
             "must be listed once");
     require(method != DesignMethod::factorize || (e >= 3 && e <= 6), "DesignOptions::exposures", e,
-            "must be in [3, 6] to aim at Hamiltonian codes");
+            "must be in [3, 6] for Hamiltonian targets");
   }
   if (baselines)
     for (const std::string& name : *baselines)
       require(std::count(baselines->begin(), baselines->end(), name) == 1,
               "DesignOptions::baselines", name, "must be listed once");
   require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
-          "must hold at least one correlation function");
+          "must contain at least one correlation function");
   factorize.validate();
   optimize.validate();
   search.validate();
@@ -31,7 +31,7 @@ DesignOptions with_effort(DesignOptions options, double effort) {
           "must be 0 or in [0.01, 100]");
   if (effort == 0.0) {
     require(options.method == DesignMethod::best || options.method == DesignMethod::atlas, "effort",
-            effort, "must be > 0 for methods that search: there is nothing else to them");
+            effort, "must be > 0 for methods that only search");
     options.method = DesignMethod::atlas;
     return options;
   }

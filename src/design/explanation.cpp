@@ -25,38 +25,37 @@ const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) 
   return nullptr;
 }
 
-/// " of the codes with 2 exposures" if the best of all codes has another number of exposures.
+/// Returns " with 2 exposures" if the best of all codes has another number of exposures.
 std::string among_exposures(const DesignResult& result, DepthErrorKind kind,
                             const std::vector<int>& exposures) {
   const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
   if (exposures.empty() ||
       std::count(exposures.begin(), exposures.end(), order.front()->code.exposures()) > 0)
     return "";
-  return fmt::format(" of the codes with {} exposures", fmt::join(exposures, ", "));
+  return fmt::format(" with {} exposures", fmt::join(exposures, ", "));
 }
 
 std::string what_it_beats(const Camera& camera, const DesignResult& result, DepthErrorKind kind,
                           const std::vector<int>& exposures) {
   const Candidate& winner = result.winner();
   const std::string among = among_exposures(result, kind, exposures);
-  std::string text =
-      fmt::format("{} measures depth best{}{}: {} of {} error", winner.code.name(), among,
-                  camera.operating.multipath ? " where multipath counts too" : "",
-                  length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
+  std::string text = fmt::format("{} is the best code{}{}: {} {} error", winner.code.name(), among,
+                                 camera.operating.multipath ? " including multipath" : "",
+                                 length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
   const Candidate* baseline = best_baseline(result, kind);
   if (baseline) {
     const Estimate gain = gain_over(result, *baseline, kind);
     text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
                         baseline->code.name());
   }
-  if (!among.empty()) return text + ", of any number of exposures.";
+  if (!among.empty()) return text + " (with any number of exposures).";
   if (winner.is_designed()) return text + (baseline ? ", the best standard code." : ".");
   const bool any_designed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                         [](const Candidate& c) { return c.is_designed(); });
-  return text + fmt::format(": a {}, {}.",
-                            winner.method == "atlas" ? "code of the atlas" : "standard code",
-                            any_designed ? "which no designed code improves on"
-                                         : "and nothing was designed");
+  return text +
+         fmt::format("; it is a {}, {}.",
+                     winner.method == "atlas" ? "code of the atlas" : "standard code",
+                     any_designed ? "and no designed code is better" : "and no code was designed");
 }
 
 std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorKind kind) {
@@ -79,14 +78,14 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
                             plain_number(1e3 * error_m, 3));
   const int harmonics = useful_harmonics(camera);
   const std::string band =
-      harmonics == 0 ? std::string("no band limit")
-                     : fmt::format("a band that passes {} harmonics (by 4 % or more)", harmonics);
+      harmonics == 0
+          ? std::string("unlimited bandwidth")
+          : fmt::format("a bandwidth of {} harmonics (that pass by 4 % or more)", harmonics);
   return fmt::format(
-      "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, resolve "
-      "more "
-      "depths, but share the same light and add read noise.",
+      "With {} and {} per exposure, it has {} exposure{}{}: more exposures or taps distinguish "
+      "more depths, but divide the same light and add read noise.",
       band,
-      camera.sensor.is_signed() ? std::string("one number of a mixer")
+      camera.sensor.is_signed() ? std::string("one mixer output")
       : winner.taps == 1        ? std::string("one tap")
                                 : fmt::format("{} taps", winner.taps),
       winner.exposures, winner.exposures == 1 ? "" : "s",
@@ -106,15 +105,15 @@ std::string what_limits_it(const DesignResult& result) {
     // Errors are limited by the range, the bound is not: a few depths can dominate its mean.
     if (p.cramer_rao_mae_m > exceeds * p.circular_mde_m.value)
       text +=
-          " (its Cramer-Rao bound says nothing there: its correlation functions are nearly flat at "
-          "some depth, or the light is too dim)";
+          " (its Cramer-Rao bound is not meaningful there, because its correlation functions are "
+          "nearly flat at some depth or the light is too dim)";
     else if (p.cramer_rao_mae_m > 0.0)
       text += fmt::format(", {:.2f} times its Cramer-Rao bound",
                           p.circular_mde_m.value / p.cramer_rao_mae_m);
     if (p.receiver_bound_mae_m > 0.0)
-      text += fmt::format(
-          " and {:.2f} times {}", p.circular_mde_m.value / p.receiver_bound_mae_m,
-          is_rows ? "that of the full histogram of its light" : "what any code could reach");
+      text += fmt::format(" and {:.2f} times {}", p.circular_mde_m.value / p.receiver_bound_mae_m,
+                          is_rows ? "the bound of the full histogram of its light"
+                                  : "the bound of all codes on this camera");
     return text;
   };
   if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*min));
@@ -131,17 +130,17 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
   const Candidate& winner = result.winner();
   const Estimate its = winner.multipath->single_path.of(kind);
   std::string text = fmt::format(
-      "Where a second return of ratio {} to {} comes {} to {} m behind, its {} error is {}",
+      "With a second return of ratio {} to {} at a delay of {} to {} m, its {} error is {}",
       returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1], name_of(kind),
       length_mm(its));
   if (const Candidate* baseline = best_baseline(result, kind)) {
     const Estimate other = baseline->multipath->single_path.of(kind);
-    text += fmt::format(", that of {} {}", baseline->code.name(), length_mm(other));
+    text += fmt::format("; that of {} is {}", baseline->code.name(), length_mm(other));
   }
   if (const auto& two_return = winner.multipath->two_return)
-    return text + fmt::format("; decoded as two returns it is {} (circular).",
+    return text + fmt::format("; with two-return decoding, its error is {} (circular).",
                               length_mm(two_return->circular_m));
-  return text + "; it holds too few independent means to be decoded as two returns.";
+  return text + "; it has too few independent means for two-return decoding.";
 }
 
 }  // namespace

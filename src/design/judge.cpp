@@ -29,7 +29,7 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                             const std::vector<std::string>& left_out) {
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
-                  "allows only constant light, which measures no depth");
+                  "allows only constant light, which cannot measure depth");
   const std::size_t listed = camera.exposure_s.each_s.size();
   const std::size_t ordered = camera.playback ? camera.playback->order.size() : 0;
   if (listed > 0 && ordered > 0 && listed != ordered)
@@ -48,8 +48,8 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                               measurements, measurements == 1 ? "" : "s"));
   if (options.method == DesignMethod::atlas && (exposures > 0 || camera.sensor.taps > 2)) {
     constexpr const char* none =
-        "the atlas has no such code that measures depth on this camera; a design with an effort "
-        "above 0 searches for one";
+        "has no code in the atlas that measures depth on this camera; use an effort above 0 to "
+        "search for one";
     return exposures > 0 ? broken(which, exposures, none)
                          : broken("sensor.taps", camera.sensor.taps, none);
   }

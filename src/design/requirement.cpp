@@ -296,7 +296,7 @@ Camera with_scaled(Camera camera, CameraQuantity quantity, double factor) {
                       &sensor = camera.sensor.impulse_response;
       require(
           light.kind != ImpulseResponse::Kind::none || sensor.kind != ImpulseResponse::Kind::none,
-          "impulse_response", "none", "must limit an arm, so that its bandwidth can vary");
+          "impulse_response", "none", "must be set for at least one arm to vary the bandwidth");
       scale_bandwidth(light, factor);
       scale_bandwidth(sensor, factor);
       if (camera.sensor.shortest_pulse_s) *camera.sensor.shortest_pulse_s /= factor;

@@ -50,9 +50,9 @@ std::string_view name_of(DeviceKind kind) {
 }
 
 std::string_view Device::none_found() {
-  return "OpenCL finds no device: no driver is installed (on Debian, pocl-opencl-icd for this "
-         "computer's processor, or that of a GPU's maker), or it cannot start (pocl needs a folder "
-         "to write kernels to, POCL_CACHE_DIR)";
+  return "OpenCL finds no device: no driver is installed (on Debian, pocl-opencl-icd for the CPU; "
+         "for a GPU, the vendor's driver), or it cannot start (pocl requires a writable folder for "
+         "kernels, POCL_CACHE_DIR)";
 }
 
 Device Device::named(std::string_view name) {
@@ -68,7 +68,7 @@ Device Device::named(std::string_view name) {
         return device;
   }
   throw IoError(fmt::format("device {}", name),
-                (devices.empty() ? "" : "there is no such one; ") + list_of(devices));
+                (devices.empty() ? "" : "found no such device; ") + list_of(devices));
 }
 
 std::optional<Device> Device::first_gpu() {

@@ -186,7 +186,7 @@ std::unique_ptr<FrameBackend> frame_backend(std::string_view device,
                    : cpu_backend(std::move(decoder));
   }
   require(is_zncc, "method", name_of(decoder->method()),
-          "must be zncc, by which alone devices decode, or the device cpu");
+          "must be zncc, the only method of OpenCL devices, or the device must be cpu");
   return std::make_unique<DeviceBackend>(Device::named(device), std::move(decoder), options);
 }
 

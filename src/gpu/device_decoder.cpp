@@ -197,7 +197,7 @@ std::int64_t DeviceDecoder::decode_source(const FrameSource& frame, const Device
                                           const DecodedView& decoded,
                                           const Progress& progress) const {
   require(&its_device.state() == &device().state(), "decoder's device", device().info().name,
-          "must be that of the frame, or a copy");
+          "must be the device of the frame, or a copy of it");
   require_frame(frame.raw, plan_->decoder.measurements());
   const std::lock_guard lock(plan_->mutex);
   return plan_->decode_all(frame, decoded, progress);

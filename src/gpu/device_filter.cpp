@@ -184,11 +184,11 @@ std::int64_t DeviceFilter::decode_source(const FrameSource& frame, const Device&
                                          const Image<std::uint8_t>& left_out) const {
   require_filterable(plan_of(plan_->filter), frame.raw, left_out);
   require(&its_device.state() == &device().state(), "filter's device", device().info().name,
-          "must be that of the frame, or a copy");
+          "must be the device of the frame, or a copy of it");
   require(&decoder.device().state() == &device().state(), "decoder's device",
-          decoder.device().info().name, "must be that of the filter, or a copy");
+          decoder.device().info().name, "must be the device of the filter, or a copy of it");
   require(decoder.plan_->decoder.measurements() == frame.raw.measurements, "decoder's measurements",
-          decoder.plan_->decoder.measurements(), "must be those of the frame");
+          decoder.plan_->decoder.measurements(), "must equal those of the frame");
   const std::scoped_lock lock(plan_->mutex, decoder.plan_->mutex);
   return plan_->run(frame, decoder.plan_.get(), decoded, filtered, progress, left_out);
 }

@@ -15,7 +15,7 @@ DeviceFrames::Plan::Plan(const Device& device_, const DecodingTable& table_,
     : device(device_), table(table_), options(options_) {
   if (!time_filter) return;
   require(time_filter->measurements() == table.measurements(), "time filter's measurements",
-          time_filter->measurements(), "must be those of the table");
+          time_filter->measurements(), "must equal those of the table");
   require(time_filter->options().look_ahead == 0, "look_ahead", time_filter->options().look_ahead,
           "must be 0 on devices");
   filter.emplace(device, state_of(*time_filter));
@@ -24,9 +24,9 @@ DeviceFrames::Plan::Plan(const Device& device_, const DecodingTable& table_,
 void DeviceFrames::Plan::begin_frame(const RawView& raw, bool is_first) {
   require_frame(raw, table.measurements());
   require(is_first || raw.height == size.height, "raw height", raw.height,
-          "must equal that of the frames before, " + std::to_string(size.height));
+          "must equal that of the previous frames, " + std::to_string(size.height));
   require(is_first || raw.width == size.width, "raw width", raw.width,
-          "must equal that of the frames before, " + std::to_string(size.width));
+          "must equal that of the previous frames, " + std::to_string(size.width));
   size = RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
                               raw.measurements);
   has_frame = false;
@@ -40,7 +40,7 @@ void DeviceFrames::Plan::forget() {
 }
 
 FrameSource DeviceFrames::Plan::source() {
-  require(has_frame, "frame on the device", "none", "must be taken before");
+  require(has_frame, "frame on the device", "none", "must be uploaded first");
   if (filter) return {.raw = size, .on_device = &filter->result(), .queue = &filter->queue()};
   return {.raw = size, .on_device = &means->result(), .queue = &means->queue(), .means = &*means};
 }
@@ -88,7 +88,7 @@ void DeviceFrames::take_mean(double averaged) {
 void DeviceFrames::take(const RawView& raw) {
   Plan& plan = *plan_;
   require(plan.filter.has_value(), "time filter", "none",
-          "is needed to take frames that are no means");
+          "is required for frames that are not means");
   plan.begin_frame(raw, plan.filter->is_empty());
   const MarkedRaw marked(raw, plan.table.marking);
   plan.on_device([&] { plan.filter->add(marked.view()); });

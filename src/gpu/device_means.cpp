@@ -12,7 +12,7 @@ namespace tofsmith {
 DeviceMeans::DeviceMeans(const Device& device, const SaturationLevels& levels)
     : queue_(device), levels_(levels) {
   require(device.info().has_doubles, "device", device.info().name,
-          "must have doubles for means of frames");
+          "must support double precision for means of frames");
   const std::string options = "-DHAS_DOUBLES";
   add_to_sums_ = queue_.kernel(mean_kernels, options, "add_to_sums");
   write_means_ = queue_.kernel(mean_kernels, options, "write_means");

@@ -46,7 +46,7 @@ std::string name_of_error(cl_int error) {
     case CL_INVALID_BUFFER_SIZE:
       return "CL_INVALID_BUFFER_SIZE";
     default:
-      return "an error of OpenCL";
+      return "unknown OpenCL error";
   }
 }
 
@@ -59,8 +59,7 @@ std::string place_of(const DeviceInfo& info) { return "device " + info.name; }
 
 void check(cl_int error, const std::string& place, const char* what) {
   if (error == CL_SUCCESS) return;
-  const std::string problem =
-      fmt::format("{} gave {} ({}); expected success", what, name_of_error(error), error);
+  const std::string problem = fmt::format("{} failed: {} ({})", what, name_of_error(error), error);
   if (is_for_memory(error)) throw OutOfDeviceMemory(place, problem);
   throw IoError(place, problem);
 }
@@ -116,7 +115,7 @@ struct Device::State {
       cl_int error = CL_SUCCESS;
       made =
           handle_of<clReleaseContext>(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &error));
-      check(error, place_of(info), "making a context");
+      check(error, place_of(info), "creating a context");
     }
     return static_cast<cl_context>(made.get());
   }
@@ -142,15 +141,15 @@ cl_program Device::State::program(std::string_view source, const std::string& op
   cl_int error = CL_SUCCESS;
   const cl_program program = clCreateProgramWithSource(within, 1, &text, &length, &error);
   DeviceHandle handle = handle_of<clReleaseProgram>(program);
-  check(error, place_of(info), "reading kernels");
+  check(error, place_of(info), "loading kernels");
   error = clBuildProgram(program, 1, &id, options.c_str(), nullptr, nullptr);
   if (error != CL_SUCCESS) {
     const std::string log = text_of([&](std::size_t room, void* to, std::size_t* size) {
       return clGetProgramBuildInfo(program, id, CL_PROGRAM_BUILD_LOG, room, to, size);
     });
     throw IoError(place_of(info),
-                  fmt::format("compiling kernels gave {} ({}); expected success (pocl needs a "
-                              "folder to write them to, POCL_CACHE_DIR). Its compiler says: {}",
+                  fmt::format("compiling kernels failed: {} ({}); pocl requires a writable folder "
+                              "for kernels, POCL_CACHE_DIR. Compiler output: {}",
                               name_of_error(error), error, log.empty() ? "nothing" : log));
   }
   programs.emplace(key, std::move(handle));
@@ -162,9 +161,9 @@ std::vector<Device> Device::all() {
   cl_uint count = 0;
   const cl_int error = clGetPlatformIDs(0, nullptr, &count);
   if (error == CL_PLATFORM_NOT_FOUND_KHR || count == 0) return {};
-  check(error, place, "asking for platforms");
+  check(error, place, "querying platforms");
   std::vector<cl_platform_id> platforms(count);
-  check(clGetPlatformIDs(count, platforms.data(), nullptr), place, "asking for platforms");
+  check(clGetPlatformIDs(count, platforms.data(), nullptr), place, "querying platforms");
   std::vector<Device> devices;
   for (const cl_platform_id platform : platforms) {
     // Skip a driver that has lost its devices, so that other drivers remain usable.
@@ -185,7 +184,7 @@ DeviceQueue::DeviceQueue(const Device& device) : device_(device) {
   cl_int error = CL_SUCCESS;
   handle_ = handle_of<clReleaseCommandQueue>(
       clCreateCommandQueue(device.state().context(), device.state().id, 0, &error));
-  check(error, place_of(device.info()), "making a queue");
+  check(error, place_of(device.info()), "creating a queue");
 }
 
 DeviceMemory DeviceQueue::allocate(std::size_t bytes) const {
@@ -235,7 +234,7 @@ DeviceKernel DeviceQueue::kernel(std::string_view source, const std::string& opt
   const cl_program program = device_.state().program(source, all);
   cl_int error = CL_SUCCESS;
   DeviceKernel kernel{handle_of<clReleaseKernel>(clCreateKernel(program, name, &error))};
-  check(error, place_of(device_.info()), "making a kernel");
+  check(error, place_of(device_.info()), "creating a kernel");
   return kernel;
 }
 
@@ -265,7 +264,7 @@ DeviceMark DeviceQueue::mark() const {
   cl_event event = nullptr;
   const cl_int error = clEnqueueMarkerWithWaitList(queue_of(handle_), 0, nullptr, &event);
   DeviceMark mark{handle_of<clReleaseEvent>(event)};
-  check(error, place_of(device_.info()), "marking work");
+  check(error, place_of(device_.info()), "inserting a marker");
   flush();  // otherwise a queue that follows the mark may wait forever
   return mark;
 }
@@ -273,7 +272,7 @@ DeviceMark DeviceQueue::mark() const {
 void DeviceQueue::follow(const DeviceMark& mark) const {
   const auto event = static_cast<cl_event>(mark.handle.get());
   check(clEnqueueBarrierWithWaitList(queue_of(handle_), 1, &event, nullptr),
-        place_of(device_.info()), "having work follow other work");
+        place_of(device_.info()), "inserting a barrier");
 }
 
 void DeviceQueue::flush() const {

@@ -9,8 +9,8 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw IoError("OpenCL",
-                "this tofsmith was built without it; expected a build with TOFSMITH_USE_OPENCL=ON, "
-                "which needs ocl-icd-opencl-dev");
+                "this tofsmith was built without OpenCL; expected a build with "
+                "TOFSMITH_USE_OPENCL=ON, which requires ocl-icd-opencl-dev");
 }
 
 }  // namespace

@@ -17,20 +17,19 @@ namespace tofsmith {
 namespace {
 
 [[noreturn]] void refuse_file(const std::string& file, const char* expected) {
-  throw IoError(file,
-                std::string("the page reads no file that another one names; expected ") + expected);
+  throw IoError(file, std::string("the page cannot read other files; expected ") + expected);
 }
 
 }  // namespace
 
 ImpulseResponse read_impulse_response(const std::filesystem::path& path,
                                       std::optional<double> /*time_step_s*/) {
-  refuse_file(path.string(), "samples = [..] with time_step_s in its place");
+  refuse_file(path.string(), "samples = [...] with time_step_s instead");
 }
 
 Lens read_lens_calibration(const std::filesystem::path& path,
                            std::optional<DistortionModel> /*model*/, std::string_view /*camera*/) {
-  refuse_file(path.string(), "fx_px, fy_px, cx_px and cy_px in its place");
+  refuse_file(path.string(), "fx_px, fy_px, cx_px and cy_px instead");
 }
 
 CodeSet parse_code_npz(std::span<const std::byte> /*content*/, std::string_view file,

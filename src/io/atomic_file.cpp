@@ -91,7 +91,7 @@ void remove_leftovers(const fs::path& directory, const ProcessIdentity& own) {
 }
 
 [[noreturn]] void refuse_existing_file(const fs::path& target) {
-  throw IoError(target.string(), "the file exists already; choose another name or pass --force");
+  throw IoError(target.string(), "the file already exists; choose another name or use --force");
 }
 
 void check_target(const fs::path& target, OutputPolicy policy) {
@@ -112,9 +112,9 @@ void check_target(const fs::path& target, OutputPolicy policy) {
   const fs::path directory = directory_of(target);
   const fs::file_status parent = fs::status(directory, error);
   if (parent.type() == fs::file_type::not_found)
-    throw IoError(target.string(), fmt::format("cannot write: there is no directory {}; create "
-                                               "it first",
-                                               directory.string()));
+    throw IoError(target.string(),
+                  fmt::format("cannot write: the directory {} does not exist; create it first",
+                              directory.string()));
   if (fs::exists(parent) && !fs::is_directory(parent))
     throw IoError(target.string(), fmt::format("cannot write: {} is a file; expected a directory",
                                                directory.string()));

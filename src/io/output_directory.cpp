@@ -16,7 +16,7 @@ void make_output_directory(const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory, error);
   if (error)
     throw IoError(directory.string(),
-                  fmt::format("cannot create this directory ({}); expected a writable place",
+                  fmt::format("cannot create this directory ({}); expected a writable location",
                               error.message()));
   if (!std::filesystem::is_directory(directory, error))
     throw IoError(directory.string(), "is a file; expected a directory");

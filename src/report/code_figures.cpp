@@ -115,7 +115,7 @@ std::string jitter_text(double edge_jitter_s) {
   return edge_jitter_s > 0.0 ? fmt::format("; edge jitter {:.4g} ps", edge_jitter_s * 1e12) : "";
 }
 
-std::string arm_text(bool binary) { return binary ? "switches on and off" : "analog"; }
+std::string arm_text(bool binary) { return binary ? "binary" : "analog"; }
 
 std::string generator_text(const std::optional<Generator>& generator, double frequency_hz) {
   if (!generator) return "";
@@ -238,7 +238,7 @@ KeyValueList camera_description(const Camera& camera) {
                           generator_text(camera.light.generator, camera.fundamental_frequency_hz));
   const std::string receiver =
       camera.sensor.is_signed()
-          ? "a mixer of weights from -1 to 1"
+          ? "a mixer with weights from -1 to 1"
           : fmt::format("{} tap{}", camera.sensor.taps, camera.sensor.taps > 1 ? "s" : "");
   add("sensor", fmt::format("{}, {}; response: {}", receiver, arm_text(camera.sensor.binary),
                             response_text(camera.sensor.impulse_response)) +
@@ -249,7 +249,7 @@ KeyValueList camera_description(const Camera& camera) {
   add("noise", fmt::format("{} electrons, read noise {:.4g} e",
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));
-  add("judged by",
+  add("ranked by",
       fmt::format("{} depth error over {} signal x {} ambient levels",
                   name_of(camera.operating.error), camera.operating.signal_e_per_s.size(),
                   camera.operating.ambient_e_per_s.size()));
@@ -268,14 +268,13 @@ Section camera_section(const Camera& camera) {
     density.x.push_back(camera.range_m() * i / parts);
     density.y.push_back(parts * masses[i]);
   }
-  section.blocks.push_back(
-      line_figure({.id = "true-depths",
-                   .title = "How often depths occur",
-                   .caption = "1: as frequent as in a uniform distribution. Errors and Cramer-Rao "
-                              "bounds are means over "
-                              "this distribution; the decoder searches all depths alike."},
-                  {std::move(density)}, {.label = "depth", .unit = "m"},
-                  {.label = "density of true depths", .from_zero = true}));
+  section.blocks.push_back(line_figure(
+      {.id = "true-depths",
+       .title = "Distribution of true depths",
+       .caption = "1: as frequent as in a uniform distribution. Errors and Cramer-Rao bounds are "
+                  "means over this distribution; the decoder does not use it."},
+      {std::move(density)}, {.label = "depth", .unit = "m"},
+      {.label = "density of true depths", .from_zero = true}));
   return section;
 }
 
@@ -286,7 +285,7 @@ std::string true_depths_in_words(const Camera& camera) {
                                         (*range.working_distance_m)[1])
                           : "anywhere in the range";
   if (!range.depths || DepthPrior::are_alike(*range.depths)) return where;
-  return fmt::format("{}, as often as {} weights say", where, range.depths->size());
+  return fmt::format("{}, distributed by {} weights", where, range.depths->size());
 }
 
 Page code_page(const CodeSet& code, const Camera& camera, const std::string& command_line) {
@@ -299,11 +298,11 @@ Page code_page(const CodeSet& code, const Camera& camera, const std::string& com
                          .title = "Waveforms and correlation functions",
                          .caption = "One row per measurement, over one period."},
                         code, camera),
-        coding_curve_figure({.id = "coding-curve",
-                             .title = "Coding curve",
-                             .caption = "The path that the correlation values draw as depth runs "
-                                        "through the range."},
-                            {code}, camera)}});
+        coding_curve_figure(
+            {.id = "coding-curve",
+             .title = "Coding curve",
+             .caption = "Curve of the correlation values as depth varies over the range."},
+            {code}, camera)}});
   page.sections.push_back(camera_section(camera));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;

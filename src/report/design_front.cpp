@@ -58,17 +58,17 @@ Table comparison(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
   const DepthErrorReport& best = result.winner().error;
   const std::vector<std::size_t> levels = usable_levels(best);
-  Table table{.id = "best",
-              .title = "The best code and the standard codes",
-              .caption = fmt::format(
-                  "Error: geometric mean of the {} depth "
-                  "error over the {} of {} light levels at which the best code has at most {:.0f} "
-                  "% outliers (off by more than {:.2g} m). Ratio: over all levels, by which codes "
-                  "are ranked.",
-                  name_of(kind), levels.size(), best.points.size(), 100 * max_outlier_rate,
-                  best.outlier_threshold_m),
-              .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
-              .highlighted_row = 0};
+  Table table{
+      .id = "best",
+      .title = "The best code and the standard codes",
+      .caption = fmt::format(
+          "Error: geometric mean of the {} depth error over the {} of {} light levels at which the "
+          "best code has at most {:.0f} % outliers (off by more than {:.2g} m). Ratio: error "
+          "relative to the best code over all levels, by which codes are ranked.",
+          name_of(kind), levels.size(), best.points.size(), 100 * max_outlier_rate,
+          best.outlier_threshold_m),
+      .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
+      .highlighted_row = 0};
   for (const Candidate* c : compared(result, kind))
     table.rows.push_back({c->code.name(), fmt::format("{}", c->error.exposures),
                           fmt::format("{:.1f}", error_mm(c->error, levels, kind)),

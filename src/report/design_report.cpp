@@ -39,24 +39,24 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
   Table table{
       .id = "operating-multipath",
       .caption = fmt::format(
-          "Geometric means over the operating points of the {} error of single returns (E1) and "
-          "behind a second return of ratio {} to {}, {} to {} m late, decoded as single-path (E2); "
-          "the same decoded as two returns (circular). Codes are chosen by E1^{:.3g} E2^{:.3g}, "
-          "and by the error as two returns where it is much larger than that of standard codes.",
+          "Geometric means over the operating points: {} error of single returns (E1), error with "
+          "a second return of ratio {} to {} at a delay of {} to {} m with single-path decoding "
+          "(E2), and its circular error with two-return decoding. Codes are ranked by E1^{:.3g} "
+          "E2^{:.3g}; two-return errors much larger than those of standard codes are penalized.",
           name_of(kind), returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},
                   {"E1 (mm)", true},
                   {"E2 (mm)", true},
-                  {"chosen by (mm)", true},
-                  {"as two returns (mm)", true}}};
+                  {"ranked by (mm)", true},
+                  {"two-return (mm)", true}}};
   for (const auto& [weighed_m, c] : codes) {
     if (c == &result.winner()) table.highlighted_row = static_cast<int>(table.rows.size());
     const auto& two_return = c->multipath->two_return;
     table.rows.push_back({c->code.name(), estimate_mm_text(c->error.of(kind).geometric_mean_m),
                           estimate_mm_text(c->multipath->single_path.of(kind)),
                           fmt::format("{:.1f}", 1e3 * weighed_m),
-                          two_return ? estimate_mm_text(two_return->circular_m) : "cannot"});
+                          two_return ? estimate_mm_text(two_return->circular_m) : "unsupported"});
   }
   return {"Second returns", {std::move(table)}};
 }
@@ -64,9 +64,9 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
 Table residual_table(const DesignResult& result) {
   Table table{.id = "residuals",
               .caption =
-                  "Every measurement of every designed code. Factorized pairs are chosen by depth "
-                  "error: the residual is the distance of the chosen pair from the target, next to "
-                  "the smallest distance of any pair found.",
+                  "All measurements of the designed codes. Factorized pairs are selected by depth "
+                  "error. Residual: distance of the selected pair from the target. Smallest: "
+                  "smallest distance of all pairs found.",
               .columns = {{"code"},
                           {"measurement", true},
                           {"residual", true},
@@ -75,7 +75,7 @@ Table residual_table(const DesignResult& result) {
                           {"peak", true},
                           {"demodulation duty", true},
                           {"edges", true},
-                          {"found from"}}};
+                          {"start"}}};
   for (const Candidate& c : result.candidates)
     for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
       const MeasurementReport& m = c.per_measurement[k];
@@ -135,7 +135,7 @@ void add_search_progress(const DesignResult& result, Section& section) {
     section.blocks.push_back(line_figure(
         {.id = figure_id("search", c.code.name()),
          .title = fmt::format("Search for {}", c.code.name()),
-         .caption = fmt::format("The {}, over the work of the search.", c.search->error_name)},
+         .caption = fmt::format("The {} over the work of the search.", c.search->error_name)},
         {steps}, {.label = c.search->work_unit}, {.label = "depth error", .unit = "mm"}));
   }
 }
@@ -157,15 +157,15 @@ Section search_section(const DesignResult& result) {
 
 /// Explains why the best code won. A table, because cells show user-defined names verbatim.
 Table explanation(const DesignResult& result, DepthErrorKind kind) {
-  std::vector<const char*> questions{"What does it beat?"};
-  if (!result.winner().code.is_rows()) questions.push_back("Why so many exposures?");
-  questions.push_back("What limits it?");
-  if (result.winner().multipath) questions.push_back("And with multipath?");
-  if (result.winner().code.is_rows()) questions.push_back("And in dimmer light?");
+  std::vector<const char*> questions{"How does it compare?"};
+  if (!result.winner().code.is_rows()) questions.push_back("Why this number of exposures?");
+  questions.push_back("What limits its error?");
+  if (result.winner().multipath) questions.push_back("How does it perform with multipath?");
+  if (result.winner().code.is_rows()) questions.push_back("How does it perform in dimmer light?");
   Table table{.columns = {{"question"}, {"answer"}}};
   if (kind == DepthErrorKind::linear)
     table.caption =
-        "Every code is judged at its best origin of depth; evaluate keeps its origin unless "
+        "Every code is evaluated at its best origin of depth; `evaluate` keeps its origin unless "
         "--best-rotation is given.";
   for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
     table.rows.push_back({questions[i], result.explanation[i]});
@@ -205,15 +205,16 @@ Section coding_curve_section(const Camera& camera, const DesignResult& result) {
     if (const Candidate* c = result.find(name); c && c != &result.winner() && shown.size() < 3)
       shown.push_back(c->code);
   Section section{.title = "Coding curves"};
-  section.blocks.push_back(Paragraph{
-      "As depth runs through the range, the vector of correlation values draws a closed curve. A "
-      "long curve that keeps away from itself separates depths; noise moves a measurement off "
-      "it."});
-  section.blocks.push_back(coding_curve_figure(
-      {.id = "coding-curves",
-       .title = "Coding curves",
-       .caption = "In the three directions of largest extent, coloured by depth. Drag to turn."},
-      shown, camera));
+  section.blocks.push_back(
+      Paragraph{"As depth varies over the range, the vector of correlation values follows a closed "
+                "curve. Noise moves a measurement away from the curve; a long curve with "
+                "well-separated branches distinguishes depths in spite of noise."});
+  section.blocks.push_back(
+      coding_curve_figure({.id = "coding-curves",
+                           .title = "Coding curves",
+                           .caption = "Projection onto the three directions of largest extent, "
+                                      "coloured by depth. Drag to rotate."},
+                          shown, camera));
   return section;
 }
 

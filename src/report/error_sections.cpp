@@ -149,8 +149,8 @@ Figure error_maps(const OperatingRange& range, const std::vector<DepthErrorRow>&
   return heat_map_figure(
       {.id = "error-maps",
        .title = fmt::format("Mean {} depth error by light level", name_of(range.error)),
-       .caption = "One logarithmic colour scale, best code first; of many codes the best of every "
-                  "family."},
+       .caption = "Common logarithmic colour scale, best code first; if there are many codes, only "
+                  "the best of each family."},
       maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 

@@ -103,7 +103,7 @@ Figure cloud_figure(const MultipathScene& scene, const ValueRange& range) {
     clouds.push_back(cloud_of(scene.view, d.method, d.depth_m));
   return point_cloud_figure({.id = "multipath-scene-clouds",
                              .title = "Point clouds",
-                             .caption = "Drag to turn; walls should look straight from above.",
+                             .caption = "Drag to rotate; walls should look straight from above.",
                              .alt_text = "Point clouds of the decoded scene"},
                             clouds, {.label = "depth", .unit = "m", .range = range},
                             {.max_points = 20000});
@@ -125,22 +125,22 @@ std::vector<Row> multipath_scene_rows(const MultipathScene& scene) {
 
 Section multipath_scene_section(const MultipathScene& scene, const Camera& camera) {
   const Image<float> truth_m = wrapped_depth_m(scene.truth, camera);
-  Section section{.title = "A scene that lights itself: " + scene.name};
-  section.blocks.push_back(Paragraph{fmt::format(
-      "Light reaches each surface directly and by way of one other surface. Captured with {}, "
-      "S = {} e/s for albedo 1 at {:.2f} m, A = {} e/s.",
-      scene.code, level_text(scene.light.signal_e_per_s), scene.light.reference_distance_m,
-      level_text(scene.light.ambient_e_per_s))});
+  Section section{.title = "Scene with indirect light: " + scene.name};
+  section.blocks.push_back(Paragraph{
+      fmt::format("Light reaches each surface directly and after reflection at one other surface. "
+                  "Captured with {}, S = {} e/s for albedo 1 at {:.2f} m, A = {} e/s.",
+                  scene.code, level_text(scene.light.signal_e_per_s),
+                  scene.light.reference_distance_m, level_text(scene.light.ambient_e_per_s))});
   section.blocks.push_back(depth_figure(scene, truth_m, camera));
   section.blocks.push_back(plan_figure(scene, truth_m));
   section.blocks.push_back(later_light_figure(scene));
   section.blocks.push_back(returns_figure(scene));
   section.blocks.push_back(cloud_figure(scene, depth_range(scene.truth, camera)));
-  section.blocks.push_back(table_of_rows(
-      "multipath-scene",
-      "Errors by the mean delay of multipath light; 1: single-path decoding, 2: of two returns; "
-      "gain: bias 1 over bias 2.",
-      multipath_scene_rows(scene), {0}));
+  section.blocks.push_back(
+      table_of_rows("multipath-scene",
+                    "Errors by the mean delay of multipath light; 1: single-path decoding, 2: "
+                    "two-return decoding; gain: bias 1 / bias 2.",
+                    multipath_scene_rows(scene), {0}));
   return section;
 }
 

@@ -112,7 +112,7 @@ std::vector<Row> multipath_rows(const std::vector<MultipathErrorReport>& codes) 
       rows.push_back(row(code, maps, "one return", maps.single));
       for (const MultipathCell& cell : maps.points)
         rows.push_back(row(code, maps, light_of(cell, "return"), cell));
-      rows.push_back(row(code, maps, "one return, by tail", maps.single_by_tail));
+      rows.push_back(row(code, maps, "one return, tail decoding", maps.single_by_tail));
       for (const MultipathCell& cell : maps.tails)
         rows.push_back(row(code, maps, light_of(cell, "tail"), cell));
     }
@@ -120,17 +120,17 @@ std::vector<Row> multipath_rows(const std::vector<MultipathErrorReport>& codes) 
 }
 
 Section multipath_section(const std::vector<MultipathErrorReport>& codes) {
-  Section section{"Light that comes back twice", {}};
+  Section section{"Multipath", {}};
   for (const MultipathErrorReport& code : codes)
     if (!code.why_no_two_returns.empty())
       section.blocks.emplace_back(
-          Paragraph{code.code + " is decoded as single-path only: " + code.why_no_two_returns});
+          Paragraph{code.code + " supports only single-path decoding: " + code.why_no_two_returns});
   add_all_maps(codes, &MultipathMaps::points, "point", "a second return", section);
   add_all_maps(codes, &MultipathMaps::tails, "tail", "an exponential tail", section);
-  section.blocks.emplace_back(table_of_rows("multipath",
-                                            "1: single-path decoding, 2: of two returns (or a "
-                                            "tail); gain: error 1 over error 2.",
-                                            multipath_rows(codes), {0, 2}));
+  section.blocks.emplace_back(table_of_rows(
+      "multipath",
+      "1: single-path decoding, 2: two-return (or tail) decoding; gain: error 1 / error 2.",
+      multipath_rows(codes), {0, 2}));
   return section;
 }
 

@@ -78,8 +78,9 @@ std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
   for (const Sufficiency& s : found.varied) {
     const std::string now = amount_text(camera, s.quantity);
     rows.push_back({std::string(name_of(s.quantity)), now.empty() ? "1 x" : now,
-                    s.factor ? scaled_text(camera, s.quantity, *s.factor)
-                             : fmt::format("not even {} x", plain_number(options.max_factor, 3)),
+                    s.factor
+                        ? scaled_text(camera, s.quantity, *s.factor)
+                        : fmt::format("not reached at {} x", plain_number(options.max_factor, 3)),
                     plain_number(1e3 * s.error_m, 4), s.code.name(),
                     s.excluded_below == 0.0 ? "(no bound)"
                     : s.excluded_below >= options.max_factor
@@ -124,7 +125,7 @@ std::string sunlight_text(const Optics& optics) {
 KeyValueList conditions(const Camera& camera, const Requirements& found,
                         const RequirementOptions& options) {
   KeyValueList list{{{"depth error to reach", length_text(options.error_m)},
-                     {"depth error of the present camera",
+                     {"depth error of the current camera",
                       fmt::format("{} with {}", length_text(found.error_m), found.code.name())},
                      {"true depths", distance_text(camera)},
                      {"signal", levels_text(camera.operating.signal_e_per_s)},
@@ -141,22 +142,23 @@ KeyValueList conditions(const Camera& camera, const Requirements& found,
 Page requirements_report(const Camera& camera, const Requirements& found,
                          const RequirementOptions& options, const std::string& command_line) {
   Page page{
-      .title = fmt::format("What it takes for {} on {}", length_text(options.error_m), camera.name),
+      .title = fmt::format("Requirements for {} on {}", length_text(options.error_m), camera.name),
       .subtitle = fmt::format(
-          "The camera now reaches {} with {}{}", length_text(found.error_m), found.code.name(),
+          "The camera currently reaches {} with {}{}", length_text(found.error_m),
+          found.code.name(),
           camera.optics ? fmt::format("; white surface at {}, sunlight {}",
                                       white_distance_text(camera), sunlight_text(*camera.optics))
                         : ""),
       .footer = "tofsmith " TOFSMITH_VERSION};
-  Table table = table_of_rows("requirements",
-                              "Smallest amount of each quantity that suffices while the others "
-                              "stay as they are. Below the amount in the last column, no code "
-                              "reaches the error (receiver bound).",
-                              requirement_rows(camera, found, options), {0, 1, 2, 4, 5});
+  Table table =
+      table_of_rows("requirements",
+                    "Smallest sufficient amount of each quantity, with the others unchanged. Below "
+                    "the amount in the last column, no code reaches the error (receiver bound).",
+                    requirement_rows(camera, found, options), {0, 1, 2, 4, 5});
   page.sections.push_back(
-      {"What suffices", {conditions(camera, found, options), std::move(table)}});
+      {"Sufficient amounts", {conditions(camera, found, options), std::move(table)}});
   if (found.map)
-    page.sections.push_back({"Bandwidth against power", {error_map(*found.map, options.error_m)}});
+    page.sections.push_back({"Bandwidth and power", {error_map(*found.map, options.error_m)}});
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }

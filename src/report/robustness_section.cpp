@@ -55,7 +55,7 @@ Section robustness_section(const std::vector<JudgedCode>& codes) {
   std::string caption = fmt::format(
       "{} depth error (geometric mean over the operating points) on cameras that differ from their "
       "description: with a decoder that knows the difference (calibrated) and with one that does "
-      "not (uncalibrated). All decode the same depths and the same noise.",
+      "not (uncalibrated). All use the same depths and noise.",
       is_linear ? "Linear" : "Circular");
   return {"Robustness",
           {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};

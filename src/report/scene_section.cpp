@@ -63,12 +63,12 @@ Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, con
   }
   return image_figure({.id = figure_id("decoded", capture.light),
                        .title = fmt::format("Decoded depth, {}", light_text(capture)),
-                       .caption = "Mean errors above; errors go the shorter way around the range.",
+                       .caption = "Mean errors above; errors are circular (wrapped).",
                        .alt_text = "Maps of decoded depth and its error"},
                       images,
                       {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
                       {.max_side = 160,
-                       .before_name = "each pixel alone",
+                       .before_name = "unfiltered",
                        .after_name = "filtered",
                        .reference = error_reference(scene.truth, camera, 4e3 * scale_m)});
 }
@@ -133,17 +133,15 @@ Table error_table(const SceneResult& scene) {
 Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
                     const SceneDecoding& decoding, const Camera& camera) {
   std::vector<ColouredPoints> clouds;
-  clouds.push_back(
-      cloud_of(scene.view, decoding.filtered ? "each pixel alone" : "", decoding.depth_m));
+  clouds.push_back(cloud_of(scene.view, decoding.filtered ? "unfiltered" : "", decoding.depth_m));
   if (decoding.filtered)
     clouds.push_back(cloud_of(scene.view, "filtered", decoding.filtered->depth_m));
   return point_cloud_figure(
       {.id = "point-cloud",
        .title = fmt::format("Point cloud, {}, {} light", decoding.code, capture.light),
-       .caption = "Every decoded pixel at its place in front of the camera. Drag to turn.",
-       .alt_text = decoding.filtered
-                       ? "Point clouds of the decoded scene, each pixel alone and filtered"
-                       : "Point cloud of the decoded scene"},
+       .caption = "All decoded pixels in three dimensions. Drag to rotate.",
+       .alt_text = decoding.filtered ? "Point clouds of the decoded scene, unfiltered and filtered"
+                                     : "Point cloud of the decoded scene"},
       clouds, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
       {.max_points = 20000});
 }
@@ -204,7 +202,7 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
   return image_figure(
       {.id = "before-after",
        .title = fmt::format("Depth of the scene {}", scene.name),
-       .caption = fmt::format("{}; mean errors of pixels decoded one by one. Drag the border.",
+       .caption = fmt::format("{}; mean errors without filtering. Drag the border to compare.",
                               light_text(capture)),
        .alt_text = fmt::format("Depth decoded with {} on the left and {} on the right",
                                standard->code, best_code)},
@@ -218,17 +216,17 @@ Section scene_section(const SceneResult& scene, const Camera& camera,
   Section section{.title = "A scene: " + scene.name};
   section.blocks.push_back(Paragraph{
       fmt::format("The scene is captured in simulation at each light level and decoded with every "
-                  "code. The signal S is that of albedo 1 facing the camera at {:.2f} m and falls "
-                  "with the square of distance.",
+                  "code. The signal S is that of a surface of albedo 1 that faces the camera at "
+                  "{:.2f} m; it decreases with the square of the distance.",
                   scene.reference_distance_m)});
   const auto is_filtered = [](const SceneCapture& capture) {
     return std::ranges::any_of(capture.decodings,
                                [](const SceneDecoding& d) { return d.filtered.has_value(); });
   };
   if (std::ranges::any_of(scene.captures, is_filtered))
-    section.blocks.push_back(Paragraph{
-        "Filtered: measurements of neighbouring pixels at the same depth, within their noise, are "
-        "averaged before decoding."});
+    section.blocks.push_back(
+        Paragraph{"Filtered: measurements of neighbouring pixels whose depths agree within the "
+                  "noise are averaged before decoding."});
   section.blocks.push_back(true_scene_figure(scene, camera));
   section.blocks.push_back(albedo_figure(scene));
   for (const SceneCapture& capture : scene.captures) {

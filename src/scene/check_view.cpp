@@ -101,18 +101,18 @@ bool is_inside(const Shape& shape, const Eigen::Vector3d& point) {
 
 void require_camera_outside(std::span<const Shape> shapes, const Eigen::Vector3d& camera) {
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    require(
-        !is_inside(shapes[i], camera), "camera position", camera.transpose(),
-        fmt::format("must not be inside shape {}, a {}: move it out (walls around it are planes)",
-                    i, kind_of(shapes[i])));
+    require(!is_inside(shapes[i], camera), "camera position", camera.transpose(),
+            fmt::format("must not be inside shape {}, a {}: move it outside (use planes for walls "
+                        "around the camera)",
+                        i, kind_of(shapes[i])));
 }
 
 void require_something_in_view(const SceneImage& image) {
   const bool any = std::any_of(image.depth_m.pixels.begin(), image.depth_m.pixels.end(),
                                [](float depth) { return std::isfinite(depth); });
   require(any, "pixels that see a shape", 0,
-          "must be at least one: turn or move the camera, widen its view or move the shapes "
-          "(x is right, y down, z ahead of the camera)");
+          "must be at least one: rotate or move the camera, widen its view or move the shapes (x "
+          "is right, y down, z forward)");
 }
 
 void check_view(const StagedScene& scene, const SceneImage& image) {

@@ -26,11 +26,11 @@ void validate_pixel(std::span<const MultipathReturn> returns, int row, int colum
     const auto name = [&](const char* field) { return name_of_return(row, column, i, field); };
     require(std::isfinite(ratio) && ratio >= 0.0f, name("ratio"), ratio, "must be finite and >= 0");
     require(!std::isnan(direct_m), name("distance_m"), distance_m,
-            "must not be: the pixel has no direct return");
+            "must not exist, because the pixel has no direct return");
     require(std::isfinite(distance_m) && distance_m >= before_m, name("distance_m"), distance_m,
             i == 0 ? "must be finite and not nearer than the direct return at " +
                          fmt::format("{:f}", before_m) + " m"
-                   : "must be finite and in order, not nearer than the return before it at " +
+                   : "must be finite and in order, not nearer than the previous return at " +
                          fmt::format("{:f}", before_m) + " m");
     require(distance_m - direct_m < range_m, name("distance_m"), distance_m,
             "must be less than the unambiguous range, " + fmt::format("{:f}", range_m) +
@@ -64,7 +64,7 @@ void MultipathReturns::validate(const SceneImage& scene, double range_m) const {
   require(first.front() == 0, "multipath returns: first[0]", first.front(), "must be 0");
   for (std::size_t i = 0; i < pixels; ++i)
     require(first[i + 1] >= first[i], "multipath returns: first[" + std::to_string(i + 1) + "]",
-            first[i + 1], "must not fall");
+            first[i + 1], "must not decrease");
   require(first.back() == static_cast<std::int64_t>(returns.size()),
           "multipath returns: last entry of first", first.back(),
           "must be the number of returns, " + std::to_string(returns.size()));

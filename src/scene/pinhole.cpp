@@ -54,8 +54,8 @@ void check_no_fold(const PinholeView& view) {
     if (reach >= 1.0) return;
     const double radius_px = std::hypot(column - view.cx_px, row - view.cy_px);
     reject("lens.distortion", fmt::format("[{}]", fmt::join(view.distortion->coefficients, ", ")),
-           fmt::format("must not fold back {}inside the image: it does {:.4g} px from the axis, "
-                       "towards pixel (row {}, column {}), which is {:.4g} px from it",
+           fmt::format("must not fold back {}inside the image: it does so {:.4g} px from the axis, "
+                       "towards pixel (row {}, column {}), which is {:.4g} px from the axis",
                        view.distortion->model == DistortionModel::fisheye
                            ? "or look 90 degrees off the axis "
                            : "",

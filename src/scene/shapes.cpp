@@ -57,7 +57,7 @@ void validate_shape(const Mesh& mesh) {
   for (const Eigen::Vector3d& vertex : mesh.triangles.vertices)
     reach_m = std::max(reach_m, mesh.scale_m * vertex.norm());
   require(reach_m <= 1e12, "mesh.vertices", reach_m,
-          "must stand within 1e12 m of the world's origin (distance shown)");
+          "must be within 1e12 m of the world's origin (distance shown)");
 }
 
 void validate_shape(const Capsule& capsule) {
@@ -94,7 +94,7 @@ void Texture::validate() const {
   require(std::isfinite(period_m) && period_m > 0.0, "texture.period_m", period_m,
           "must be finite and > 0");
   if (pattern != Pattern::image) return;
-  require(!image.empty(), "texture.image", "no pixels", "must have some");
+  require(!image.empty(), "texture.image", "no pixels", "must have pixels");
   for (const float value : image.pixels)
     require(value >= 0.0f && value <= 1.0f, "texture.image", value, "must be in [0, 1]");
 }

@@ -16,7 +16,7 @@ void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
   if (tail) tail->validate(range_m);
   if (transients.empty()) return;
   require(returns.empty() && !tail, "transients", transients.size(),
-          "must not stand beside multipath returns or a tail, which they hold already");
+          "must not be combined with multipath returns or a tail, which they already contain");
   require(
       transients.size() == 1 || transients.size() == scene.depth_m.size(), "transients",
       transients.size(),

@@ -64,7 +64,7 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
                all_trials(options_, points_.size())) {
   if (model.has_rows()) {
     require(!options_.clip_to_open_sensor, "clip_to_open_sensor", "true",
-            "does not go with sensor.readout = \"rows\"");
+            "cannot be combined with sensor.readout = \"rows\"");
     rows_.emplace(model, camera);
     return;
   }

@@ -95,10 +95,10 @@ DiscKernels::DiscKernels(const LensBlur& blur, int samples, std::span<const floa
   std::set<int> used;
   for (const float distance_m : distances_m) {
     const double radius_px = blur.disc_radius_px(distance_m);
-    require(radius_px <= largest_radius_px, "lens.f_number", blur.f_number,
-            fmt::format("makes the disc of confusion of what is {:.4g} m away {:.4g} pixels wide; "
-                        "must leave it <= {:.4g}",
-                        distance_m, 2.0 * radius_px, 2.0 * largest_radius_px));
+    require(
+        radius_px <= largest_radius_px, "lens.f_number", blur.f_number,
+        fmt::format("at {:.4g} m, the disc of confusion is {:.4g} pixels wide; must be <= {:.4g}",
+                    distance_m, 2.0 * radius_px, 2.0 * largest_radius_px));
     used.insert(step_of(distance_m));
   }
   used.erase(sharp);

@@ -31,7 +31,7 @@ double length_across(Eigen::MatrixXd columns) {
 
 MultipathBound::MultipathBound(const ForwardModel& model, const Camera& camera)
     : samples_((require(!model.has_rows(), "sensor.readout", "rows",
-                        "has no bound of two returns, which takes independent measurements"),
+                        "has no two-return bound, which requires independent measurements"),
                 model.samples())),
       range_m_(camera.range_m()),
       readout_(model.readout()),

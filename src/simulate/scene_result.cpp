@@ -46,7 +46,7 @@ PinholeView view_of(const std::optional<Lens>& lens, int width, int height) {
   if (lens->width_px && lens->height_px)
     require(*lens->width_px == width && *lens->height_px == height, "image size",
             fmt::format("{} x {}", height, width),
-            fmt::format("must be {} x {}, of which lens.height_px and lens.width_px say it is",
+            fmt::format("must be {} x {}, as specified by lens.height_px and lens.width_px",
                         *lens->height_px, *lens->width_px));
   PinholeView view{lens->fx_px, lens->fy_px, lens->cx_px,     lens->cy_px,
                    width,       height,      lens->distortion};

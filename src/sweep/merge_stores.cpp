@@ -40,8 +40,8 @@ class Merger {
                  is = item.status == ItemStatus::finished;
       if (was_finished && is && find_.text(1) != item.result)
         throw IoError(path.string(),
-                      fmt::format("item {} ({}) has another result than in the stores before it",
-                                  key, item.settings));
+                      fmt::format("item {} ({}) has a different result in a previous store", key,
+                                  item.settings));
       // If both are finished, keep the faster one, so that the order of the parts does not matter.
       is_better = is && (!was_finished || item.seconds < find_.number(2));
       find_.reset();
@@ -71,7 +71,7 @@ void SweepStore::merge(const std::filesystem::path& path,
     const SweepStore store = read(part);
     if (target.empty()) target = store.target();
     if (store.target() != target)
-      throw IoError(part.string(), fmt::format("was computed on {}; the stores before it on {}",
+      throw IoError(part.string(), fmt::format("was computed on {}, but the previous stores on {}",
                                                store.target(), target));
   }
   // A rollback journal leaves a single file, which may be on a network file system.

@@ -18,13 +18,13 @@ constexpr int patience_ms = 60'000;
 std::string_view advice(int code) {
   switch (code) {
     case SQLITE_FULL:
-      return "; make room and run again, nothing that is finished is lost";
+      return "; free disk space and run again (finished items are kept)";
     case SQLITE_IOERR:
-      return "; what was finished before is kept: run again";
+      return "; run again (finished items are kept)";
     case SQLITE_READONLY:
       return "; it can be read with --status";
     case SQLITE_BUSY:
-      return "; another process holds it";
+      return "; another process has locked it";
     case SQLITE_CORRUPT:
       return "; the file is damaged: restore a copy, or use another store";
     case SQLITE_NOTADB:
@@ -39,7 +39,7 @@ std::string_view advice(int code) {
 SqliteDatabase::SqliteDatabase(const std::filesystem::path& path, Access access) : path_(path) {
   if (const std::string name = path.string(); name.empty() || name.starts_with(':'))
     throw IoError(name.empty() ? "store" : name,
-                  "expected the name of a file; what SQLite keeps in memory would be lost");
+                  "expected the name of a file, because a database in memory would be lost");
   sqlite3* connection = nullptr;
   const int flags =
       access == Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;

@@ -38,16 +38,16 @@ void require_database(const std::filesystem::path& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return;
   if (!std::filesystem::is_regular_file(status))
-    throw IoError(path.string(), "is no regular file; expected a store of tofsmith sweep");
+    throw IoError(path.string(), "is not a regular file; expected a store of tofsmith sweep");
   const std::string header = header_of(path);
   if (!header.empty() && !header.starts_with(sqlite_magic))
-    throw IoError(path.string(), "is no SQLite file; expected a store of tofsmith sweep");
+    throw IoError(path.string(), "is not an SQLite file; expected a store of tofsmith sweep");
 }
 
 void require_ours(SqliteDatabase& database, const std::filesystem::path& path) {
   if (database.text_of("PRAGMA application_id") != fmt::format("{}", application_id))
     throw IoError(path.string(),
-                  "is an SQLite file of something else; expected a store of tofsmith sweep");
+                  "is an SQLite file of another program; expected a store of tofsmith sweep");
 }
 
 std::string schema(const std::string& target) {
@@ -107,7 +107,7 @@ void copy_store(const std::filesystem::path& from, const std::filesystem::path& 
 std::filesystem::path make_directory() {
   std::string pattern = (std::filesystem::temp_directory_path() / "tofsmith-sweep-XXXXXX").string();
   if (::mkdtemp(pattern.data()) == nullptr)
-    throw IoError(pattern, "cannot make a directory to read the store from");
+    throw IoError(pattern, "cannot create a directory for a copy of the store");
   return pattern;
 }
 
@@ -133,12 +133,13 @@ SqliteDatabase open_store_file(const std::filesystem::path& path, const std::str
                                const std::string& network) {
   require_database(path);
   if (!network.empty() && is_in_wal_mode(path))
-    throw IoError(path.string(),
-                  fmt::format("is in WAL mode, which breaks on a network file system ({}); copy it "
-                              "to a disk of this machine, or merge it there into a store that can "
-                              "be used here: tofsmith sweep merge NEW.sqlite {}; or give every "
-                              "machine a store and a part of the work: --shard i/n",
-                              network, path.filename().string()));
+    throw IoError(
+        path.string(),
+        fmt::format(
+            "is in WAL mode, which does not work on a network file system ({}); copy it to a local "
+            "disk, or merge it there into a new store that works here: tofsmith sweep merge "
+            "NEW.sqlite {}; or use one store and one shard per machine: --shard i/n",
+            network, path.filename().string()));
   SqliteDatabase database(path, SqliteDatabase::Access::write);
   create_if_empty(database, target);
   require_ours(database, path);
@@ -175,8 +176,8 @@ StoreHead read_store_head(SqliteDatabase& database, const std::filesystem::path&
        schema != fmt::format("{}", oldest_schema_version)) ||
       results != fmt::format("{}", sweep_result_version))
     throw IoError(path.string(),
-                  fmt::format("is of tofsmith {} (store version {}, results {}); this is tofsmith "
-                              "{} (store version {}, results {}); use another store",
+                  fmt::format("was written by tofsmith {} (store version {}, results {}); this is "
+                              "tofsmith {} (store version {}, results {}); use another store",
                               version, schema, results, TOFSMITH_VERSION, schema_version,
                               sweep_result_version));
   if (const std::string damage = database.text_of("PRAGMA quick_check(1)"); damage != "ok")

@@ -43,7 +43,7 @@ StoredItem stored_item(const SqliteStatement& row, const std::filesystem::path& 
   if (word == status_words.end()) damaged(fmt::format("status {}", row.text(2)));
   item.status = static_cast<ItemStatus>(word - status_words.begin());
   if (item.status == ItemStatus::finished && row.text(4) != checksum_of(key, item.result))
-    damaged("its checksum does not hold");
+    damaged("its checksum does not match");
   return item;
 }
 
@@ -58,11 +58,12 @@ SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreO
       std::make_unique<State>(State{path, {nullptr, open_store_file(path, here, network)}, {}});
   state->head = read_store_head(state->database(), path);
   if (state->head.target != here)
-    throw IoError(path.string(),
-                  fmt::format("was computed on {}, and this process uses {}: results would differ "
-                              "in their last digits; set TOFSMITH_TARGET={} if this machine has "
-                              "it, or use another store",
-                              state->head.target, here, state->head.target));
+    throw IoError(
+        path.string(),
+        fmt::format(
+            "was computed on {}, and this process uses {}: results would differ in their last "
+            "digits; set TOFSMITH_TARGET={} if this machine supports it, or use another store",
+            state->head.target, here, state->head.target));
   return SweepStore(std::move(state));
 }
 
@@ -103,7 +104,7 @@ std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys, st
   for (const std::string& key : keys.first(std::min(keys.size(), max_at_once))) {
     if (ours == max_items) break;
     if (!find.bind(1, key).step())
-      throw IoError(state_->path.string(), fmt::format("holds no item {} any more", key));
+      throw IoError(state_->path.string(), fmt::format("no longer contains item {}", key));
     const std::string status = find.text(0);
     find.reset();
     if (status == "finished") {

@@ -52,7 +52,7 @@ std::vector<SettingValue> range_values(const TableReader& table, double from, do
   const double steps = (to - from) / step;
   if (!(steps >= 0.0) || !std::isfinite(steps))
     table.fail("step",
-               fmt::format("found {}; expected steps that lead from {} to {}", step, from, to));
+               fmt::format("found {}; expected a step that leads from {} to {}", step, from, to));
   if (steps >= static_cast<double>(max_axis_values))
     table.fail("step",
                fmt::format("makes {:.3g} values; expected at most {}", steps, max_axis_values));
@@ -126,16 +126,17 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
     if (&line == &lines.front() && is_name_of(value, keys)) continue;
     if (!may_be_value(value))  // do not print the line: the file may be the wrong one
       throw IoError(place,
-                    "found a line that is no value; expected a number, a word, a path or a "
-                    "text in quotes");
+                    "found a line that is not a value; expected a number, a word, a path or a text "
+                    "in quotes");
     values.push_back(toml_value_of_line(value, place));
     if (const auto read = values.back().number; read && !is_measured(*read))
-      throw IoError(place, fmt::format("found {}, by which SCPI instruments report no number; "
-                                       "expected a measured one",
+      throw IoError(place, fmt::format("found {}, which SCPI instruments return for invalid "
+                                       "measurements; expected a measured value",
                                        value));
   }
   if (values.empty())
-    table.fail("file", fmt::format("{} holds no value; expected one a line", path.string()));
+    table.fail("file",
+               fmt::format("{} contains no values; expected one value per line", path.string()));
   return values;
 }
 
@@ -181,7 +182,7 @@ std::vector<std::string> read_axis_keys(TableReader& table) {
     check_key(table, "key", keys.front());
     return keys;
   }
-  table.refuse({"key"}, "no keys beside it");
+  table.refuse({"key"}, "no keys");
   table.value("keys", keys);
   if (keys.empty()) table.fail("keys", "found an empty list; expected at least one key");
   for (const std::string& key : keys) check_key(table, "keys", key);
@@ -214,8 +215,8 @@ std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
   std::vector<SettingValue> entries;
   const bool has_values = table.contains("values"), has_file = table.contains("file");
   if (has_values || has_file) {
-    table.refuse({"from", "to", "step", "count"}, "no values and no file beside it");
-    if (has_values) table.refuse({"file"}, "no values beside it");
+    table.refuse({"from", "to", "step", "count"}, "no values and no file");
+    if (has_values) table.refuse({"file"}, "no values");
     table.value("values", entries);
     if (has_values && entries.empty())
       table.fail("values", "found an empty list; expected at least one value");
@@ -226,14 +227,14 @@ std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
   }
   if (!table.contains("from"))
     table.fail(key,
-               "found no values; expected values = [..], file = \"..\", or from, to and "
-               "step (even) or count (logarithmic)");
+               "found no values; expected values = [...], file = \"...\", or from, to and step "
+               "(even) or count (logarithmic)");
   double from = 0.0, to = 0.0, step = 0.0;
   int count = 0;
   table.value("from", from);
   table.required("to", "1e5").value("to", to);
   if (table.contains("count")) {
-    table.refuse({"step"}, "no count beside it");
+    table.refuse({"step"}, "no count");
     table.value("count", count);
     return logarithmic_values(table, from, to, count);
   }
@@ -304,7 +305,7 @@ void read_codes(TableReader& table, SweepSpec& spec) {
   std::vector<SettingValue> codes;
   table.value("codes", codes);
   if (!table.contains("codes")) return;
-  if (table.contains("code")) table.refuse({"code"}, "no codes beside it");
+  if (table.contains("code")) table.refuse({"code"}, "no codes");
   if (codes.empty()) table.fail("codes", "found an empty list; expected at least one code");
   spec.axes.push_back({"code", std::move(codes), table.place_of("codes"), true});
 }
@@ -323,8 +324,8 @@ void read_group(TableReader& table, SweepSpec& spec) {
     if (!axis.group.empty()) names.push_back(axis.group);
   if (std::ranges::find(names, name) == names.end()) {
     const std::string near = nearest_word(name, names);
-    table.fail("name", fmt::format("found \"{}\", the group of no axis{}", name,
-                                   near.empty() ? "; expected a group that an axis names"
+    table.fail("name", fmt::format("found \"{}\", a group without axes{}", name,
+                                   near.empty() ? "; expected a group of an axis"
                                                 : fmt::format("; did you mean \"{}\"?", near)));
   }
   if (!spec.groups.emplace(name, combine).second)
@@ -337,7 +338,7 @@ void check_lengths(const SweepSpec& spec) {
                           const std::string& first_name, std::int64_t first_size,
                           const char* where) {
     throw IoError(spec.axes[axis].place,
-                  fmt::format("{} has {} values and {} has {}; {} expected as many of each", name,
+                  fmt::format("{} has {} values and {} has {}; expected equal numbers {}", name,
                               size, first_name, first_size, where));
   };
   for (const std::vector<AxisBlock>& together : axis_blocks(spec))
@@ -351,7 +352,7 @@ void check_lengths(const SweepSpec& spec) {
           const SweepAxis &axis = spec.axes[a], &before = spec.axes[digit.front()];
           if (axis.values.size() != before.values.size())
             refuse(a, "axis " + axis.key, static_cast<std::int64_t>(axis.values.size()), before.key,
-                   static_cast<std::int64_t>(before.values.size()), "in a group that is zipped");
+                   static_cast<std::int64_t>(before.values.size()), "in a zipped group");
         }
     }
 }
@@ -366,7 +367,7 @@ void check(const SweepSpec& spec) {
     check_axis_values(axis);
     for (std::size_t j = 0; j < i; ++j)
       if (spec.axes[j].key == axis.key)
-        throw IoError(axis.place, fmt::format("axis {} comes twice; the first is at {}", axis.key,
+        throw IoError(axis.place, fmt::format("axis {} occurs twice; the first is at {}", axis.key,
                                               spec.axes[j].place));
     if (axis.key == "code" && !spec.code.empty())
       throw IoError(axis.place, "found both an axis of codes and `code`; expected one of them");
@@ -381,8 +382,8 @@ void check(const SweepSpec& spec) {
       for (const SettingValue& value : axis.values) asked = asked || asks_for_exposures(value.text);
   if (asked != has_axis(spec, "exposures"))
     throw IoError(spec.source_name,
-                  "an axis `exposures` and a code such as \"hamiltonian-k{exposures}\" need each "
-                  "other; found one of them");
+                  "an axis `exposures` and a code such as \"hamiltonian-k{exposures}\" require "
+                  "each other; found one of them");
 }
 
 }  // namespace

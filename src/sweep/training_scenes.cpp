@@ -33,7 +33,7 @@ void add_folder(std::vector<TrainingScene>& scenes, const fs::path& folder) {
     throw IoError(folder.string(), fmt::format("cannot be read: {}", error.code().message()));
   }
   if (scenes.size() == before)
-    throw IoError(folder.string(), fmt::format("holds no scenes; expected files of {}",
+    throw IoError(folder.string(), fmt::format("contains no scenes; expected files of {}",
                                                fmt::join(scene_extensions, ", ")));
 }
 
@@ -44,7 +44,8 @@ void add_list(std::vector<TrainingScene>& scenes, const fs::path& list) {
     const std::string name(trimmed(line.text));
     scenes.push_back({name, list.parent_path() / name});
   }
-  if (scenes.size() == before) throw IoError(list.string(), "names no scene; expected one a line");
+  if (scenes.size() == before)
+    throw IoError(list.string(), "contains no scenes; expected one per line");
 }
 
 }  // namespace
@@ -64,8 +65,8 @@ std::vector<TrainingScene> training_scenes(std::span<const std::string> inputs) 
   const auto twice = std::ranges::adjacent_find(scenes, {}, &TrainingScene::name);
   if (twice != scenes.end())
     throw IoError(twice->file.string(),
-                  fmt::format("found the name {} twice ({} is the other); a scene's noise depends "
-                              "on its name, so expected different ones",
+                  fmt::format("found the name {} twice ({} is the other); expected different "
+                              "names, because the noise of a scene depends on its name",
                               twice->name, std::next(twice)->file.string()));
   return scenes;
 }

@@ -238,7 +238,7 @@ std::optional<BrokenRule> LightRange::broken_rule(const std::string& which) cons
   if (!(std::isfinite(high_e_per_s) && high_e_per_s >= low_e_per_s))
     return broken(which + ".high_e_per_s", high_e_per_s, "must be finite and >= low_e_per_s");
   if (!(low_e_per_s > 0.0) && high_e_per_s != low_e_per_s)
-    return broken(which + ".low_e_per_s", low_e_per_s, "must be > 0 where levels are drawn");
+    return broken(which + ".low_e_per_s", low_e_per_s, "must be > 0 to draw levels");
   return std::nullopt;
 }
 

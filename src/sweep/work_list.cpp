@@ -100,10 +100,10 @@ std::optional<int> designed_exposures(std::string_view code) {
 /// Returns the options for designing the code of an item; they depend only on the item.
 DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& options, int exposures) {
   if (options.method != DecodeMethod::zncc)
-    reject("method", name_of(options.method), "must be zncc where codes are designed");
+    reject("method", name_of(options.method), "must be zncc to design codes");
   if (options.target_standard_error > 0.0)
     reject("target_standard_error", fmt::format("{}", options.target_standard_error),
-           "must be 0 where codes are designed: those have a number of trials");
+           "must be 0 to design codes, which use a fixed number of trials");
   DesignOptions design;
   design.method = DesignMethod::optimize;
   design.exposures = {exposures};

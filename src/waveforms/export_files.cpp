@@ -125,7 +125,7 @@ std::string quantized_csv(const std::vector<QuantizedWaveform>& waveforms) {
   for (const QuantizedWaveform& waveform : waveforms) {
     waveform.validate();
     require(waveform.points() == waveforms.front().points(), waveform.name + " points",
-            waveform.points(), "must be those of all waveforms in a table");
+            waveform.points(), "must be equal for all waveforms in a table");
     fmt::format_to(out, ",{}", waveform.name);
   }
   for (int j = 0; j < waveforms.front().points(); ++j) {

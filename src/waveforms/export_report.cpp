@@ -45,7 +45,7 @@ KeyValueList description(const WaveformExport& exported) {
 
 std::vector<Row> generator_report_rows(const std::vector<GeneratorReport>& reports) {
   std::vector<Row> rows{{"generator", "points", "clock (MHz)", "duty nominal", "actual",
-                         "mean nominal", "actual", "edge move (ns)", "rms change"}};
+                         "mean nominal", "actual", "edge shift (ns)", "rms change"}};
   for (const GeneratorReport& r : reports)
     rows.push_back(
         {fmt::format("{}{}", r.arm == Arm::light ? "m" : "d", r.index + 1),
@@ -89,7 +89,7 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
   const std::optional<GeneratorLoss>& loss = exported.loss;
   const DepthErrorKind kind = actual.operating.error;
   Page page{.title = fmt::format("{} as {}", code.name(), exported.waveforms.format.name),
-            .subtitle = fmt::format("what the hardware's limits change, on {}", actual.name),
+            .subtitle = fmt::format("effect of the hardware's limits on {}", actual.name),
             .footer = "tofsmith " TOFSMITH_VERSION};
   page.sections.push_back({"Export", {description(exported.waveforms)}});
   page.sections.push_back(
@@ -115,8 +115,8 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
              "loss",
              fmt::format(
                  "{} depth error of the nominal waveforms, of the actual ones with a decoder that "
-                 "knows them, and with one that assumes the nominal ones (uncalibrated). All "
-                 "see the same depths and the same noise, {} trials each, seed {}.",
+                 "knows them, and with one that assumes the nominal ones (uncalibrated). All use "
+                 "the same depths and noise, {} trials each, seed {}.",
                  kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->nominal.trials,
                  loss->nominal.seed),
              generator_loss_rows(*loss, kind), {0})}});

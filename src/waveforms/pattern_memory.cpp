@@ -22,9 +22,9 @@ int bits_per_output(std::span<const QuantizedWaveform> waveforms) {
   for (const QuantizedWaveform& waveform : waveforms) {
     waveform.validate();
     require(waveform.levels == waveforms.front().levels, waveform.name + " levels", waveform.levels,
-            "must be those of all waveforms in a memory");
+            "must be equal for all waveforms in a memory");
     require(waveform.points() == waveforms.front().points(), waveform.name + " points",
-            waveform.points(), "must be those of all waveforms in a memory");
+            waveform.points(), "must be equal for all waveforms in a memory");
   }
   return std::countr_zero(levels);
 }
@@ -54,13 +54,14 @@ void PatternMemory::validate() const {
 PatternMemory pattern_memory(std::span<const QuantizedWaveform> waveforms, int exposures,
                              std::string comment) {
   require(exposures >= 1 && waveforms.size() > static_cast<std::size_t>(exposures), "waveforms",
-          waveforms.size(), "must be one of the light and one or more of the sensor per exposure");
+          waveforms.size(),
+          "must be one for the light and one or more for the sensor per exposure");
   const int bits = bits_per_output(waveforms);
   const auto light = waveforms.first(static_cast<std::size_t>(exposures));
   const auto sensor = waveforms.subspan(static_cast<std::size_t>(exposures));
   const int taps = static_cast<int>(sensor.size()) / exposures;
   require(static_cast<std::size_t>(taps) * static_cast<std::size_t>(exposures) == sensor.size(),
-          "sensor waveforms", sensor.size(), "must be as many for each exposure");
+          "sensor waveforms", sensor.size(), "must be equal for all exposures");
   PatternMemory memory;
   memory.comment = std::move(comment);
   memory.word_bits = (1 + taps) * bits + 1;

@@ -24,15 +24,14 @@ void check_rate(const GeneratorModel& model, const UploadRequest& request,
   if (plays_every_point)
     require(waveform.sample_rate_hz <= max_hz * rounding, waveform.name + " sample_rate_hz",
             waveform.sample_rate_hz,
-            fmt::format("must be at most {:g}, what {} plays: fewer --samples or a lower "
-                        "frequency fit",
+            fmt::format("must be at most {:g}, the limit of {}; reduce --samples or the frequency",
                         max_hz, model.name));
   if (model.max_repetition_hz > 0.0)
     require(waveform.repetition_hz() <= model.max_repetition_hz * rounding,
             waveform.name + " repetition_hz", waveform.repetition_hz(),
-            fmt::format("must be at most {:g}, what {} repeats a table at: more --periods in a "
-                        "table or a lower frequency fit",
-                        model.max_repetition_hz, model.name));
+            fmt::format(
+                "must be at most {:g}, the limit of {}; increase --periods or reduce the frequency",
+                model.max_repetition_hz, model.name));
 }
 
 void check_volts(const GeneratorModel& model, double load_ohm, const QuantizedWaveform& waveform) {
@@ -40,11 +39,11 @@ void check_volts(const GeneratorModel& model, double load_ohm, const QuantizedWa
   require(waveform.amplitude_vpp() >= model.min_vpp * gain / rounding &&
               waveform.amplitude_vpp() <= model.max_vpp * gain * rounding,
           waveform.name + " amplitude_vpp", waveform.amplitude_vpp(),
-          fmt::format("must be in [{:g}, {:g}], what {} gives at a load of {:g} ohm",
+          fmt::format("must be in [{:g}, {:g}], the range of {} with a load of {:g} ohm",
                       model.min_vpp * gain, model.max_vpp * gain, model.name, load_ohm));
   const double reach = std::max(std::abs(waveform.low_v), std::abs(waveform.high_v));
   require(reach <= 0.5 * model.max_vpp * gain * rounding, waveform.name + " volts", reach,
-          fmt::format("must be at most {:g} from zero, what {} gives at a load of {:g} ohm",
+          fmt::format("must be at most {:g} from zero, the limit of {} with a load of {:g} ohm",
                       0.5 * model.max_vpp * gain, model.name, load_ohm));
 }
 
@@ -55,9 +54,9 @@ void check_table(const GeneratorModel& model, const QuantizedWaveform& waveform)
           fmt::format("must be the {} of {}", format.levels, format.name));
   require(waveform.points() >= model.min_points && waveform.points() <= model.max_points,
           waveform.name + " points", waveform.points(),
-          fmt::format("must be in [{}, {}], what the memory of {} holds: other --samples or "
-                      "--periods fit",
-                      model.min_points, model.max_points, model.name));
+          fmt::format(
+              "must be in [{}, {}], the limits of the memory of {}; change --samples or --periods",
+              model.min_points, model.max_points, model.name));
 }
 
 void check_channels(const GeneratorModel& model, const UploadRequest& request) {
@@ -67,7 +66,7 @@ void check_channels(const GeneratorModel& model, const UploadRequest& request) {
             fmt::format("must be in [1, {}], the channels of {}", model.channels, model.name));
     for (std::size_t j = 0; j < i; ++j)
       require(request.channels[j].channel != channel.channel, "channel", channel.channel,
-              "must be another for light and sensor");
+              "must be different for light and sensor");
     require(
         channel.selected >= 0 && static_cast<std::size_t>(channel.selected) < channel.stored.size(),
         "selected", channel.selected, "must be the index of a stored waveform");
@@ -82,14 +81,15 @@ void check_memory(const GeneratorModel& model, const UploadRequest& request) {
     for (const QuantizedWaveform& waveform : channel.stored) points += waveform.points();
     if (model.family == GeneratorFamily::keysight_trueform)
       require(points <= model.max_points, fmt::format("channel {} points", channel.channel), points,
-              fmt::format("must be at most {}, what the memory of {} holds: upload one exposure "
-                          "at a time, or fewer --samples",
+              fmt::format("must be at most {}, the size of the memory of {}; upload one exposure "
+                          "at a time, or reduce --samples",
                           model.max_points, model.name));
   }
   if (model.memories > 0)
     require(tables <= static_cast<std::size_t>(model.memories), "waveforms", tables,
-            fmt::format("must be at most {}, the memories of {}: upload one exposure at a time",
-                        model.memories, model.name));
+            fmt::format(
+                "must be at most {}, the number of memories of {}; upload one exposure at a time",
+                model.memories, model.name));
 }
 
 /// @throws std::invalid_argument naming the part of the request that does not fit the model
@@ -102,8 +102,7 @@ void check_upload(const GeneratorModel& model, const UploadRequest& request) {
   check_fields(request);
   if (request.true_arb)
     require(model.true_arb_rate_hz > 0.0, "true_arb", "on",
-            fmt::format("must be off: {} does not choose between skipping points and playing all",
-                        model.name));
+            fmt::format("must be off: {} does not support this mode", model.name));
   check_channels(model, request);
   for (const UploadChannel& channel : request.channels)
     for (const QuantizedWaveform& waveform : channel.stored) {
@@ -147,7 +146,7 @@ UploadScript upload_script(const GeneratorModel& model, const UploadRequest& req
 std::string script_heading(const GeneratorModel& model, const std::vector<std::string>& names) {
   return fmt::format(
       "# {} {}{}\n", model.vendor, fmt::join(names, ", "),
-      model.has_error_queue() ? "; behind every message without answer: SYST:ERR?" : "");
+      model.has_error_queue() ? "; after every message without answer: SYST:ERR?" : "");
 }
 
 std::string script_messages(const UploadScript& script) {

@@ -32,7 +32,7 @@ constexpr EnumWords<WaveHeader, 3> header_words("WaveHeader", "wave_header",
 void UploadSelection::validate() const {
   check_fields(*this);
   require(light_channel > 0 || sensor_channel > 0, "sensor_channel", sensor_channel,
-          "must be > 0 where light_channel is 0, so that something is played");
+          "must be > 0 if light_channel is 0");
 }
 
 WaveformExport export_for_model(const CodeSet& code, const Camera& camera,

@@ -29,7 +29,7 @@ void check_options(const ExportOptions& options, const WaveformFormat& format) {
   if (options.samples)
     require(*options.samples >= 2 && *options.samples <= format.max_points, "samples",
             *options.samples,
-            fmt::format("must be in [2, {}], what a memory of {} holds", format.max_points,
+            fmt::format("must be in [2, {}], the limits of the memory of {}", format.max_points,
                         format.name));
   if (options.periods)
     require(*options.periods >= 1 && *options.periods <= max_periods, "periods", *options.periods,
@@ -76,12 +76,13 @@ Generator generator_of(const ExportOptions& options, const WaveformFormat& forma
   else
     generator.amplitude_bits =
         own ? std::min(own->amplitude_bits, format.max_bits) : format.default_bits;
-  require(format.skips_points || points * frequency_hz <= generator.sample_rate_hz * (1 + 1e-9),
-          "samples", points,
-          fmt::format("must be at most {}, what {:.6g} points per second give at {:.6g} Hz ({} "
-                      "plays every point)",
-                      std::floor(generator.sample_rate_hz / frequency_hz * (1 + 1e-12)),
-                      generator.sample_rate_hz, frequency_hz, format.name));
+  require(
+      format.skips_points || points * frequency_hz <= generator.sample_rate_hz * (1 + 1e-9),
+      "samples", points,
+      fmt::format(
+          "must be at most {}, from {:.6g} points per second at {:.6g} Hz ({} plays every point)",
+          std::floor(generator.sample_rate_hz / frequency_hz * (1 + 1e-12)),
+          generator.sample_rate_hz, frequency_hz, format.name));
   return generator;
 }
 
@@ -96,8 +97,9 @@ int fitting_periods(const WaveformFormat& format, int points, const std::optiona
     const std::int64_t all = std::int64_t{points} * periods;
     return all >= format.min_points && all <= format.max_points && all % format.multiple_of == 0;
   };
-  const std::string rule = fmt::format("{} takes {} .. {} points in multiples of {}", format.name,
-                                       format.min_points, format.max_points, format.multiple_of);
+  const std::string rule =
+      fmt::format("{} requires {} to {} points in multiples of {}", format.name, format.min_points,
+                  format.max_points, format.multiple_of);
   if (asked) {
     require(fits(*asked), "points", std::int64_t{points} * *asked,
             fmt::format("{} (found {} per period in {} periods)", rule, points, *asked));
@@ -106,7 +108,7 @@ int fitting_periods(const WaveformFormat& format, int points, const std::optiona
   for (int periods = 1; periods <= max_periods; ++periods)
     if (fits(periods)) return periods;
   reject("points", fmt::format("{}", points),
-         fmt::format("{}, and no number of periods gives that", rule));
+         fmt::format("{}, which no number of periods gives", rule));
 }
 
 /// Properties that all waveforms of an arm share.
@@ -199,7 +201,7 @@ WaveformExport export_waveforms(const CodeSet& code, const Camera& actual,
                                 const ExportOptions& options) {
   const double frequency_hz = actual.fundamental_frequency_hz;
   require(actual.light.generator && actual.sensor.generator, "generators", "none",
-          "must be there, as exporting_camera() makes them");
+          "must be set, as by exporting_camera()");
   WaveformExport exported;
   exported.format = waveform_format(options.format);
   exported.variant = variant_index(exported.format, options.variant);

@@ -27,10 +27,10 @@ std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera
   const double rate_hz = std::max(camera.light.generator ? 0.0 : exported.light.sample_rate_hz,
                                   camera.sensor.generator ? 0.0 : exported.sensor.sample_rate_hz);
   if (options.sample_rate_hz || rate_hz <= max_hz) return {};
-  return {fmt::format(
-      "the sample rate is {} MHz, and the fastest generator known here that could play these files "
-      "has {} MHz; say how fast yours is with --rate, such as --rate {:g}",
-      plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * max_hz, 4), max_hz)};
+  return {
+      fmt::format("the sample rate is {} MHz, but the fastest known generator for these files has "
+                  "{} MHz; specify the rate of your generator with --rate, such as --rate {:g}",
+                  plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * max_hz, 4), max_hz)};
 }
 
 constexpr double max_duty_change = 0.01;  // relative; larger changes are noted
@@ -71,11 +71,12 @@ std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& 
         break;
       }
   return {fmt::format(
-      "on {} points a period the duty of {} {} is {:.4g} in place of {:.4g}; {}", points,
+      "with {} points per period, the duty of {} {} is {:.4g} instead of {:.4g}; {}", points,
       worst.arm == Arm::light ? "modulation" : "demodulation", worst.index + 1, worst.duty_actual,
       worst.duty_nominal,
-      others.empty() ? fmt::format("no --samples up to {} away keeps all duties", max_points_away)
-                     : fmt::format("{} would keep all duties", fmt::join(others, " or ")))};
+      others.empty()
+          ? fmt::format("no --samples within {} of this number keeps all duties", max_points_away)
+          : fmt::format("{} would keep all duties", fmt::join(others, " or ")))};
 }
 
 /// A file and its contents.

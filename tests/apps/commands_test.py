@@ -100,8 +100,8 @@ class Commands(CommandLineTest):
         os.remove(self.path("raw.npy"))
         self.write("raw.camera.toml", "fundamental_frequency_hz = 15e6\n")
         again = ["simulate", SMALL, "--code", "hamiltonian-k3", "-o", "raw.npy"]
-        self.refuse(again, "raw.camera.toml: the file exists already")
-        self.refuse([*again, "--camera", "raw.camera.toml"], "raw.code.json: the file exists already")
+        self.refuse(again, "raw.camera.toml: the file already exists")
+        self.refuse([*again, "--camera", "raw.camera.toml"], "raw.code.json: the file already exists")
         os.remove(self.path("raw.code.json"))
         self.do(*again, "--camera", "raw.camera.toml")
         self.assertEqual(self.bytes_of("raw.camera.toml"), b"fundamental_frequency_hz = 15e6\n")
@@ -137,7 +137,7 @@ class Commands(CommandLineTest):
                                    figures[1]["coding_curve_length"],
                                    3 if code == "sinusoid-k4" else 6)  # sampled in the file
         self.write("odd.csv", "modulation_1,modulation_2,demodulation_1\n1,1,1\n1,1,0\n")
-        self.refuse(["evaluate", "odd.csv"], "odd.csv", "found 2 columns modulation_1 .. and 1 demod")
+        self.refuse(["evaluate", "odd.csv"], "odd.csv", "found 2 columns modulation_1, ... and 1 columns demod")
         self.write("odd.csv", "modulation_1,light\n1,1\n1,1\n")
         self.refuse(["evaluate", "odd.csv"], "odd.csv: found the column 'light'; expected time_s")
         self.write("odd.csv", "modulation_1,demodulation_1\n1,2\n1,0\n")
@@ -254,7 +254,7 @@ class Commands(CommandLineTest):
         adc = ("--set", "sensor.adc_bits=12", "--set", "sensor.gain_e_per_dn=1")
         for value, more, words in ((np.nan, (), ("20 invalid", "NaN")),
                                    (0, (), ("20 no_return", "--layout")),
-                                   (4095, adc, ("20 saturated", "expose less"))):
+                                   (4095, adc, ("20 saturated", "reduce the exposure"))):
             np.save(self.path("none.npy"), np.full((4, 5, 4), value, np.float32))
             decode = ("decode", "none.npy", "--code", "sinusoid-k4", *more, "-o", "d.npy", "--force")
             (note,) = [n for n in self.do_json(*decode)["notes"] if "no pixel has a depth" in n]

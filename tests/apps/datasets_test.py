@@ -71,7 +71,7 @@ class Datasets(CommandLineTest):
             self.refuse(["simulate", *arguments, *CODE, "-o", "out"], *words, code=2)
         os.makedirs(self.path("empty"))
         for arguments, words in (
-                (["empty"], ["empty", "holds no scenes"]),
+                (["empty"], ["empty", "contains no scenes"]),
                 (["nowhere.txt"], ["nowhere.txt"]),
                 (["one.npy", "one.npy"], ["one.npy", "twice"]),
         ):

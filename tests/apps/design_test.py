@@ -55,7 +55,7 @@ class Design(CommandLineTest):
                                 "2", *self.FAST)
         best = next(c for c in document["codes"] if c["name"] == document["best"])
         self.assertEqual(best["exposures"], 2)
-        self.assertIn("of the codes with 2 exposures", " ".join(document["explanation"]))
+        self.assertIn("is the best code with 2 exposures", " ".join(document["explanation"]))
 
     def test_without_a_directory_designs_are_kept_in_a_default_one(self):
         for directory in ("tofsmith-design", "tofsmith-design-2"):

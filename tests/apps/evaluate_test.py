@@ -72,7 +72,7 @@ class Evaluate(CommandLineTest):
         self.assertIn("true depths from 1 to 3 m, decoded",
                       self.do("evaluate", "sinusoid-k4", *FAST, *near))
         text = self.do("evaluate", "sinusoid-k4", *FAST, *near, "--set", "operating.depths=[1, 2]")
-        self.assertIn("true depths from 1 to 3 m, as often as 2 weights say, decoded", text)
+        self.assertIn("true depths from 1 to 3 m, distributed by 2 weights, decoded", text)
 
     def test_maximum_likelihood_is_compared_with_zncc(self):
         ml = ("evaluate", "hamiltonian-k5", *FAST, "--set", "operating.signal_e_per_s=[1e5]", "--set",

@@ -25,7 +25,7 @@ class Export(CommandLineTest):
     def test_harmful_limits_are_reported(self):
         text = self.do("export", "hamiltonian-k5", "--format", "csv", "--rate", "360e6",
                        "--edge-grid", "2.777777777777778e-9", "-o", "w.csv", *QUICK)
-        self.assertIn("edge move (ns)", text)
+        self.assertIn("edge shift (ns)", text)
         self.assertIn("uncalibrated (mm)", text)
         self.assertIn("wrote w.csv", text)
         rows = np.genfromtxt(self.path("w.csv"), delimiter=",", names=True)
@@ -52,10 +52,10 @@ class Export(CommandLineTest):
             return self.do_json("export", "hamiltonian-k4", "--format", "keysight-arb", "-o", "d",
                                 "--force", "--no-loss", *more)["notes"]
         (note,) = notes("--samples", "64")
-        self.assertEqual(note, "on 64 points a period the duty of modulation 1 is 0.07812 in place "
-                               "of 0.08333; --samples 60 or --samples 72 would keep all duties")
+        self.assertEqual(note, "with 64 points per period, the duty of modulation 1 is 0.07812 "
+                               "instead of 0.08333; --samples 60 or --samples 72 would keep all duties")
         self.refuse(["export", "hamiltonian-k4", "--format", "keysight-arb", "--rate", "100e6", "-o",
-                     "e"], "points are 1/6 of a period; 12 points or more, 180 MHz, can")
+                     "e"], "points are 1/6 of a period; expected 12 points or more, 180 MHz")
         self.assertEqual(notes("--samples", "60"), [])
         (note,) = notes("--samples", "72", "--rate", "1.08e9")  # preserves the duties, but exceeds
                                                                 # the sample rate

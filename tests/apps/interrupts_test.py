@@ -88,7 +88,7 @@ class Interrupts(CommandLineTest):
         self.do(*asked)
         self.assertEqual(self.contents(), before)
         self.write(lost, "mine")
-        self.refuse(list(asked), lost, "exists already")
+        self.refuse(list(asked), lost, "already exists")
 
     def test_evaluate(self):
         self.interrupt("evaluate", "sinusoid-k4", *LONG, "-o", "e.csv")

@@ -108,7 +108,7 @@ class Refusals(CommandLineTest):
     def test_names(self):
         self.refuse(["evaluate", "hamiltonan-k3"], "did you mean hamiltonian-k3?")
         self.refuse(["evaluate", "square-k4", "--method", "unwrap"], "measurement 0",
-                    "outside harmonic 1", "sinusoids only")
+                    "outside harmonic 1", "requires sinusoids")
         self.refuse(["evaluate", "multifrequency-2x3-4x3", "--method", "unwrap"],
                     "frequencies = 2, 4", "repeats after 4.997")
         self.refuse(["evaluate", "hamiltonian-k40"], "hamiltonian-k40", "must be in [3, 10]",
@@ -227,7 +227,7 @@ class Refusals(CommandLineTest):
         decode = lambda output: ["decode", "raw.npy", "--code", "hamiltonian-k3", "-o", output]
         self.refuse(decode("old.npy"), "old.npy", "exists", "--force")
         self.refuse(decode("d.xyz"), ".xyz", ".npy")
-        self.refuse(decode("absent/d.npy"), "no directory absent")
+        self.refuse(decode("absent/d.npy"), "the directory absent does not exist")
         self.refuse(decode("file/d.npy"), "file/d.npy")
         self.refuse(decode("/dev/full"), "/dev/full")
         self.refuse(decode("/proc/d.npy"), "/proc/d.npy", "cannot")

@@ -197,7 +197,7 @@ class Streaming(CommandLineTest):
         lines = self.do(*self.arguments(output="m.npy")).splitlines()
         self.assertEqual(len(lines), 6)
         self.assertIn("m-00.npy", lines[0])
-        self.assertIn("27 more, to m-29.npy", lines[3])
+        self.assertIn("27 more, up to m-29.npy", lines[3])
         self.assertRegex(lines[4], r"^30 frames of 30 x 40 in .* frames/s, .* Mpixel/s: ok ")
 
     def test_memory_is_independent_of_the_file_size(self):

@@ -180,7 +180,7 @@ class Sweep(CommandLineTest):
             self.refuse(["sweep", *arguments], *words, code=2)
         for arguments, words in (
                 (["none.toml", *store], ["none.toml"]),
-                (["s.toml", "--store", "s.toml"], ["s.toml", "is no SQLite file"]),
+                (["s.toml", "--store", "s.toml"], ["s.toml", "is not an SQLite file"]),
                 (["s.toml", *store, "--status"], ["s.sqlite", "there is no such store"]),
                 (["s.toml", *store, "--export", "no/x.csv"], ["no"]),
         ):

@@ -82,7 +82,7 @@ class Tables(CommandLineTest):
         np.save(self.path("closed.npy"), np.vstack([table, table[:1]]).T)
         depth, notes = self.decode("closed.npy")
         np.testing.assert_array_equal(depth, expected)
-        self.assertIn("(3, 121) was taken as (K, N)", notes[0])
+        self.assertIn("(3, 121) was interpreted as (K, N)", notes[0])
         self.assertIn("repeats the first and was dropped: N = 120, which makes depths 0.833 % "
                       "larger", notes[1])
         self.assertIn("--keep-end-point", notes[1])
@@ -112,7 +112,7 @@ class Tables(CommandLineTest):
         self.frame()
         note = self.decode("t.npy")[1][0]
         self.assertIn("--ambient mean", note)
-        self.assertIn("dark offset was not subtracted: an array 'offset_dn'", note)
+        self.assertIn("dark offset was not subtracted, add it as an array 'offset_dn'", note)
         self.assertEqual(self.decode("t.npy", "--ambient", "mean")[1], [])
 
     def test_equal_rows_are_reported(self):
@@ -120,10 +120,10 @@ class Tables(CommandLineTest):
         np.save(self.path("t.npy"), twice)
         self.frame()
         notes = self.decode("t.npy")[1]
-        self.assertIn("60 of 120 bins look like a nearer one", notes[0])
+        self.assertIn("60 of 120 bins are ambiguous and decode to a nearer bin", notes[0])
         self.assertIn("4.997 m as 0 m", notes[0])
         text = self.do("evaluate", "multifrequency-2x3-4x3", "--trials", "100")
-        self.assertIn("multifrequency-2x3-4x3: 120 of 240 bins look like a nearer one", text)
+        self.assertIn("multifrequency-2x3-4x3: 120 of 240 bins are ambiguous and decode to a nearer bin", text)
 
     def test_rejects_tables_without_depth_information(self):
         self.frame()
@@ -169,7 +169,7 @@ class Tables(CommandLineTest):
         for table in ("t.npy", "t.npz"):
             for command in (["evaluate", table], ["codes", table],
                             ["simulate", "table-top", "--code", table, "-o", "r.npy"]):
-                self.refuse(command, table, "measured table (corrfs only)", "only decode takes")
+                self.refuse(command, table, "measured table (corrfs only)", "only decode supports")
         self.refuse(["decode", "raw.npy", "--code", "other.npz", "-o", "d.npy"], "other.npz",
                     "curves, made", "modfs", "corrfs")
 

@@ -67,8 +67,8 @@ TEST_F(SweepFile, ReportsTheMissingPartOfThePeriod) {
   const DelaySweepOptions options{.fundamental_frequency_hz = 10e6};
   EXPECT_THAT(
       io_error_of([&] { read_delay_sweep(write("s.csv", rows(12, "delay_ns,a,b\n")), options); }),
-      HasSubstr("s.csv: delays = 0.55 periods long in steps of 0.05; must run through a "
-                "whole period without a gap: those from 0.6 to 0.95"));
+      HasSubstr("s.csv: delays = 0.55 periods long in steps of 0.05; must cover a whole period "
+                "without a gap: delays from 0.6 to 0.95"));
 }
 
 TEST_F(SweepFile, AStackHasAListOfShifts) {

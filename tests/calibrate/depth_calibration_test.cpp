@@ -223,7 +223,7 @@ TEST(DepthCalibration, ReversedDelayIsCorrectedInTableAndCamera) {
   bench.run();
   const CalibratedDepth found = bench.calibrate();
   EXPECT_TRUE(found.reversed);
-  EXPECT_THAT(found.notes, Contains(HasSubstr("backwards")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("delay is reversed")));
   EXPECT_LT(bench.median_error_m(found.table), 2e-3);
   // The camera without the table decodes up to the harmonic errors.
   const Camera camera = with_depth(phase_camera(), found);
@@ -242,7 +242,7 @@ TEST(DepthCalibration, PartOfTheRangeIsKnownAndTheRestIsExtrapolated) {
   const CalibratedDepth found = bench.calibrate();
   EXPECT_GT(found.known_share, 0.35);
   EXPECT_LT(found.known_share, 0.5);
-  EXPECT_THAT(found.notes, Contains(HasSubstr("model's word")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("is extrapolated by a model")));
   EXPECT_LT(bench.median_error_m(found.table), 2e-3);
   // There, harmonics contribute to the offset; the camera stores the mean error.
   EXPECT_NEAR(with_depth(phase_camera(), found).playback->offset_m, 0.7, 15e-3);
@@ -364,10 +364,10 @@ TEST(DepthCalibration, ReportsExposuresInAnotherOrder) {
 TEST(DepthCalibration, ReportsImplausibleErrors) {
   Bench bench{.first_share = 0.3, .last_share = 0.6};
   bench.run();
-  EXPECT_THAT(bench.calibrate().notes, Not(Contains(HasSubstr("more than cameras wiggle"))));
+  EXPECT_THAT(bench.calibrate().notes, Not(Contains(HasSubstr("more than usual wiggling"))));
   for (Image<float>& image : bench.reference.depth_m)
     for (float& depth_m : image.pixels) depth_m *= 0.5F;
-  EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("more than cameras wiggle")));
+  EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("more than usual wiggling")));
 }
 
 TEST(DepthCalibration, AConstantReferenceGivesAnOffsetAndAField) {

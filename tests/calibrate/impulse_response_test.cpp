@@ -180,7 +180,7 @@ TEST(CalibratedResponse, InvertsFallingRecordsAndRotatesWrappedOnes) {
   for (int i = 0; i < count; ++i) rolled.values[i] = clean.values[(i + 400) % count];
   const CalibratedResponse unrolled = calibrate_impulse_response(rolled);
   EXPECT_NEAR(unrolled.fits.front().bandwidth_hz.value, expected_hz, 1e-3 * expected_hz);
-  EXPECT_THAT(unrolled.notes, testing::Contains(HasSubstr("turned round")));
+  EXPECT_THAT(unrolled.notes, testing::Contains(HasSubstr("a whole period and rotated")));
 }
 
 TEST(CalibratedResponse, RejectsARecordWithoutAResponse) {

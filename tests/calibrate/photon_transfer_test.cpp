@@ -86,7 +86,7 @@ TEST(PhotonTransfer, ReportsWhenTheConverterSaturatesFirst) {
   EXPECT_EQ(found.adc_bits, 12);  // 2047 is none of the usual 8, 10, 12, ... bits
   const PhotonTransfer with_bits = calibrated(camera, 4, 8e7, {.adc_bits = 11});
   EXPECT_FALSE(with_bits.full_well_e);
-  EXPECT_THAT(with_bits.notes, testing::Contains(HasSubstr("last number 2047")));
+  EXPECT_THAT(with_bits.notes, testing::Contains(HasSubstr("maximum 2047")));
 }
 
 TEST(PhotonTransfer, ReportsMissingInput) {
@@ -198,7 +198,7 @@ TEST(PhotonTransfer, OfDifferencesExcludesClippedBuckets) {
   const PhotonTransfer found =
       photon_transfer(levels, dark, table, {.black_level_dn = 64.0, .adc_bits = 12});
   EXPECT_NEAR(found.gain_e_per_dn.value, 7.5, 4 * found.gain_e_per_dn.standard_error);
-  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("left out: one of their buckets")));
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("excluded, because one of their buckets")));
 }
 
 TEST(PhotonTransfer, OfDifferencesReportsMissingInput) {

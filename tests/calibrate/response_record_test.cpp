@@ -48,7 +48,7 @@ TEST_F(RecordFile, TimesAreInTheUnitOfTheirName) {
   for (int i = 0; i < 20; ++i) halves += fmt::format("{},{}\n", 0.5 * i, i);
   const ResponseRecord seconds = read_response_record(write(halves));
   EXPECT_NEAR(seconds.time_step_s, 0.5, 1e-9);
-  EXPECT_THAT(seconds.notes, ElementsAre(HasSubstr("taken as seconds")));
+  EXPECT_THAT(seconds.notes, ElementsAre(HasSubstr("interpreted as seconds")));
 }
 
 /// Returns multiples of 3 at steps of 0.1 ns, formatted by `row(number, time, value)`.
@@ -124,7 +124,7 @@ TEST_F(RecordFile, ResamplesUnequalTimesWithANote) {
 
 TEST_F(RecordFile, RejectsDecreasingOrIrregularTimes) {
   EXPECT_THAT(refusal(rows(-3.0)), HasSubstr("r.csv:12: found the time 6e-09 s after 9e-09 s"));
-  EXPECT_THAT(refusal(rows(0.0)), HasSubstr("expected times that rise"));
+  EXPECT_THAT(refusal(rows(0.0)), HasSubstr("expected increasing times"));
   EXPECT_THAT(refusal(rows(50.0)), HasSubstr("found a gap of 5e-08 s"));
   EXPECT_THAT(refusal("1.5\n2.5\n"), HasSubstr("found 2 values; expected at least 16"));
 }

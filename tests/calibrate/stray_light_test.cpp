@@ -138,7 +138,7 @@ TEST(StrayLightCalibration, SubtractsLightWithoutTheTarget) {
 
 TEST(StrayLightCalibration, ReportsAbsenceOfStrayLight) {
   EXPECT_THAT(Bench{.share = 0.0}.calibrate().notes,
-              Contains(HasSubstr("no stray light stands out")));
+              Contains(HasSubstr("the stray light is not significant")));
 }
 
 TEST(StrayLightCalibration, RejectsFramesWithoutATarget) {

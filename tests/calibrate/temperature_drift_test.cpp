@@ -141,7 +141,7 @@ TEST(TemperatureDrift, RejectsImplausibleFactors) {
 TEST(TemperatureDrift, ReportsNonlinearDrift) {
   EXPECT_THAT(Warming{}.calibrate().notes, IsEmpty());
   EXPECT_THAT(Warming{.offset_m_per_c2 = 5e-4}.calibrate().notes,
-              Contains(HasSubstr("offset is curved")));
+              Contains(HasSubstr("offset is not linear")));
 }
 
 TEST(TemperatureDrift, ReportsAlmostConstantTemperatures) {

@@ -274,7 +274,7 @@ TEST(Camera, NamesTheFieldTheValueAndTheRule) {
       message([](Camera& c) { c.fundamental_frequency_hz = std::nan(""); }),
       "fundamental_frequency_hz = nan; must be finite and >= 1000: it is in Hz, 20 MHz are 20e6");
   EXPECT_EQ(message([](Camera& c) { c.sensor.adc_bits = 12; }),
-            "sensor.adc_bits = 12; needs sensor.gain_e_per_dn beside it");
+            "sensor.adc_bits = 12; requires sensor.gain_e_per_dn");
   EXPECT_EQ(message([](Camera& c) { c.operating.ambient_e_per_s.clear(); }),
             "operating.ambient_e_per_s = []; must list at least one level");
 }

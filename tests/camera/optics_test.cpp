@@ -141,9 +141,9 @@ TEST(Optics, RejectsImpossibleValues) {
                 o.sunlight_klux = 50.0;
                 o.wavelength_m = 1550e-9;
               }),
-              HasSubstr("give sunlight_w_per_m2_nm instead"));
+              HasSubstr("otherwise set sunlight_w_per_m2_nm"));
   EXPECT_THAT(refusal([](Optics& o) { o.sunlight_klux = o.sunlight_w_per_m2_nm = 1.0; }),
-              HasSubstr("must be left out where sunlight_w_per_m2_nm is given"));
+              HasSubstr("must be omitted if sunlight_w_per_m2_nm is given"));
   EXPECT_THROW(at_distances(built_in_camera("paper-10f0"), {1.0}), InvalidArgument);
   EXPECT_THROW(plain_optics().light_at(-1.0), InvalidArgument);
   EXPECT_THROW(plain_optics().light_at(1.0, 1.5), InvalidArgument);

@@ -105,14 +105,14 @@ TEST(LensDistortion, ReportsTheFieldItsValueAndTheRule) {
   EXPECT_EQ(message({DistortionModel::opencv, {0.1, 0.2}}),
             "lens.distortion = [0.1, 0.2]; must be 4, 5, 8, 12 or 14 numbers: k1 k2 p1 p2 [k3 [k4 "
             "k5 k6 [s1 s2 s3 s4 [0 0]]]]");
-  EXPECT_EQ(
-      message({DistortionModel::opencv, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.01}}),
-      "lens.distortion = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.01]; must have a tilt of 0, "
-      "its last two numbers: a tilted sensor is not supported");
+  EXPECT_EQ(message({DistortionModel::opencv, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.01}}),
+            "lens.distortion = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.01]; must have a tilt of "
+            "0 (the last two numbers): tilted sensors are not supported");
   EXPECT_EQ(message({DistortionModel::rational_6kt, {0, 0, 0, 0}}),
             "lens.distortion = [0, 0, 0, 0]; must be 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
-  EXPECT_EQ(message({DistortionModel::fisheye, {0, 0, 0, 0, 0}}),
-            "lens.distortion = [0, 0, 0, 0, 0]; must be 4 numbers of a fisheye: k1 k2 k3 k4");
+  EXPECT_EQ(
+      message({DistortionModel::fisheye, {0, 0, 0, 0, 0}}),
+      "lens.distortion = [0, 0, 0, 0, 0]; must be the 4 numbers of a fisheye model: k1 k2 k3 k4");
   EXPECT_EQ(message({DistortionModel::opencv, {0, NAN, 0, 0}}),
             "lens.distortion = [0, nan, 0, 0]; must be finite");
 }

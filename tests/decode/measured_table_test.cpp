@@ -76,7 +76,7 @@ TEST(MeasuredTable, ASweepOfAMixerDecodesLikeItsCode) {
   measured.correlation = model.correlation_table(model.samples());
   EXPECT_LT(measured.correlation.minCoeff(), 0.0);
   EXPECT_THAT([&] { make_decoding_table(measured, camera); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("its columns are of both signs")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("whose measurements are signed")));
   measured.differences = true;
   const DecodingTable table = make_decoding_table(measured, camera);
   EXPECT_TRUE(table.correlation.isApprox(code.correlation, 1e-12));
@@ -216,7 +216,7 @@ std::string refusal(const std::function<void(MeasuredTable&, Camera&)>& change) 
 TEST(MeasuredTable, RejectsInvalidInputsByName) {
   EXPECT_EQ(refusal([](MeasuredTable&, Camera&) {}), "accepted");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 1; }),
-            "taps of the measured table = 1; must be 2 where the camera reads differences");
+            "taps of the measured table = 1; must be 2 if the camera reads differences");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.range_m = 0.0; }),
             "range_m = 0; must be finite and > 0");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 4; }),
@@ -227,8 +227,7 @@ TEST(MeasuredTable, RejectsInvalidInputsByName) {
               t.gain_e_per_raw.setOnes(6);
               t.gain_e_per_raw[3] = 2.0;
             }),
-            "gain_e_per_raw = 2; must be the same for both taps where their difference is read "
-            "out");
+            "gain_e_per_raw = 2; must be equal for both taps if their difference is read out");
   EXPECT_EQ(refusal([](MeasuredTable&, Camera& c) {
               c.exposure_s.each_s = {0.1, 0.2};
             }),

@@ -142,9 +142,9 @@ TEST(MergeExposures, RejectsInvalidExposures) {
                 ThrowsMessage<std::invalid_argument>(HasSubstr(why)));
   };
   refuses({1.0}, "at least 2");
-  refuses({2.0, 4.0}, "the shortest must be 1");
-  refuses({1.0, 0.0}, "from 1 to 1e6");
-  refuses({1.0, NAN}, "from 1 to 1e6");
+  refuses({2.0, 4.0}, "must contain 1: the shortest exposure");
+  refuses({1.0, 0.0}, "each must be in [1, 1e6]");
+  refuses({1.0, NAN}, "each must be in [1, 1e6]");
   const std::vector<RawView> one{view_of_frame(frames[0])};
   MergedExposures result;
   EXPECT_THROW(merge_exposures(one, exposures, exposed_table(), result), std::invalid_argument);

@@ -198,8 +198,8 @@ TEST(TwoReturnDecoder, RejectsCodesThatCannotSeparateReturns) {
         << code;
   };
   refused("hamiltonian-k5", 1, "5; must be >= 6");
-  refused("sinusoid-k4", 1, "one frequency only");
-  refused("multifrequency-k5", 1, "two frequencies only");
+  refused("sinusoid-k4", 1, "only one frequency");
+  refused("multifrequency-k5", 1, "only two frequencies");
 }
 
 TEST(TwoReturnDecoder, DoesNotRecommendACodeBeyondTheBandwidth) {
@@ -209,7 +209,7 @@ TEST(TwoReturnDecoder, DoesNotRecommendACodeBeyondTheBandwidth) {
       make_decoding_table(ForwardModel(build_family("hamiltonian-k5", camera), camera), camera);
   const auto problem = TwoReturnDecoder::why_not_decodable(table);
   ASSERT_TRUE(problem);
-  EXPECT_THAT(*problem, testing::AllOf(HasSubstr("its 10 measurements are enough"),
+  EXPECT_THAT(*problem, testing::AllOf(HasSubstr("its 10 measurements suffice"),
                                        HasSubstr("higher bandwidth"),
                                        testing::Not(HasSubstr("hamiltonian-k5"))));
 }

@@ -220,7 +220,7 @@ TEST(UnwrapDecoder, RejectsNonSinusoidalCodesWithTheirDeviation) {
             std::string::npos)
       << square;
   for (const char* code : {"hamiltonian-k4", "pulsed-multifrequency-k5", "gray-k4"})
-    EXPECT_NE(refusal_of(code, camera).find("sinusoids only"), std::string::npos) << code;
+    EXPECT_NE(refusal_of(code, camera).find("requires sinusoids"), std::string::npos) << code;
   // Nearly sinusoidal codes are accepted on request.
   EXPECT_LT(largest_error_bin(UnwrapSetup("square-k4", camera, {.largest_other_energy = 0.02})),
             3.0);
@@ -232,8 +232,8 @@ TEST(UnwrapDecoder, RejectsAmbiguousFrequencies) {
       refusal_of("multifrequency-2x3-6x3", camera),
       "frequencies = 2, 6; must have no common divisor: depth repeats after 4.997 of 9.993 m");
   EXPECT_EQ(refusal_of("multifrequency-1x2-7x2", camera),
-            "measurements = 4; must tell 5 unknowns apart (two per frequency and 1 for the offset "
-            "that signal and ambient light add); give one frequency 3 phases");
+            "measurements = 4; must determine 5 unknowns (two per frequency and 1 for the offset "
+            "of signal and ambient light); use 3 phases for one frequency");
   DecodingTable table = make_decoding_table(
       ForwardModel(build_family("multifrequency-1x3-7x3", camera), camera), camera);
   table.correlation.col(4) = table.correlation.col(3);

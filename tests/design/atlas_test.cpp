@@ -214,7 +214,7 @@ TEST(Atlas, SearchesNothingWithoutEffort) {
     has_family |= c.method == "family";
   }
   EXPECT_TRUE(has_atlas && has_family);
-  EXPECT_THAT(result.explanation.front(), HasSubstr("nothing was designed"));
+  EXPECT_THAT(result.explanation.front(), HasSubstr("no code was designed"));
   options.atlas_cameras = 0;
   for (const Candidate& c : design(camera, options).candidates) EXPECT_EQ(c.method, "family");
   options.method = DesignMethod::optimize;
@@ -238,7 +238,7 @@ TEST(Atlas, DesignsThatStartFromItAreBitIdenticalForAnyNumberOfThreads) {
   }
   const Candidate* designed = results[0].find("optimized-k4");
   ASSERT_NE(designed, nullptr);
-  EXPECT_THAT(designed->message, HasSubstr("a descent from atlas-t1-k4"));
+  EXPECT_THAT(designed->message, HasSubstr("gradient descent from atlas-t1-k4"));
   expect_same_code(results[0].winner().code, results[1].winner().code);
 }
 
@@ -321,7 +321,7 @@ TEST(Design, RejectsConstantLightWithThatReason) {
   camera.light.peak_factor = 1.0;
   EXPECT_THAT([&] { design(camera, with_effort({}, 0.0)); },
               ThrowsMessage<InvalidArgument>(
-                  "light.peak_factor = 1; allows only constant light, which measures no depth"));
+                  "light.peak_factor = 1; allows only constant light, which cannot measure depth"));
 }
 
 TEST(Atlas, IsReadIdenticallyInEveryLocale) {

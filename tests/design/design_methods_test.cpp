@@ -91,7 +91,7 @@ TEST(DesignMethods, SharedReasonsAreReportedOnce) {
   options.baselines = {"gray-k4", "hamiltonian-k4"};
   const DesignResult result = design(clocked(), options);
   EXPECT_THAT(result.left_out,
-              Contains(HasSubstr("gray-k4, hamiltonian-k4: taps = 3; the family is for")));
+              Contains(HasSubstr("gray-k4, hamiltonian-k4: taps = 3; this family supports")));
 }
 
 TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
@@ -119,7 +119,7 @@ TEST(DesignMethods, ExplainTheWinnerInThreeSentences) {
   const DesignResult result = design(camera, small_options());
   ASSERT_EQ(result.explanation.size(), 3u);
   EXPECT_THAT(result.explanation[0], HasSubstr(result.winner().code.name()));
-  EXPECT_THAT(result.explanation[1], HasSubstr("passes 5 harmonics"));
+  EXPECT_THAT(result.explanation[1], HasSubstr("bandwidth of 5 harmonics"));
   EXPECT_THAT(result.explanation[2], HasSubstr("Cramer-Rao"));
 }
 

@@ -134,7 +134,7 @@ TEST(Factorize, UnreachableTargetsEndAsAResult) {
   const Factorization f = factorize(shifted.measurements[0], camera_with_peak(6.0));
   EXPECT_FALSE(f.exact());
   EXPECT_GT(f.best().residual_rms, 0.3);
-  EXPECT_THAT(f.message, testing::HasSubstr("leaves [0, 1]"));
+  EXPECT_THAT(f.message, testing::HasSubstr("exceeds [0, 1]"));
 }
 
 TEST(Factorize, StopsOnRequest) {

@@ -84,7 +84,7 @@ TEST(Optimize, ReturnsUnjudgedCandidates) {
   const Camera camera = small_camera();
   const std::vector<CodeSet> also = {build_family("hamiltonian-k4", camera)};
   const std::vector<Candidate> candidates = optimize(camera, 4, small_options(), also);
-  ASSERT_EQ(candidates.size(), 2u) << "switched, and with polished edges";
+  ASSERT_EQ(candidates.size(), 2u) << "switched, and with refined edges";
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.code.name(), "optimized-k4");
     EXPECT_EQ(c.method, "optimize");
@@ -97,7 +97,7 @@ TEST(Optimize, ReturnsUnjudgedCandidates) {
     EXPECT_EQ(c.code.provenance.camera, camera.name);
     EXPECT_GT(c.iterations, 0);
   }
-  EXPECT_THAT(candidates[1].message, HasSubstr("with polished edges"));
+  EXPECT_THAT(candidates[1].message, HasSubstr("with refined edges"));
 }
 
 TEST(Optimize, BeatsTheHamiltonianCodeThatItStartsFrom) {
@@ -239,7 +239,7 @@ TEST(Optimize, HistoryNeverRisesAndStopsEarlyWithoutGain) {
     EXPECT_LE(found.search->steps[i].error_m, found.search->steps[i - 1].error_m);
     EXPECT_EQ(found.search->steps[i].work, found.search->steps[i - 1].work + 1);
   }
-  EXPECT_THAT(found.message, HasSubstr("hops ended early"));
+  EXPECT_THAT(found.message, HasSubstr("stopped early without further gain"));
 }
 
 TEST(Optimize, StopsOnRequest) {

@@ -117,7 +117,8 @@ TEST(Requirements, RejectsInvalidRequests) {
     static_cast<void>(find_requirements(unlimited, quick(0.01)));
     ADD_FAILURE() << "accepted";
   } catch (const InvalidArgument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("impulse_response = none; must limit an arm"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("impulse_response = none; must be set for at least one arm"));
   }
 }
 

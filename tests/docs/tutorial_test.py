@@ -74,7 +74,7 @@ class Tutorial(unittest.TestCase):
     def test_camera_calibration_gives_the_stated_results(self):
         printed = self.run_page("your_camera.md", ("first.png", "table.npz", "reference.html", "depth.npz",
                                                    "cloud.ply", "errors.png", "cloud.png"))
-        off_m, rms_mm = re.search(r"depth is ([+-][\d.]+) m off in the mean, ([\d.]+) mm", printed).groups()
+        off_m, rms_mm = re.search(r"mean offset ([+-][\d.]+) m, residual ([\d.]+) mm", printed).groups()
         self.assertAlmostEqual(float(off_m), 0.31, delta=0.01)
         error_mm = float(re.search(r"median error ([\d.]+) mm", printed)[1])
         self.assertLess(3 * error_mm, float(rms_mm))

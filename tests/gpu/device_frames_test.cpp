@@ -284,7 +284,7 @@ TEST_F(DeviceFramesOf, InvalidFramesAreRejected) {
   const TimeFilter of_other(other.decoder.table()), filter(table),
       looks_ahead(table, {.look_ahead = 1});
   EXPECT_THAT([&] { DeviceFrames(device(), table, &of_other); },
-              ThrowsMessage<InvalidArgument>(HasSubstr("must be those of the table")));
+              ThrowsMessage<InvalidArgument>(HasSubstr("must equal those of the table")));
   EXPECT_THAT([&] { DeviceFrames(device(), table, &looks_ahead); },
               ThrowsMessage<InvalidArgument>(HasSubstr("look_ahead = 1; must be 0 on devices")));
   EXPECT_THROW(DeviceFrames(device(), table, &filter, {.memory_mb = -1.0}), InvalidArgument);

@@ -85,7 +85,7 @@ TEST(AtomicFile, AcceptsIdenticalContentButRejectsOther) {
   for (const std::string_view other : {"sam", "same!", "SAME"})
     EXPECT_THAT(
         io_error_of([&] { write_file_atomically(path, other, OutputPolicy::refuse_other); }),
-        HasSubstr("exists already"));
+        HasSubstr("already exists"));
   EXPECT_EQ(read_text_file(path), "same");
   EXPECT_EQ(directory.files(), 1);
 }
@@ -272,7 +272,7 @@ TEST(AtomicFile, ReportsProblemsWithTheTarget) {
   const auto message = [](const std::filesystem::path& path) {
     return io_error_of([&] { AtomicFile(path, overwrite); });
   };
-  EXPECT_THAT(message(directory / "missing/a.txt"), HasSubstr("there is no directory"));
+  EXPECT_THAT(message(directory / "missing/a.txt"), HasSubstr("does not exist; create it first"));
   EXPECT_THAT(message(directory / "file/a.txt"), HasSubstr("is a file; expected a directory"));
   EXPECT_THAT(message(directory.path()), HasSubstr("found a directory"));
   EXPECT_THAT(message(directory / "new/"), HasSubstr("after the last slash"));

@@ -87,13 +87,13 @@ TEST(LoadCode, RejectsInvalidPairsOfArraysWithTheirPlace) {
   const Camera camera = built_in_camera("paper-10f0");
   Eigen::MatrixXd light = Eigen::MatrixXd::Ones(24, 3), gates = light;
   EXPECT_THAT(ArrayPair(0 * light, gates).refusal(camera),
-              HasSubstr("light.npy: found nothing but zeros; expected light"));
+              HasSubstr("light.npy: found only zeros; expected light"));
   EXPECT_THAT(ArrayPair(light, gates.topRows(23)).refusal(camera),
               HasSubstr("gates.npy: found the shape (23, 3); expected (24, 3) as of "));
   gates(5, 2) = -2.0;
   EXPECT_THAT(ArrayPair(light, gates).refusal(camera),
-              HasSubstr("gates.npy[5, 2]: found -1; expected a gain in [0, 1]; weights of both "
-                        "signs need a camera with sensor.readout"));
+              HasSubstr("gates.npy[5, 2]: found -1; expected a gain in [0, 1]; signed weights "
+                        "require a camera with sensor.readout"));
   light(7, 1) = -1.0;
   EXPECT_THAT(ArrayPair(light, gates).refusal(camera), HasSubstr("light.npy[7, 1]: found -1"));
 }

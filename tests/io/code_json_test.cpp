@@ -139,11 +139,11 @@ INSTANTIATE_TEST_SUITE_P(
                   "c.json: /demodulation: found a list of 4; expected a list of 6: /exposures x "
                   "/taps functions"},
         BadMember{"/exposures", 3,
-                  "c.json: /modulation: found a list of 2; expected a list of 3: as many as "
-                  "/exposures says"},
+                  "c.json: /modulation: found a list of 2; expected a list of 3: as specified by "
+                  "/exposures"},
         BadMember{"/modulation", "none",
-                  "c.json: /modulation: found \"none\"; expected a list of 2: as many as "
-                  "/exposures says"},
+                  "c.json: /modulation: found \"none\"; expected a list of 2: as specified by "
+                  "/exposures"},
         BadMember{"/modulation/0", 3, "c.json: /modulation/0: found 3; expected an object"},
         BadMember{"/modulation/0/kind", "square",
                   "c.json: /modulation/0/kind: found \"square\"; expected \"binary\", "
@@ -173,8 +173,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "c.json: /modulation/1/values/2: found -0.5; expected a number >= 0"},
         BadMember{"/modulation/1/values",
                   {1, 1, 1},
-                  "c.json: /modulation/1/values: found a list of 3; expected a list of 4: as many "
-                  "as /samples says"},
+                  "c.json: /modulation/1/values: found a list of 3; expected a list of 4: as "
+                  "specified by /samples"},
         BadMember{"/demodulation/0/level", 1.5,
                   "c.json: /demodulation/0/level: found 1.5; expected a number in [0, 1]"},
         BadMember{"/demodulation/2/values/3", 1.5,

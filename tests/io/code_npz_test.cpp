@@ -86,8 +86,8 @@ TEST(CodeNpz, TheOrderOfTapsIsNeverGuessed) {
   const FileBytes bytes =
       serialize_code_npz(hamiltonian().with_two_buckets(), TapOrder::interleaved);
   EXPECT_EQ(refusal(bytes, {2, std::nullopt}),
-            "a.npz: does not say in which order its columns hold 2 taps; expected --tap-order "
-            "blocked or interleaved");
+            "a.npz: does not specify the column order of its 2 taps; expected --tap-order blocked "
+            "or interleaved");
   EXPECT_EQ(refusal(bytes, {4, TapOrder::blocked}),
             "a.npz: found 6 columns; expected a multiple of taps = 4");
 }

@@ -69,11 +69,11 @@ TEST(CodeRows, ErrorsReportTheirPlace) {
   Eigen::VectorXd negative = pulse(32);
   negative[7] = -1.0;
   EXPECT_THAT(Pair(negative, weights).refusal(), testing::HasSubstr("light.npy[7, 0]: found -1"));
-  EXPECT_THAT(Pair(0 * pulse(32), weights).refusal(), testing::HasSubstr("nothing but zeros"));
+  EXPECT_THAT(Pair(0 * pulse(32), weights).refusal(), testing::HasSubstr("only zeros"));
   EXPECT_THAT(Pair(pulse(32), 0 * weights).refusal(), testing::HasSubstr("zeros in row 0"));
   EXPECT_THAT(Pair(pulse(31), weights).refusal(),
               testing::HasSubstr("found the shape (32, 5); expected (N, K) or (K, N) with the N = "
-                                 "31 time bins of the light; a period leaves its end point out"));
+                                 "31 time bins of the light; a period omits its end point"));
   EXPECT_THAT(Pair(pulse(32), Eigen::MatrixXd::Ones(32, 17)).refusal(),
               testing::HasSubstr("found 17 rows"));
   Eigen::MatrixXd infinite = weights;

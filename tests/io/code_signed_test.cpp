@@ -86,8 +86,8 @@ TEST(SignedCodes, RejectInvalidWeights) {
   };
   EXPECT_EQ(refusal(json), "");
   EXPECT_THAT(refusal(with("\"signed\": true", "\"signed\": true, \"rows\": true")),
-              HasSubstr("rows have weights of any sign already"));
-  EXPECT_THAT(refusal(with("\"taps\": 1", "\"taps\": 2")), HasSubstr("1, as of a mixer"));
+              HasSubstr("is not valid for rows, whose weights are always signed"));
+  EXPECT_THAT(refusal(with("\"taps\": 1", "\"taps\": 2")), HasSubstr("1 for a mixer"));
   EXPECT_NE(refusal(with("\"signed\": true", "\"signed\": false")), "");
   const std::string npz_path = "a.npz";
   const auto archive = serialize_code_npz(analog_code());

@@ -67,8 +67,8 @@ TEST_F(DecodeExposures, RejectsInvalidGroups) {
                 ThrowsMessage<std::invalid_argument>(HasSubstr(words)));
   };
   refused({1.0, 2.0, 4.0, 8.0}, 1, "hdr = 4 exposures");  // of six frames
-  refused({2.0, 4.0, 8.0}, 1, "hdr = 2; the shortest must be 1");
-  refused({1.0, 2.0, 4.0}, 3, "average = 3; goes without hdr");
+  refused({2.0, 4.0, 8.0}, 1, "hdr = 2; must contain 1");
+  refused({1.0, 2.0, 4.0}, 3, "average = 3; cannot be combined with hdr");
   EXPECT_FALSE(std::filesystem::exists(path("hdr.npy")));
 }
 

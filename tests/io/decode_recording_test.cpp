@@ -357,7 +357,7 @@ TEST_F(DecodeRecording, RejectsInvalidRequestsBeforeWriting) {
   refused(wrong, "outputs = ratio");
   wrong = request("d.pfm");
   wrong.outputs = {DecodedPlane::signal};
-  refused(wrong, "a .pfm file holds depth only");
+  refused(wrong, "a .pfm file contains only depth");
   wrong = request("d.npz");
   wrong.memory_mb = 0.0;
   refused(wrong, "memory_mb = 0; must be in (0, 1000000000]");
@@ -377,9 +377,10 @@ TEST_F(DecodeRecording, RejectsInvalidRequestsBeforeWriting) {
   refused(wrong, "windows = 4; must be in [1, 3]");
   wrong.filter = FilterOptions{};
   wrong.memory_mb = 0.1;
-  EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
-              ThrowsMessage<IoError>(HasSubstr("to be filtered and written so; expected at most "
-                                               "0.1 MB (without filters, mixed and undistort")));
+  EXPECT_THAT(
+      [&] { decode_recording(wrong, *backend_); },
+      ThrowsMessage<IoError>(HasSubstr("to be filtered and written to this output; expected at "
+                                       "most 0.1 MB (without filters, mixed and undistort")));
   wrong = request("raw.npy");
   wrong.frame = 0;
   wrong.policy = OutputPolicy::overwrite;
@@ -405,7 +406,8 @@ TEST(LoadDecodingTable, AcceptsOptionsOfTablesForTablesOnly) {
       [] {
         load_decoding_table("hamiltonian-k3", built_in_camera("paper-10f0"), {.range_m = 3.0});
       },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("range_m: goes with a measured table")));
+      ThrowsMessage<std::invalid_argument>(
+          HasSubstr("range_m: is only valid with a measured table")));
 }
 
 std::size_t number_of_points(const std::filesystem::path& ply) {
@@ -422,7 +424,8 @@ TEST_F(DecodeRecording, CloudsContainThePixelsWithStatusOk) {
   write_raw_frames(path("raw.npy"), raw_, OutputPolicy::overwrite);
   DecodeRequest asked = request("d.ply");
   EXPECT_THAT([&] { decode_recording(asked, *backend_); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("points and z need the [lens]")));
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("is required for points and z if the camera has no [lens]")));
   asked.view_deg = 60.0;
   asked.frame = 0;
   asked.outputs = {DecodedPlane::signal};

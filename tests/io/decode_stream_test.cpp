@@ -172,7 +172,7 @@ TEST_F(DecodeStream, KeepsTheFramesBeforeATruncation) {
   DecodeRequest stack;
   stack.stack = true;
   EXPECT_THAT([&] { run(stack, 3); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("files only")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("is only valid with files")));
 }
 
 }  // namespace

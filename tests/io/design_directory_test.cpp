@@ -279,14 +279,14 @@ TEST(DesignDirectory, InconsistentPartsAreRejected) {
               AllOf(HasSubstr("design.json: /best"), HasSubstr("one of the codes")));
   EXPECT_THAT(refusal("design.json", "\"tofsmith\": \"", "\"tofsmith\": \"0.0.1-"),
               AllOf(HasSubstr("design.json: /tofsmith: found \"0.0.1-"),
-                    HasSubstr("read by that version, or designed again")));
+                    HasSubstr("read the design with the version that wrote it")));
   EXPECT_THAT(refusal("details.json", "\"message\"", "\"massage\""),
               AllOf(HasSubstr("details.json"), HasSubstr("message")));
   EXPECT_THAT(refusal("design.json", "\"smallest_residual_rms\"", "\"residual\""),
               AllOf(HasSubstr("design.json"), HasSubstr("smallest_residual_rms")));
   EXPECT_THAT(refusal("design.json", "\"rotation_bin\": ", "\"rotation_bin\": 1e300, \"x\": "),
               HasSubstr("/codes/0/rotation_bin"));
-  EXPECT_THAT(refusal("design.json", "square-k4", "sinusoid-k4"), HasSubstr("again"));
+  EXPECT_THAT(refusal("design.json", "square-k4", "sinusoid-k4"), HasSubstr("twice"));
   EXPECT_THAT(refusal("codes/sinusoid-k4.code.json", "sinusoid-k4", "another"),
               AllOf(HasSubstr("sinusoid-k4.code.json"), HasSubstr("another")));
   EXPECT_THAT(refusal("camera.toml", "signal_e_per_s = [", "signal_e_per_s = [ 7.0, "),

@@ -227,9 +227,9 @@ TEST(PhaseImages, OfDifferentSizeNumberOrColourAreRejected) {
   write_png(files[2], {height, width, 1, 8, std::vector<std::uint16_t>(height * width)}, overwrite);
   EXPECT_THAT(refusal(), HasSubstr("read as uint8 (whole); expected uint16 (whole) as in"));
   files.pop_back();
-  EXPECT_THAT(refusal(), HasSubstr("found 3 files, one a measurement; expected 4"));
+  EXPECT_THAT(refusal(), HasSubstr("found 3 files, one per measurement; expected 4"));
   files.resize(1);
-  EXPECT_THAT(refusal(), HasSubstr("all files where each holds one measurement"));
+  EXPECT_THAT(refusal(), HasSubstr("all files if each contains one measurement"));
 }
 
 }  // namespace

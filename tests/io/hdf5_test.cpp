@@ -138,7 +138,7 @@ TEST(Hdf5, RejectsUnwrittenDataAndOversizedChunks) {
   write(directory / "a.h5",
         {{.name = "raw", .shape = {1000, 1000}, .chunk = {10, 10}, .written = false}});
   EXPECT_THAT(io_error_of([&] { open_hdf5(directory / "a.h5", "", plenty); }),
-              HasSubstr("data set raw: found nothing written in (1000, 1000)"));
+              HasSubstr("data set raw: found no data in (1000, 1000)"));
   write(directory / "b.h5",
         {{.name = "raw", .shape = {1000, 1000}, .chunk = {1000, 1000}, .deflate = true}});
   EXPECT_THAT(io_error_of([&] { open_hdf5(directory / "b.h5", "", plenty); }),
@@ -167,12 +167,12 @@ TEST(Hdf5, ReportsFilesThatAreNotHdf5) {
   };
   EXPECT_THAT(message("missing.h5"), HasSubstr("missing.h5: there is no such file"));
   std::ofstream(directory / "text.h5") << "no arrays here";
-  EXPECT_THAT(message("text.h5"), HasSubstr("text.h5: found no HDF5 file"));
+  EXPECT_THAT(message("text.h5"), HasSubstr("text.h5: cannot be read as an HDF5 file"));
   std::filesystem::create_directory(directory / "folder.h5");
   EXPECT_THAT(message("folder.h5"), HasSubstr("found no file"));
   write_npy(directory / "a.npy", NpyArray(NpyType::uint8, {2, 2, 3}), OutputPolicy::overwrite);
   EXPECT_THAT(io_error_of([&] { RawFramesReader(directory / "a.npy", {.dataset = "raw"}); }),
-              AllOf(HasSubstr("a.npy"), HasSubstr("the data set 'raw' was asked for")));
+              AllOf(HasSubstr("a.npy"), HasSubstr("the data set 'raw' was requested")));
 }
 
 // Randomly damaged files are not tested, because libhdf5 1.10 itself then accesses invalid memory

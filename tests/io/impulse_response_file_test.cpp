@@ -66,10 +66,10 @@ TEST_F(ResponseFile, ValuesWithoutTimesNeedAStep) {
 TEST_F(ResponseFile, RejectsInvalidResponses) {
   EXPECT_THAT(refusal("0,1\n1e-9,2\n3e-9,1\n", {}),
               HasSubstr("row 1: found the time 1e-09 s; expected 1.5e-09 s"));
-  EXPECT_THAT(refusal("2e-9,1\n1e-9,2\n", {}), HasSubstr("do not rise"));
+  EXPECT_THAT(refusal("2e-9,1\n1e-9,2\n", {}), HasSubstr("do not increase"));
   EXPECT_THAT(refusal("time_s,value\n0,1\n", {}), HasSubstr("found one time"));
   EXPECT_THAT(refusal("1,2,3\n", 1e-9), HasSubstr("found 3 columns"));
-  EXPECT_THAT(refusal("value,time_s\n1,1\n1,0\n", {}), HasSubstr("do not rise"));
+  EXPECT_THAT(refusal("value,time_s\n1,1\n1,0\n", {}), HasSubstr("do not increase"));
   EXPECT_THAT(refusal("0,1\n1e-9,2\n", 2e-9), HasSubstr("expected time_step_s = 2e-09"));
   EXPECT_THAT(refusal("1\n-1\n", 1e-9), HasSubstr("samples sum = 0; must be > 0"));
   EXPECT_THAT(refusal("1\n", -1.0), HasSubstr("time_step_s = -1; must be finite and > 0"));

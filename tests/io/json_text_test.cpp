@@ -29,7 +29,7 @@ TEST(JsonText, ErrorsNameLineAndColumn) {
   EXPECT_THAT(refusal("\"\xff\""), StartsWith("a.json:1:"));
   EXPECT_THAT(refusal("[1e999]"), StartsWith("a.json"));
   EXPECT_THAT(refusal(std::string_view("[1]\n\0 2", 7)),
-              StartsWith("a.json:2:1: found a byte of 0"));
+              StartsWith("a.json:2:1: found a zero byte"));
 }
 
 TEST(JsonText, ErrorsQuoteTheUnexpectedText) {

@@ -115,7 +115,7 @@ TEST(LensCalibration, ReportsThePlaceAndTheProblem) {
   const auto message = [](const std::string& text) {
     return io_error_of([&] { parse_lens_calibration(text, "a.yaml"); });
   };
-  EXPECT_EQ(message("K: [1, 2"), "a.yaml:1:1: is no YAML: end of sequence flow not found");
+  EXPECT_EQ(message("K: [1, 2"), "a.yaml:1:1: is not valid YAML: end of sequence flow not found");
   EXPECT_EQ(message("just words"),
             "a.yaml: found no keys; expected the YAML, XML or JSON of a lens's calibration: "
             "camera_matrix and "
@@ -131,12 +131,12 @@ TEST(LensCalibration, ReportsThePlaceAndTheProblem) {
       "a.yaml:8:19: distortion_model: found mei; expected plumb_bob, rational_polynomial, radtan, "
       "equidistant, fisheye or none");
   EXPECT_EQ(message(with(ros_file, "[0.05, ", "[0.05, 0.1, ")),
-            "a.yaml:10:3: distortion_coefficients = [0.05, 0.1, -0.01, 0.004, -0.001]; must be 4 "
-            "numbers of a fisheye: k1 k2 k3 k4");
+            "a.yaml:10:3: distortion_coefficients = [0.05, 0.1, -0.01, 0.004, -0.001]; must be the "
+            "4 numbers of a fisheye model: k1 k2 k3 k4");
   EXPECT_EQ(message(with(ros_message, "binning_x: 0", "binning_x: 2")),
             "a.yaml:11:12: binning_x: expected at most 1: images that are not binned");
   EXPECT_EQ(message(with(ros_message, "x_offset: 0", "x_offset: 8")),
-            "a.yaml:13:17: roi.x_offset: expected 0: images that are not cut");
+            "a.yaml:13:17: roi.x_offset: expected 0: images that are not cropped");
 }
 
 /// One lens in the spelling of several programs and versions.
@@ -308,9 +308,10 @@ TEST(LensCalibration, ReportsTheLineInXml) {
   const auto message = [](const std::string& text) {
     return io_error_of([&] { parse_lens_calibration(text, "a.xml"); });
   };
-  EXPECT_EQ(message("<a>\n<b>1</c></a>"), "a.xml:2: is no XML: found </c>; expected </b>");
-  EXPECT_EQ(message("<a>\n<b>1"), "a.xml:2: is no XML: found the end of the file; expected </b>");
-  EXPECT_EQ(message("<a>\n<b"), "a.xml:2: is no XML: found <; expected > after it");
+  EXPECT_EQ(message("<a>\n<b>1</c></a>"), "a.xml:2: is not valid XML: found </c>; expected </b>");
+  EXPECT_EQ(message("<a>\n<b>1"),
+            "a.xml:2: is not valid XML: found the end of the file; expected </b>");
+  EXPECT_EQ(message("<a>\n<b"), "a.xml:2: is not valid XML: found <; expected > after it");
   EXPECT_EQ(message("<a>\n<K>\n<data>1 2\n3</data></K><D>0 0 0 0</D></a>"),
             "a.xml:2: camera_matrix: found 3 numbers; expected 9, or fx fy cx cy");
 }

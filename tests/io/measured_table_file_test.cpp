@@ -162,8 +162,9 @@ TEST_F(MeasuredTableFileTest, UsesTheTransposedOrientationIfItIsTheOnlyValidOne)
   const Eigen::MatrixXd functions = sweep(1939, 6);
   const MeasuredTableFile lying = read(functions.transpose().eval());
   EXPECT_EQ(lying.table.correlation, functions);
-  EXPECT_THAT(without_name(lying), ElementsAre("its shape (6, 1939) was taken as (K, N): 6 "
-                                               "measurements of 1939 samples"));
+  EXPECT_THAT(
+      without_name(lying),
+      ElementsAre("its shape (6, 1939) was interpreted as (K, N): 6 measurements of 1939 samples"));
   // As (N, K) there would be too few samples or too many measurements.
   EXPECT_EQ(read(sweep(20, 7).transpose().eval()).table.samples(), 20);
   EXPECT_EQ(read(sweep(100, 12).transpose().eval()).table.samples(), 100);

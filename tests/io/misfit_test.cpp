@@ -97,7 +97,7 @@ TEST_F(Misfit, NamesTheByteOrder) {
 
 TEST_F(Misfit, NamesNoOrderForAnotherCode) {
   EXPECT_THAT(notes<float>("hamiltonian-k4", recorded("gray-k4")),
-              ElementsAre(AllOf(HasSubstr("check --order, --code"), Not(HasSubstr("This fits")))));
+              ElementsAre(AllOf(HasSubstr("check --order, --code"), Not(HasSubstr("Better fit")))));
 }
 
 }  // namespace

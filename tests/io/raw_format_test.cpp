@@ -295,20 +295,20 @@ TEST(RawFormatToml, ReportsThePlaceAndTheProblem) {
                     HasSubstr("frame_header_bytes, frame_trailer_bytes"), Not(HasSubstr("mean"))));
   EXPECT_THAT(error("packing = \"raw10\""), HasSubstr("mipi"));
   EXPECT_THAT(error("packing = \"mipi\"\nbyte_order = \"big\""),
-              HasSubstr("must be left out unless plain"));
+              HasSubstr("must be omitted unless packing is plain"));
   EXPECT_THAT(error("packing = \"mipi\"\ncontainer_bits = 16"), HasSubstr("s.raw.toml:6:18"));
   EXPECT_THAT(error("container_bits = 8"), HasSubstr("8, 16 or 32 and hold bits = 10"));
   EXPECT_THAT(error("numbers = \"float\""), HasSubstr("bits = 10; must be 16, 32 or 64"));
   EXPECT_THAT(error("order = [0, 1, 2, 3, -1]"), HasSubstr("must list at most the 4 measurements"));
-  EXPECT_THAT(error("order = [0, 1, 2, 2]"), HasSubstr("must name each of 0 .. 3 once"));
-  EXPECT_THAT(error("order = [1, 2, -1, 3]"), HasSubstr("must name each of 0 .. 2 once"));
-  EXPECT_THAT(error("order = [-1, -1, -1, -1]"), HasSubstr("must keep a measurement"));
+  EXPECT_THAT(error("order = [0, 1, 2, 2]"), HasSubstr("must list each of 0 to 3 once"));
+  EXPECT_THAT(error("order = [1, 2, -1, 3]"), HasSubstr("must list each of 0 to 2 once"));
+  EXPECT_THAT(error("order = [-1, -1, -1, -1]"), HasSubstr("must include a measurement"));
   EXPECT_THAT(error("order = [0, -2]"),
               AllOf(HasSubstr("s.raw.toml:5:9"), HasSubstr("order[1] = -2")));
   EXPECT_THAT(error("order = [0, 1, 2, 2.5]"), HasSubstr("an integer of"));
   EXPECT_THAT(error("order = [0, 1, 2]\ntaps = \"subtract\""),
               AllOf(HasSubstr("order = 3"), HasSubstr("even to subtract taps")));
-  EXPECT_THAT(error("sign_bit = 9"), HasSubstr("must be left out unless signed = true"));
+  EXPECT_THAT(error("sign_bit = 9"), HasSubstr("must be omitted unless signed = true"));
   EXPECT_THAT(error("sign_encoding = \"sign_magnitude\""), HasSubstr("unless signed = true"));
   EXPECT_THAT(error("signed = true\nsign_bit = 10"), HasSubstr("must be below bits = 10"));
   EXPECT_THAT(error("rotate_deg = 45"), HasSubstr("must be 0, 90, 180 or 270"));
@@ -320,13 +320,13 @@ TEST(RawFormatToml, ReportsThePlaceAndTheProblem) {
   EXPECT_THAT(error("row_header_bytes = 3\nrow_bytes = 18"), HasSubstr("at least the 19 bytes"));
   EXPECT_THAT(error("rows_start_bytes = false"), HasSubstr("lsb_first or msb_first"));
   EXPECT_THAT(error("layout = \"interleaved\"\nimage_header_bytes = 4"), HasSubstr("planar"));
-  EXPECT_THAT(error("taps = \"subtract\"\nblack_level = 3.0"), HasSubstr("where it cancels"));
+  EXPECT_THAT(error("taps = \"subtract\"\nblack_level = 3.0"), HasSubstr("which cancels it"));
   EXPECT_THAT(io_error_of([] { parse_raw_format("width = 8\n", "s.raw.toml"); }),
               HasSubstr("height"));
   EXPECT_THAT(io_error_of([] {
                 parse_raw_format("width=7\nheight=1\nmeasurements=1\nbits=10\npacking=\"mipi\"");
               }),
-              HasSubstr("whole groups of 4 numbers (it gives 7)"));
+              HasSubstr("complete groups of 4 numbers (it gives 7)"));
 }
 
 TEST(RawFormat, RejectsFilesWithPartialFrames) {

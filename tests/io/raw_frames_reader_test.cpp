@@ -180,7 +180,7 @@ TEST(RawFramesReader, SuggestsTheMatchingLayout) {
   };
   EXPECT_THAT(refusal({3, 4, 6, 8}, RawLayout::interleaved),
               AllOf(HasSubstr("found 8 measurements per pixel, shape (3, 4, 6, 8); expected 4"),
-                    HasSubstr("(F, K, H, W) it would fit: --layout planar")));
+                    HasSubstr("(F, K, H, W): --layout planar")));
   EXPECT_THAT(refusal({6, 8, 4}, RawLayout::planar), HasSubstr("--layout interleaved"));
   EXPECT_THAT(refusal({6, 8, 5}, RawLayout::planar), testing::Not(HasSubstr("--layout")));
   EXPECT_THAT(refusal({6, 8}, RawLayout::planar), HasSubstr("expected (K, H, W) or (F, K, H, W)"));
@@ -208,7 +208,7 @@ TEST(RawFramesReader, ReadsOneFilePerMeasurementAndReportsTheOneThatDiffers) {
   EXPECT_EQ(numbers[2], 6.0);
   EXPECT_EQ(numbers[row.measurement_stride + 2], static_cast<double>(1 << 30));
 
-  EXPECT_THAT(message_of({a, b, a}), HasSubstr("found 3 files, one a measurement; expected 2"));
+  EXPECT_THAT(message_of({a, b, a}), HasSubstr("found 3 files, one per measurement; expected 2"));
   const auto turned = write("turned.npy", NpyArray::of<std::int32_t>({3, 2}, first));
   EXPECT_THAT(message_of({a, turned}), HasSubstr("turned.npy: found 1 frame of 3 x 2; expected 1 "
                                                  "frame of 2 x 3 as in"));
@@ -216,7 +216,7 @@ TEST(RawFramesReader, ReadsOneFilePerMeasurementAndReportsTheOneThatDiffers) {
   EXPECT_THAT(message_of({a, floats}), HasSubstr("floats.npy: found numbers"));
   const auto flat = write("flat.npy", NpyArray(NpyType::int32, {6}));
   EXPECT_THAT(message_of({a, flat}), HasSubstr("flat.npy: found an array of shape (6,)"));
-  EXPECT_THAT(message_of({a, a}), HasSubstr("a.npy: is named twice"));
+  EXPECT_THAT(message_of({a, a}), HasSubstr("a.npy: is listed twice"));
 }
 
 template <typename Number>

@@ -249,7 +249,7 @@ TEST_F(RawMarkersOfRecordings, ALimitSuppressesTheNoteOnElectrons) {
     statuses(request, *difference_backend(std::move(settings)));
     return notes_;
   };
-  const char* const words = "no gain, black level or saturation is set";
+  const char* const words = "no gain, black level or saturation level is set";
   EXPECT_THAT(notes({}), testing::Contains(HasSubstr(words)));
   EXPECT_THAT(notes({"sensor.full_well_e=30000"}), testing::Each(Not(HasSubstr(words))));
   EXPECT_THAT(notes({"sensor.adc_bits=12", "sensor.gain_e_per_dn=1"}),
@@ -281,9 +281,9 @@ TEST(RawMarkersOfCameras, WithTwoMeaningsAreRejectedWithTheirPlace) {
         ThrowsMessage<IoError>(testing::AllOf(testing::StartsWith(place), HasSubstr(words))));
   };
   refused("saturated = [1, 65535]\ninvalid = [65535]\n", "c.toml:4:11",
-          "raw.invalid = 65535; must not be in raw.saturated, too: a number has one meaning");
+          "raw.invalid = 65535; must not be in raw.saturated as well");
   refused("saturated = [nan]\ninvalid = [nan]\n", "c.toml:4:11", "raw.invalid = nan");
-  refused("saturated = [3, 3]\n", "c.toml:3:13", "raw.saturated = 3; must be named once");
+  refused("saturated = [3, 3]\n", "c.toml:3:13", "raw.saturated = 3; must be listed once");
   refused("saturated = [1e16]\n", "c.toml:3:13", "raw.saturated");
   refused("saturated = 65535\n", "c.toml:3:13", "expected a list of numbers");
   refused("saturated = ['max']\n", "c.toml:3:14", "expected a number, nan, inf or -inf");

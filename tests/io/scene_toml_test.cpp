@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:1:3: unknown key shpere; did you "
                  "mean sphere?"},
         BadScene{"[sphere]\ncentre_m = [0, 0, 2]",
-                 "s.toml:1:1: sphere: found a table; expected tables, each begun with [[sphere]]"},
+                 "s.toml:1:1: sphere: found a table; expected tables that begin with [[sphere]]"},
         BadScene{"sphere = [1]", "s.toml:1:11: sphere[0]: found 1; expected tables"},
         BadScene{"[[plane]]\npoint_m = [0, 0, 2]\nnormal = [0, 0, 0]",
                  "s.toml:3:10: plane[0].normal: has no length; expected a direction"},
@@ -224,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:4:10: sphere[0].albedo: found -0.1; expected a number in [0, 1]"},
         BadScene{"albedo = 1.5", "s.toml:4:10: sphere[0].albedo: found 1.5"},
         BadScene{"albedo = 0.5\ntexture = { pattern = \"uniform\" }",
-                 "s.toml:4:10: sphere[0].albedo: is only valid with no texture beside it"},
+                 "s.toml:4:10: sphere[0].albedo: is only valid with no texture"},
         BadScene{"texture = { pattern = \"cheker\" }",
                  "s.toml:4:23: sphere[0].texture.pattern: found \"cheker\"; expected one of "
                  "\"uniform\", \"checker\", \"stripes\"; did you mean \"checker\"?"},
@@ -254,9 +254,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "s.toml:5:14: view.distortion: is only valid with fx_px"},
         BadScene{"[view]\ncx_px = 5", "s.toml:5:9: view.cx_px: is only valid with fx_px"},
         BadScene{"[camera]\nposition_m = [1, 2, 3]\nlook_at_m = [1, 2, 3]",
-                 "s.toml:6:13: camera.look_at_m: is where the camera stands"},
+                 "s.toml:6:13: camera.look_at_m: is the position of the camera"},
         BadScene{"[camera]\nlook_at_m = [0, 1, 0]",
-                 "s.toml:5:13: camera.look_at_m: is straight above or below"},
+                 "s.toml:5:13: camera.look_at_m: is directly above or below"},
         BadScene{"[camera]\nlook_at_m = [0, 1, 1]\nrotation_deg = [0, 0, 0]",
                  "s.toml:6:16: camera.rotation_deg: is only valid with no look_at_m"}));
 

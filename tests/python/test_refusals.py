@@ -101,7 +101,7 @@ refusals = [
     (lambda: ts.capture(-depth, "square-k4", "paper-10f0"), ValueError, "depth_m"),
     (lambda: ts.capture(3, "square-k4", "paper-10f0"), TypeError, "scene: got int 3; needs a tofsmith.Scene"),
     (lambda: ts.capture("bookz", "square-k4", "paper-10f0"), OSError, "did you mean books?"),
-    (lambda: ts.load_scene("books", scale_m=2), ValueError, "scale_m = 2; only a mesh has units"),
+    (lambda: ts.load_scene("books", scale_m=2), ValueError, "scale_m = 2; is only valid with a mesh"),
     (lambda: ts.load_scene("books", width=0), ValueError, "width = 0; must be in [1, 16384]"),
     (lambda: ts.design("paper-10f0", method="guess"), ValueError, "method = guess; must be factorize"),
     (lambda: ts.design("paper-10f0", effort=0.001), ValueError, "effort = 0.001; must be 0 or in [0.01, 100]"),

@@ -143,7 +143,7 @@ def test_decode(ways, camera):
 
     command("dump.bin", "dump.npz", "--raw-format", "dump.raw.toml")
     result = decoder.decode_recording("dump.bin", "dump.npz", raw_format="dump.raw.toml")
-    assert "taken as electrons" in result.notes[0]
+    assert "interpreted as electrons" in result.notes[0]
 
     phases = [f"p{k}.npy" for k in range(4)]
     ways.command("decode", *phases, "--averaged", "12.5", "--code", "hamiltonian-k4", *SMALL, "-o",
@@ -205,7 +205,7 @@ def test_decode_rejects_equally(ways, camera):
         decoder.decode_recording("raw.npy", "d.npz", average=0)
     with pytest.raises(ValueError, match=r"averaged = 0; must be in \(0, 1000000000\]"):
         decoder.decode_recording("raw.npy", "d.npz", averaged=0)
-    with pytest.raises(OSError, match="found 2 files, one a measurement; expected 4"):
+    with pytest.raises(OSError, match="found 2 files, one per measurement; expected 4"):
         decoder.decode_recording(["raw.npy", "raw.npy"], "d.npz")
     with pytest.raises(ValueError, match=r"raw\[1\]: got float64 of shape \(2, 3\); needs float32"):
         decoder.decode([np.ones((2, 3), np.float32), np.ones((2, 3))])

@@ -140,7 +140,7 @@ TEST(DesignReport, ShowsMultipathErrorsEvenIfNoCodeSeparatesTwoReturns) {
   expect_sound(page, 4);
   const std::string html = page_document(page);
   for (const char* words : {"Second returns", "ratio 0.25 to 0.5", "as two returns (mm)", "cannot",
-                            "And with multipath?", "too few independent means"})
+                            "How does it perform with multipath?", "too few independent means"})
     EXPECT_THAT(html, HasSubstr(words));
 }
 
@@ -208,7 +208,7 @@ TEST(EvaluationReport, DrawsTheDistributionOfDepthsUnlessUniform) {
   camera.operating.depths = {2.0, 1.0};
   html = html_of();
   EXPECT_THAT(html, HasSubstr("\"true-depths\""));
-  EXPECT_THAT(html, HasSubstr("true depths from 1 to 3 m, as often as 2 weights say;"));
+  EXPECT_THAT(html, HasSubstr("true depths from 1 to 3 m, distributed by 2 weights;"));
 }
 
 TEST(SceneSection, WithoutCapturesShowsTheScene) {

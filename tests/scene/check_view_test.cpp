@@ -34,7 +34,7 @@ Mesh mesh_of(TriangleMesh triangles) {
 TEST(CheckView, ReportsTheSolidThatContainsTheCamera) {
   const Shape wall = Plane{.point = {0, 0, 4}};
   const std::string rule = "camera position = 0 0 0; must not be inside shape ";
-  const std::string advice = ": move it out (walls around it are planes)";
+  const std::string advice = ": move it outside (use planes for walls around the camera)";
   EXPECT_EQ(refusal(scene_of({wall})), "accepted");
   EXPECT_EQ(refusal(scene_of({wall, Box{}})), rule + "1, a box" + advice);
   EXPECT_EQ(refusal(scene_of({Sphere{}, wall})), rule + "0, a sphere" + advice);
@@ -47,7 +47,7 @@ TEST(CheckView, ReportsTheSolidThatContainsTheCamera) {
 
 TEST(CheckView, RefusesAnEmptyView) {
   const std::string message = refusal(scene_of({Sphere{.centre = {0, 0, -3}}}));
-  EXPECT_EQ(message.find("pixels that see a shape = 0; must be at least one: turn or move"), 0u)
+  EXPECT_EQ(message.find("pixels that see a shape = 0; must be at least one: rotate or move"), 0u)
       << message;
   EXPECT_NE(refusal(scene_of({})), "accepted");
 }

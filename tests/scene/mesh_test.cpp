@@ -42,9 +42,9 @@ TEST(Mesh, ReportsTheFieldTheValueAndTheRule) {
             "mesh.mesh_to_world.rotation = -1; must not mirror (determinant shown)");
   EXPECT_EQ(refusal([](Mesh& m) { m.mesh_to_world.translation().z() = INFINITY; }),
             "mesh.mesh_to_world.translation =   0   0 inf; must be finite");
-  EXPECT_EQ(refusal([](Mesh& m) { m.triangles.vertices[0] *= 1e100; }),
-            "mesh.vertices = 8.66025e+99; must stand within 1e12 m of the world's origin "
-            "(distance shown)");
+  EXPECT_EQ(
+      refusal([](Mesh& m) { m.triangles.vertices[0] *= 1e100; }),
+      "mesh.vertices = 8.66025e+99; must be within 1e12 m of the world's origin (distance shown)");
   EXPECT_EQ(refusal([](Mesh& m) { m.texture.albedo = -0.1; }),
             "texture.albedo = -0.1; must be in [0, 1]");
 }

@@ -311,7 +311,7 @@ TEST(Lens, RejectsDiscsThatCoverTheImageAndTexturesOfAnotherSize) {
     FAIL();
   } catch (const InvalidArgument& error) {
     EXPECT_EQ(error.field(), "lens.f_number");
-    EXPECT_THAT(error.what(), HasSubstr("of what is 0.01 m away"));
+    EXPECT_THAT(error.what(), HasSubstr("at 0.01 m, the disc of confusion"));
   }
   EXPECT_THROW(capture(edge_scene(8, 8), code_of(camera), camera, {},
                        {.search_of = {}, .light = {}, .ambient_scale = Image<float>(7, 8, 1.0f)}),

@@ -317,11 +317,12 @@ TEST(Mixer, RejectsSettingsOfTaps) {
   EXPECT_THAT(refusal_of(camera), HasSubstr("must be 1 with sensor.demodulation"));
   camera = mixer_camera();
   camera.sensor.readout = Readout::rows;
-  EXPECT_THAT(refusal_of(camera), HasSubstr("rows of one exposure have weights of any sign"));
+  EXPECT_THAT(refusal_of(camera), HasSubstr("rows of one exposure already have signed weights"));
   camera = mixer_camera();
   camera.sensor.drain = false;
-  EXPECT_THAT(refusal_of(camera), HasSubstr("sensor.drain = false; must be left out with "
-                                            "sensor.demodulation = \"signed\""));
+  EXPECT_THAT(
+      refusal_of(camera),
+      HasSubstr("sensor.drain = false; must be omitted with sensor.demodulation = \"signed\""));
   camera = mixer_camera();
   camera.sensor.adc_bits = 8;
   camera.sensor.gain_e_per_dn = 1.0;
@@ -334,7 +335,7 @@ TEST(Mixer, RejectsSettingsOfTaps) {
                 of_weights = build_family("hamiltonian-k4", camera);
   EXPECT_THAT(why_not_playable(of_gains, camera).value_or(""), HasSubstr("weights in [-1, 1]"));
   EXPECT_THAT(why_not_playable(of_weights, gains).value_or(""),
-              HasSubstr("needs a camera with sensor.demodulation = \"signed\""));
+              HasSubstr("requires a camera with sensor.demodulation = \"signed\""));
   EXPECT_THROW(of_weights.with_two_buckets(), std::invalid_argument);
   EXPECT_THROW(of_gains.with_two_buckets().with_signed_weights(), std::invalid_argument);
   Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(8, 1);

@@ -136,7 +136,7 @@ TEST(MultipathCapture, RejectsInvalidLight) {
   refused(behind({{10.5f, 0.3f}}), "less than the unambiguous range");
   SceneLight tail;
   tail.tail = ExponentialTail{12.0, 0.3};
-  refused(tail, "no longer than the period");
+  refused(tail, "at most the unambiguous range");
   const auto transient = [](std::vector<double> bins, double bin_m) {
     SceneLight light;
     light.transients = {{std::move(bins), bin_m}};
@@ -145,7 +145,7 @@ TEST(MultipathCapture, RejectsInvalidLight) {
   refused(transient({1.0, -2.0}, 0.1), "bin 1 = -2");
   refused(transient({1.0, std::numeric_limits<double>::quiet_NaN()}, 0.1), "bin 1 = nan");
   refused(transient({0.0, 0.0}, 0.1), "light of all bins");
-  refused(transient({1.0, 1.0, 1.0}, 4.0), "no longer than the period");
+  refused(transient({1.0, 1.0, 1.0}, 4.0), "at most the unambiguous range");
 }
 
 TEST(MultipathBound, WithoutASecondReturnIsAtLeastThatOfOneAndDecreasesWithDelay) {

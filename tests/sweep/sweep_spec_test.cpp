@@ -100,7 +100,7 @@ TEST(SweepSpec, ErrorsDoNotQuoteOtherFiles) {
   std::ofstream(directory / "s.toml")
       << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"passwd\"\n";
   const std::string message = io_error_of([&] { read_sweep_toml(directory / "s.toml"); });
-  EXPECT_THAT(message, testing::HasSubstr("passwd:1:1: found a line that is no value"));
+  EXPECT_THAT(message, testing::HasSubstr("passwd:1:1: found a line that is not a value"));
   EXPECT_THAT(message, testing::Not(testing::HasSubstr("bash")));
 }
 
@@ -207,33 +207,34 @@ TEST(SweepSpec, RejectsUnknownInputWithItsPlace) {
            {axis("key = \"seed\"\nfrom = 1\nto = 5\ncount = 1\n"), "s.toml:6:9: axis[0].count"},
            {axis("key = \"seed\"\nfile = \"none.txt\"\n"), "s.toml:4:8: axis[0].file: none.txt"},
            {axis("key = \"seed\"\nvalues = [1]\n[[axis]]\nkey = \"seed\"\nvalues = [2]\n"),
-            "s.toml:6:7: axis seed comes twice; the first is at s.toml:3:7"},
+            "s.toml:6:7: axis seed occurs twice; the first is at s.toml:3:7"},
            {"combine = \"zip\"\n" + axis("key = \"seed\"\nvalues = [1]\n[[axis]]\nkey = "
                                          "\"samples\"\nvalues = [24, 30]\n"),
             "s.toml:7:7: axis samples has 2 values and axis seed has 1"},
-           {axis("key = \"exposures\"\nvalues = [3]\n"), "need each other"},
+           {axis("key = \"exposures\"\nvalues = [3]\n"), "require each other"},
            {axis("keys = []\nvalues = [1]\n"), "s.toml:3:8: axis[0].keys: found an empty list"},
            {axis("keys = [\"seed\"]\nkey = \"seed\"\nvalues = [1]\n"),
             "s.toml:4:7: axis[0].key: is only valid with no keys"},
            {axis("keys = [\"seed\", \"sampels\"]\nvalues = [1]\n"),
             "axis[0].keys: found unknown axis \"sampels\"; did you mean \"samples\"?"},
-           {axis("keys = [\"seed\", \"seed\"]\nvalues = [1]\n"), "axis seed comes twice"},
+           {axis("keys = [\"seed\", \"seed\"]\nvalues = [1]\n"), "axis seed occurs twice"},
            {axis("keys = [\"seed\", \"samples\"]\nvalues = [1, [1, 2, 3]]\n"),
             "s.toml:4:14: found [1, 2, 3]; expected one value for all of seed, samples, or a list "
             "of 2, one for each"},
            {axis("keys = [\"seed\", \"samples\"]\nvalues = [[1, 24]]\n[[axis]]\nkey = "
                  "\"samples\"\nvalues = [24]\n"),
-            "axis samples comes twice; the first is at s.toml:3:8"},
+            "axis samples occurs twice; the first is at s.toml:3:8"},
            {head + four_axes.substr(0, four_axes.find("[[axis]]\nkey = \"seed\"")) +
                 "[[axis]]\nkey = \"seed\"\nvalues = [1]\ngroup = \"a\"\n",
-            "axis seed has 1 values and samples has 3; in a group that is zipped"},
+            "axis seed has 1 values and samples has 3; expected equal numbers in a zipped group"},
            {"combine = \"zip\"\n" + head + four_axes +
                 "[[group]]\nname = \"b\"\ncombine = \"product\"\n",
-            "group b has 6 values and group a has 3; with combine = \"zip\" expected"},
+            "group b has 6 values and group a has 3; expected equal numbers with combine = "
+            "\"zip\""},
            {head + four_axes + "[[group]]\nname = \"aa\"\ncombine = \"zip\"\n",
-            "group[0].name: found \"aa\", the group of no axis"},
+            "group[0].name: found \"aa\", a group without axes"},
            {head + four_axes + "[[group]]\nname = \"a\"\n", "combine"},
-           {"code = \"hamiltonian-k{exposures}\"\n", "need each other"},
+           {"code = \"hamiltonian-k{exposures}\"\n", "require each other"},
        }) {
     SCOPED_TRACE(refusal.text);
     EXPECT_THAT([&] { parse_sweep_toml(refusal.text, "s.toml"); },

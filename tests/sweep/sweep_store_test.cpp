@@ -127,7 +127,7 @@ TEST(SweepStore, RejectsOtherFilesWithoutChangingThem) {
   EXPECT_THAT([&] { SweepStore::open(directory / "none" / "s.sqlite"); },
               ThrowsMessage<IoError>(HasSubstr("cannot open")));
   EXPECT_THAT([&] { SweepStore::open(directory.path()); },
-              ThrowsMessage<IoError>(HasSubstr("is no regular file")));
+              ThrowsMessage<IoError>(HasSubstr("is not a regular file")));
 }
 
 TEST(SweepStore, RejectsOtherVersionsAndOtherInstructionSets) {
@@ -189,9 +189,9 @@ TEST(SweepStore, AFullDiskLosesNothing) {
   { const SweepStore store = with_items(path); }
   SqliteDatabase full(path, SqliteDatabase::Access::write);
   full.execute("PRAGMA max_page_count = 1");
-  EXPECT_THAT([&] { full.execute("INSERT INTO meta VALUES ('x', hex(zeroblob(100000)))"); },
-              ThrowsMessage<IoError>(
-                  AllOf(HasSubstr("full"), HasSubstr("nothing that is finished is lost"))));
+  EXPECT_THAT(
+      [&] { full.execute("INSERT INTO meta VALUES ('x', hex(zeroblob(100000)))"); },
+      ThrowsMessage<IoError>(AllOf(HasSubstr("full"), HasSubstr("finished items are kept"))));
   EXPECT_EQ(SweepStore::open(path).count(keys).pending, 3);
 }
 
@@ -229,7 +229,7 @@ TEST(SweepStore, MergingCombinesFinishedItemsInAnyOrder) {
   run_sql(b, "UPDATE items SET result = NULL, status = 'pending' WHERE key = 'bb'");
   with_items(b).finish(std::vector<ItemOutcome>{{"bb", "[2]", "", 1.0}});
   EXPECT_THAT([&] { merged("c.sqlite", a, b); },
-              ThrowsMessage<IoError>(HasSubstr("has another result")));
+              ThrowsMessage<IoError>(HasSubstr("has a different result")));
 }
 
 }  // namespace

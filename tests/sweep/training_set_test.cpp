@@ -166,7 +166,7 @@ TEST(TrainingScenes, AreReadFromFoldersAndLists) {
       ThrowsMessage<IoError>(AllOf(HasSubstr("a.npy"), HasSubstr("twice"))));
   fs::create_directories(directory / "empty");
   EXPECT_THAT([&] { names({(directory / "empty").string()}); },
-              ThrowsMessage<IoError>(HasSubstr("holds no scenes")));
+              ThrowsMessage<IoError>(HasSubstr("contains no scenes")));
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(UploadScript, RejectsRequestsThatDoNotSuitTheModel) {
   EXPECT_THAT(problem("AFG3021", [](UploadRequest&) {}),
               HasSubstr("channel = 2; must be in [1, 1]"));
   EXPECT_THAT(problem("33522", [](UploadRequest& r) { r.channels[1].channel = 1; }),
-              HasSubstr("must be another for light and sensor"));
+              HasSubstr("must be different for light and sensor"));
   EXPECT_THAT(problem("33522", [](UploadRequest& r) { r.channels[0].stored[1].high_v = 5.5; }),
               HasSubstr("modulation_2 volts = 5.5; must be at most 5 from zero"));
   EXPECT_THAT(problem("AFG3022", [](UploadRequest& r) { r.channels[0].stored[1].high_v = 0.01; }),

@@ -154,7 +154,7 @@ TEST(WaveformExport, RepeatsPeriodsAsRequiredByTheFormat) {
   EXPECT_NEAR(exported.waveforms[0].repetition_hz(), 15e6 / 4, 1e-6);
   options.periods = 5;
   EXPECT_THAT(problem_of(code, camera, options),
-              HasSubstr("points = 375; tek-wfm takes 256 .. 1048576 points in multiples of 4"));
+              HasSubstr("points = 375; tek-wfm requires 256 to 1048576 points in multiples of 4"));
 }
 
 TEST(WaveformExport, OutputVoltagesFollowPower) {
@@ -204,9 +204,9 @@ TEST(WaveformExport, RejectsUnsupportedHardwareSettings) {
               HasSubstr("must be one of easywave, lenth, commas"));
   EXPECT_THAT(
       problem({.format = "tek-tfw", .samples = 200000}),
-      HasSubstr("samples = 200000; must be in [2, 131072], what a memory of tek-tfw holds"));
+      HasSubstr("samples = 200000; must be in [2, 131072], the limits of the memory of tek-tfw"));
   EXPECT_THAT(problem({.format = "siglent-csv", .samples = 1000}),
-              HasSubstr("siglent-csv takes 16384 .. 16384 points"));
+              HasSubstr("siglent-csv requires 16384 to 16384 points"));
   EXPECT_THAT(problem({.format = "tek-tfw", .bits = 15}),
               HasSubstr("bits = 15; must be in [1, 14] (tek-tfw)"));
   EXPECT_THAT(problem({.format = "keysight-arb", .samples = 100, .sample_rate_hz = 250e6}),

@@ -35,7 +35,7 @@ void FilterOptions::validate() const { check_fields(*this, "FilterOptions::"); }
 Filter::Filter(DecodingTable table, const FilterOptions& options) {
   options.validate();
   table.validate();
-  require_exposures(table, "a filter");
+  require_exposures(table, "the filter");
   const AmbientProjection projection(table);
   plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
 }
@@ -50,7 +50,7 @@ void require_filterable(const Filter::Plan& plan, const RawView& raw,
           "must be > 0");
   require(left_out.empty() || (left_out.height == raw.height && left_out.width == raw.width),
           "left_out", std::to_string(left_out.height) + " x " + std::to_string(left_out.width),
-          "must be of the size of the frame");
+          "must have the size of the frame");
 }
 
 const Filter::Plan& plan_of(const Filter& filter) { return *filter.plan_; }

@@ -15,7 +15,7 @@ void TimeFilterOptions::validate() const { check_fields(*this, "TimeFilterOption
 TimeFilter::TimeFilter(const DecodingTable& table, const TimeFilterOptions& options) {
   options.validate();
   table.validate();
-  require_exposures(table, "a filter in time");
+  require_exposures(table, "the temporal filter");
   state_ = std::make_unique<State>(table, options, AmbientProjection(table));
 }
 TimeFilter::~TimeFilter() = default;
@@ -54,9 +54,9 @@ std::optional<RawView> TimeFilter::add(const RawView& stored) {
     state.resize(raw);
   } else {
     require(raw.height == state.height, "raw height", raw.height,
-            "must equal that of the frames before, " + std::to_string(state.height));
+            "must equal that of the previous frames, " + std::to_string(state.height));
     require(raw.width == state.width, "raw width", raw.width,
-            "must equal that of the frames before, " + std::to_string(state.width));
+            "must equal that of the previous frames, " + std::to_string(state.width));
   }
   if (state.options.look_ahead > 0) {
     state.waiting.push(raw);

@@ -367,7 +367,7 @@ void check(const DecodingTable& table, const RawView& raw, const DecodedView& de
   const auto fits = [&](const char* field, int height, int width) {
     require(height == raw.height && width == raw.width, field,
             std::to_string(height) + " x " + std::to_string(width),
-            "must be of the size of the frame");
+            "must have the size of the frame");
   };
   if (const RawView* own = unfiltered.measured) {
     require_measurements(*own, table.measurements());
@@ -387,11 +387,11 @@ std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& stored
                                const DecodedView& decoded, const PixelMaps& maps,
                                const Progress& progress, const UnfilteredPixels& unfiltered) {
   table.validate();
-  require_exposures(table, "a search for mixed pixels");
+  require_exposures(table, "the detection of mixed pixels");
   check(table, stored, decoded, maps, unfiltered);
   const MarkedRaw marked_raw(stored, table.marking);
   const RawView& raw = marked_raw.view();
-  report(progress, 0.0, "looking for mixed pixels");
+  report(progress, 0.0, "detecting mixed pixels");
   const Surroundings around(decoded, unfiltered.mixed, raw.height, raw.width, table.range_m);
   const MixedPixelSearch search(table, raw, around, maps, unfiltered);
   if (search.rank() < 3) return 0;
@@ -412,7 +412,7 @@ std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& stored
       }
     }
   });
-  report(progress, 1.0, "looking for mixed pixels");
+  report(progress, 1.0, "detecting mixed pixels");
   std::int64_t sum = 0;
   for (const std::int64_t count : marked) sum += count;
   return sum;

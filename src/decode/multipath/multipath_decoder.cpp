@@ -50,7 +50,7 @@ namespace {
 
 std::optional<std::string> why_not(const DecodingTable& table, MultipathKind later) {
   if (auto no_depth = why_not_decodable(table)) return no_depth;
-  if (table.has_rows()) return "multipath takes independent measurements, not rows";
+  if (table.has_rows()) return "multipath decoding requires independent measurements, not rows";
   return text_of(missing_support(AmbientProjection(table), later));
 }
 

@@ -65,7 +65,7 @@ double explained(double along, double own) {
 
 const DecodingTable& checked(const DecodingTable& table, const MultipathOptions& options) {
   table.validate();
-  require_exposures(table, "multipath");
+  require_exposures(table, "multipath decoding");
   options.validate(table.range_m);
   return table;
 }

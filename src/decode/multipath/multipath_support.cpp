@@ -34,25 +34,25 @@ std::optional<BrokenRule> missing_support(const AmbientProjection& projection,
   const int needed = (later == MultipathKind::tail ? 5 : 6) - (sees_ambient ? 0 : 1);
   if (means >= needed) return std::nullopt;
   const int harmonics = harmonics_of(projection);
-  std::string rule = "must be >= " + std::to_string(needed) + " to tell ";
+  std::string rule = "must be >= " + std::to_string(needed) + " to distinguish ";
   rule += later == MultipathKind::tail ? "a tail" : "two returns";
   rule += " from one";
   if (harmonics <= 2)
-    rule += harmonics == 1
-                ? "; the code holds one frequency only, in which any returns add up to one"
-                : "; the code holds two frequencies only, in which pairs of returns look "
-                  "alike";
+    rule +=
+        harmonics == 1
+            ? "; the code has only one frequency, at which several returns are equivalent to one"
+            : "; the code has only two frequencies, at which pairs of returns are ambiguous";
   rule += "; decode it with zncc or ml, or ";
   const Eigen::Index measurements = projection.gated.cols();
   if (measurements >= needed)  // enough measurements, but too few independent means
-    rule += "let more harmonics through: its " + std::to_string(measurements) +
-            " measurements are enough, but hold too few; a higher bandwidth of light and sensor "
-            "(light.impulse_response, sensor.impulse_response) keeps more of the code's, and some "
-            "codes have more";
+    rule += "increase the number of harmonics: its " + std::to_string(measurements) +
+            " measurements suffice, but contain too few harmonics; use a higher bandwidth of light "
+            "and sensor (light.impulse_response, sensor.impulse_response) or a code with more "
+            "harmonics";
   else
     rule +=
-        "play a code with more means: hamiltonian-k5 on a sensor of two taps (--set "
-        "sensor.taps=2), which gives 10 measurements in 5 exposures";
+        "use a code with more means, such as hamiltonian-k5 on a sensor with two taps (--set "
+        "sensor.taps=2), which has 10 measurements in 5 exposures";
   return broken("independent means", means, rule);
 }
 

@@ -49,7 +49,7 @@ Harmonic harmonic_of(const Eigen::VectorXd& correlation, int measurement,
   found.coefficient = spectrum[found.frequency];
   require(other <= largest_other_energy, fmt::format("correlation of measurement {}", measurement),
           fmt::format("{:.3g} % of its energy outside harmonic {}", 100 * other, found.frequency),
-          fmt::format("must be at most {:.3g} %: phases can be unwrapped for sinusoids only",
+          fmt::format("must be at most {:.3g} %: phase unwrapping requires sinusoids",
                       100 * largest_other_energy));
   return found;
 }
@@ -121,8 +121,8 @@ PhaseModel::PhaseModel(const DecodingTable& table, double largest_other_energy) 
   system.array().rowwise() /= lengths.array();
   const auto [rank, inverse] = pseudo_inverse(system, no_offset);
   require(rank == system.cols(), "measurements", table.measurements(),
-          fmt::format("must tell {} unknowns apart (two per frequency and {} for the offset that "
-                      "signal and ambient light add); give one frequency 3 phases",
+          fmt::format("must determine {} unknowns (two per frequency and {} for the offset of "
+                      "signal and ambient light); use 3 phases for one frequency",
                       system.cols(), offsets.cols()));
   gain_.resize(count(), table.measurements());
   for (int j = 0; j < count(); ++j) {

@@ -95,7 +95,7 @@ struct UnwrapDecoder::Plan {
 UnwrapDecoder::UnwrapDecoder(DecodingTable table, const UnwrapOptions& options) {
   options.validate();
   table.validate();
-  require_exposures(table, "unwrap");
+  require_exposures(table, "phase unwrapping");
   const AmbientProjection projection(table);
   plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
 }

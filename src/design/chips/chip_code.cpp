@@ -107,14 +107,14 @@ void ChipCode::validate() const {
 std::optional<BrokenRule> why_no_chip_clock(const Camera& camera) {
   if (!camera.sensor.shortest_pulse_s)
     return broken("sensor.shortest_pulse_s", "none",
-                  "must be the length of one chip: codes are searched on a chip clock");
+                  "must be set to the length of one chip to search codes on a chip clock");
   const double chip_s = *camera.sensor.shortest_pulse_s;
   const double chips = 1.0 / (camera.fundamental_frequency_hz * chip_s);
   if (std::abs(chips - std::round(chips)) < 1e-6 * chips && std::round(chips) >= 3 &&
       std::round(chips) <= max_chips)
     return std::nullopt;
   return broken("sensor.shortest_pulse_s", chip_s,
-                fmt::format("must be the period divided by a whole number, 3 to {}; here {:.6g} s "
+                fmt::format("must be the period divided by an integer from 3 to {}; found {:.6g} s "
                             "/ shortest_pulse_s = {:.6g}",
                             max_chips, 1.0 / camera.fundamental_frequency_hz, chips));
 }

@@ -11,10 +11,11 @@ namespace tofsmith {
 
 std::optional<BrokenRule> why_not_plain(const Camera& camera) {
   if (camera.band_limited())
-    return broken("impulse_response", "given",
-                  "must be none: codes on a chip clock are searched as exact rectangles");
+    return broken(
+        "impulse_response", "given",
+        "must be none, because the search on a chip clock requires rectangular waveforms");
   if (camera.light.generator || camera.sensor.generator)
-    return broken("generator", "given", "must be none: the chip clock is the generator");
+    return broken("generator", "given", "must be none with a chip clock, which replaces it");
   const auto& contrasts = camera.sensor.modulation_contrasts;
   if (camera.sensor.modulation_contrast != 1.0 || !contrasts.empty())
     return broken("sensor.modulation_contrast",

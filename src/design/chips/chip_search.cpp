@@ -195,9 +195,8 @@ ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {
 std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& rules,
                        const ChipSearchOptions& options, bool is_found) {
   return fmt::format(
-      "All codes of {} exposure{}, {} taps of {} duty and {} chips were tried: {:.0f} of {:.4g} "
-      "remain "
-      "after symmetry. {} by the metric among those that are not ambiguous and keep the "
+      "All codes of {} exposure{}, {} taps of {} duty and {} chips were searched: {:.0f} of {:.4g} "
+      "are different after symmetry. {} by the metric among the unambiguous codes with sufficient "
       "margin.",
       options.exposures, options.exposures == 1 ? "" : "s", rules.taps,
       options.equal_duty ? "equal" : "any", rules.chips, counts.after_symmetry, counts.raw,
@@ -285,7 +284,9 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
     result.proof = proof_text(finding.counts, rules, options, !best.codes().empty());
   } else {
     result.log.counts = annealed;
-    result.proof = "Not proven: there are too many codes to try them all; these were annealed.";
+    result.proof =
+        "Not proven: too many codes for an exhaustive search; they were optimized by simulated "
+        "annealing.";
   }
 
   // 4. Finalists with proven margins.

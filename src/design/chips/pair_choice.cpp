@@ -39,7 +39,7 @@ PairChoice bettered(PairChoice best, const std::vector<Factorization>& factoriza
     for (std::size_t k = 0; k < best.size(); ++k) {
       const double done = round + static_cast<double>(k) / static_cast<double>(best.size());
       for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
-        report(progress, done / rounds, "choosing pairs by depth error");
+        report(progress, done / rounds, "selecting pairs by depth error");
         PairChoice trial = best;
         trial[k] = i;
         if (error_of(trial) >= error_of(best)) continue;

@@ -17,13 +17,13 @@ SearchRecord record_of(const ChipSearchResult& found) {
   const ChipSearchCounts& c = found.log.counts;
   SearchRecord record{
       .work_unit = "% of the search",
-      .error_name = "smallest rms error so far, by the Cramer-Rao bound",
+      .error_name = "smallest rms error found, by the Cramer-Rao bound",
       .proved = found.proved,
       .account = fmt::format(
-          "{} Of {:.4g} codes, {:.4g} after symmetry, {} were looked at (a few symmetric ones "
-          "twice): {} turn back, {} have too "
-          "small a slope, {} are worse by the metric ({} evaluations), {} are ambiguous, {} are "
-          "below the margin; {} were the best so far.",
+          "{} Of {:.4g} codes, {:.4g} after symmetry, {} were examined (a few symmetric ones "
+          "twice). Excluded: {} whose coding curve reverses its turn, {} with too small a slope, "
+          "{} with a worse metric ({} evaluations), {} ambiguous, {} below the margin. {} improved "
+          "on the best code found before.",
           found.proof, c.raw, c.after_symmetry, c.examined, c.pruned_by_turning, c.pruned_by_bound,
           c.pruned_by_metric, c.metric_evaluations, c.ambiguous, c.below_margin, c.kept)};
   for (const ChipImprovement& i : found.log.improvements)
@@ -33,7 +33,7 @@ SearchRecord record_of(const ChipSearchResult& found) {
 
 std::string proof_of(const ChipSearchResult& found, std::size_t place) {
   if (!found.proved) return "not proven";
-  return place == 0 ? "proven optimal" : fmt::format("proven number {} of all codes", place + 1);
+  return place == 0 ? "proven optimal" : fmt::format("proven rank {} of all codes", place + 1);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ std::optional<BrokenRule> why_nothing_to_search(const Camera& camera,
   if (auto reason = why_no_chip_clock(camera)) return reason;
   if (searchable_exposures(camera, options).empty())
     return broken("sensor.taps", camera.sensor.taps,
-                  "too few to search codes of one or two exposures; name the --exposures");
+                  "has too few taps to search codes of one or two exposures; specify --exposures");
   return std::nullopt;
 }
 

@@ -106,9 +106,9 @@ std::string describe(const Factorization& f, const CorrelationTarget& target) {
   std::string message = fmt::format("residual {:.4g} rms, {:.0f} % of the target's variation",
                                     f.best().residual_rms, 100 * share);
   if (target.samples.minCoeff() < -1e-9 || target.samples.maxCoeff() > 1 + 1e-9)
-    message += "; the target leaves [0, 1], which no correlation function can";
+    message += "; the target exceeds [0, 1], which no correlation function can reach";
   else if (share > 0.5)
-    message += "; the target is out of reach of this camera";
+    message += "; this camera cannot reach the target";
   return message;
 }
 
@@ -169,7 +169,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
                        return by_residual(a.candidate, b.candidate);
                      })->history;
   result.message = describe(result, target);
-  if (!playable) result.message += "; no pair found keeps the sensor's shortest_pulse_s";
+  if (!playable) result.message += "; no pair satisfies the sensor's shortest_pulse_s";
   return result;
 }
 

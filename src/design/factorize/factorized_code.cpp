@@ -84,7 +84,7 @@ std::string describe_residuals(const std::vector<MeasurementReport>& reports,
   std::string text = fmt::format("residuals {} rms", residuals);
   if (!closest) text += fmt::format(" (chosen by depth error; smallest found {})", smallest);
   if (!unreachable.empty())
-    text += fmt::format("; target {} out of reach of this camera", unreachable);
+    text += fmt::format("; this camera cannot reach target {}", unreachable);
   return text;
 }
 

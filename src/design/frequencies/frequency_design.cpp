@@ -128,10 +128,10 @@ SearchRecord record_of(const FrequencySearch& search, const FrequencyChoice& cho
           .steps = {{static_cast<double>(search.sets), search.best.front().error_m}},
           .proved = true,
           .account = fmt::format(
-              "All {} sets of 1 to {} of {} frequencies with {} {}: {} repeat within the working "
-              "distance, {} have a lower bound above the best {} estimates, and the others were "
-              "estimated at the best split of the time that descent found. By the estimate no "
-              "other set is better; trials chose among the best {}.",
+              "Of all {} sets of 1 to {} of {} frequencies with {} {}, {} repeat within the "
+              "working distance and {} have a lower bound above the best {} estimates. The others "
+              "were estimated with exposure times optimized by descent. No other set has a better "
+              "estimate; trials selected among the best {}.",
               search.sets, choice.max_frequencies, choice.frequencies.size(), choice.duties.size(),
               choice.duties.size() == 1 ? "duty" : "duties", search.ambiguous,
               search.pruned_by_bound, search.best.size(), search.best.size())};
@@ -262,7 +262,7 @@ std::optional<std::string> price_of_frequencies(const Camera& camera, const Desi
   const std::string& name = judged.winner().code.name();
   const double ratio = ranking_error_m(result.winner(), camera, options) /
                        ranking_error_m(judged.winner(), wide, options);
-  constexpr const char* known = "binary code of the atlas and the families for this bandwidth";
+  constexpr const char* known = "binary code of the atlas or the families for this bandwidth";
   if (ratio < 1.0)
     return fmt::format("No {} is better: {} has {:.2f} times the error.", known, name, 1.0 / ratio);
   return fmt::format(

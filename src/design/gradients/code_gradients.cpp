@@ -18,18 +18,18 @@ const Camera& without_what_has_no_gradient(const Camera& camera, int samples, in
   const std::size_t listed = camera.exposure_s.each_s.size();
   require(listed == 0 || listed == static_cast<std::size_t>(exposures), "exposures", exposures,
           "must equal the number of exposure_s of the camera");
-  const char* const needs = "must be left out where gradients are asked for";
+  const char* const needs = "must be omitted to compute gradients";
   require(camera.sensor.readout != Readout::rows, "sensor.readout", "rows",
-          "must be separate or difference where gradients are asked for");
+          "must be separate or difference to compute gradients");
   require(!camera.sensor.is_signed(), "sensor.demodulation", "signed",
-          "must be \"gain\" where gradients are asked for; two buckets read as their difference "
-          "measure what a mixer that switches does");
+          "must be \"gain\" to compute gradients; the difference of two buckets is equivalent to a "
+          "switching mixer");
   require(!camera.light.generator, "light.generator", "set", needs);
   require(!camera.sensor.generator, "sensor.generator", "set", needs);
   require(!camera.playback, "playback", "set", needs);
   require(!camera.temperature, "temperature", "set", needs);
   require(camera.sensor.tap_mismatch == 0.0, "sensor.tap_mismatch", camera.sensor.tap_mismatch,
-          "must be 0 where gradients are asked for");
+          "must be 0 to compute gradients");
   return camera;
 }
 

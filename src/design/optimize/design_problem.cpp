@@ -118,24 +118,22 @@ std::optional<BrokenRule> why_not_optimizable(const Camera& on, int exposures) {
   if (measurements < fewest)
     return broken(
         "exposures", exposures,
-        fmt::format("must give at least {} measurements; with sensor.taps = {} that takes "
-                    "{}",
+        fmt::format("must give at least {} measurements; with sensor.taps = {} this requires {}",
                     fewest, camera.sensor.taps,
                     difference ? fewest : (2 + camera.sensor.taps) / camera.sensor.taps));
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
-                  "must be > 1 to optimize: light that never changes carries no depth");
+                  "must be > 1 to optimize: constant light cannot measure depth");
   if (!camera.band_limited() && !camera.sensor.shortest_pulse_s)
-    return broken(
-        "sensor.shortest_pulse_s", "none",
-        fmt::format("is needed to optimize for a camera without band limit, on which shorter "
-                    "pulses are always better; try {:.2g}",
-                    suggested_shortest_pulse_s(camera)));
+    return broken("sensor.shortest_pulse_s", "none",
+                  fmt::format("is required to optimize for a camera without band limit, for which "
+                              "shorter pulses are always better; try {:.2g}",
+                              suggested_shortest_pulse_s(camera)));
   if (auto others = other_exposures_listed(camera, exposures)) return others;
   const double shortest = shortest_run_periods(camera);
   if (shortest > 0.0 && runs_per_period(shortest) < min_cells)
     return broken("sensor.shortest_pulse_s", *camera.sensor.shortest_pulse_s,
-                  "must fit into the period four times");
+                  "must be at most a quarter of the period");
   return std::nullopt;
 }
 
@@ -184,7 +182,7 @@ std::size_t CameraVariant::usual_levels() const {
 
 DesignProblem make_design_problem(std::span<const Camera> given, int exposures, int samples,
                                   double two_return_weight) {
-  require(!given.empty(), "variants", given.size(), "must hold at least one camera");
+  require(!given.empty(), "variants", given.size(), "must contain at least one camera");
   std::vector<Camera> variants;
   for (const Camera& variant : given) variants.push_back(judged_camera(variant));
   require(why_not_optimizable(variants.front(), exposures));
@@ -206,7 +204,7 @@ DesignProblem make_design_problem(std::span<const Camera> given, int exposures, 
     require(its.taps == first.taps && its.readout == first.readout &&
                 its.demodulation == first.demodulation,
             "variants", variant.name,
-            "must have the taps, the readout and the demodulation of the first");
+            "must have the same taps, readout and demodulation as the first");
     const int samples_here = problem.space.samples();
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),

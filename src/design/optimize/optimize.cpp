@@ -69,7 +69,7 @@ std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
 
 SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
   return {.work_unit = "descents",
-          .error_name = "smallest depth error so far, by the search's own trials",
+          .error_name = "smallest depth error found, in trials of the search",
           .steps = pool.history(),
           .account = fmt::format("{} gradient steps", steps)};
 }
@@ -109,8 +109,8 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
                                           "optimize", camera, options.seed),
                         .method = "optimize"};
     candidate.message =
-        fmt::format("a descent from {}{}{}", start, polished ? ", with polished edges" : "",
-                    pool.ended_early() ? "; hops ended early, without gain" : "");
+        fmt::format("gradient descent from {}{}{}", start, polished ? ", with refined edges" : "",
+                    pool.ended_early() ? "; stopped early without further gain" : "");
     candidate.per_measurement = reports_of(candidate.code, start);
     candidates.push_back(std::move(candidate));
   }
@@ -186,7 +186,7 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options, std::span<const CodeSet> also,
                                 const Progress& progress) {
   options.validate();
-  require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
+  require(!variants.empty(), "variants", variants.size(), "must contain at least one camera");
   const Camera& camera = variants.front();
   const bool is_signed = camera.sensor.is_signed();
   std::vector<CodeSet> starts;

@@ -379,7 +379,7 @@ std::string rows_name(int rows) { return fmt::format("tones-k{}", rows); }
 std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows) {
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
-                  "must be > 1 to design rows: light that never changes carries no depth");
+                  "must be > 1 to design rows: constant light cannot measure depth");
   if (auto others = other_exposures_listed(camera, 1)) return others;
   if (const int highest = camera.samples / min_bins_per_period; highest < (rows + 1) / 2)
     return broken(

@@ -22,10 +22,8 @@ Eigen::MatrixXd correlation_columns_of(const std::filesystem::path& path,
   notes = table.notes;
   const Eigen::Index columns = table.values.cols();
   if (columns < 2 || !(is_named_time(table, 0) || counts_samples(table, 0))) return table.values;
-  notes.push_back(
-      fmt::format("{}: its first column numbers the samples and was not read as a "
-                  "measurement",
-                  path.string()));
+  notes.push_back(fmt::format(
+      "{}: its first column is a sample counter and was not read as a measurement", path.string()));
   return table.values.rightCols(columns - 1);
 }
 
@@ -43,8 +41,8 @@ int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view
                                     layout.taps));
   const bool has_order = layout.taps > 1 && columns > layout.taps;
   if (has_order && !layout.order)
-    throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
-                                    "expected --tap-order blocked or interleaved",
+    throw IoError(file, fmt::format("does not specify the column order of its {} taps; expected "
+                                    "--tap-order blocked or interleaved",
                                     layout.taps));
   return static_cast<int>(columns) / layout.taps;
 }

@@ -76,7 +76,7 @@ Waveform waveform_of(const Eigen::VectorXd& samples) {
 constexpr std::string_view modulation_rule = "power over average power, >= 0";
 constexpr std::string_view demodulation_rule = "a gain in [0, 1]";
 constexpr std::string_view gate_rule =
-    "a gain in [0, 1]; weights of both signs need a camera with sensor.readout = \"rows\" or "
+    "a gain in [0, 1]; signed weights require a camera with sensor.readout = \"rows\" or "
     "sensor.demodulation = \"signed\"";
 constexpr std::string_view weight_rule = "a weight in [-1, 1]";
 
@@ -171,16 +171,20 @@ CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_sig
     else if (name.starts_with("demodulation_"))
       demodulations.push_back(static_cast<Eigen::Index>(i));
     else if (name != "time_s")
-      throw IoError(file, fmt::format("found the column '{}'; expected time_s, modulation_1 .., "
-                                      "demodulation_1 ..",
-                                      name));
+      throw IoError(
+          file,
+          fmt::format(
+              "found the column '{}'; expected time_s, modulation_1, ... or demodulation_1, ...",
+              name));
   }
   if (modulations.empty() || demodulations.empty() ||
       demodulations.size() % modulations.size() != 0)
-    throw IoError(file, fmt::format("found {} columns modulation_1 .. and {} demodulation_1 ..; "
-                                    "expected one or more of each, as many demodulations as taps "
-                                    "for each modulation",
-                                    modulations.size(), demodulations.size()));
+    throw IoError(
+        file,
+        fmt::format(
+            "found {} columns modulation_1, ... and {} columns demodulation_1, ...; expected at "
+            "least one modulation, and an equal number of demodulations (taps) for each modulation",
+            modulations.size(), demodulations.size()));
   const auto values = [&](const std::vector<Eigen::Index>& columns, double lowest, double highest,
                           std::string_view expected) {
     NamedMatrix matrix{fmt::format("{}: values", file), table.values(Eigen::all, columns)};
@@ -226,7 +230,7 @@ CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesyst
   require_same_shape(demodulation, modulation);
   limit(modulation, 0.0, std::numeric_limits<double>::infinity(), modulation_rule);
   const double brightest = modulation.values.colwise().mean().maxCoeff();
-  if (brightest == 0.0) throw IoError(modulation.place, "found nothing but zeros; expected light");
+  if (brightest == 0.0) throw IoError(modulation.place, "found only zeros; expected light");
   modulation.values /= brightest;
   const double most = demodulation.values.cwiseAbs().maxCoeff();
   if (most > 1.0) demodulation.values /= most;
@@ -236,7 +240,7 @@ CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesyst
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {
   require(code.taps() == 1 || code.exposures() == 1 || order.has_value(), "taps", code.taps(),
-          "several taps of several exposures need an order, blocked or interleaved");
+          "several taps and several exposures require an order, blocked or interleaved");
   const Eigen::MatrixXd light = code.modulation_samples(), gains = code.demodulation_samples();
   Eigen::MatrixXd modulation(code.samples(), code.measurements());
   Eigen::MatrixXd demodulation = modulation, correlation = modulation;

@@ -28,11 +28,11 @@ Eigen::VectorXd light_of(Eigen::MatrixXd light, const std::string& place) {
         throw IoError(at, fmt::format("found {}; expected light, >= 0", light(n, k)));
       if (std::abs(light(n, k) - light(n, 0)) > near)
         throw IoError(at, fmt::format("found {}; expected {} as in column 0: all rows of one "
-                                      "exposure see the same light",
+                                      "exposure share the same light",
                                       light(n, k), light(n, 0)));
     }
   const Eigen::VectorXd one = light.col(0).cwiseMax(0.0);
-  if (one.isZero(0.0)) throw IoError(place, "found nothing but zeros; expected light");
+  if (one.isZero(0.0)) throw IoError(place, "found only zeros; expected light");
   return one;
 }
 
@@ -47,14 +47,14 @@ Eigen::MatrixXd rows_of_matrix(Eigen::MatrixXd rows, Eigen::Index time_bins,
     throw IoError(place, fmt::format("found the shape ({}, {}); expected (N, K) or (K, N) with the "
                                      "N = {} time bins of the light{}",
                                      found_rows, found_columns, time_bins,
-                                     has_end ? "; a period leaves its end point out" : ""));
+                                     has_end ? "; a period omits its end point" : ""));
   }
   if (rows.cols() < 2 || rows.cols() > max_exposure_rows)
     throw IoError(place, fmt::format("found {} rows of {} time bins; expected 2 to {} rows",
                                      rows.cols(), time_bins, max_exposure_rows));
   for (Eigen::Index k = 0; k < rows.cols(); ++k)
     if (rows.col(k).isZero(0.0))
-      throw IoError(place, fmt::format("found nothing but zeros in row {}; expected weights", k));
+      throw IoError(place, fmt::format("found only zeros in row {}; expected weights", k));
   return rows;
 }
 

@@ -171,11 +171,12 @@ std::string chosen_name(const std::vector<Listed>& list, const std::string& aske
   const std::string wanted = asked.empty() ? "raw" : asked.substr(asked.front() == '/' ? 1 : 0);
   for (const Listed& one : list)
     if (one.name == wanted) return one.name;
-  throw IoError(file, asked.empty() ? fmt::format("found {}; expected one called raw, or only one "
-                                                  "(--dataset names it)",
-                                                  describe(list))
-                                    : fmt::format("there is no data set {} of frames; found {}",
-                                                  asked, describe(list)));
+  throw IoError(
+      file,
+      asked.empty()
+          ? fmt::format("found {}; expected one called raw, or only one (--dataset selects one)",
+                        describe(list))
+          : fmt::format("there is no data set {} of frames; found {}", asked, describe(list)));
 }
 
 struct Dataset {
@@ -257,8 +258,7 @@ Handle open_file(const std::filesystem::path& path) {
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // closes open objects, too
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (file < 0)
-    throw IoError(path.string(),
-                  fmt::format("found no HDF5 file that can be read: {}", last_words()));
+    throw IoError(path.string(), fmt::format("cannot be read as an HDF5 file: {}", last_words()));
   return file;
 }
 
@@ -304,7 +304,7 @@ StoredArray open_hdf5(const std::filesystem::path& path, const std::string& data
         delete closed;
       });
   if (lies_elsewhere(found->dataset))
-    throw found->error("found data that lies in other files; expected it in this one");
+    throw found->error("found data stored in other files; expected it in this file");
   if (chunk > max_bytes)
     throw found->error(
         fmt::format("found chunks of {:.4g} MB; expected at most {:.4g} MB (--memory-mb allows "
@@ -312,7 +312,7 @@ StoredArray open_hdf5(const std::filesystem::path& path, const std::string& data
                     1e-6 * static_cast<double>(chunk), 1e-6 * static_cast<double>(max_bytes)));
   if (H5Dget_storage_size(found->dataset) == 0)
     throw found->error(
-        fmt::format("found nothing written in {}; expected numbers", describe_shape(found->shape)));
+        fmt::format("found no data in {}; expected numbers", describe_shape(found->shape)));
   return {found->type, found->shape,
           [found](std::size_t first, std::span<std::byte> into) { found->read_items(first, into); },
           static_cast<std::size_t>(cache)};

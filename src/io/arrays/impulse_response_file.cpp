@@ -20,9 +20,10 @@ constexpr double time_tolerance = 0.01;
 
 double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
   const Eigen::Index last = time_s.size() - 1;
-  if (last < 1) throw IoError(file, "found one time; expected at least two to tell the step");
+  if (last < 1) throw IoError(file, "found one time; expected at least two, to determine the step");
   const double step_s = (time_s[last] - time_s[0]) / static_cast<double>(last);
-  if (!(step_s > 0.0)) throw IoError(file, "found times that do not rise; expected them to");
+  if (!(step_s > 0.0))
+    throw IoError(file, "found times that do not increase; expected increasing times");
   for (Eigen::Index i = 0; i <= last; ++i) {
     const double expected_s = time_s[0] + step_s * static_cast<double>(i);
     if (std::abs(time_s[i] - expected_s) > time_tolerance * step_s)
@@ -65,7 +66,8 @@ ImpulseResponse read_impulse_response(const std::filesystem::path& path,
     read_text(path, time_step_s, response);
   const double found_s = response.time_step_s;
   if (found_s == 0.0 && !time_step_s)
-    throw IoError(path.string(), "found values without times; expected time_step_s beside `file`");
+    throw IoError(path.string(),
+                  "found values without times; expected time_step_s in addition to `file`");
   if (found_s != 0.0 && time_step_s && std::abs(found_s - *time_step_s) > time_tolerance * found_s)
     throw IoError(path.string(), fmt::format("found times {} s apart; expected time_step_s = {}",
                                              found_s, *time_step_s));

@@ -45,10 +45,9 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
   if (!(axes ? expects_lying : !upright)) return;
   matrix.transposeInPlace();
   if (!axes)
-    notes.push_back(
-        fmt::format("{}: its shape ({}, {}) was taken as (K, N): {} measurements of {} "
-                    "samples",
-                    place, rows, columns, rows, columns));
+    notes.push_back(fmt::format(
+        "{}: its shape ({}, {}) was interpreted as (K, N): {} measurements of {} samples", place,
+        rows, columns, rows, columns));
 }
 
 /// Returns the largest difference between two samples, relative to the largest value.
@@ -131,8 +130,8 @@ TapLayout layout_of(const NpzReader& archive, const std::string& file, const Tap
   if (!taps) return given;
   if (given.order == TapOrder::blocked && *taps > 1)
     throw IoError(fmt::format("{}: taps", file),
-                  "its columns hold the taps of an exposure side by side; expected --tap-order "
-                  "interleaved, or none");
+                  "its columns contain the taps of each exposure next to each other; expected "
+                  "--tap-order interleaved, or none");
   return {.taps = *taps, .order = TapOrder::interleaved};
 }
 
@@ -152,11 +151,13 @@ void note_unused(const NpzReader& archive, const std::string& file,
 /// Sorts columns by exposure, with the taps of each adjacent.
 void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::string& file) {
   if (layout.taps > 1 && table.columns() > layout.taps && !layout.order)
-    throw IoError(file, fmt::format("found {0} columns of a camera of {1} taps; expected every tap "
-                                    "of each exposure, with --tap-order blocked or interleaved, or "
-                                    "--taps 1 if they are of one tap, or an .npz file with corrfs "
-                                    "and differences = 1 if they are differences of two",
-                                    table.columns(), layout.taps));
+    throw IoError(
+        file,
+        fmt::format(
+            "found {0} columns for a camera with {1} taps; expected every tap of each exposure, "
+            "with --tap-order blocked or interleaved, or --taps 1 if they belong to one tap, or an "
+            ".npz file with corrfs and differences = 1 if they are differences of two",
+            table.columns(), layout.taps));
   const int exposures = exposures_of(table.columns(), layout, file);
   table.taps = layout.taps;
   Eigen::VectorXi source(table.columns());
@@ -190,8 +191,7 @@ TargetSet load_target(const std::string& name_or_path, const Camera& camera, boo
   if (is_correlation_table(name_or_path))
     return targets_from_table(path.stem().string(), read_correlation_functions(path),
                               camera.samples, normalize);
-  require(!normalize, "normalize", "true",
-          "goes with a target that is a table; codes are as they are");
+  require(!normalize, "normalize", "true", "is only valid with a target that is a table");
   return targets_of(load_code(name_or_path, ideal_camera(camera)).resampled(camera.samples));
 }
 

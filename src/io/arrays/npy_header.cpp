@@ -33,7 +33,7 @@ class HeaderLiteral {
     for (const bool found : {has_type_, has_order_, has_shape_})
       if (!found) cursor_.fail("the header lacks one of 'descr', 'fortran_order', 'shape'");
     skip_spaces();
-    if (!cursor_.at_end()) cursor_.fail("expected nothing but spaces after the header's }");
+    if (!cursor_.at_end()) cursor_.fail("expected only spaces after the header's }");
   }
 
  private:

@@ -214,7 +214,7 @@ Reading settle_commas(const std::vector<TextLine>& lines, const Reading& delimit
   throw IoError(place_of(file, line, 1),
                 fmt::format("found '{}', which can be {} columns or numbers with decimal commas; "
                             "expected a header with as many names as columns, or --decimal point "
-                            "or comma where the command has it",
+                            "or comma, if the command has this option",
                             trimmed(line.text), delimiters.columns.count()));
 }
 

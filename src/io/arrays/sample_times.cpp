@@ -122,8 +122,8 @@ Eigen::VectorXd times_in_seconds(const NumberTable& table, Index column, const s
                       file, step));
     unit_s = 1.0;
   } else if (unit_s == 0.0) {
-    notes.push_back(
-        fmt::format("{}: its times were taken as seconds (--time-unit overrides this)", file));
+    notes.push_back(fmt::format(
+        "{}: its times were interpreted as seconds (--time-unit overrides this)", file));
     unit_s = 1.0;
   }
   return unit_s * times;

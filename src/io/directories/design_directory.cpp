@@ -109,7 +109,7 @@ void check_code(const Candidate& candidate, const std::string& name, const Camer
     require_fits(candidate.code, camera);
   } catch (const std::invalid_argument& error) {
     throw IoError(path.string(),
-                  fmt::format("does not fit the camera beside it: {}", error.what()));
+                  fmt::format("does not fit the camera in the same directory: {}", error.what()));
   }
 }
 
@@ -207,14 +207,13 @@ DesignRecord DesignDirectory::read() const {
   const JsonReader document(document_json, file), details(details_json, details_file);
   if (const JsonReader version = document.member("tofsmith"); version.text() != TOFSMITH_VERSION)
     version.mistyped("\"" TOFSMITH_VERSION
-                     "\"; another version's design is read by that version, "
-                     "or designed again");
+                     "\"; read the design with the version that wrote it, or repeat it");
   DesignRecord record{read_camera_toml(path_ / "camera.toml"), {}};
   DesignResult& result = record.result;
   const std::string best = document.member("best").text();
   for (const JsonReader& entry : document.member("codes").elements()) {
     const std::string name = entry.member("name").text();
-    if (result.find(name)) entry.fail(fmt::format("names the code \"{}\" again", name));
+    if (result.find(name)) entry.fail(fmt::format("contains the code \"{}\" twice", name));
     const fs::path code_file = code_path(path_, name);
     Candidate candidate{.code = read_code(code_file),
                         .method = entry.member("method").text(),

@@ -58,7 +58,7 @@ CalibrationFile::CalibrationFile(std::string_view text, std::string_view name) :
   try {
     root_ = YAML::Load(yaml);
   } catch (const YAML::Exception& error) {
-    throw IoError(place_of(error.mark), fmt::format("is no YAML: {}", error.msg));
+    throw IoError(place_of(error.mark), fmt::format("is not valid YAML: {}", error.msg));
   }
   if (is_xml_ && root_.IsMap() && root_.size() > 0) root_.reset(root_.begin()->second);
   if (!root_.IsMap())

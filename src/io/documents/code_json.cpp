@@ -61,7 +61,7 @@ OrderedJson provenance_to_json(const Provenance& provenance) {
 Waveform read_sampled(const JsonReader& json, int samples, double lowest, double highest) {
   json.only({"kind", "values"});
   const auto values =
-      json.member("values").elements(static_cast<std::size_t>(samples), "as many as /samples says");
+      json.member("values").elements(static_cast<std::size_t>(samples), "as specified by /samples");
   Eigen::VectorXd read(samples);
   for (int n = 0; n < samples; ++n)
     read[n] = values[static_cast<std::size_t>(n)].number(lowest, highest, tolerance);
@@ -129,12 +129,12 @@ Waveform read_drive(const JsonReader& json, int samples) {
 
 Eigen::MatrixXd read_rows(const JsonReader& json, int samples, int count) {
   constexpr double any = std::numeric_limits<double>::max();
-  const auto list = json.elements(static_cast<std::size_t>(count), "as many as /taps says");
+  const auto list = json.elements(static_cast<std::size_t>(count), "as specified by /taps");
   Eigen::MatrixXd rows(samples, count);
   for (int k = 0; k < count; ++k) {
     const JsonReader& row = list[static_cast<std::size_t>(k)];
     if (const JsonReader kind = row.member("kind"); kind.text() != "sampled")
-      kind.mistyped("\"sampled\", as of rows");
+      kind.mistyped("\"sampled\" for rows");
     rows.col(k) = read_sampled(row, samples, -any, any).samples();
   }
   return rows;
@@ -226,22 +226,23 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
     return list;
   };
   constexpr double any = std::numeric_limits<double>::infinity();
-  auto modulation = read_list("modulation", exposures, "as many as /exposures says", any);
+  auto modulation = read_list("modulation", exposures, "as specified by /exposures", any);
   const auto rows = json.optional_member("rows");
   const bool is_rows = rows && rows->boolean();
   const auto weights_of_both_signs = json.optional_member("signed");
   const bool is_signed = weights_of_both_signs && weights_of_both_signs->boolean();
-  if (is_signed && is_rows) weights_of_both_signs->fail("rows have weights of any sign already");
-  if (is_signed && taps != 1) json.member("taps").mistyped("1, as of a mixer");
+  if (is_signed && is_rows)
+    weights_of_both_signs->fail("is not valid for rows, whose weights are always signed");
+  if (is_signed && taps != 1) json.member("taps").mistyped("1 for a mixer");
   std::vector<Waveform> demodulation;
   Eigen::MatrixXd weights;
   if (is_rows) {
-    if (exposures != 1) json.member("exposures").mistyped("1, as of rows");
+    if (exposures != 1) json.member("exposures").mistyped("1 for rows");
     weights = read_rows(json.member("demodulation"), samples, taps);
   } else if (is_signed) {
     for (const JsonReader& item :
          json.member("demodulation")
-             .elements(static_cast<std::size_t>(exposures), "as many as /exposures says"))
+             .elements(static_cast<std::size_t>(exposures), "as specified by /exposures"))
       demodulation.push_back(read_drive(item, samples));
   } else {
     demodulation = read_list("demodulation", exposures * taps, "/exposures x /taps functions", 1.0);

@@ -92,7 +92,7 @@ nlohmann::json parse_json(std::string_view text, std::string_view file) {
   };
   // The parser would treat a zero byte as the end of the text.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
-    throw IoError(place_of(text, zero, file), "found a byte of 0; expected a document in JSON");
+    throw IoError(place_of(text, zero, file), "found a zero byte; expected a JSON document");
   try {
     return nlohmann::json::parse(text, check_depth);
   } catch (const nlohmann::json::parse_error& error) {

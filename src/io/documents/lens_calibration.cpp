@@ -171,7 +171,7 @@ void check_whole_images(const CalibrationFile& file) {
   if (!part || !part.IsMap()) return;
   for (const char* key : {"x_offset", "y_offset"})
     if (const YAML::Node offset = part[key]; offset && file.number(offset, key) != 0.0)
-      file.fail(offset, fmt::format("roi.{}: expected 0: images that are not cut", key));
+      file.fail(offset, fmt::format("roi.{}: expected 0: images that are not cropped", key));
 }
 
 /// Lists the cameras of an Azure Kinect by the end of their location: D0 (the depth camera) and

@@ -43,18 +43,18 @@ SceneKind kind_of(const std::string& scene) {
 /// @throws InvalidArgument
 void check_fields_fit(const SceneSource& source, SceneKind kind) {
   check_fields(source);
-  require(
-      kind == SceneKind::depth_image || source.image.empty(), "image", source.image,
-      fmt::format("{} has its own albedo; an image of it goes with a depth image", source.scene));
+  require(kind == SceneKind::depth_image || source.image.empty(), "image", source.image,
+          fmt::format("{} has its own albedo; an albedo image is only valid with a depth image",
+                      source.scene));
   if (kind != SceneKind::mesh && source.scale_m)
     reject("scale_m", fmt::format("{}", *source.scale_m),
-           "only a mesh has units of its own; in a scene file every [[mesh]] has its scale_m");
+           "is only valid with a mesh; in a scene file, each [[mesh]] has its own scale_m");
   if (kind == SceneKind::built_in || kind == SceneKind::mesh) return;
   for (const auto& [field, value] :
        {std::pair("width", source.width), std::pair("height", source.height)})
     require(!value, field, value.value_or(0),
             kind == SceneKind::depth_image ? "a depth image has its own size"
-                                           : "a scene file says its size in [view]");
+                                           : "a scene file specifies its size in [view]");
 }
 
 /// Returns a side of the images of a lens: as specified, or with the optical axis in the middle.

@@ -35,10 +35,9 @@ std::vector<Eigen::Vector2d> read_ray_map(const std::filesystem::path& path, int
     const double* const ray = numbers.data() + i * axes;
     const double z = axes == 3 ? ray[2] : 1.0;
     if (z <= 0.0)
-      throw IoError(path.string(),
-                    fmt::format("found the ray ({}, {}, {}) of pixel ({}, {}); expected z > 0, or "
-                                "NaN of a pixel that sees nothing",
-                                ray[0], ray[1], z, i / columns, i % columns));
+      throw IoError(path.string(), fmt::format("found the ray ({}, {}, {}) of pixel ({}, {}); "
+                                               "expected z > 0, or NaN for a pixel without a ray",
+                                               ray[0], ray[1], z, i / columns, i % columns));
     slopes[i] = {ray[0] / z, ray[1] / z};
     if (!slopes[i].allFinite()) slopes[i].setConstant(std::numeric_limits<double>::quiet_NaN());
   }

@@ -58,7 +58,7 @@ void read_texture_fields(TableReader& table, Texture& texture) {
                                            "stripes");
   const bool is_image = table.contains("image");
   if (is_image) {
-    table.refuse({"pattern", "other_albedo"}, "a pattern, not with image");
+    table.refuse({"pattern", "other_albedo"}, "a pattern instead of an image");
     texture.pattern = Pattern::image;
     texture.albedo = 1.0;
     bool linear = false;
@@ -84,7 +84,7 @@ void read_texture_fields(TableReader& table, Texture& texture) {
 }
 
 void read_surface(TableReader& table, Texture& texture) {
-  if (table.contains("texture")) table.refuse({"albedo"}, "no texture beside it");
+  if (table.contains("texture")) table.refuse({"albedo"}, "no texture");
   read_share(table, "albedo", texture.albedo);
   table.table("texture", texture, read_texture_fields);
 }
@@ -155,7 +155,7 @@ void read_view(TableReader& table, PinholeView& view) {
     table.refuse({"fy_px", "cx_px", "cy_px", "distortion_model", "distortion"}, "fx_px");
     return;
   }
-  table.refuse({"horizontal_angle_deg"}, "no fx_px beside it");
+  table.refuse({"horizontal_angle_deg"}, "no fx_px");
   read_positive(table, "fx_px", view.fx_px);
   view.fy_px = view.fx_px;
   read_positive(table, "fy_px", view.fy_px);
@@ -173,9 +173,9 @@ void read_view(TableReader& table, PinholeView& view) {
 Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d across = Eigen::Vector3d::UnitY().cross(direction);
   if (!(direction.norm() > 0.0))
-    table.fail("look_at_m", "is where the camera stands; expected another point");
+    table.fail("look_at_m", "is the position of the camera; expected another point");
   if (!(across.norm() > 1e-9 * direction.norm()))
-    table.fail("look_at_m", "is straight above or below; expected rotation_deg for such a camera");
+    table.fail("look_at_m", "is directly above or below the camera; expected rotation_deg instead");
   Eigen::Matrix3d axes;
   axes.col(0) = across.normalized();
   axes.col(2) = direction.normalized();
@@ -206,7 +206,7 @@ void read_camera(TableReader& table, StagedScene& scene) {
   std::optional<Eigen::Vector3d> look_at_m;
   table.value("position_m", position_m);
   table.value("look_at_m", look_at_m);
-  if (look_at_m) table.refuse({"rotation_deg"}, "no look_at_m beside it");
+  if (look_at_m) table.refuse({"rotation_deg"}, "no look_at_m");
   scene.camera_to_world.translation() = position_m;
   scene.camera_to_world.linear() =
       look_at_m ? looking_along(table, *look_at_m - position_m) : read_rotation(table);

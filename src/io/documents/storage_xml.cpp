@@ -106,7 +106,7 @@ class StorageXml {
 
   [[noreturn]] void fail(const std::string& problem) const {
     const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<long>(at_), '\n');
-    throw IoError(fmt::format("{}:{}", name_, line), "is no XML: " + problem);
+    throw IoError(fmt::format("{}:{}", name_, line), "is not valid XML: " + problem);
   }
 
   std::string_view text_;

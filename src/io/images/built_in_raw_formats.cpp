@@ -15,29 +15,20 @@ namespace {
 const std::map<std::string, std::string>& known_formats() {
   static const std::map<std::string, std::string> formats = {
       {"arducam-tof",
-       "# Arducam ToF camera through V4L2 as pixel format Y12: four buffers a frame, one a phase.\n"
-       "#   v4l2-ctl --set-fmt-video=width=240,height=180,pixelformat=Y12 --stream-mmap "
-       "--stream-to=-\n"
-       "# As a public driver for the Raspberry Pi reads them (arducam_tof.cpp): 11 bits with a "
-       "sign,\n"
-       "# rows from below, depth = c / (4 pi f) atan2(third - first, fourth - second).\n"
-       "width = 240\n"
-       "height = 180\n"
-       "measurements = 4\n"
-       "bits = 11\n"
-       "container_bits = 16\n"
-       "unused_bits = \"ignored\"\n"
-       "signed = true\n"
-       "order = [3, 2, 1, 0]\n"
-       "flip_rows = true\n"}};
+       "# Arducam ToF camera through V4L2 as pixel format Y12: four buffers per frame, one per "
+       "phase.\n#   v4l2-ctl --set-fmt-video=width=240,height=180,pixelformat=Y12 --stream-mmap "
+       "--stream-to=-\n# Layout from a public driver for the Raspberry Pi (arducam_tof.cpp): "
+       "signed 11 bits, rows from\n# bottom to top, depth = c / (4 pi f) atan2(third - first, "
+       "fourth - second).\nwidth = 240\nheight = 180\nmeasurements = 4\nbits = 11\ncontainer_bits "
+       "= 16\nunused_bits = \"ignored\"\nsigned = true\norder = [3, 2, 1, 0]\nflip_rows = true\n"}};
   return formats;
 }
 
 std::string reason_of(const std::string& camera) {
   if (camera == "kinect-v2")
-    return "its columns are interleaved and its numbers go through a table (libfreenect2 unpacks "
-           "them: hand its nine images over as .npy)";
-  return "nobody publishes how its raw frames run";
+    return "its columns are interleaved and its numbers require a lookup table (unpack them with "
+           "libfreenect2, and save the nine images as .npy)";
+  return "the format of its raw frames is not published";
 }
 
 }  // namespace
@@ -53,8 +44,8 @@ std::string built_in_raw_format_toml(const std::string& camera) {
   const auto found = known_formats().find(camera);
   if (found != known_formats().end()) return found->second;
   reject("camera", camera,
-         fmt::format("has no description of its raw frames: {}; there is one of {}",
-                     reason_of(camera), fmt::join(built_in_raw_format_names(), ", ")));
+         fmt::format("has no description of its raw frames: {}; expected {}", reason_of(camera),
+                     fmt::join(built_in_raw_format_names(), ", ")));
 }
 
 }  // namespace tofsmith

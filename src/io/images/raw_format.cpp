@@ -36,12 +36,12 @@ void validate_numbers(const RawFormat& f) {
     require(f.bits == 16 || f.bits == 32 || f.bits == 64, "bits", f.bits,
             "must be 16, 32 or 64 for floats");
     require(f.packing == RawPacking::plain, "packing", "packed", "must be plain for floats");
-    require(!f.is_signed, "signed", true, "must be left out for floats, which always are");
+    require(!f.is_signed, "signed", true, "must be omitted for floats, which are always signed");
     require(f.container_bits == 0 || f.container_bits == f.bits, "container_bits", f.container_bits,
             "must be the bits of a float");
     require(f.align == RawAlignment::low, "align", "high", "must be low for floats");
     require(f.unused_bits == UnusedBits::checked, "unused_bits", "ignored",
-            "must be left out for floats");
+            "must be omitted for floats");
     return;
   }
   require(f.bits >= 1 && f.bits <= 32, "bits", f.bits, "must be in [1, 32] for integers");
@@ -52,26 +52,26 @@ void validate_numbers(const RawFormat& f) {
     return;
   }
   require(f.container_bits == 0, "container_bits", f.container_bits,
-          "must be left out unless plain");
-  require(f.align == RawAlignment::low, "align", "high", "must be low unless plain");
+          "must be omitted unless packing is plain");
+  require(f.align == RawAlignment::low, "align", "high", "must be low unless packing is plain");
   require(f.unused_bits == UnusedBits::checked, "unused_bits", "ignored",
-          "must be left out unless plain");
-  require(!f.big_endian, "byte_order", "big", "must be left out unless plain");
+          "must be omitted unless packing is plain");
+  require(!f.big_endian, "byte_order", "big", "must be omitted unless packing is plain");
   if (f.packing == RawPacking::mipi) {
     require(f.bits == 10 || f.bits == 12 || f.bits == 14, "bits", f.bits,
             "must be 10, 12 or 14 for mipi (lsb_first packs any number)");
     require(f.numbers_per_row() % static_cast<std::size_t>(mipi_group(f.bits)) == 0, "width",
             f.width,
-            fmt::format("must give rows of whole groups of {} numbers (it gives {})",
+            fmt::format("must give rows of complete groups of {} numbers (it gives {})",
                         mipi_group(f.bits), f.numbers_per_row()));
   }
 }
 
 void validate_signs(const RawFormat& f) {
   require(f.is_signed || f.sign_encoding == SignEncoding::twos_complement, "sign_encoding",
-          "sign_magnitude", "must be left out unless signed = true");
+          "sign_magnitude", "must be omitted unless signed = true");
   require(f.is_signed || !f.sign_bit, "sign_bit", f.sign_bit.value_or(0),
-          "must be left out unless signed = true");
+          "must be omitted unless signed = true");
   require(f.sign_bit.value_or(0) < f.bits, "sign_bit", f.sign_bit.value_or(0),
           fmt::format("must be below bits = {}", f.bits));
   require(f.negate_from_row < f.height, "negate_from_row", f.negate_from_row,
@@ -84,11 +84,11 @@ void validate_order(const RawFormat& f) {
   require(f.order.size() <= static_cast<std::size_t>(f.measurements), "order", f.order.size(),
           fmt::format("must list at most the {} measurements", f.measurements));
   const int kept = f.kept_measurements();
-  require(kept > 0, "order", "-1 only", "must keep a measurement");
+  require(kept > 0, "order", "-1 only", "must include a measurement");
   for (int i = 0; i < kept && !f.order.empty(); ++i)
     require(std::ranges::count(f.order, i) == 1, "order",
             fmt::format("[{}]", fmt::join(f.order, ", ")),
-            fmt::format("must name each of 0 .. {} once, and -1 for numbers to skip", kept - 1));
+            fmt::format("must list each of 0 to {} once, and -1 for numbers to skip", kept - 1));
   require(!f.subtract_taps || kept % 2 == 0, f.order.empty() ? "measurements" : "order", kept,
           "must be even to subtract taps");
 }
@@ -96,20 +96,19 @@ void validate_order(const RawFormat& f) {
 void validate_rows(const RawFormat& f) {
   if (!f.rows_start_bytes) {
     require(is_bit_stream(f.packing), "rows_start_bytes", false,
-            "must be left out unless packing is lsb_first or msb_first");
+            "must be omitted unless packing is lsb_first or msb_first");
     for (const auto& [field, value] :
          {std::pair{"row_bytes", f.row_bytes}, std::pair{"row_header_bytes", f.row_header_bytes}})
-      require(value == 0, field, value, "must be left out with rows_start_bytes = false");
+      require(value == 0, field, value, "must be omitted with rows_start_bytes = false");
   }
   const std::uint64_t needed = static_cast<std::uint64_t>(f.row_header_bytes) + f.tight_row_bytes();
-  require(
-      f.row_bytes == 0 || static_cast<std::uint64_t>(f.row_bytes) >= needed, "row_bytes",
-      f.row_bytes,
-      fmt::format("must be at least the {} bytes that a row's header and numbers take", needed));
+  require(f.row_bytes == 0 || static_cast<std::uint64_t>(f.row_bytes) >= needed, "row_bytes",
+          f.row_bytes,
+          fmt::format("must be at least {} bytes, the size of a row's header and numbers", needed));
   for (const auto& [field, value] : {std::pair{"image_header_bytes", f.image_header_bytes},
                                      std::pair{"image_trailer_bytes", f.image_trailer_bytes}})
     require(value == 0 || f.layout == RawOrder::planar, field, value,
-            "must be left out unless layout is planar");
+            "must be omitted unless layout is planar");
 }
 
 }  // namespace
@@ -172,7 +171,7 @@ void RawFormat::validate() const {
   validate_order(*this);
   validate_rows(*this);
   require(!subtract_taps || black_level == 0.0, "black_level", black_level,
-          "must be left out with taps = \"subtract\", where it cancels");
+          "must be omitted with taps = \"subtract\", which cancels it");
 }
 
 }  // namespace tofsmith

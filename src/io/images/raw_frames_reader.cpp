@@ -47,8 +47,8 @@ NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions&
 /// Rejects a data set name for a file with one unnamed array.
 void refuse_dataset(const std::filesystem::path& path, const RawReadOptions& options) {
   if (options.dataset.empty()) return;
-  throw IoError(path.string(), fmt::format("found a file of one array without a name; expected "
-                                           ".npz or .h5, as the data set '{}' was asked for",
+  throw IoError(path.string(), fmt::format("found a file with one unnamed array; expected .npz or "
+                                           ".h5, because the data set '{}' was requested",
                                            options.dataset));
 }
 
@@ -85,8 +85,8 @@ NpyArray in_type(NpyArray array, NpyType type) {
 NpyShape with_measurements(const NpyShape& shape, const std::string& file) {
   if (shape.size() == 2) return {1, shape[0], shape[1]};
   if (shape.size() == 3) return {shape[0], 1, shape[1], shape[2]};
-  throw IoError(file, fmt::format("found an array of shape {}; expected (H, W) or (F, H, W), as of "
-                                  "several files each holds one measurement",
+  throw IoError(file, fmt::format("found an array of shape {}; expected (H, W) or (F, H, W), "
+                                  "because each of several files contains one measurement",
                                   describe_shape(shape)));
 }
 
@@ -111,7 +111,7 @@ RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawRea
 RawFramesReader::RawFramesReader(const std::vector<std::filesystem::path>& files,
                                  const RawReadOptions& options)
     : layout_(options.layout) {
-  require(!files.empty(), "raw", "no file", "must name one, or one a measurement");
+  require(!files.empty(), "raw", "no file", "must be one file, or one per measurement");
   if (files.size() > 1)
     open_parts(files, options);
   else if (options.format)
@@ -171,8 +171,8 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
                                  const RawReadOptions& options) {
   const std::string first = files.front().string();
   if (options.measurements && files.size() != static_cast<std::size_t>(*options.measurements))
-    throw IoError(first, fmt::format("found {} files, one a measurement; expected {} as the code "
-                                     "takes",
+    throw IoError(first, fmt::format("found {} files, one per measurement; expected {}, the number "
+                                     "of measurements of the code",
                                      files.size(), *options.measurements));
   RawReadOptions one = options;
   one.measurements = 1;
@@ -180,7 +180,7 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
   one.max_in_memory = options.max_in_memory / files.size();
   for (auto file = files.begin(); file != files.end(); ++file)
     if (std::find(files.begin(), file, *file) != file)
-      throw IoError(file->string(), "is named twice; expected a file for each measurement");
+      throw IoError(file->string(), "is listed twice; expected one file per measurement");
   for (const std::filesystem::path& file : files) {
     parts_.push_back(RawFramesReader(file, one, OneMeasurement{}));
     const RawFramesReader &part = parts_.back(), &model = parts_.front();

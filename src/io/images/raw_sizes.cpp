@@ -40,13 +40,12 @@ void check_measurements(const NpyShape& shape, const RawReadOptions& options,
       options.layout == RawLayout::planar ? RawLayout::interleaved : RawLayout::planar;
   const bool other_fits =
       axes_of(shape, other).measurements == static_cast<std::size_t>(*options.measurements);
-  throw IoError(file,
-                fmt::format("found {} measurements per pixel, shape {}; expected {} as the code "
-                            "takes{}",
-                            found, describe_shape(shape), *options.measurements,
-                            other_fits ? fmt::format(" (as {} it would fit: --layout {})",
-                                                     shapes_of(other), name_of(other))
-                                       : ""));
+  throw IoError(
+      file, fmt::format("found {} measurements per pixel, shape {}; expected {}, as the code has{}",
+                        found, describe_shape(shape), *options.measurements,
+                        other_fits ? fmt::format(" (the shape fits as {}: --layout {})",
+                                                 shapes_of(other), name_of(other))
+                                   : ""));
 }
 
 struct NumberRange {
@@ -109,11 +108,11 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
                                     "raw.astype(numpy.float32))",
                                     name_of(type)));
   if (shape.size() != 3 && shape.size() != 4)
-    throw IoError(file, fmt::format("found an array of shape {}; expected {}{}",
-                                    describe_shape(shape), shapes_of(options.layout),
-                                    shape.size() == 2 ? ", or all files where each holds one "
-                                                        "measurement"
-                                                      : ""));
+    throw IoError(
+        file,
+        fmt::format("found an array of shape {}; expected {}{}", describe_shape(shape),
+                    shapes_of(options.layout),
+                    shape.size() == 2 ? ", or all files if each contains one measurement" : ""));
   const Axes axes = axes_of(shape, options.layout);
   constexpr std::size_t max_axis = std::numeric_limits<int>::max();
   if (axes.frames < 1 || axes.frames > max_axis || axes.measurements < 1 ||
@@ -134,13 +133,13 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
 void check_measurements(const RawFormat& format, int expected, const std::string& file) {
   const int found = format.output_measurements();
   if (found == expected) return;
-  throw IoError(file,
-                fmt::format("the description gives {} measurements per pixel; expected {} as the "
-                            "code takes{}",
-                            found, expected,
-                            found > expected && !format.subtract_taps
-                                ? " (order = [0, 1, .., -1] skips images that are no measurement)"
-                                : ""));
+  throw IoError(
+      file,
+      fmt::format("the description gives {} measurements per pixel; expected {}, as the code has{}",
+                  found, expected,
+                  found > expected && !format.subtract_taps
+                      ? " (order = [0, 1, ..., -1] skips images that are not measurements)"
+                      : ""));
 }
 
 bool is_unsigned(NpyType type) {

@@ -138,7 +138,7 @@ class ObjReader {
         if (slash()) take_index(corner, "normal", so_far.normals, all.normals);
       }
       if (!corner.empty())
-        fail(fmt::format("found '{}' after a face's corner; expected a blank", corner));
+        fail(fmt::format("found '{}' after a face's corner; expected a space", corner));
       soup_.texture_of.push_back(texture);
       ++corners;
     }

@@ -22,13 +22,13 @@ bool is_word(const std::string& name) {
 void check(const PointCloud& cloud) {
   const auto same_length = [&](std::size_t length, const std::string& list) {
     require(length == cloud.points_m.size(), "number of " + list, length,
-            fmt::format("must be that of points_m, {}", cloud.points_m.size()));
+            fmt::format("must equal that of points_m, {}", cloud.points_m.size()));
   };
   std::set<std::string> taken = {"x", "y", "z", "red", "green", "blue"};
   for (const PointScalar& scalar : cloud.scalars) {
     require(is_word(scalar.name), "scalar name", scalar.name,
             "must be letters, digits and underscores");
-    require(taken.insert(scalar.name).second, "scalar name", scalar.name, "is taken already");
+    require(taken.insert(scalar.name).second, "scalar name", scalar.name, "must be unique");
     same_length(scalar.values.size(), scalar.name);
   }
   if (!cloud.colours.empty()) same_length(cloud.colours.size(), "colours");

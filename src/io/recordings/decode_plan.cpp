@@ -82,35 +82,36 @@ void check_sliding(const DecodeRequest& request) {
 void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   check_fields(request);
-  require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
+  require(!request.raw.empty(), "raw", "no file", "must be one file, or one per measurement");
   if (!request.hdr.empty()) {
     check_exposures(request.hdr, "hdr");
-    require(request.average == 1, "average", request.average, "goes without hdr");
+    require(request.average == 1, "average", request.average, "cannot be combined with hdr");
   }
   if (request.sliding) check_sliding(request);
   depth_limits(decoder.table(), request.min_depth_m, request.max_depth_m);
   if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
   require(!request.undistort || request.lens, "undistort", "true",
-          "needs a camera with [lens], whose distortion is taken out");
+          "requires a camera with [lens], whose distortion it removes");
   require(!request.undistort || request.lens->rays.empty(), "undistort", "true",
-          "goes without a map of rays");
+          "cannot be combined with a map of rays");
   require(
       request.lens || request.view_deg || !(holds_points(output) || request.kind == DepthKind::z),
       "view_deg", "none",
-      "points and z need the [lens] of the camera, or this angle of view to assume, such as 60");
+      "is required for points and z if the camera has no [lens]: expected an angle of view, such "
+      "as 60");
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
-          fmt::format("goes with a .npy file; the output is {}", output.string()));
+          fmt::format("is only valid with a .npy file; the output is {}", output.string()));
   for (const DecodedPlane plane : request.outputs) {
     require(description_of(plane).use != PlaneUse::of_returns || finds_multipath(decoder),
             "outputs", name_of(plane),
-            fmt::format("goes with two-return or tail, which alone fill it; the method is {}",
+            fmt::format("is only valid with two-return or tail; the method is {}",
                         name_of(decoder.method())));
     require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
             name_of(plane),
-            fmt::format("a {} file holds depth only; .npz, .exr and .ply hold other planes, and "
-                        ".npy does with --stack",
+            fmt::format("a {} file contains only depth; for other planes use .npz, .exr, .ply, or "
+                        ".npy with --stack",
                         output.extension().string()));
   }
 }
@@ -184,8 +185,8 @@ PlaneCorrections corrections_of(const DecodeRequest& request, const DecodingTabl
                                depth_limits(table, request.min_depth_m, request.max_depth_m)};
   if (const auto& correction = table.correction)
     if (correction->height != height || correction->width != width)
-      throw IoError(source, fmt::format("found frames of {} x {} pixels; expected {} x {}, of "
-                                        "which the table's depth correction is",
+      throw IoError(source, fmt::format("found frames of {} x {} pixels; expected {} x {}, the "
+                                        "size of the table's depth correction",
                                         height, width, correction->height, correction->width));
   return corrections;
 }

@@ -128,16 +128,16 @@ int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
     throw IoError(
         target.path.string(),
         fmt::format(
-            "frames of {} x {} pixels take {:.3g} MB to be {}written so; expected at most "
-            "{:.3g} MB ({}fewer --outputs take less{}; --memory-mb allows more)",
+            "frames of {} x {} pixels require {:.3g} MB to be {}written to this output; expected "
+            "at most {:.3g} MB ({}fewer --outputs require less{}; --memory-mb allows more)",
             height, width, 1e-6 * (whole + row),
             preparation.steps.filter || preparation.steps.time_filter ? "filtered and " : "",
             1e-6 * memory_bytes,
             preparation.needs_frames()
-                ? "without filters, mixed and undistort they go in bands of rows; "
+                ? "without filters, mixed and undistort, frames are decoded in bands of rows; "
                 : "",
-            target.in_rows() ? "" : "; .npy is written row by row, with --stack every plane"));
-  // Larger bands are not faster, because allocating their memory takes longer than another call.
+            target.in_rows() ? "" : "; .npy is written row by row, with --stack for every plane"));
+  // Larger bands are no faster: new memory costs more than another call.
   constexpr double comfortable_bytes = 32e6;
   const double rows = row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : height;
   return std::clamp(static_cast<int>(rows), 1, height);

@@ -127,8 +127,8 @@ class StreamFrames {
 DecodeRequest checked(DecodeRequest request, const DepthDecoder& decoder) {
   require(!request.raw_format.empty(), "raw_format", "none",
           "must be a file that describes the frames of the stream");
-  require(!request.frame, "frame", request.frame.value_or(0), "goes with files only");
-  require(!request.stack, "stack", "true", "goes with files only");
+  require(!request.frame, "frame", request.frame.value_or(0), "is only valid with files");
+  require(!request.stack, "stack", "true", "is only valid with files");
   if (request.outputs.empty()) request.outputs = {DecodedPlane::depth};
   request.raw = {stream_name};
   request.output.clear();

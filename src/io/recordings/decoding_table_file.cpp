@@ -28,14 +28,13 @@ std::optional<std::string> duty_note(const std::string& path, const MeasuredTabl
   const double spread = mean.maxCoeff() - mean.minCoeff();
   if (spread <= usual_spread * measured.correlation.cwiseAbs().maxCoeff()) return std::nullopt;
   return fmt::format(
-      "{}: ambient light was taken to add the same to every measurement, but the "
-      "means of the columns differ; --ambient mean or none, or an array 'ambient', "
-      "says otherwise (or a dark offset was not subtracted: an array 'offset_dn' says "
-      "what raw numbers are without light)",
+      "{}: ambient light was assumed equal in all measurements, but the means of the columns "
+      "differ; if ambient light is not equal, use --ambient mean or none, or an array 'ambient'; "
+      "if a dark offset was not subtracted, add it as an array 'offset_dn'",
       path);
 }
 
-/// Rejects options that are only valid for measured tables.
+/// Rejects options of measured tables for a code.
 void refuse_table_options(const std::string& code, const DecodingTableOptions& options) {
   const char* const field = options.range_m          ? "range_m"
                             : options.ambient        ? "ambient"
@@ -43,12 +42,13 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
                             : options.keep_end_point ? "keep_end_point"
                                                      : nullptr;
   if (field)
-    throw std::invalid_argument(fmt::format(
-        "{}: goes with a measured table; {} is a code, which the camera says all of", field, code));
+    throw std::invalid_argument(
+        fmt::format("{}: is only valid with a measured table; {} is a code, for which the camera "
+                    "determines these values",
+                    field, code));
 }
 
-/// Reorders the columns for another order of exposures, and reverses the rows if delay runs
-/// backwards.
+/// Applies the order of exposures and the direction of delay to a table.
 void play(const DecodingTableOptions& options, MeasuredTable& measured) {
   if (!options.order.empty()) {
     const int side = measured.taps, exposures = measured.columns() / side;
@@ -92,23 +92,21 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   }
 }
 
-/// Returns a note if the table turns by large angles between rows and its course between them is
-/// unknown.
+/// Returns a note if a table rotates too far from row to row for interpolation.
 std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measured) {
   constexpr double fine_deg = 10.0;
   const double turn_deg = furthest_turn_rad(table) * 180.0 / std::numbers::pi;
   if (!(turn_deg > fine_deg)) return std::nullopt;
   const double times = std::ceil(turn_deg / fine_deg);
   return fmt::format(
-      "{} rows: from row to row the table turns by up to {:.0f} degrees, and depths between rows "
-      "are "
-      "assumed to lie on straight lines; {}",
+      "{} rows are few for this table: it rotates by up to {:.0f} degrees from row to row, and "
+      "depths between rows are interpolated linearly; {}",
       table.samples(), turn_deg,
       is_measured ? "measure it at more delays"
                   : fmt::format("use --set samples={:.0f}", times * table.samples()));
 }
 
-/// Returns the camera with the playback options of the user.
+/// Returns the camera with the user's order and direction of delay.
 Camera with_playback(Camera camera, const DecodingTableOptions& options) {
   if (options.order.empty() && !options.reversed) return camera;
   Playback playback = camera.playback.value_or(Playback());
@@ -132,9 +130,9 @@ std::optional<std::string> ambiguity_note(const DecodingTable& table) {
   std::vector<std::string> shown;
   for (std::size_t i = 0; i < std::min(pairs.size(), max_shown); ++i)
     shown.push_back(fmt::format("{:.4g} m as {:.4g} m", pairs[i].second_m, pairs[i].first_m));
-  return fmt::format("{} of {} bins look like a nearer one and decode to it: {}{}", pairs.size(),
+  return fmt::format("{} of {} bins are ambiguous and decode to a nearer bin: {}{}", pairs.size(),
                      table.bin_count(), fmt::join(shown, ", "),
-                     pairs.size() > max_shown ? ", .." : "");
+                     pairs.size() > max_shown ? ", ..." : "");
 }
 
 bool names_measured_table(const std::string& code) {
@@ -145,10 +143,10 @@ bool names_measured_table(const std::string& code) {
 
 void require_no_measured_table(const std::string& code) {
   if (names_measured_table(code))
-    throw IoError(code,
-                  "this is a measured table (corrfs only), and only decode takes those; expected "
-                  "one of .json, .npz with modfs and demodfs, or .csv with columns modulation_1 .. "
-                  "and demodulation_1 ..");
+    throw IoError(
+        code,
+        "found a measured table (corrfs only), which only decode supports; expected .json, .npz "
+        "with modfs and demodfs, or .csv with columns modulation_1, ... and demodulation_1, ...");
 }
 
 CodeSet load_camera_code(const std::string& code, const Camera& camera,

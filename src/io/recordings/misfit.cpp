@@ -222,11 +222,10 @@ std::string better_text(std::vector<Alternative> all, double residual) {
     named += (i == 0 ? "" : "; ") + all[i].text;
   const std::string rest =
       all.size() > max_named
-          ? fmt::format(
-                "; and {} others, which differ from these by an offset or the direction of depth",
-                all.size() - max_named)
+          ? fmt::format("; and {} others, which differ by an offset or the direction of depth",
+                        all.size() - max_named)
           : "";
-  return fmt::format(". This fits (residual {} times the noise): {}{}", plain_number(best, 2),
+  return fmt::format(". Better fit (residual {} times the noise): {}{}", plain_number(best, 2),
                      named, rest);
 }
 

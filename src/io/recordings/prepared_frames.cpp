@@ -140,11 +140,11 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
     views.back().is_marked = raw->is_marked;
   }
   if (views.empty()) return std::nullopt;
-  if (views.size() < frames)  // only for streams: recordings contain whole groups
-    throw IoError("the stream",
-                  fmt::format("found {} frame{} and the end; expected {}, one of each "
-                              "exposure of --hdr",
-                              views.size(), views.size() == 1 ? "" : "s", frames));
+  if (views.size() < frames)  // of a stream: recordings hold whole groups
+    throw IoError(
+        "the stream",
+        fmt::format("found {} frame{} and the end; expected {}, one for each exposure of --hdr",
+                    views.size(), views.size() == 1 ? "" : "s", frames));
   merge_exposures(views, preparation_.hdr, pipeline().table(), merged_);
   return merged_.view();
 }

@@ -17,19 +17,18 @@ namespace {
 std::string_view likely_cause(PixelStatus status) {
   switch (status) {
     case PixelStatus::invalid:
-      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead: were they "
-             "written, and read with the right --raw-format?";
+      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead; check the "
+             "files and --raw-format";
     case PixelStatus::saturated:
-      return "every pixel has a raw number at the saturation level: expose less, or correct "
-             "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
+      return "every pixel has a raw number at the saturation level; reduce the exposure, or "
+             "correct sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
     case PixelStatus::too_near:
     case PixelStatus::too_far:
-      return "every depth is outside the limits: check --min-depth and --max-depth, or "
+      return "every depth is outside the limits; check --min-depth and --max-depth, or "
              "operating.working_distance_m of the camera";
     default:
-      return "no signal is in the raw numbers: is the light on, --code the code that the camera "
-             "used, "
-             "--layout how they run, and sensor.black_level_dn what is in the dark?";
+      return "the raw numbers contain no signal; check the light source, --code, --layout and "
+             "sensor.black_level_dn";
   }
 }
 
@@ -40,8 +39,9 @@ std::optional<std::string> electrons_note(const RawFramesReader& reader,
   if (!reader.holds_integers() || table.saturation_level ||
       (table.gain_e_per_raw.array() != 1.0).any() || (table.black_level.array() != 0.0).any())
     return std::nullopt;
-  return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
-         "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
+  return "no gain, black level or saturation level is set, so raw numbers are interpreted as "
+         "electrons (--set sensor.adc_bits=... --set sensor.gain_e_per_dn=... --set "
+         "sensor.black_level_dn=...)";
 }
 
 std::optional<std::string> repeated_offset_note(const DecodingTable& table,
@@ -102,8 +102,8 @@ std::optional<std::string> noise_note(double ratio, int frame, double averaged) 
   if (ratio <= usual && ratio >= 1.0 / usual) return std::nullopt;
   return fmt::format(
       "frame {} has {:.2g} times the noise that the camera predicts (estimated from differences of "
-      "neighbouring pixels), so that the filter {}. Measure the noise with `tofsmith calibrate "
-      "noise`, or assume the noise of this frame with --averaged {:.3g}",
+      "neighbouring pixels), so the filter {}. Measure the noise with `tofsmith calibrate noise`, "
+      "or assume the noise of this frame with --averaged {:.3g}",
       frame, ratio,
       ratio < 1.0 ? "averages pixels of different depths" : "averages fewer pixels than it could",
       std::min(averaged / (ratio * ratio), 1e9));

@@ -99,7 +99,7 @@ void refuse_long_keys(std::string_view text, std::string_view source_name) {
     } else if (c == '.' && ++parts > max_parts) {
       throw IoError(
           fmt::format("{}:{}", source_name, line),
-          fmt::format("found a key of more than {} parts between dots; expected a few", max_parts));
+          fmt::format("found a key of more than {} parts between dots; expected fewer", max_parts));
     } else if (std::string_view(",=[]{}").find(c) != std::string_view::npos) {
       parts = 1;
     }
@@ -148,7 +148,7 @@ void leave_out(toml::table& root, std::string_view key, std::string_view setting
     for (const auto& [name, node] : *table) there.emplace_back(name.str());
     const std::string near = nearest_word(part, there);
     throw IoError(describe_setting(setting),
-                  fmt::format("found no key {} to leave out{}", key,
+                  fmt::format("found no key {} to remove{}", key,
                               near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
 }
@@ -337,7 +337,7 @@ void TableReader::value(std::string_view key, std::vector<int>& target) {
   for (const toml::node& element : *node->as_array()) {
     const auto* number = element.as_integer();
     if (!number || number->get() < -65535 || number->get() > 65535)
-      mistyped(full(key), element, "an integer of -65535 to 65535");
+      mistyped(full(key), element, "an integer in [-65535, 65535]");
     target.push_back(static_cast<int>(number->get()));
   }
 }
@@ -439,7 +439,7 @@ std::vector<TableReader> TableReader::enter_each(std::string_view key) {
   std::vector<TableReader> readers;
   const toml::node* node = find(key);
   if (!node) return readers;
-  const std::string expected = fmt::format("tables, each begun with [[{}]]", full(key));
+  const std::string expected = fmt::format("tables that begin with [[{}]]", full(key));
   if (!node->is_array()) mistyped(full(key), *node, expected);
   const toml::array& list = *node->as_array();
   for (std::size_t i = 0; i < list.size(); ++i) {
