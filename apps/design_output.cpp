@@ -15,7 +15,7 @@ namespace {
 
 void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
                    DepthErrorKind kind) {
-  rows.front().insert(rows.front().end(), {"second return (mm)", "as two returns (mm)"});
+  rows.front().insert(rows.front().end(), {"second return (mm)", "two-return (mm)"});
   const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const OperatingMultipathReport& report = *order[i]->multipath;

@@ -68,8 +68,8 @@ MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera
 std::string beyond_range_remark(const SceneExtent& extent) {
   if (extent.beyond_range == 0) return "";
   return fmt::format(
-      "note: {} pixels ({:.3g} % of those with a depth) lie beyond the camera's "
-      "unambiguous range of {}: their depth wraps",
+      "note: {} pixels ({:.3g} % of all pixels with a depth) lie beyond the camera's unambiguous "
+      "range of {}: their depth wraps",
       extent.beyond_range, 100.0 * extent.beyond_range_share(), length_text(extent.range_m));
 }
 

@@ -31,8 +31,8 @@ std::string albedo_remark(const LoadedScene& scene);
 MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera,
                                   BounceOptions options, const Progress& progress);
 
-/// Returns a remark such as "note: 96 pixels (12.5 % of those with a depth) lie beyond the camera's
-/// unambiguous range of 9.99 m: their depth wraps"; "" if there are none.
+/// Returns a remark such as "note: 96 pixels (12.5 % of all pixels with a depth) lie beyond the
+/// camera's unambiguous range of 9.99 m: their depth wraps"; "" if there are none.
 std::string beyond_range_remark(const SceneExtent& extent);
 
 }  // namespace tofsmith::apps

@@ -16,7 +16,7 @@ inline SweepShard parse_shard(const std::string& text) {
   if (text.empty()) return shard;
   if (!read_number_pair(text, '/', shard.index, shard.count) || shard.broken_rule())
     throw UsageError(
-        fmt::format("--shard: found {}; expected i/n with i in 1 .. n, such as 3/8", text));
+        fmt::format("--shard: found {}; expected i/n with i in 1 to n, such as 3/8", text));
   return shard;
 }
 

@@ -57,7 +57,7 @@ CodeSet CodeSet::create(std::string name, int samples, int taps, std::vector<Wav
       sum += demodulation[e * static_cast<std::size_t>(taps) + static_cast<std::size_t>(t)]
                  .cell_averages(samples);
     require(sum.maxCoeff() <= 1.0 + 1e-6, fmt::format("sum over taps of exposure {}", e),
-            sum.maxCoeff(), "must be <= 1: an electron goes to one tap");
+            sum.maxCoeff(), "must be <= 1: each electron is collected by one tap");
   }
   CodeSet code;
   code.name_ = std::move(name);

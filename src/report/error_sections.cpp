@@ -107,7 +107,7 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                           {"outliers (%)", true}}};
   if (codes[best].ratio) {
     table.columns.push_back({"ratio", true});
-    table.caption += " Ratio: error by which codes are ranked, over that of the best.";
+    table.caption += " Ratio: error by which codes are ranked, relative to the best code.";
   }
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;

@@ -43,7 +43,7 @@ Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m,
   return image_figure(
       {.id = "multipath-scene-depth",
        .title = "Depth",
-       .caption = "The mean error where multipath light arrives follows the name of each method.",
+       .caption = "Titles contain the mean error of pixels with multipath light.",
        .alt_text = "Maps of decoded depth and its error"},
       images, {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
       {.reference = error_reference(scene.truth, camera, 2e3 * scene.all.error_m[0])});

@@ -39,7 +39,8 @@ SceneImage::SceneImage(int height, int width)
 void SceneImage::validate() const {
   require(height() > 0 && width() > 0, "depth_m size", fmt::format("{} x {}", height(), width()),
           "must have at least one pixel");
-  require_plane(depth_m, *this, "depth_m", "must be finite and > 0, or NaN where nothing returns",
+  require_plane(depth_m, *this, "depth_m",
+                "must be finite and > 0, or NaN for pixels without return",
                 [](float v) { return std::isnan(v) || (std::isfinite(v) && v > 0.0f); });
   const auto is_share = [](float v) { return v >= 0.0f && v <= 1.0f; };
   require_plane(albedo, *this, "albedo", "must be in [0, 1]", is_share);

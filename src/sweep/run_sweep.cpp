@@ -61,7 +61,7 @@ bool SweepShard::holds(std::string_view key) const {
 
 std::optional<BrokenRule> SweepShard::broken_rule() const {
   if (count < 1) return broken("shard.count", count, "must be >= 1");
-  if (index < 1 || index > count) return broken("shard.index", index, "must be in 1 .. count");
+  if (index < 1 || index > count) return broken("shard.index", index, "must be in [1, count]");
   return std::nullopt;
 }
 

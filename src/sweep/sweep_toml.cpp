@@ -55,7 +55,7 @@ std::vector<SettingValue> range_values(const TableReader& table, double from, do
                fmt::format("found {}; expected a step that leads from {} to {}", step, from, to));
   if (steps >= static_cast<double>(max_axis_values))
     table.fail("step",
-               fmt::format("makes {:.3g} values; expected at most {}", steps, max_axis_values));
+               fmt::format("found {:.3g} values; expected at most {}", steps, max_axis_values));
   std::vector<SettingValue> values;
   const auto count = static_cast<std::int64_t>(std::floor(steps * (1 + 1e-12) + 1e-9));
   for (std::int64_t i = 0; i <= count; ++i)
@@ -69,7 +69,7 @@ std::vector<SettingValue> logarithmic_values(const TableReader& table, double fr
   if (!(from > 0.0)) table.fail("from", fmt::format("found {}; expected a number > 0", from));
   if (!(to > 0.0)) table.fail("to", fmt::format("found {}; expected a number > 0", to));
   if (count < 2 || count > max_axis_values)
-    table.fail("count", fmt::format("found {}; expected 2 .. {}", count, max_axis_values));
+    table.fail("count", fmt::format("found {}; expected 2 to {}", count, max_axis_values));
   std::vector<SettingValue> values;
   for (int i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);

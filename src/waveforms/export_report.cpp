@@ -98,15 +98,14 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
                       "Each waveform as designed (nominal) and as the generator plays it "
                       "(actual), before the impulse responses.",
                       generator_report_rows(exported.generators), {0}),
-        waveform_figure(
-            {.id = "waveforms",
-             .title = "Waveforms and correlation functions",
-             .caption = "One row per measurement, over one period. Dotted: as designed, "
-                        "where the generator changes it."},
-            code, actual),
+        waveform_figure({.id = "waveforms",
+                         .title = "Waveforms and correlation functions",
+                         .caption = "One row per measurement, over one period. Dotted: as "
+                                    "designed, if the generator changes it."},
+                        code, actual),
         correlation_figure({.id = "correlation",
                             .title = "Correlation functions",
-                            .caption = "Lines: as the generator plays the waveforms."},
+                            .caption = "Lines: with the waveforms as the generator plays them."},
                            code, actual)}});
   if (loss)
     page.sections.push_back(

@@ -108,7 +108,7 @@ int fitting_periods(const WaveformFormat& format, int points, const std::optiona
   for (int periods = 1; periods <= max_periods; ++periods)
     if (fits(periods)) return periods;
   reject("points", fmt::format("{}", points),
-         fmt::format("{}, which no number of periods gives", rule));
+         fmt::format("{}; no number of periods satisfies this", rule));
 }
 
 /// Properties that all waveforms of an arm share.

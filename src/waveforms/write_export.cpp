@@ -74,9 +74,9 @@ std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& 
       "with {} points per period, the duty of {} {} is {:.4g} instead of {:.4g}; {}", points,
       worst.arm == Arm::light ? "modulation" : "demodulation", worst.index + 1, worst.duty_actual,
       worst.duty_nominal,
-      others.empty()
-          ? fmt::format("no --samples within {} of this number keeps all duties", max_points_away)
-          : fmt::format("{} would keep all duties", fmt::join(others, " or ")))};
+      others.empty() ? fmt::format("no --samples within {} of this number preserves all duties",
+                                   max_points_away)
+                     : fmt::format("{} would preserve all duties", fmt::join(others, " or ")))};
 }
 
 /// A file and its contents.

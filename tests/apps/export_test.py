@@ -53,7 +53,7 @@ class Export(CommandLineTest):
                                 "--force", "--no-loss", *more)["notes"]
         (note,) = notes("--samples", "64")
         self.assertEqual(note, "with 64 points per period, the duty of modulation 1 is 0.07812 "
-                               "instead of 0.08333; --samples 60 or --samples 72 would keep all duties")
+                               "instead of 0.08333; --samples 60 or --samples 72 would preserve all duties")
         self.refuse(["export", "hamiltonian-k4", "--format", "keysight-arb", "--rate", "100e6", "-o",
                      "e"], "points are 1/6 of a period; expected 12 points or more, 180 MHz")
         self.assertEqual(notes("--samples", "60"), [])

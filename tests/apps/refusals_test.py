@@ -210,7 +210,7 @@ class Refusals(CommandLineTest):
         self.refuse(scene("table-top", "--scale-m", "2"), "--scale-m", "mesh", code=2)
         self.refuse(scene("table-top", "--width", "0"), "--width", code=2)
         self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4")
-        self.refuse(scene("m.obj"), "m.obj:4", "index 4", "1 .. 3")
+        self.refuse(scene("m.obj"), "m.obj:4", "index 4", "1 to 3")
 
     def test_pictures_of_scenes(self):
         np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))

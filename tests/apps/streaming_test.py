@@ -144,7 +144,7 @@ class Streaming(CommandLineTest):
                              ["did you mean max_difference_sigma?"]),
                             (("--look-ahead", "4"), ["--time-filter"]),
                             ((*ahead, "--look-ahead", "-1"), ["found -1; must be in [0, 1000]"]),
-                            (("--average", "6"), ["--average = 6", "holds 5 frames"]),
+                            (("--average", "6"), ["--average = 6", "contains 5 frames"]),
                             (("--average", "2", "--frame", "3"), ["3 means"])):
             self.refuse(self.arguments(*more), *words, code=2)
         self.refuse(self.arguments(*ahead, "--memory-mb", "0.03"), "to be filtered")

@@ -86,10 +86,10 @@ TEST(Generator, RejectsInvalidTablesAndGrids) {
   EXPECT_EQ(problem({.edge_grid_s = 0.0}), "g.edge_grid_s = 0; must be finite and > 0");
   EXPECT_EQ(problem({.edge_grid_s = 30e-9}),
             "g.edge_grid_s = 3e-08; must divide the period of fundamental_frequency_hz = 5000000 "
-            "into 2 .. 1048576 whole steps (it gives 6.66667; 2.85714286e-08 s would give 7)");
+            "into 2 to 1048576 integer steps (it gives 6.66667; 2.85714286e-08 s would give 7)");
   EXPECT_EQ(problem({.edge_grid_s = 1.0}),
             "g.edge_grid_s = 1; must divide the period of fundamental_frequency_hz = 5000000 into "
-            "2 .. 1048576 whole steps");
+            "2 to 1048576 integer steps");
   EXPECT_EQ(problem({.sample_rate_hz = 500e6, .table_points = 16384, .edge_grid_s = 2e-9}), "");
 }
 

@@ -25,7 +25,7 @@ TEST(CameraToml, AnEmptyGeneratorHasTheLimitsOfThePrototype) {
 
 TEST(CameraToml, RejectsInvalidGenerators) {
   EXPECT_EQ(refusal("light.generator = { sample_rate_hz = 39e6 }"),
-            "c.toml:2:38: light.generator.sample_rate_hz = 3.9e+07; must give 2 .. 1048576 points "
+            "c.toml:2:38: light.generator.sample_rate_hz = 3.9e+07; must give 2 to 1048576 points "
             "per period at fundamental_frequency_hz = 20000000");
   EXPECT_EQ(refusal("sensor.generator = { sample_rate_hz = -1 }"),
             "c.toml:2:39: sensor.generator.sample_rate_hz = -1; must be finite and > 0");

@@ -180,8 +180,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/demodulation/2/values/3", 1.5,
                   "c.json: /demodulation/2/values/3: found 1.5; expected a number in [0, 1]"},
         BadMember{"/demodulation/3/values/2", 0.75,
-                  "c.json: sum over taps of exposure 1 = 1.25; must be <= 1: an electron goes to "
-                  "one tap"},
+                  "c.json: sum over taps of exposure 1 = 1.25; must be <= 1: each electron is "
+                  "collected by one tap"},
         BadMember{"/provenance/sede", 3,
                   "c.json: /provenance: unknown member \"sede\"; did you mean \"seed\"?"},
         BadMember{"/provenance/seed", -1,

@@ -368,7 +368,7 @@ TEST_F(DecodeRecording, RejectsInvalidRequestsBeforeWriting) {
   refused(wrong, "average = 4; ");
   wrong.average = 2;
   wrong.frame = 2;
-  refused(wrong, "holds 3 frames, 2 means, counted from 0");
+  refused(wrong, "contains 3 frames, 2 means, counted from 0");
   wrong = request("d.npz");
   wrong.time_filter = TimeFilterOptions{.max_frames = 0};
   refused(wrong, "TimeFilterOptions::max_frames = 0; must be >= 1");

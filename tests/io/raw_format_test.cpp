@@ -305,7 +305,7 @@ TEST(RawFormatToml, ReportsThePlaceAndTheProblem) {
   EXPECT_THAT(error("order = [-1, -1, -1, -1]"), HasSubstr("must include a measurement"));
   EXPECT_THAT(error("order = [0, -2]"),
               AllOf(HasSubstr("s.raw.toml:5:9"), HasSubstr("order[1] = -2")));
-  EXPECT_THAT(error("order = [0, 1, 2, 2.5]"), HasSubstr("an integer of"));
+  EXPECT_THAT(error("order = [0, 1, 2, 2.5]"), HasSubstr("an integer in ["));
   EXPECT_THAT(error("order = [0, 1, 2]\ntaps = \"subtract\""),
               AllOf(HasSubstr("order = 3"), HasSubstr("even to subtract taps")));
   EXPECT_THAT(error("sign_bit = 9"), HasSubstr("must be omitted unless signed = true"));

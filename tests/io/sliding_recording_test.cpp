@@ -199,7 +199,7 @@ TEST_F(SlidingRecording, RejectsMeansMergedExposuresAndLookAhead) {
   rejects([](DecodeRequest& r) { r.hdr = {1.0, 4.0, 16.0}; }, "hdr = 3 exposures");
   rejects([](DecodeRequest& r) { r.time_filter = TimeFilterOptions{.look_ahead = 1}; },
           "look_ahead = 1");
-  rejects([](DecodeRequest& r) { r.frame = 9; }, "holds 3 frames, 9 windows");
+  rejects([](DecodeRequest& r) { r.frame = 9; }, "contains 3 frames, 9 windows");
 }
 
 }  // namespace

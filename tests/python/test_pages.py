@@ -62,7 +62,7 @@ def test_design_files_equal_the_command(small, cli, tmp_path):
 
 
 refusals = [
-    (lambda: ts.write_report("/nowhere"), OSError, "/nowhere: holds no design.json"),
+    (lambda: ts.write_report("/nowhere"), OSError, "/nowhere: contains no design.json"),
     (lambda: ts.write_evaluation_report("a.html", ["square-k4"], "paper-10f0", []), ValueError, "reports: got 0; needs one for each of 1 codes"),
     (lambda: ts.write_evaluation_report("a.html", ["square-k4"], "paper-10f0", [3]), TypeError, "reports: got int 3; needs a tofsmith.DepthErrorReport"),
     (lambda: ts.write_evaluation_report("a.html", "square-k4", "paper-10f0", ts.evaluate("square-k4", ts.Camera("paper-10f0", operating={"signal_e_per_s": [1e4]}), trials=10)), ValueError, "reports: got "),

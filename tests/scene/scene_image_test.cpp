@@ -27,9 +27,9 @@ TEST(SceneImage, ReportsThePixelTheValueAndTheRule) {
   EXPECT_EQ(message([](SceneImage& s) { s.cosine(0, 3) = NAN; }),
             "cosine(0, 3) = nan; must be in [0, 1]");
   EXPECT_EQ(message([](SceneImage& s) { s.depth_m(1, 0) = 0.0f; }),
-            "depth_m(1, 0) = 0; must be finite and > 0, or NaN where nothing returns");
+            "depth_m(1, 0) = 0; must be finite and > 0, or NaN for pixels without return");
   EXPECT_EQ(message([](SceneImage& s) { s.depth_m(1, 0) = INFINITY; }),
-            "depth_m(1, 0) = inf; must be finite and > 0, or NaN where nothing returns");
+            "depth_m(1, 0) = inf; must be finite and > 0, or NaN for pixels without return");
   EXPECT_EQ(message([](SceneImage& s) { s.albedo = Image<float>(3, 5); }),
             "albedo size = 3 x 5 with 15 pixels; must equal depth_m's, 3 x 4");
   EXPECT_EQ(message([](SceneImage& s) { s.albedo.pixels.pop_back(); }),

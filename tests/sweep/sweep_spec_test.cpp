@@ -202,7 +202,7 @@ TEST(SweepSpec, RejectsUnknownInputWithItsPlace) {
            {axis("key = \"code\"\nvalues = [\"a\"]\n"), "s.toml:3:7: found both an axis of codes"},
            {axis("key = \"seed\"\nfrom = 1\nto = 5\nstep = 0\n"), "s.toml:6:8: axis[0].step"},
            {axis("key = \"seed\"\nfrom = 1\nto = 5\nstep = -1\n"), "s.toml:6:8: axis[0].step"},
-           {axis("key = \"seed\"\nfrom = 1\nto = 1e300\nstep = 1\n"), "makes 1e+300 values"},
+           {axis("key = \"seed\"\nfrom = 1\nto = 1e300\nstep = 1\n"), "found 1e+300 values"},
            {axis("key = \"seed\"\nfrom = 0\nto = 5\ncount = 3\n"), "s.toml:4:8: axis[0].from"},
            {axis("key = \"seed\"\nfrom = 1\nto = 5\ncount = 1\n"), "s.toml:6:9: axis[0].count"},
            {axis("key = \"seed\"\nfile = \"none.txt\"\n"), "s.toml:4:8: axis[0].file: none.txt"},

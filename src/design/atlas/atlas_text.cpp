@@ -187,10 +187,9 @@ std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file
                              atlas_head, atlas_version));
   if (const std::string_view version = lines.rest_of_line().substr(atlas_head.size());
       version != fmt::format("{}", atlas_version))
-    lines.refuse(
-        fmt::format("found an atlas of version {}; expected version {}, as "
-                    "scripts/atlas.sh makes it",
-                    version, atlas_version));
+    lines.refuse(fmt::format(
+        "found an atlas of version {}; expected version {}, as written by scripts/atlas.sh",
+        version, atlas_version));
   std::vector<AtlasEntry> entries;
   while (lines.next()) {
     AtlasEntry entry = read_entry(lines);

@@ -115,12 +115,12 @@ std::optional<BrokenRule> why_no_frequencies(const Camera& camera, const DesignO
   if (auto wrong = why_wrong_camera(camera)) return wrong;
   const FrequencyChoice choice = choice_for(camera, options);
   if (choice.frequencies.empty())
-    return broken(
-        "light.frequencies_hz", list_text(choice.left_out_hz),
-        fmt::format(
-            "must contain multiples of fundamental_frequency_hz = {:.9g}{}",
-            camera.fundamental_frequency_hz,
-            camera.sensor.shortest_pulse_s ? " whose pulses keep sensor.shortest_pulse_s" : ""));
+    return broken("light.frequencies_hz", list_text(choice.left_out_hz),
+                  fmt::format("must contain multiples of fundamental_frequency_hz = {:.9g}{}",
+                              camera.fundamental_frequency_hz,
+                              camera.sensor.shortest_pulse_s
+                                  ? " with pulses of at least sensor.shortest_pulse_s"
+                                  : ""));
   if (choice.exposures_of(1).empty())
     return broken(
         "sensor.max_exposures", camera.sensor.max_exposures.value_or(default_max_exposures),

@@ -90,7 +90,7 @@ struct Demodulations {
 CodeSet created(std::string_view file, Eigen::Index samples, int taps,
                 std::vector<Waveform> modulation, Demodulations demodulation) {
   if (samples < 2 || samples > max_rows)
-    throw IoError(file, fmt::format("found {} samples; expected 2 .. {}", samples, max_rows));
+    throw IoError(file, fmt::format("found {} samples; expected 2 to {}", samples, max_rows));
   const std::string name = std::filesystem::path(file).stem().string();
   try {
     if (demodulation.weights)

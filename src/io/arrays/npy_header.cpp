@@ -65,7 +65,7 @@ class HeaderLiteral {
 
   void type(NpyHeader& header) {
     constexpr std::string_view known =
-        "expected one of bool, int8 .. int64, uint8 .. uint64, float16, float32, float64";
+        "expected one of bool, int8 to int64, uint8 to uint64, float16, float32, float64";
     skip_spaces();
     const std::size_t start = cursor_.position();
     if (peek() == '[')

@@ -123,8 +123,8 @@ std::vector<std::byte> NpzReader::State::unpack(std::size_t index) const {
     if (got < 0) throw damaged(zip_file_strerror(entry.get()));
     content.resize(done + static_cast<std::size_t>(got));
     if (content.size() > sizes[index] || (got == 0 && content.size() < sizes[index]))
-      throw damaged(fmt::format("found {} bytes; expected {} as the directory says", content.size(),
-                                sizes[index]));
+      throw damaged(fmt::format("found {} bytes; expected {}, as in the directory of the archive",
+                                content.size(), sizes[index]));
     if (got == 0) return content;
   }
 }

@@ -171,8 +171,8 @@ SceneResult read_scene_result(const fs::path& directory) {
 DesignedDirectory read_designed_directory(const fs::path& directory) {
   if (!fs::exists(directory / "design.json"))
     throw IoError(directory.string(),
-                  "holds no design.json; expected a directory made by `tofsmith design -o` or "
-                  "`tofsmith demo -o`");
+                  "contains no design.json; expected a directory written by `tofsmith design -o` "
+                  "or `tofsmith demo -o`");
   DesignedDirectory found{DesignDirectory(directory).read(), {}};
   if (holds_scene_result(directory / "scene")) found.scene = read_scene_result(directory / "scene");
   for (const fs::directory_entry& entry : fs::directory_iterator(directory))

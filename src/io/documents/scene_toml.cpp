@@ -141,7 +141,7 @@ void read_view(TableReader& table, PinholeView& view) {
   table.value("height_px", height);
   for (const auto& [key, size] : {std::pair("width_px", width), std::pair("height_px", height)})
     if (size < 1 || static_cast<std::uint64_t>(size) > max_image_side)
-      table.fail(key, fmt::format("found {}; expected 1 .. {}", size, max_image_side));
+      table.fail(key, fmt::format("found {}; expected 1 to {}", size, max_image_side));
   if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > max_image_pixels)
     table.fail("height_px", fmt::format("found {} x {} pixels; expected at most {} in all", height,
                                         width, max_image_pixels));

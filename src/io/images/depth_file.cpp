@@ -56,7 +56,7 @@ PngImage png_from_depth(const Image<float>& depth_m, DepthKind kind, const std::
     const double mm = std::nearbyint(static_cast<double>(depth_m.pixels[i]) / m_per_mm);
     const bool returned = std::isfinite(mm);
     if (returned && (mm < 0.0 || mm > max_png_mm))
-      throw IoError(file, fmt::format("row {}, column {}: found a depth of {} m; expected 0 .. {} "
+      throw IoError(file, fmt::format("row {}, column {}: found a depth of {} m; expected 0 to {} "
                                       "m, the range of 16-bit millimetres (use .npy, .exr or .pfm)",
                                       i / depth_m.width, i % depth_m.width, depth_m.pixels[i],
                                       max_png_mm * m_per_mm));

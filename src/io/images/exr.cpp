@@ -88,7 +88,7 @@ void note_tiles(ByteCursor value, Layout& layout) {
   if (layout.tile_width < 1 || layout.tile_height < 1 || layout.tile_width > max_image_side ||
       layout.tile_height > max_image_side ||
       layout.tile_width * layout.tile_height > max_image_pixels)
-    value.fail(fmt::format("found tiles of {} x {} pixels; expected sides of 1 .. {}",
+    value.fail(fmt::format("found tiles of {} x {} pixels; expected sides of 1 to {}",
                            layout.tile_height, layout.tile_width, max_image_side));
 }
 
@@ -99,7 +99,8 @@ void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCu
   const std::uint64_t down = (layout.height - 1) / layout.tile_height + 1;
   if (across * down * 8 > file_bytes)
     cursor.fail(
-        fmt::format("found {} x {} tiles; expected no more than the file can hold", down, across));
+        fmt::format("found {} x {} tiles; expected at most the number that the file can contain",
+                    down, across));
 }
 
 /// Checks the unpacked size. Small constant images reach any compression ratio, so the ratio is

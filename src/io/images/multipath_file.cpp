@@ -60,10 +60,11 @@ MultipathReturns read_multipath_returns(const std::filesystem::path& path, int h
                               "scene's {} x {} pixels",
                               first.size(), pixels + 1, height, width));
   if (distance_m.size() != ratio.size())
-    throw IoError(path.string(),
-                  fmt::format("array 'ratio': found {} entries; expected {}, as many as "
-                              "'distance_m' has",
-                              ratio.size(), distance_m.size()));
+    throw IoError(
+        path.string(),
+        fmt::format(
+            "array 'ratio': found {} entries; expected {}, the number of entries of 'distance_m'",
+            ratio.size(), distance_m.size()));
   MultipathReturns returns(height, width);
   returns.first.clear();
   for (const double at : first) {

@@ -75,7 +75,8 @@ void check_unpacked_size(std::size_t unpacked, std::size_t packed, std::string_v
 void check(const PngImage& image) {
   require(image.height >= 1, "height", image.height, "must be >= 1");
   require(image.width >= 1, "width", image.width, "must be >= 1");
-  require(image.channels >= 1 && image.channels <= 4, "channels", image.channels, "must be 1 .. 4");
+  require(image.channels >= 1 && image.channels <= 4, "channels", image.channels,
+          "must be in [1, 4]");
   require(image.bit_depth == 8 || image.bit_depth == 16, "bit_depth", image.bit_depth,
           "must be 8 or 16");
   const std::size_t expected = static_cast<std::size_t>(image.height) * image.width *

@@ -163,7 +163,7 @@ RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format
   const auto file = std::make_shared<InputFile>(path);
   if (!file->size())
     throw IoError(path.string(),
-                  "found a pipe or device; expected a file, read in slices (decode takes frames "
+                  "found a pipe or device; expected a file, read in slices (decode reads frames "
                   "from a pipe as RAW -)");
   frames_ = frames_in(*file->size(), format_, path.string());
   read_at_ = [file](std::uint64_t offset, std::span<std::byte> into) {

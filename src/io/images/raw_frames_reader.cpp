@@ -28,11 +28,12 @@ namespace {
 void check_memory(std::uint64_t bytes, const RawReadOptions& options, const std::string& file,
                   std::string_view what) {
   if (bytes <= options.max_in_memory / 2) return;
-  throw IoError(file, fmt::format("{} cannot be read in parts and would take {:.3g} MB of memory; "
-                                  "expected at most {:.3g} MB (save it as .npy in C order; "
-                                  "--memory-mb allows more)",
-                                  what, 2e-6 * static_cast<double>(bytes),
-                                  1e-6 * static_cast<double>(options.max_in_memory)));
+  throw IoError(
+      file,
+      fmt::format("{} cannot be read in parts and would require {:.3g} MB of memory; expected at "
+                  "most {:.3g} MB (save it as .npy in C order; --memory-mb allows more)",
+                  what, 2e-6 * static_cast<double>(bytes),
+                  1e-6 * static_cast<double>(options.max_in_memory)));
 }
 
 NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions& options) {
@@ -252,11 +253,11 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
 RawView RawFramesReader::rows_as_stored(int frame, int first_row, int rows,
                                         std::vector<std::byte>& buffer) const {
   require(frame >= 0 && frame < frames(), "frame", frame,
-          fmt::format("must be 0 .. {}", frames() - 1));
+          fmt::format("must be in [0, {}]", frames() - 1));
   require(first_row >= 0 && first_row <= height(), "first_row", first_row,
-          fmt::format("must be 0 .. {}", height()));
+          fmt::format("must be in [0, {}]", height()));
   require(rows >= 0 && rows <= height() - first_row, "rows", rows,
-          fmt::format("must be 0 .. {} from row {} on", height() - first_row, first_row));
+          fmt::format("must be in [0, {}] from row {} on", height() - first_row, first_row));
   if (!parts_.empty()) return rows_of_parts(frame, first_row, rows, buffer);
   if (dump_) {
     buffer.resize(static_cast<std::size_t>(rows) * row_bytes());

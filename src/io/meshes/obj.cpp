@@ -116,7 +116,7 @@ class ObjReader {
     if (!whole)
       fail(fmt::format("found '{}' in a face; expected indices such as 7, 7/3 or 7/3/1", corner));
     if (index == 0 || index > all || index < -so_far)
-      fail(fmt::format("found the {} index {}; expected 1 .. {}", what, index, all));
+      fail(fmt::format("found the {} index {}; expected 1 to {}", what, index, all));
     corner.remove_prefix(static_cast<std::size_t>(result.ptr - corner.data()));
     return static_cast<std::uint32_t>(index > 0 ? index - 1 : so_far + index);
   }

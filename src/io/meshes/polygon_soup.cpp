@@ -30,7 +30,7 @@ void check(const PolygonSoup& soup, std::string_view file) {
                     fmt::format("face {}: found {} corners; expected 3 or more", f, end - begin));
     for (; begin < end; ++begin)
       if (soup.position_of[begin] >= soup.positions.size())
-        throw IoError(file, fmt::format("face {}: found the vertex index {}; expected 0 .. {}", f,
+        throw IoError(file, fmt::format("face {}: found the vertex index {}; expected 0 to {}", f,
                                         static_cast<std::int32_t>(soup.position_of[begin]),
                                         static_cast<std::int64_t>(soup.positions.size()) - 1));
   }

@@ -42,7 +42,7 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
 DecodeTarget target_of(const DecodeRequest& request, const DepthDecoder& decoder,
                        const RawFramesReader& reader) {
   const DecodingTable& table = decoder.table();
-  const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
+  const std::string held = fmt::format("{} contains {} frame{}", request.raw.front().string(),
                                        reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
   Preparation preparation{.hdr = request.hdr, .sliding = sliding_exposures(request, table)};
