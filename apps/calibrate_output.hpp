@@ -47,7 +47,7 @@ IoError wrong_file(const std::invalid_argument& error, const std::string& file,
 nlohmann::ordered_json estimate_json(const Estimate& estimate);
 /// Returns a number, or null if it is not finite.
 nlohmann::ordered_json number_json(double value);
-/// Returns lines of the form "name: note".
+/// Returns a line "note: ..." for each note.
 std::string note_lines(const std::vector<std::string>& notes);
 
 }  // namespace tofsmith::apps

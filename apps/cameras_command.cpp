@@ -128,7 +128,7 @@ void add_cameras_command(CLI::App& app, Session& session) {
   auto keys = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("cameras", "list the built-in cameras, or print a camera as TOML");
-  command->add_option("NAME", *name, "a built-in camera, or a camera file (.toml)");
+  command->add_option("NAME", *name, "built-in camera or camera file (.toml)");
   add_settings_option(*command, *settings);
   command->add_flag(
       "--raw-format", *raw_format,

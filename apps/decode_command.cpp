@@ -181,7 +181,7 @@ void add_map_options(const FieldOptions<DecodeRequest>& request) {
   request.add("stray_light", "--stray-light")->group(for_experts);
 }
 
-/// Options of the frames: which ones, and how they are combined.
+/// Options that select and combine frames.
 void add_frame_options(const FieldOptions<DecodeRequest>& request) {
   request.add("min_depth_m", "--min-depth");
   request.add("max_depth_m", "--max-depth");

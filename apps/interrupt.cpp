@@ -11,7 +11,7 @@ namespace tofsmith::apps {
 
 namespace {
 volatile std::sig_atomic_t flag = 0;
-volatile std::sig_atomic_t someone_looks = 0;  // whether interrupted() has been called
+volatile std::sig_atomic_t someone_looks = 0;  // 1 after the first call of interrupted()
 
 extern "C" void stop_or_set_flag(int signal) {
   if (someone_looks == 0) {

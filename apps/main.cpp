@@ -187,7 +187,8 @@ int run(int argc, char** argv) {
   app.formatter(std::make_shared<HelpPages>());
   app.set_help_flag("-h,--help", "print the common options and exit");
   app.set_help_all_flag("--help-all", "print all options, including advanced ones, and exit");
-  app.set_version_flag("--version", [] { return to_text(build_info()); });
+  app.set_version_flag(
+      "--version", [] { return to_text(build_info()); }, "print the version and exit");
   bool list_commands = false;
   app.add_flag("--list-commands", list_commands)->group("");  // input for the manual pages
   app.require_subcommand(0, 1);

@@ -66,8 +66,9 @@ struct CameraArguments {
   std::optional<double> temperature_c, sensor_temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
-  /// Uses the camera file that `simulate` wrote next to raw frames, if there is one and no option
-  /// names a camera. @return a note about it
+  /// Uses the camera file that `simulate` wrote next to raw frames, if it exists and no option
+  /// names a camera.
+  /// @return note about the camera file; none if it is not used
   std::optional<std::string> take_that_of(const std::filesystem::path& raw);
   /// Returns true if the user chose neither a camera nor its frequency.
   bool is_default() const {

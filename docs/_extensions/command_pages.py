@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes generated/commands, a page with the help of each command, and generated/camera_keys.md and
-generated/raw_format_keys.md, the keys of these files."""
+"""Writes generated/commands with a page per command, from the help texts of the tool, and the keys
+of these files to generated/camera_keys.md and generated/raw_format_keys.md."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from command_help import Command, Entry, all_commands
 
 
 def plain(text: str) -> str:
-    """Escapes Markdown outside backticks."""
+    """Escapes Markdown, except for code in backticks."""
     parts = text.split("`")
     parts[::2] = [re.sub(r"([\\*_<>\[\]#|~^$])", r"\\\1", part) for part in parts[::2]]
     return "`".join(parts)
 
 
 def sentence(text: str) -> str:
-    """Capitalizes the first word of a sentence, unless it is a name or symbol."""
+    """Capitalizes a text that begins with a word."""
     return text[0].upper() + text[1:] if re.match(r"[a-z]{2,}\b|a ", text) else text
 
 
 def rule_of(entry: Entry) -> str:
-    """Returns a sentence with the accepted values."""
+    """Describes the valid values in words."""
     between = re.fullmatch(r"in \[(.*) - (.*)\]", entry.rule)
     if between:
         return f"From {between[1]} to {between[2]}."
@@ -80,16 +80,16 @@ def front_page(tool: Command, pages: list[Command]) -> str:
     names = "\n".join(page.words[0] for page in pages)
     return f"""# Commands
 
-{plain(tool.description)} These pages are made from what `tofsmith COMMAND --help-all` says; `--help`
-shows the options of every day.
+{plain(tool.description)} These pages are generated from `tofsmith COMMAND --help-all`; `--help`
+shows only the common options.
 
 | command | does |
 |---|---|
 {rows}
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (what is finished is kept). Options below
-go with every command. `TOFSMITH_TARGET` in the environment pins the instruction set, so that machines
-that differ give the same bits.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (finished work is kept). The options
+below apply to all commands. The environment variable `TOFSMITH_TARGET` selects the instruction set,
+so that different machines give bit-identical results.
 
 {section_of(tool, 2)}
 ```{{toctree}}
@@ -101,7 +101,7 @@ that differ give the same bits.
 
 
 def write_pages(tool: str, folder: Path) -> list[str]:
-    """Writes one page per command and its subcommands, and returns the names of the pages."""
+    """Writes one page per command, which includes its subcommands. Returns the names of the pages."""
     first, *rest = all_commands(tool)
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.md"):
@@ -128,8 +128,8 @@ def camera_key_row(key: dict) -> str:
 
 
 def keys_page(tool: str, title: str, file: str, options: list[str]) -> str:
-    """Returns the keys printed by `tofsmith cameras OPTIONS`, a Markdown table per table of the file.
-    """
+    """Returns the keys listed by `tofsmith cameras OPTIONS`, one Markdown table per table of the
+    file."""
     keys = json.loads(subprocess.run([tool, "cameras", *options, "--json"], check=True,
                                      capture_output=True, text=True).stdout)
     head = "\n| key | meaning | unit | values | default |\n|---|---|---|---|---|"
