@@ -101,7 +101,7 @@ so that different machines give bit-identical results.
 
 
 def write_pages(tool: str, folder: Path) -> list[str]:
-    """Writes one page per command, which includes its subcommands. Returns the names of the pages."""
+    """Writes one page per command with its subcommands. Returns the names of the pages."""
     first, *rest = all_commands(tool)
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.md"):
