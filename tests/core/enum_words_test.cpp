@@ -12,6 +12,9 @@ namespace {
 enum class Fruit { apple, pear, plum };
 constexpr EnumWords<Fruit, 3> fruit_words("Fruit", "fruit", "apple", "pear", "plum");
 
+enum class Nut { hazel };
+constexpr EnumWords<Nut, 1> nut_words("Nut", "nut", "hazel");
+
 TEST(EnumWords, EveryValueIsReadBackFromItsWord) {
   for (const Fruit fruit : {Fruit::apple, Fruit::pear, Fruit::plum})
     EXPECT_EQ(fruit_words.parse(fruit_words.of(fruit)), fruit);
@@ -34,6 +37,7 @@ TEST(EnumWords, UnknownWordsAndValuesAreRejectedWithTheKnownOnes) {
               fruit_words.of(static_cast<Fruit>(3));
             }).find("Fruit = 3; must be in [0, 2]"),
             std::string::npos);
+  EXPECT_EQ(message_of([] { nut_words.parse("fig"); }), "nut = fig; must be hazel");
 }
 
 }  // namespace
