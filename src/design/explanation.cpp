@@ -80,7 +80,7 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
   const std::string band =
       harmonics == 0
           ? std::string("unlimited bandwidth")
-          : fmt::format("a bandwidth of {} harmonics (that pass by 4 % or more)", harmonics);
+          : fmt::format("a bandwidth of {} harmonics (transmitted by at least 4 %)", harmonics);
   return fmt::format(
       "With {} and {} per exposure, it has {} exposure{}{}: more exposures or taps distinguish "
       "more depths, but divide the same light and add read noise.",
