@@ -9,10 +9,10 @@ import json
 import sys
 from pathlib import Path
 
-EXIT_STATUS = (("0", "done"), ("1", "failed; the message says of what"),
+EXIT_STATUS = (("0", "done"), ("1", "failed; the message states the reason"),
                ("2", "wrong usage"), ("130", "interrupted; finished files are kept"))
-ENVIRONMENT = (("TOFSMITH_TARGET", "instruction set to use, such as AVX2, so that machines that "
-                                   "differ give equal bits"),)
+ENVIRONMENT = (("TOFSMITH_TARGET", "instruction set to use, such as AVX2, so that different "
+                                   "machines give bit-identical results"),)
 
 # Options that each command has.
 OWN = {"--help", "--help-all", "--version"}

@@ -189,11 +189,11 @@ def _together(given: Sequence[Any]) -> npt.NDArray[Any]:
     arrays = [_numpy_array(a, f"raw[{k}]", "a numpy.ndarray") for k, a in enumerate(given)]
     for k, array in enumerate(arrays):
         if array.ndim not in (2, 3):
-            raise ValueError(f"raw[{k}]: got shape {array.shape}; needs (H, W) or (F, H, W), as "
-                             "each holds one measurement")
+            raise ValueError(f"raw[{k}]: got shape {array.shape}; needs (H, W) or (F, H, W), because "
+                             "each array contains one measurement")
         if (array.shape, array.dtype) != (arrays[0].shape, arrays[0].dtype):
             raise ValueError(f"raw[{k}]: got {array.dtype} of shape {array.shape}; needs "
                              f"{arrays[0].dtype} of shape {arrays[0].shape}, as raw[0]")
     if not arrays:
-        raise ValueError("raw: got no arrays; needs one a measurement")
+        raise ValueError("raw: got no arrays; needs one per measurement")
     return np.stack(arrays, axis=-3)

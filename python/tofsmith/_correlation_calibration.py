@@ -286,13 +286,13 @@ def calibrate_correlation(
     camera = camera_of(camera)
     if reference is not None:
         if code is None:
-            raise ValueError("code: got None; needs the code that the camera played")
+            raise ValueError("code: got None; needs the code that the camera used")
         return calibrate_depth(sweep, camera, reference, code, reference_kind, progress)
     if isinstance(sweep, (str, os.PathLike)):
         sweep = read_delay_sweep(sweep, camera)
     _check.instance(sweep, DelaySweep, "sweep")
     if target_distance_m is not None and geometry_m is not None:
-        raise ValueError("geometry_m: got it beside target_distance_m; needs one of them")
+        raise ValueError("geometry_m: got it together with target_distance_m; needs one of them")
     if target_distance_m is not None:
         target_distance_m = _check.number(target_distance_m, "target_distance_m")
     options = {

@@ -91,7 +91,7 @@ def plane_names(planes: Iterable[str], is_multipath: bool) -> tuple[str, ...]:
 def planes_of(out: DepthImage, planes: Optional[Iterable[str]]) -> DepthImage:
     _check.instance(out, DepthImage, "out")
     if planes is not None:
-        raise ValueError("planes: goes without out, whose planes are written")
+        raise ValueError("planes: cannot be combined with out, whose planes are written")
     for name, plane in out.planes().items():
         if not isinstance(plane, np.ndarray):
             raise TypeError(f"out.{name}: got {_check.shown(plane)}; needs a numpy.ndarray")

@@ -193,7 +193,7 @@ def target_of(target: Target, camera: Camera, normalize: bool) -> _tofsmith.Targ
     if isinstance(target, (str, os.PathLike)):
         return _tofsmith.load_target(_check.path(target, "target"), camera._handle, normalize)
     if normalize:
-        raise ValueError("normalize: goes with a target that is a table; codes are as they are")
+        raise ValueError("normalize: is only valid with a target that is a table")
     code = _check.instance(target, CodeSet, "target").resampled(camera.samples)
     return _tofsmith.targets_of(code._handle)
 

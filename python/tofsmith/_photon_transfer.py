@@ -117,10 +117,10 @@ def photon_transfer(
     camera = camera_of(camera)
     reads_differences = camera.sensor.readout == "difference"
     if reads_differences != (code is not None):
-        raise ValueError("code: got none; needs the code that was played, for the camera reads "
-                         "differences, from whose mean shot noise does not follow"
+        raise ValueError("code: got none; needs the code that the camera used, because the mean of "
+                         "differences does not determine the shot noise"
                          if reads_differences else
-                         "code: goes with cameras that read differences (sensor.readout)")
+                         "code: is only valid with cameras that read differences (sensor.readout)")
     code_handle = None if code is None else code_of(code, camera)._handle
     dark_frames = None if dark is None else _check.frames(dark, "dark")
     handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, code_handle,

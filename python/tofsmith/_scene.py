@@ -249,8 +249,8 @@ def capture(
         ).raw
     else:
         if _bounce_rays(bounces, bounce_rays, returns, transients):
-            raise ValueError("bounces: got 1 beside planes; needs a scene by its name or file, "
-                             "whose surfaces light can meet out of view")
+            raise ValueError("bounces: got 1 together with planes; needs the name or file of a "
+                             "scene, which has surfaces outside the view")
         camera = camera_of(camera)
         seen = scene_named(scene, camera.lens)
         raw = _tofsmith.capture(
@@ -356,7 +356,7 @@ def _bounce_rays(bounces: int, rays: int, returns: Any, transients: Any) -> int:
     if bounces not in (0, 1):
         raise ValueError(f"bounces: got {bounces}; needs 0 or 1")
     if bounces and (returns is not None or transients is not None):
-        raise ValueError("bounces: got 1 beside returns or transients; needs one of them")
+        raise ValueError("bounces: got 1 together with returns or transients; needs one of them")
     return _check.whole(rays, "bounce_rays", 1) if bounces else 0
 
 

@@ -286,8 +286,8 @@ class _Session:
             self._receive(_SOCKET_BYTES, 0.0)
         self._received = self._received.lstrip(b"\r\n")
         if self._received:
-            self.fail(f"received '{_printable(bytes(self._received))}', which nothing asked for; is "
-                      "another program using the instrument?")
+            self.fail(f"received '{_printable(bytes(self._received))}' without a request; check that "
+                      "no other program uses the instrument")
 
     def identify(self) -> list[str]:
         """Returns vendor, model, serial number and firmware."""
@@ -297,7 +297,7 @@ class _Session:
         if len(fields) < 4 or not fields[0] or not fields[1] or not re.fullmatch(
                 r"[ -~]+", answer):
             self.fail(f"found '{_printable(answer)}'; expected vendor, model, serial number and "
-                      "firmware: is this an instrument?")
+                      "firmware; check the address")
         return fields[:4]
 
     def read_line(self, more_s: float = 0.0) -> str:
@@ -330,9 +330,9 @@ class _Session:
             left_s = start + limit_s + (size or 0) / _BLOCK_BYTES_PER_S - time.monotonic()
             if left_s <= 0:
                 found = f"found '{_printable(bytes(self._received))}'" if self._received else "no answer"
-                self.fail(f"{found} within {limit_s:g} s; expected {expected}: does the instrument "
-                          "support SCPI and this command, and is it still connected? (--timeout "
-                          "waits longer)")
+                self.fail(f"{found} within {limit_s:g} s; expected {expected}; check that the "
+                          "instrument supports SCPI and this command and is still connected "
+                          "(--timeout waits longer)")
             self._receive(_MESSAGE_BYTES if size is None else size - len(self._received), left_s,
                           line_end)
 

@@ -144,7 +144,7 @@ def test_noise_of_differences_requires_their_code():
     assert ts.photon_transfer(levels, camera, dark=dark, code="sinusoid-k4").buckets == 2
     with pytest.raises(ValueError, match="code: got none"):
         ts.photon_transfer(levels, camera, dark=dark)
-    with pytest.raises(ValueError, match="code: goes with"):
+    with pytest.raises(ValueError, match="code: is only valid with"):
         ts.photon_transfer(levels, base, dark=dark, code="sinusoid-k4")
 
 

@@ -22,12 +22,12 @@ def parser() -> argparse.ArgumentParser:
         "tofsmith reproduce", allow_abbrev=False,
         description="Reproduces the paper's figures and statements, with our numbers.")
     made.add_argument("names", nargs="+", metavar="FIGURE", help="all, " + ", ".join(items))
-    made.add_argument("--fast", action="store_true", help="coarse: larger errors in less time")
+    made.add_argument("--fast", action="store_true", help="faster, with larger statistical errors")
     made.add_argument("--seed", type=int, default=1, help="seed of every random choice (1)")
-    made.add_argument("--mesh", help="for fig7, instead of the modelled hand (.obj .ply .stl)")
+    made.add_argument("--mesh", help="mesh for fig7, instead of the modelled hand (.obj .ply .stl)")
     made.add_argument("-o", "--output", default="tofsmith-reproduce",
-                      help="directory; figures that are finished there are not made again (%(default)s)")
-    made.add_argument("--force", action="store_true", help="make finished figures again")
+                      help="output directory; finished figures are kept (%(default)s)")
+    made.add_argument("--force", action="store_true", help="compute finished figures again")
     made.add_argument("--json", action="store_true", help="print one JSON document")
     made.add_argument("--threads", type=int, default=0, help="number of threads (0: all cores)")
     return made
