@@ -164,7 +164,7 @@ def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
     is_planar = one_of(layout, "layout", ("interleaved", "planar")) == "planar"
     if isinstance(raw, (list, tuple)):
         raw, is_planar = _together(raw), True
-    raw = _numpy_array(raw, "raw", "a numpy.ndarray, or a list of them, one a measurement")
+    raw = _numpy_array(raw, "raw", "a numpy.ndarray, or a list of them, one per measurement")
     if raw.dtype in (np.int8, np.int16, np.float16):
         raw = raw.astype(np.float32)
     elif raw.dtype.kind in "iu" and raw.dtype.itemsize > 2:
@@ -189,8 +189,8 @@ def _together(given: Sequence[Any]) -> npt.NDArray[Any]:
     arrays = [_numpy_array(a, f"raw[{k}]", "a numpy.ndarray") for k, a in enumerate(given)]
     for k, array in enumerate(arrays):
         if array.ndim not in (2, 3):
-            raise ValueError(f"raw[{k}]: got shape {array.shape}; needs (H, W) or (F, H, W), because "
-                             "each array contains one measurement")
+            raise ValueError(f"raw[{k}]: got shape {array.shape}; needs (H, W) or (F, H, W), "
+                             "because each array contains one measurement")
         if (array.shape, array.dtype) != (arrays[0].shape, arrays[0].dtype):
             raise ValueError(f"raw[{k}]: got {array.dtype} of shape {array.shape}; needs "
                              f"{arrays[0].dtype} of shape {arrays[0].shape}, as raw[0]")
