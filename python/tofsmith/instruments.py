@@ -286,8 +286,8 @@ class _Session:
             self._receive(_SOCKET_BYTES, 0.0)
         self._received = self._received.lstrip(b"\r\n")
         if self._received:
-            self.fail(f"received '{_printable(bytes(self._received))}' without a request; check that "
-                      "no other program uses the instrument")
+            self.fail(f"received '{_printable(bytes(self._received))}' without a request; check "
+                      "that no other program uses the instrument")
 
     def identify(self) -> list[str]:
         """Returns vendor, model, serial number and firmware."""
