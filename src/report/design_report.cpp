@@ -167,8 +167,9 @@ Table explanation(const DesignResult& result, DepthErrorKind kind) {
     table.caption =
         "Every code is evaluated at its best origin of depth; `evaluate` keeps its origin unless "
         "--best-rotation is given.";
-  for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
-    table.rows.push_back({questions[i], result.explanation[i]});
+  for (std::size_t i = 0; i < result.explanation.size(); ++i)
+    table.rows.push_back(
+        {i < questions.size() ? questions[i] : "Further remarks", result.explanation[i]});
   return table;
 }
 

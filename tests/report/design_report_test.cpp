@@ -144,6 +144,16 @@ TEST(DesignReport, ShowsMultipathErrorsEvenIfNoCodeSeparatesTwoReturns) {
     EXPECT_THAT(html, HasSubstr(words));
 }
 
+TEST(DesignReport, ContainsTheWholeExplanation) {
+  const Camera camera = small_camera("paper-5f0");
+  DesignResult result = design(camera, small_options());
+  result.explanation.push_back("The first further remark.");
+  result.explanation.push_back("The second further remark.");
+  const std::string html = page_document(design_report(camera, result, std::nullopt, ""));
+  EXPECT_THAT(html, HasSubstr("The first further remark."));
+  EXPECT_THAT(html, HasSubstr("The second further remark."));
+}
+
 TEST(DesignReport, SupportsInfiniteBounds) {
   const Camera camera = small_camera("paper-5f0");
   DesignResult result = design(camera, small_options());
