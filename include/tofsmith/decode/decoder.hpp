@@ -22,7 +22,8 @@ struct DecodeOptions {
   /// Lower limit on the posterior probability of the main lobe.
   double min_confidence = 0.9;
   double false_alarm_rate = 1e-3;
-  /// Root mean square error, relative to the part of the measurements that is due to the signal.
+  /// Root mean square error of the expected measurements, relative to their part that is due to the
+  /// signal.
   double model_error_percent = 0.0;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -37,17 +38,19 @@ auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
                           Help{"share of consistent pixels that are marked inconsistent; 0: none"}),
                     Field("model_error_percent", o.model_error_percent, closed(0, 100),
                           Help{"tolerated error of the camera model, such as wiggling, relative to "
-                               "the signal; at least the table's"}));
+                               "the signal; a larger value of the table replaces it"}));
 }
 
 /// Decodes depth by zero-mean normalized cross-correlation, with the ambient component projected
 /// out instead of the mean:
 ///   y' = electrons - dark,  a = T o kappa,  x(z) = T o chi(z),  P = I - a a^T / |a|^2
 ///   z_hat = argmax_z (P y') . (P x(z)) / |P x(z)|
-/// The maximum is taken over all bins with contrast. Scores within 1e-11 |P y'| of the best score
-/// are ties, which the lowest bin wins. The result is then refined to the best point on the chords
-/// to both adjacent bins. The bin is exactly that of double precision arithmetic for any type of
-/// the raw numbers, any processor and any number of threads.
+/// o is the element-wise product. Terms of the table are explained in DecodingTable. The maximum is
+/// taken over all bins with contrast. Scores within 1e-11 |P y'| of the best score are ties, which
+/// the lowest bin wins. The result is then refined to the best point on the chords, the straight
+/// lines from x(z_hat) to both adjacent bins. The bin always equals the result of double precision
+/// arithmetic. It does not depend on the type of the raw numbers, the processor or the number of
+/// threads.
 ///
 /// Immutable and thread-safe.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 3; deviates: projects out ambient, not the mean
@@ -63,30 +66,32 @@ class Decoder {
   const DecodeOptions& options() const;
   int measurements() const { return table().measurements(); }
   int samples() const { return table().bin_count(); }
-  /// Dimension of the measurements' residual after the projection, 2 to K.
+  /// Dimension of the space that P x(z) spans, 2 to K.
   int rank() const;
 
   /// Decodes one frame on all threads into the caller's planes. Allocates no planes.
   ///   bin: the best bin, as in decode_bins();
   ///   signal and ambient: least squares fit of y' to x(z_hat) and a;
-  ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
-  ///     variance, averaged over a quarter of the chord), propagated through the least squares
-  ///     problem in (z, S, A) that z_hat solves;
+  ///   predicted standard deviation: noise of the measurements, propagated through the least
+  ///     squares problem in (z, S, A) that z_hat solves. The noise has the variance at the
+  ///     estimate, mu_i + constant variance, averaged over a quarter of the chord;
   ///   confidence: posterior probability that the depth lies in the main lobe. A priori, all depths
-  ///     are equally likely, the ambient light may have any value, and the density of the signal
-  ///     is proportional to 1/S from a tenth of its standard deviation upwards. The noise is that
-  ///     at the best bin. The main lobe is the run of bins around the best one along which the
-  ///     code's own score decreases, at most 5 % of the range on either side. The confidence is 1
-  ///     if a bound proves that the probability of all other depths is at most about 1e-3;
-  ///   residual: chi-square per degree of freedom of the measurements around the decoded light;
+  ///     are equally likely, the ambient light may have any value, and the density of the signal is
+  ///     proportional to 1/S from a tenth of its standard deviation upwards. The noise is that at
+  ///     the best bin. The main lobe is the run of bins around the best one along which the score
+  ///     of noiseless measurements at the best bin decreases. It extends at most 5 % of the range
+  ///     to either side. The confidence is 1 if a bound proves that the probability of all other
+  ///     depths is at most about 1e-3;
+  ///   residual: chi-square, per degree of freedom, of the difference between the measurements and
+  ///     those expected for the decoded light;
   ///   status: see PixelStatus. A pixel is inconsistent if its residual exceeds the chi-square
   ///     quantile of false_alarm_rate by more than model_error_percent explains. low_signal depends
   ///     on the noise at the best bin. If the measurements without the ambient component are below
   ///     1e-12 of sum_i |y'_i|, they count as 0 and the pixel is no_return.
-  /// All planes except `bin` are computed in single precision: depth has an error of about 1e-7 /
-  /// (angle between adjacent bins) bins, signal and ambient light of about 1e-6 of the brightest
-  /// measurement. Pixels that are invalid or have no return are NaN in all planes of floats; the
-  /// bin is -1 only for invalid pixels.
+  /// All planes except `bin` are computed in single precision. The rounding error of depth is about
+  /// 1e-7 / (angle between adjacent bins) bins. That of signal and ambient light is about 1e-6 of
+  /// the brightest measurement. Pixels that are invalid or have no return are NaN in all planes of
+  /// floats; the bin is -1 only for invalid pixels.
   /// @param raw      electrons or counts, with as many measurements as the table
   /// @param decoded  planes of the same height and width; null planes are skipped and do not affect
   ///                 the values of the others
@@ -102,7 +107,7 @@ class Decoder {
   /// @param parts  one per pixel, row by row
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// Decodes frame `frame` of several (F, H, W, K) into a new image.
+  /// Decodes frame `frame` of a stack (F, H, W, K) into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Computes the positions of many pixels in [0, N), refined between bins in double precision.

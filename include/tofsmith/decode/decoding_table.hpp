@@ -15,8 +15,9 @@
 
 namespace tofsmith {
 
-/// Dependence of K measurements on light: their expected values and, if buckets are subtracted, the
-/// collected light, which determines shot noise.
+/// Dependence of K measurements on signal and ambient light: that of their expected values, and
+/// that of the collected light, which determines their shot noise. The two differ only if buckets
+/// are subtracted.
 struct MeasurementTable {
   Eigen::MatrixXd correlation;        ///< chi, (N, K), row n at depth_bin = n
   Eigen::VectorXd ambient_gain;       ///< kappa (K)
@@ -53,14 +54,16 @@ auto fields_of(ConstOrNot<DepthErrorTerms> auto& t) {
 }
 
 /// Depth error that is subtracted from decoded depths, as found by calibration against reference
-/// depths: `known` applies where the reference had depths; `beyond`, which has fewer terms,
-/// elsewhere.
+/// depths. `known` applies to the depths that the reference contained. `beyond`, which has fewer
+/// terms, applies to all other depths.
 struct DepthCorrection {
   int height = 0;  ///< rows of the frames, >= 1
   int width = 0;   ///< columns of the frames, >= 1
   DepthErrorTerms known;
   DepthErrorTerms beyond;
-  Eigen::VectorXd known_share;      ///< per equal part of the range: 1 if `known` applies, else 0
+  /// Weight of `known`, in [0, 1], at the middles of equal parts of the range; interpolated between
+  /// them. `beyond` has the remaining weight. Empty: `known` applies everywhere.
+  Eigen::VectorXd known_share;
   double signal_e_per_s = 1.0;      ///< S0 [e/s], > 0
   double min_signal_e_per_s = 0.0;  ///< smaller signals are replaced by this one [e/s]
   double max_signal_e_per_s = 0.0;  ///< larger signals are replaced by this one [e/s]
@@ -80,15 +83,16 @@ auto fields_of(ConstOrNot<DepthCorrection> auto& c) {
                     Field("max_signal_e_per_s", c.max_signal_e_per_s));
 }
 
-/// Rules that replace saturated and invalid raw numbers before any arithmetic: invalid ones by NaN,
-/// saturated ones by saturated_above or saturated_below, which the table's levels recognize.
+/// Rules that replace special raw numbers before any arithmetic. Invalid numbers become NaN.
+/// Saturated numbers become saturated_above or saturated_below, which are at the saturation levels
+/// of the table and therefore count as clipped.
 struct RawMarking {
   RawMarkers markers;  ///< special numbers of the camera; these rules are applied first
-  /// Replaces a saturated number: the table's saturation level, or 2^53 without one.
+  /// Value that replaces a saturated number: the table's saturation level, or 2^53 without one.
   double saturated_above = 0x1p53;
-  /// Replaces a number that is clipped at the lower end: the table's lower level.
+  /// Value that replaces a number clipped at the lower end: the table's lower saturation level.
   double saturated_below = 0x1p53;
-  bool subtracts = false;  ///< numbers are differences of light: an unsigned 0 is clipped
+  bool subtracts = false;  ///< numbers are differences of light, so that an unsigned 0 is clipped
   /// Largest number of the converter [DN]: unsigned numbers at or above it are clipped.
   std::optional<double> converter_max = {};
   /// Largest number of a converter of signed tap differences [DN]: signed numbers equal to this or
@@ -112,7 +116,8 @@ struct RawMarking {
 /// Returns the rules for a camera's raw numbers, from its converter, full well and special numbers.
 RawMarking raw_marking_of(const Camera& camera);
 
-/// Returns the bin, of `bins` per period, nearest to row `row` of `rows`; -1 for -1.
+/// Returns the bin nearest to row `row`, where a period has `rows` rows and `bins` bins. Returns -1
+/// for row -1.
 constexpr std::int32_t nearest_bin_of_row(std::int32_t row, std::int64_t rows, std::int64_t bins) {
   if (row < 0 || rows == bins) return row;
   return static_cast<std::int32_t>((2 * row * bins + rows) / (2 * rows) % bins);
@@ -127,17 +132,18 @@ constexpr std::int32_t nearest_bin_of_row(std::int32_t row, std::int64_t rows, s
 /// buckets are subtracted, and are otherwise empty. Duties, exposures, gains and offsets may differ
 /// between measurements.
 ///
-/// The noise of rows is correlated. With `whitening`, all shot terms and constant_variance_e2 are
-/// variances of whitening (electrons - dark), whose covariance is diagonal at one nominal light
-/// level.
+/// Measurements of a sensor with Readout::rows have correlated noise. Their tables contain the
+/// matrix `whitening`, W. All shot terms and constant_variance_e2 are then variances of the
+/// whitened measurements W (electrons - dark). The covariance of these is diagonal at one nominal
+/// light level.
 struct DecodingTable : MeasurementTable {
   Eigen::VectorXd exposure_s;      ///< T [s] (K), each > 0
   Eigen::VectorXd dark_electrons;  ///< expected electrons without light [e] (K)
 
   Eigen::VectorXd shot_dark_electrons;   ///< [e] (K), or empty: equal to dark_electrons
   Eigen::VectorXd constant_variance_e2;  ///< of readout and quantization [e^2] (K), each >= 0
-  /// Ambient light whose shot noise decoders assume if ambient_gain is 0, because the measurements
-  /// do not depend on it [e/s].
+  /// Ambient light [e/s] that decoders assume in order to compute shot noise if ambient_gain is 0.
+  /// In this case the measurements contain no information on ambient light.
   double hidden_ambient_e_per_s = 0.0;
 
   Eigen::VectorXd black_level;            ///< raw number without light (K); 0 for electrons
@@ -152,15 +158,17 @@ struct DecodingTable : MeasurementTable {
   /// N, the number of bins in which depths are reported. The table has as many rows as its
   /// correlation functions need. 0: one bin per row.
   int bins = 0;
-  Eigen::MatrixXd whitening;  ///< (K, K), or empty: noise is independent
-  /// Full covariance of whitening (electrons - dark), for rows. Empty without whitening.
+  Eigen::MatrixXd whitening;  ///< W (K, K), or empty: noise is independent
+  /// Full covariance of the whitened measurements W (electrons - dark). Empty without whitening.
   RowCovariance covariance;
-  /// For frames of one size; apply() subtracts it from decoded depths. None: no correction.
+  /// Depth error that apply() subtracts from decoded depths, for frames of one size. None: no
+  /// correction.
   std::optional<DepthCorrection> correction = {};
-  /// Minimum error of the table that decoders tolerate; see DecodeOptions::model_error_percent.
+  /// Error of the table, as DecodeOptions::model_error_percent. Decoders tolerate the larger of
+  /// both.
   double model_error_percent = 0.0;
   int exposures = 0;  ///< per frame, with K / exposures measurements each; 0: K exposures
-  /// Constant that [playback] adds to depth, included in the correlation [m].
+  /// Constant [m] that [playback] adds to depth; `correlation` already includes it.
   double playback_offset_m = 0.0;
 
   /// Number of exposures per frame, each of which yields measurements() / exposure_count() numbers.
@@ -191,18 +199,20 @@ struct DecodingTable : MeasurementTable {
   void validate() const;
 };
 
-/// Builds the table of a code on a camera. Raw numbers are electrons without ADC, else counts.
-/// Differences of buckets are differences of converted values, so that the black level cancels.
-/// They are clipped at the ends of the converter's signed or unsigned range; a clipped bucket
-/// cannot be detected in a smaller difference. Rows are whitened by their covariance, averaged over
-/// depth, in the middle of the camera's operating points.
+/// Builds the table of a code on a camera. Raw numbers are counts if the camera has an ADC, and
+/// electrons otherwise. Differences of buckets are differences of converted values, so that the
+/// black level cancels. They are clipped at the ends of the converter's signed or unsigned range. A
+/// clipped bucket cannot be detected if the difference lies within this range. Rows are whitened by
+/// their covariance, averaged over depth, in the middle of the camera's operating points.
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera);
 
-/// Returns the table of the whitened measurements, whitening (electrons - dark), which decodes like
-/// the table of rows. Returns the table itself without whitening.
+/// Returns the table of the whitened measurements W (electrons - dark). It decodes these to the
+/// same depths as `table` decodes the original measurements. Without whitening, returns `table`
+/// itself.
 DecodingTable whitened(const DecodingTable& table);
 
-/// @throws InvalidArgument if measurements are rows, which `what` does not support
+/// @param what  name of the feature that does not support rows, for the message
+/// @throws InvalidArgument if measurements are rows
 void require_exposures(const DecodingTable& table, std::string_view what);
 
 /// Builds the table of a measured correlation (N, K) without a camera. Duties and exposures are
@@ -222,22 +232,23 @@ struct AmbiguousDepths {
   double second_m = 0.0;
 };
 
-/// Returns every depth whose direction equals that of a lower depth, paired with the lowest such
-/// depth, by increasing second_bin. Skips depths without contrast (all measurements equal, as for
-/// two words of one-tap Gray codes), which have no direction.
+/// Returns the depths that cannot be distinguished from a lower depth, each paired with the lowest
+/// such depth, by increasing second_bin. Two depths cannot be distinguished if their correlations
+/// without the ambient component have the same direction. Skips depths without contrast (all
+/// measurements equal, as for two words of one-tap Gray codes), which have no direction.
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table);
 
 /// Returns the largest angle between adjacent rows of a table [rad], except for jumps (more than 75
-/// degrees, as at the end of a ramp). Returns 0 for a smooth table, whose course between rows is
-/// known. For other tables, depths between rows are assumed to lie on chords; above 10 degrees the
-/// true curve may differ.
+/// degrees, as at the end of a ramp). Returns 0 for a smooth table, which can be interpolated
+/// accurately. For other tables, decoders assume chords (straight lines) between adjacent rows. If
+/// the angle exceeds 10 degrees, the true curve may deviate from them.
 double furthest_turn_rad(const DecodingTable& table);
 
 /// Contribution of constant light to the measurements of a measured table.
 enum class MeasuredAmbient {
   equal,  ///< equal for all, as with equal duties; cancels in differences of taps
-  mean,   ///< proportional to the mean of the column over the period: right for any duties, if the
-          ///< columns are 0 without light
+  mean,   ///< proportional to the mean of the column over the period: correct for any duties if
+          ///< the columns are 0 without light
   none,   ///< zero: the columns are differences
 };
 
@@ -280,9 +291,10 @@ struct MeasuredTable {
 /// samples, waveforms and impulse responses are ignored, because the measurement contains them.
 ///
 /// Signal is relative to the signal at which the table was measured. Shot noise is that of the
-/// expected electrons: columns with negative values are raised along ambient_gain, which lowers the
-/// decoded ambient light by the same amount. Differences, and columns with negative values that do
-/// not depend on ambient light, have the noise of their largest magnitude at every depth.
+/// expected electrons, which must not be negative. If columns contain negative values, a multiple
+/// of ambient_gain is added to the table. This lowers the decoded ambient light by the same amount.
+/// Some columns remain negative: differences, and columns that do not depend on ambient light.
+/// Their noise at every depth is that of their largest magnitude.
 /// @throws std::invalid_argument if table or camera are invalid or do not match
 DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& camera);
 

@@ -29,7 +29,9 @@ enum class PixelStatus : std::uint8_t {
   saturated = 3,   ///< a measurement is clipped: the depth may have a large error
   low_signal = 4,  ///< the signal does not exceed its noise
   ambiguous = 5,   ///< another depth, far from this one, explains the pixel almost as well
-  mixed = 6,       ///< sees two surfaces at an edge: the depth is neither's, or that of a neighbour
+  /// The pixel sees two surfaces at an edge. Its depth belongs to neither of them, or is that of a
+  /// neighbour (MixedPixels::snap).
+  mixed = 6,
   inconsistent = 7,  ///< no depth explains the measurements within their noise
   too_near = 8,      ///< the depth is below the depth limits: no depth
   too_far = 9,       ///< the depth is above the depth limits: no depth
@@ -66,7 +68,7 @@ enum class PlaneUse {
   usual,       ///< from every decoder; written by default
   on_request,  ///< from every decoder
   of_returns,  ///< from decoders of several returns, which write it by default
-  of_frames    ///< only from decode_frame(), computed from the numbers that it decodes
+  of_frames    ///< only from decode_frame(), computed from the raw numbers of the frame
 };
 
 // All planes of a decoded frame. Structs, names, help texts, files and Python classes are derived
@@ -81,7 +83,7 @@ enum class PlaneUse {
   PLANE(float, confidence, confidence, "", usual,                                               \
         "probability that the depth lies in the main lobe")                                     \
   PLANE(float, predicted_standard_deviation_m, deviation, "m", usual,                           \
-        "predicted standard deviation of the depth if it is in the right peak")                 \
+        "predicted standard deviation of the depth, given that it is in the correct peak")      \
   PLANE(PixelStatus, status, status, "", usual, "reliability of the depth")                     \
   PLANE(float, delay_m, delay, "m", of_returns, "delay of the second return, NaN without one")  \
   PLANE(float, ratio, ratio, "", of_returns,                                                    \
@@ -130,7 +132,8 @@ constexpr auto words_of(DecodedPlane /*any*/) {
 std::string_view name_of(DecodedPlane plane);
 /// @throws std::invalid_argument for any other word
 DecodedPlane parse_decoded_plane(std::string_view name);
-/// Returns the help text with the meaning of codes and the methods that fill the plane.
+/// Returns the help text of a plane, with the meaning of its status codes and the methods that fill
+/// it.
 std::string help_of(DecodedPlane plane);
 /// Returns the planes that are written by default.
 /// @param multipath  for decoders of several returns
@@ -171,14 +174,14 @@ struct DecodedView {
   bool wants_bins_only() const;
   /// Returns the planes that are not null.
   std::vector<DecodedPlane> planes() const;
-  /// All planes of an image that have a size.
   /// Returns a view of all planes of an image that are not empty.
   static DecodedView of(DepthImage& image);
   /// Returns a view of the same planes that begins at a later pixel.
   DecodedView from(std::size_t pixel) const;
 };
 
-/// Calls `use` with one plane of each argument `of`: images, or pointers of views.
+/// Calls `use` with the given plane of every argument `of`. A DepthImage provides an Image, a
+/// DecodedView a pointer.
 template <typename Use, typename... Planes>
 auto with_plane(DecodedPlane plane, const Use& use, Planes&... of) {
 #define TOFSMITH_PLANE(type, member, word, unit, use_of, help) \
@@ -197,8 +200,8 @@ void for_each_plane(const Use& use, Planes&... of) {
 }
 #undef TOFSMITH_DECODED_PLANES
 
-/// Calibration of the individual pixels of a sensor, of the size of its frames. An empty map is not
-/// applied; NaN in a map marks a dead pixel.
+/// Calibration of the individual pixels of a sensor. Maps have the size of its frames. An empty map
+/// is not applied; NaN in a map marks a dead pixel.
 struct PixelMaps {
   Image<float> delay_offset_m;  ///< (H, W): distance by which a pixel decodes too far [m], any sign
   Image<float> gain;            ///< (H, W): response relative to that of a usual pixel, > 0
@@ -256,20 +259,21 @@ struct UnfilteredPixels {
   Image<std::uint8_t> mixed = {};
 };
 
-/// Finds pixels of a decoded frame that see two surfaces (flying pixels), as lenses cause them at
-/// depth edges.
+/// Finds flying pixels in a decoded frame: pixels that see two surfaces at a depth edge, because
+/// the lens blurs the image.
 ///
-/// The candidate surfaces of a pixel are those pixels of its 9 x 9 neighbourhood whose depth agrees
-/// with most of their neighbours, along the local slope. A pixel whose depth matches none of
-/// these surfaces is mixed if the light of two of them,
+/// The candidate surfaces of a pixel are pixels of its 9 x 9 neighbourhood. The depth of a
+/// candidate agrees with that of most of its neighbours, apart from the local slope. A pixel whose
+/// depth matches no candidate is tested for the light of two candidates,
 ///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0,
-/// fits its measurements (weighted least squares) much better than either surface alone, within
-/// noise, and not much worse than a single return at the decoded depth. For filtered pixels, the
-/// unfiltered measurements must pass the test too, because averaging over neighbours hides mixed
-/// light. With rank 2 (K = 3), two returns fit any measurement, and no pixel is marked. Pixels that
-/// are invalid, saturated or without depth do not change.
+/// by weighted least squares. The pixel is mixed if this model explains its measurements within
+/// noise, much better than either surface alone, and not much worse than a single return at the
+/// decoded depth. For filtered pixels, the unfiltered measurements must pass the test too, because
+/// averaging over neighbours hides mixed light. With rank 2 (K = 3), two returns fit any
+/// measurement, and no pixel is marked. Pixels that are invalid, saturated or without depth do not
+/// change.
 /// @param table    table of the decoder
-/// @param raw      the decoded numbers; filtered numbers with their number of averaged measurements
+/// @param raw      numbers that were decoded; if filtered, with the number of averaged measurements
 /// @param maps     maps that were applied to `decoded`
 /// @param decoded  whole frame, modified in place: depth_m, predicted_standard_deviation_m and
 ///                 status are required; snap writes depth_m, its deviation, and status

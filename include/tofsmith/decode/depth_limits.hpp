@@ -39,7 +39,7 @@ std::optional<DepthLimits> depth_limits(const DecodingTable& table,
 /// inconsistent is kept; the depth is NaN in any case.
 ///
 /// Must be called before apply(DepthCorrection) and apply(PixelMaps), whose effect it takes into
-/// account, and remove_outside() after them.
+/// account. remove_outside() must be called after these.
 /// @param decoder  decoder of the planes
 /// @param raw      numbers of the same pixels as `decoded`
 /// @param maps     maps of the whole frame, of `width` columns

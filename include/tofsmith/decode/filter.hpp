@@ -59,10 +59,10 @@ auto fields_of(ConstOrNot<FilterOptions> auto& o) {
             Help{"maximum number of averaged pixels that the similarity test of the next window "
                  "assumes"}),
       Field("same_depth_sigma", o.same_depth_sigma, above(0),
-            Help{"depth difference within which pixels belong to the same surface, along slopes"}),
+            Help{"depth difference, apart from slopes, within which pixels belong to one surface"}),
       Field("own_light_sigma", o.own_light_sigma, at_least(0),
-            Help{"rise by filtering above which a dark pixel in a dark neighbourhood keeps its raw "
-                 "value"}));
+            Help{"increase by filtering above which a dark pixel in a dark neighbourhood keeps its "
+                 "raw value"}));
 }
 
 struct FilterPlanes;
@@ -94,19 +94,22 @@ class FilteredFrame {
 
 /// Averages the raw measurements of neighbouring pixels at the same depth, before decoding.
 ///
-/// Without ambient light, the measurement vectors of pixels at one depth are parallel for any
-/// albedo: u = V^T y = S p(z). They can therefore be averaged without bias. A test of parallelism
-/// that accounts for the noise variances v and v' decides whether two pixels are averaged:
+/// After projecting out ambient light, the measurement vectors of pixels at one depth are parallel
+/// for any albedo: u = V^T y = S p(z). The columns of V are a basis of the remaining space, and p
+/// is the coding curve, V^T x(z) (see Decoder). The vectors can therefore be averaged without bias.
+/// A test of parallelism that accounts for the noise variances v and v' decides whether two pixels
+/// are averaged:
 ///   lambda = (a + b - sqrt((a - b)^2 + 4 c^2)) / 2,  a = |u|^2 / v, b = |u'|^2 / v',
 ///   c = max(0, u . u') / sqrt(v v').
-/// lambda is the least chi^2 of one direction for both vectors, with rank - 1 degrees of freedom.
-/// The weight of a neighbour follows from the mean of lambda over a 5 x 5 patch. Each further
-/// window combines every fifth pixel of the previous result. These pixels share no measurement, so
-/// the variance of the average is exact.
+/// lambda is the smallest chi^2 with which one direction explains both vectors. It has rank - 1
+/// degrees of freedom. The weight of a neighbour follows from the mean of lambda over a 5 x 5
+/// patch. Each further window combines every fifth pixel of the previous result. These pixels share
+/// no measurement, so the variance of the average is exact.
 ///
-/// A pass along slopes decodes the current result, fits a plane to the depths around each pixel,
-/// and moves the light of each neighbour along the coding curve by the depth difference of the
-/// plane before averaging. Slanted surfaces thus keep their depth and use the whole window.
+/// A pass along slopes decodes the current result and fits a plane to the depths around each pixel.
+/// Before averaging, the light of each neighbour is moved along the coding curve by the difference
+/// in depth between the two pixels on this plane. Slanted surfaces thus keep their depth and use
+/// the whole window.
 ///
 /// Ambient light and other returns are averaged as well. Invalid and saturated pixels keep their
 /// values and have no weight. With three measurements the test has one degree of freedom and little
@@ -132,8 +135,8 @@ class Filter {
 
   /// Filters one frame on all threads. Allocates nothing if `filtered` already holds a frame of the
   /// same size.
-  /// @param raw  electrons or counts with the measurements of the table; may be averages, as
-  ///   specified by `averaged`
+  /// @param raw  electrons or counts with the measurements of the table; may be averages, whose
+  ///   number of measurements is RawView::averaged
   /// @param left_out  (H, W) or empty: pixels with nonzero values keep their raw values and have no
   ///   weight (e.g. mixed pixels of mark_mixed_pixels())
   /// @throws std::invalid_argument if measurements or sizes differ; Interrupted if `progress`
@@ -141,7 +144,7 @@ class Filter {
   /// @note the same bits for any number of threads and any memory layout
   void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
              const Image<std::uint8_t>& left_out = {}) const;
-  /// Filters frame `frame` of (F, H, W, K).
+  /// Filters frame `frame` of a stack (F, H, W, K).
   FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   struct Plan;  ///< implementation

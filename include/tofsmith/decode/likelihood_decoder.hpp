@@ -15,13 +15,15 @@ namespace tofsmith {
 ///   mu_i(z, S, A) = T_i (S chi_i(z) + A kappa_i)
 ///   v_i(z, S, A)  = T_i (S shot_chi_i(z) + A shot_kappa_i) + shot_dark_i + constant_i,
 /// and normal noise, the most likely depth z, signal S >= 0 and ambient light A >= 0 minimize
-///   cost(z, S, A) = sum_i (y'_i - mu_i)^2 / v_i + log v_i
-/// on the chords between bins, where mu and v are linear in S (1 - t), S t and A. The lower limit
-/// of v_i is 1e-4 of the mean |y'_i|. If buckets are subtracted so that ambient light cancels, A is
-/// 0. Among depths whose costs differ by less than 1e-9, the lowest is returned.
+///   cost(z, S, A) = sum_i (y'_i - mu_i)^2 / v_i + log v_i.
+/// Between bins, the correlation functions are chords (straight lines). At a share t of the way
+/// from one bin to the next, mu and v are linear in S (1 - t), S t and A. The lower limit of v_i is
+/// 1e-4 of the mean |y'_i|. If buckets are subtracted so that ambient light cancels, A is 0. Among
+/// depths whose costs differ by less than 1e-9, the lowest is returned.
 ///
-/// Candidates are the peaks over bins of weighted least squares, with weights from the estimate by
-/// zero-mean normalized cross-correlation. Fisher scoring minimizes the cost from each candidate.
+/// Candidates are the bins at which a weighted least squares fit has a local optimum. Its weights
+/// follow from the estimate by zero-mean normalized cross-correlation. Fisher scoring minimizes the
+/// cost from each candidate.
 ///
 /// The variance is part of the fit. Iteratively reweighted least squares with the same A >= 0 has
 /// the same mean depth error within 0.1 % for all built-in codes except ramps, where its error is
@@ -49,14 +51,15 @@ class LikelihoodDecoder {
   /// Decodes one frame as Decoder::decode(), except for
   ///   signal and ambient: the most likely ones;
   ///   predicted standard deviation: from the Fisher information on (z, S, A) of the expected
-  ///     values at the estimate. It does not use A >= 0, so that it may be too large in the dark;
+  ///     values at the estimate. It ignores the constraint A >= 0, so the deviation may be too
+  ///     large in the dark;
   ///   confidence: posterior probability of the main lobe around the most likely depth, with the
   ///     noise at the initial estimate of the depth.
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
   /// See Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// Decodes frame `frame` of several (F, H, W, K) into a new image.
+  /// Decodes frame `frame` of a stack (F, H, W, K) into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Computes the positions of many pixels in [0, N); see Decoder::decode_depth_bins().

@@ -79,7 +79,8 @@ class MultipathDecoder {
   ///     returns;
   ///   predicted standard deviation: from the Fisher information on (z, delta, S1, S2, A), without
   ///     the constraint S1 >= S2;
-  ///   confidence: posterior probability compared with the best fit at another direct depth;
+  ///   confidence: posterior probability of the best fit if the best fit at another direct depth is
+  ///     the only alternative;
   ///   delay, ratio: of the second return or of the tail; NaN without one;
   ///   returns: ReturnStatus; PixelStatus is the same as from Decoder.
   /// With a prior, depth and deviation of pixels that one return does not explain are taken from
@@ -92,7 +93,7 @@ class MultipathDecoder {
   /// See Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// Decodes frame `frame` of several (F, H, W, K) into a new image with the usual planes.
+  /// Decodes frame `frame` of a stack (F, H, W, K) into a new image with the usual planes.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Computes the positions of many pixels in [0, N); see Decoder::decode_depth_bins(). NaN without
@@ -118,8 +119,8 @@ class MultipathDecoder {
 /// the direct return.
 class TailDecoder : public MultipathDecoder {
  public:
-  /// @throws std::invalid_argument if table or options are invalid, or the code has too few
-  ///         independent means: fewer than 5 (4 if ambient light cancels)
+  /// @throws std::invalid_argument if table or options are invalid, or the expected measurements
+  ///         span too few dimensions: fewer than 5 (4 if ambient light cancels)
   explicit TailDecoder(DecodingTable table, const MultipathOptions& options = {});
 
   /// See TwoReturnDecoder::why_not_decodable().
@@ -140,19 +141,20 @@ class TailDecoder : public MultipathDecoder {
 /// single return.
 ///
 /// The noise of a measurement is estimated from the measurement: max(y', 0) + dark + constant
-/// variance. Curves are interpolated between bins by cubics if these predict the table better than
-/// chords do.
+/// variance. Correlation functions are interpolated between bins by cubics if these predict the
+/// table better than chords (straight lines) do.
 ///
 /// @see docs/multipath.md
 class TwoReturnDecoder : public MultipathDecoder {
  public:
-  /// @throws std::invalid_argument if table or options are invalid, or the code has too few
-  ///         independent means: fewer than 6 (5 if ambient light cancels). Codes of two frequencies
-  ///         have too few.
+  /// @throws std::invalid_argument if table or options are invalid, or the expected measurements
+  ///         span too few dimensions: fewer than 6 (5 if ambient light cancels). This excludes
+  ///         codes of two frequencies.
   explicit TwoReturnDecoder(DecodingTable table, const MultipathOptions& options = {});
 
   /// Returns why two returns cannot be separated with a valid table: no depth can be decoded, or
-  /// there are too few independent means. None: they can be separated, with any accuracy.
+  /// the expected measurements span too few dimensions. None: two returns can be separated, but the
+  /// accuracy may be low.
   static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 

@@ -27,8 +27,8 @@ auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
       Field("max_frames", o.max_frames, at_least(1),
             Help{"maximum number of frames to average; 1: frames are not averaged"}),
       Field("max_difference_sigma", o.max_difference_sigma, above(0),
-            Help{"difference from the mean above which averaging restarts; half of it reduces the "
-                 "weight"}),
+            Help{"difference from the mean above which averaging restarts; above 60 % of it, the "
+                 "weight of the mean decreases"}),
       Field(
           "before_filter", o.before_filter,
           Help{
@@ -43,12 +43,14 @@ auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
 ///
 /// The filter stores one frame: the mean s of the averaged measurements of a pixel, which has the
 /// variance of n measurements. If nothing changed, a new measurement y differs from s by noise of
-/// variance v (1 + 1 / n) in each of its K values, where v is the variance of the mean of both:
-/// shot noise of the collected light, read noise, and the noise of light that subtracted buckets
-/// hide. Three tests must find no change: chi^2 of the pixel, chi^2 of the 5 x 5 pixels around it,
-/// and chi^2 of the mean difference of those pixels, which detects common changes long before a
-/// single pixel does. If a test finds a change, its least possible size is added to the variance of
-/// s; from max_difference_sigma on, the pixel takes the value of the new frame alone.
+/// variance v (1 + 1 / n) in each of its K values. v is the variance of one measurement, estimated
+/// from the weighted mean of s and y. It includes shot noise of the collected light, read noise,
+/// and noise of light that cancels when buckets are subtracted. Three tests must find no change:
+/// chi^2 of the pixel, chi^2 of the 5 x 5 pixels around it, and chi^2 of the mean difference of
+/// those pixels, which detects common changes long before a single pixel does. If a test finds a
+/// change, the part of it that noise cannot explain is added to the variance of s, which reduces
+/// the weight of s. The weight is 0 from max_difference_sigma on: the pixel then has the value of
+/// the new frame alone.
 ///
 /// With `look_ahead`, the frames after a frame are averaged in the same way, from the last one
 /// backwards. The frame is compared with the past mean s_past and the future mean s_future
@@ -59,8 +61,8 @@ auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
 ///
 /// Invalid and saturated pixels are not averaged, and averaging restarts after them: a mean of only
 /// those frames in which a pixel is not clipped would be too low. A change of the light source's
-/// power counts as a change. The noise of ambient light that subtracted buckets hide is unknown:
-/// under strong ambient light fewer frames are averaged.
+/// power counts as a change. If ambient light cancels when buckets are subtracted, its noise is
+/// unknown: under strong ambient light, fewer frames are averaged.
 class TimeFilter {
  public:
   /// @throws std::invalid_argument if the table or the options are invalid
@@ -80,9 +82,10 @@ class TimeFilter {
   /// Adds the next frame, on all threads. Allocates nothing from the second frame on; with
   /// look_ahead, after the first look_ahead frames.
   /// @param raw  electrons or counts, of the same size as earlier frames; may be means of several
-  /// @return raw values for any decoder and Filter, with the number of averaged measurements, of
-  ///         the frame look_ahead frames before this one; none while there is no such frame. Valid
-  ///         until the next call.
+  ///             frames, as specified by RawView::averaged
+  /// @return average for the frame added look_ahead calls earlier, as raw values for any decoder
+  ///         and Filter, with the number of averaged measurements; none if there is no such frame
+  ///         yet. Valid until the next call.
   /// @throws std::invalid_argument if the size or the number of measurements differs
   /// @note the same bits for any number of threads and any layout of the raw values
   std::optional<RawView> add(const RawView& raw);

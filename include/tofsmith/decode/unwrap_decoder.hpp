@@ -13,8 +13,8 @@
 
 namespace tofsmith {
 
-/// Weights of the depths of the frequencies. Circular mean depth errors of multifrequency-k5 at
-/// S = 1e5, A = 1e2 e/s:
+/// Weights with which the depths from the individual frequencies are averaged. Circular mean depth
+/// errors of multifrequency-k5 at S = 1e5, A = 1e2 e/s:
 ///   band limit  amplitude of 7 f0  ZNCC     variance  frequency
 ///   none        all                7.8 mm   7.9 mm    7.9 mm
 ///   10 f0       a quarter          25.7 mm  26.2 mm   33.2 mm
@@ -36,8 +36,9 @@ UnwrapWeights parse_unwrap_weights(std::string_view name);
 struct UnwrapOptions {
   DecodeOptions status_thresholds;
   UnwrapWeights weights = UnwrapWeights::variance;
-  /// Maximum share, in [0, 1], of the variance of a correlation function outside its strongest
-  /// harmonic for it to count as a sinusoid. Other harmonics cause depth errors.
+  /// Upper limit, in [0, 1], for the share of a correlation function's variance that is not in its
+  /// strongest harmonic. Functions above the limit are rejected, because they are no sinusoids and
+  /// other harmonics cause depth errors.
   double largest_other_energy = 1e-3;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -54,8 +55,9 @@ struct UnwrapOptions {
 /// Frequencies and phase offsets are determined from the correlation functions, so that delay and
 /// attenuation of the camera are compensated.
 ///
-/// Unlike ZNCC, the method does not use the amplitudes, although all frequencies have the same
-/// signal. Weights by frequency also ignore that a camera attenuates high frequencies.
+/// Unlike ZNCC, the method ignores the information in the amplitudes, which follow from a signal
+/// that is the same for all frequencies. Weights by frequency also ignore that a camera attenuates
+/// high frequencies.
 ///
 /// Immutable and thread-safe.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 5, which compares with this decoder
@@ -87,7 +89,7 @@ class UnwrapDecoder {
   /// See Decoder::decode_within().
   void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress = {}) const;
-  /// Decodes frame `frame` of several (F, H, W, K) into a new image.
+  /// Decodes frame `frame` of a stack (F, H, W, K) into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Computes the positions of many pixels in [0, N); see Decoder::decode_depth_bins().
