@@ -52,7 +52,7 @@ struct LightSource {
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
   std::optional<Generator> generator;  ///< generates the modulation; none: any waveform, exactly
-  std::optional<SquareLight> square;   ///< square waves available to designs of frequencies
+  std::optional<SquareLight> square;   ///< square waves for DesignMethod::frequencies
 
   friend bool operator==(const LightSource&, const LightSource&) = default;
 };
@@ -70,12 +70,13 @@ inline void describe(FieldVisitor& fields, LightSource& light) {
                    at_least(0)),
                light.edge_jitter_s);
   fields.table(Key("generator", "Waveform generator that plays the modulation"), light.generator);
-  fields.part(Key("square", "Square waves that designs of frequencies choose from"), light.square);
+  fields.part(Key("square", "Square waves that the design method frequencies can use"),
+              light.square);
 }
 
 /// The demodulating pixel.
 struct Sensor {
-  int taps = 1;        ///< values per exposure; 2 = two-bucket; n = exclusive taps
+  int taps = 1;        ///< values per exposure; 2: two buckets; more: exclusive taps
   bool binary = true;  ///< designed waveforms only switch on and off
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
@@ -96,9 +97,9 @@ struct Sensor {
   bool drain = true;  ///< false: the gains of all taps add up to 1
   Readout readout = Readout::separate;
   Demodulation demodulation = Demodulation::gain;
-  std::optional<double> readout_gap_s;                     ///< none: 0
-  std::optional<double> frame_period_s;                    ///< none: duration of the exposures
-  std::optional<int> max_exposures;                        ///< of a design of frequencies; none: 8
+  std::optional<double> readout_gap_s;   ///< none: 0
+  std::optional<double> frame_period_s;  ///< none: duration of the exposures
+  std::optional<int> max_exposures;      ///< for DesignMethod::frequencies; none: 8
   std::optional<std::vector<double>> integration_times_s;  ///< of one exposure; none: any
 
   std::vector<double> contrasts_of(const CodeSet& code) const;  ///< per exposure, if the code fits
@@ -133,8 +134,8 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                     "same variance")
                     .basic(),
                 sensor.noise, noise_models);
-  fields.value(Key("dark_current_e_per_s", "Dark current of a tap, or of all time bins of rows",
-                   at_least(0)),
+  fields.value(Key("dark_current_e_per_s",
+                   "Dark current of a tap; for rows, of all time bins together", at_least(0)),
                sensor.dark_current_e_per_s);
   fields.value(Key("modulation_contrast",
                    "Demodulation contrast; a list contains one value per "
@@ -175,12 +176,12 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                    "another",
                    above(0)),
                sensor.frame_period_s);
-  fields.value(
-      Key("max_exposures", "Maximum number of exposures of a design of frequencies", closed(1, 16)),
-      sensor.max_exposures);
+  fields.value(Key("max_exposures", "Maximum number of exposures for the design method frequencies",
+                   closed(1, 16)),
+               sensor.max_exposures);
   fields.value(Key("integration_times_s",
-                   "Integration times that one exposure can have, of which a design of "
-                   "frequencies makes up exposure_s; without it, any",
+                   "Possible integration times of one exposure for the design method frequencies; "
+                   "those of a code add up to exposure_s; without it, any",
                    above(0)),
                sensor.integration_times_s);
 }
@@ -203,11 +204,11 @@ struct Playback {
   bool reversed = false;  ///< chi(-z) is measured instead of chi(z)
   bool inverted = false;  ///< taps are swapped; a single tap is open where the code closes it
   double offset_m = 0.0;  ///< constant that the camera adds to depth
-  /// The same per exposure or frequency of the code; empty: offset_m.
+  /// Constant per exposure or frequency of the code; empty: offset_m.
   std::vector<double> offsets_m;
-  /// The same per exposure or frequency, as phase of the frequency [rad]; replaces offset_m.
+  /// Constant per exposure or frequency, as phase of its frequency [rad]; replaces offset_m.
   std::vector<double> offset_rad;
-  /// The same in counts of the frequency's period; replaces offset_m.
+  /// As offset_rad, but in counts; one period has counts_per_period. Replaces offset_m.
   std::vector<double> offset_counts;
   double counts_per_period = 4096.0;
 
@@ -237,7 +238,8 @@ inline void describe(FieldVisitor& fields, Playback& playback) {
   fields.value(Key("order", "Exposures of the code in the order in which the camera plays them",
                    closed(0, 65535)),
                playback.order);
-  fields.value(Key("reversed", "Delay runs backwards"), playback.reversed);
+  fields.value(Key("reversed", "Measured delay decreases with distance: chi(-z) instead of chi(z)"),
+               playback.reversed);
   fields.value(Key("inverted", "Signs are opposite: taps are swapped"), playback.inverted);
   fields.value(Key("offset_m",
                    "Constant that the camera adds to depth; a list contains one value per "
@@ -337,11 +339,11 @@ struct Camera {
   /// the duration of the exposures with their gaps.
   /// @throws std::invalid_argument if frame_period_s is shorter than the exposures
   double frame_period_s(int exposures) const;
-  /// Returns the middle of an exposure [s] after the beginning of frame 0. Each exposure is
-  /// followed by a gap.
+  /// Returns the time from the beginning of frame 0 to the middle of an exposure [s]. Each exposure
+  /// is followed by a gap.
   double exposure_middle_s(int frame, int exposure, int exposures) const;
-  /// Returns the middle between the beginning of a frame's first exposure and the end of its last
-  /// [s] after the beginning of frame 0.
+  /// Returns the time from the beginning of frame 0 to the middle of a frame [s], which is half-way
+  /// between the beginning of its first exposure and the end of its last one.
   double frame_middle_s(int frame, int exposures) const;
 
   /// Unambiguous range [m]: c / (2 f0).
@@ -349,8 +351,8 @@ struct Camera {
   /// Depth of one bin [m]: range / N.
   double bin_m() const;
   /// Returns H_d(n f0) conj(H_m(n f0)) for n = 0 to `highest`: the transfer function of both arms
-  /// together. For rows the sensor's response delays the detected light, as the light's response
-  /// does: conj(H_d H_m).
+  /// together, the light source (H_m) and the sensor (H_d). For rows it is conj(H_d H_m), because
+  /// the responses of both arms delay the detected light.
   Eigen::VectorXcd transfer(int highest) const;
   /// Returns H_m(n f0) of the light alone. With edge jitter (independent normal displacements of
   /// rms s in every period), the mean waveform is blurred by the normal density, so that the
@@ -382,8 +384,8 @@ inline void describe(FieldVisitor& fields, Camera& camera) {
                    .usually(1e6, 3e8),
                camera.fundamental_frequency_hz);
   fields.value(Key("exposure_s",
-                   "Total integration time, split between the exposures, evenly unless the code "
-                   "contains exposure_shares; a list contains one time per exposure",
+                   "Total integration time, split evenly between the exposures unless the code "
+                   "contains exposure_shares; or a list with one time per exposure",
                    above(0))
                    .usually(1e-5, 1.0),
                NumberOrList{camera.exposure_s.total_s, camera.exposure_s.each_s});
@@ -420,14 +422,16 @@ inline void describe(FieldVisitor& fields, Camera& camera) {
 Camera at_distances(Camera camera, std::vector<double> distances_m, double albedo = 1.0,
                     std::optional<double> klux = {});
 
-/// Returns the default light of captures: that of the camera's optics on white surfaces at the
-/// given distance, with its sunlight; without optics the middle of the operating points.
+/// Returns the default light of captures: the signal that the camera's optics receive from white
+/// surfaces at the given distance, and the ambient light from their sunlight. Without optics or
+/// sunlight, signal or ambient light are those of the middle operating point.
 OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 
 /// Returns the camera on which codes are evaluated: one whose single pixels measure the sum of
-/// `operating.neighbours` = n pixels. Exposures, full well and saturation of the converter are n
-/// times as large, the read noise (including quantization) sqrt(n) times. The black level is
-/// assumed to be high enough for the converter. Returns the camera itself for n = 1.
+/// `operating.neighbours` = n pixels. Exposures, gaps, frame period, full well and saturation of
+/// the converter are n times as large. The read noise, including quantization, is sqrt(n) times as
+/// large. The black level is assumed to be so high that the converter clips no small values.
+/// Returns the camera itself for n = 1.
 /// @throws std::invalid_argument if the camera is invalid
 Camera judged_camera(const Camera& camera);
 

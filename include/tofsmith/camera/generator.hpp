@@ -41,14 +41,12 @@ inline void describe(FieldVisitor& fields, Generator& generator) {
   fields.value(Key("amplitude_bits", "Resolution of the amplitude", closed(1, 24)),
                generator.amplitude_bits);
   fields.value(Key("table_points",
-                   "Points of the table that contains one period; without it, as "
-                   "many as are played",
+                   "Number of points in the table of one period; without it, the number of "
+                   "points output per period",
                    closed(2, 1048576)),
                generator.table_points);
   fields.value(Key("edge_grid_s",
-                   "Time grid of the edges of binary waveforms, which divides the "
-                   "period",
-                   above(0)),
+                   "Time grid of the edges of binary waveforms; must divide the period", above(0)),
                generator.edge_grid_s);
 }
 

@@ -39,7 +39,8 @@ struct Lens {
 };
 
 /// Keys of [lens] that describe the pinhole. `calibration` names a file that replaces most of them,
-/// `calibration_camera` selects one of its cameras. The readers of documents load the file.
+/// `calibration_camera` selects one of its cameras. load_camera() and similar functions read the
+/// file.
 inline void describe(FieldVisitor& fields, Lens& lens) {
   fields.value(Key("rays", "File with the ray of each pixel (.npy), instead of a pinhole"),
                InputPath{lens.rays});
@@ -84,8 +85,8 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
           .only(is_pinhole, condition),
       lens.height_px);
   Key modes("frame_modes",
-            "Sensor with several frame sizes, each a part of the image or binned; the pinhole is "
-            "that of the whole sensor");
+            "Sensor with several frame sizes, which are crops or binned images; the pinhole "
+            "describes the whole sensor");
   modes.only(is_pinhole, condition);
   fields.part(modes, lens.frame_modes, [&](FieldVisitor& inner, FrameModes& sensor) {
     inner.choice(modes, sensor, frame_modes_words);
@@ -154,9 +155,7 @@ inline void describe(FieldVisitor& fields, LensBlur& blur) {
                    .only(is_disc, disc),
                blur.pixel_pitch_m);
   fields.value(Key("pixel_samples",
-                   "n of the n x n rays with which scenes of shapes are sampled per "
-                   "pixel",
-                   closed(1, 16)),
+                   "n: scenes made of shapes are sampled with n x n rays per pixel", closed(1, 16)),
                blur.pixel_samples);
 }
 

@@ -68,7 +68,7 @@ inline void describe(FieldVisitor& fields, OperatingMultipath& multipath) {
   fields.value(Key("delay_m", "Shortest and longest delay behind the direct return", above(0)),
                multipath.delay_m);
   fields.value(
-      Key("weight", "Weight of the error with multipath in what designs minimize", open(0, 1)),
+      Key("weight", "Weight of the error with multipath in the design criterion", open(0, 1)),
       multipath.weight);
 }
 
@@ -101,7 +101,7 @@ struct OperatingRange {
 /// Keys of [operating].
 inline void describe(FieldVisitor& fields, OperatingRange& range) {
   fields.value(Key("signal_e_per_s",
-                   "Levels of the modulated light, as rates of a fully open "
+                   "Levels of the modulated light, as photo-electron rates of a fully open "
                    "sensor",
                    left_open(0, 1e18))
                    .because("no sensor sees more electrons")
@@ -122,12 +122,12 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                    left_open(0, 1))
                    .usually(0.05, 1),
                NumberOrWord{range.albedo, "uniform", range.uniform_albedo});
-  fields.value(
-      Key("neighbours", "Pixels of one depth that a filter adds before decoding", closed(1, 10000)),
-      range.neighbours);
+  fields.value(Key("neighbours", "Number of pixels of one depth that a filter adds before decoding",
+                   closed(1, 10000)),
+               range.neighbours);
   fields.value(Key("working_distance_m",
-                   "Nearest and farthest depth, to which decoding is limited; without it, the "
-                   "unambiguous range",
+                   "Nearest and farthest depth, between which decoding searches; without them, "
+                   "anywhere in the unambiguous range",
                    at_least(0)),
                range.working_distance_m);
   fields.value(Key("depths",
