@@ -54,18 +54,18 @@ struct DesignOptions {
   std::optional<TargetSet> target;
   FactorizeOptions factorize;  ///< its seed is replaced by `seed`
   OptimizeOptions optimize;    ///< its seed is replaced by `seed`
-  ChipSearchOptions search;    ///< its seed and exposures are replaced
+  ChipSearchOptions search;    ///< its seed and exposures are replaced by `seed` and `exposures`
   /// If true, gradients include other bandwidths and edge jitter, and candidates are ranked by
   /// their worst perturbation (simulate/robustness.hpp).
   bool robust = false;
   /// If absent: suggested_baselines() and, unless the method is factorize, up to eight other
   /// built-in codes from a quick screening.
   std::optional<std::vector<std::string>> baselines;
-  /// Number of similar cameras of code_atlas() whose codes compete, adapted to the peak of this
-  /// camera; not used by factorize and search.
+  /// Number of most similar cameras in code_atlas() whose codes compete. Their codes are also tried
+  /// with pulses adapted to the peak of this camera. Not used by factorize and search.
   int atlas_cameras = 4;
   bool best_rotation = true;
-  /// Codes of optimization and factorization compete with exposures of different length, too.
+  /// If true, optimized and factorized codes are also tried with exposures of different length.
   bool split_exposures = false;
   int search_trials = 600;
   int trials = 20000;
@@ -103,7 +103,7 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
       Field("split_exposures", o.split_exposures,
             Help{"also try exposures of different length for optimized and factorized codes"}),
       Field("search_trials", o.search_trials, at_least(100),
-            Help{"trials per operating point during the selection of pairs"}),
+            Help{"trials per operating point while factorized waveforms or rows are selected"}),
       Field("trials", o.trials, closed(1000, 1e8),
             Help{"trials per operating point of the final evaluation"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
@@ -129,9 +129,9 @@ struct DesignResult {
 };
 
 /// Returns the error by which candidates are ranked [m]: linear or circular, as selected by the
-/// camera; with DesignOptions::robust on the worst perturbed camera, with a calibrated decoder. On
-/// cameras with operating.multipath it includes the error in that multipath and a penalty for large
-/// two-return errors (OptimizeOptions::max_two_return_loss).
+/// camera. With DesignOptions::robust, it is the error on the worst perturbed camera with a
+/// calibrated decoder. On cameras with operating.multipath it includes the error in that multipath
+/// and a penalty for large two-return errors (OptimizeOptions::max_two_return_loss).
 double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options);
 
@@ -157,17 +157,19 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
 /// Returns suitable numbers of exposures: fewer with more taps, more with larger bandwidth.
 std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);
 
-/// Returns the default of DesignOptions::baselines: for factorization the Hamiltonian targets (with
-/// a custom target, those with the listed exposures); otherwise sinusoids, squares, multi-frequency
-/// and Hamiltonian codes.
+/// Returns the default of DesignOptions::baselines. For factorization, these are the Hamiltonian
+/// codes that serve as targets, or with a custom target, the Hamiltonian codes with the listed
+/// numbers of exposures. Otherwise they are sinusoids, squares, multi-frequency and Hamiltonian
+/// codes.
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options);
 
 /// Ranks candidates by ranking_error_m(): evaluates all, at their best origins if requested
 /// (best_rotation()), with new random numbers (DesignOptions::seed and trials), and keeps the best
 /// of each name. Candidates without decodable depth are listed in DesignResult::left_out.
-/// @param candidates  supported codes with their origin
-/// @return the winner is never worse than any given candidate with one of DesignOptions::exposures;
-///   without such a candidate, or if no exposures are listed, than any given candidate
+/// @param candidates  codes that the camera supports, with the method that found each
+/// @return the best candidate of each name. The winner is never worse than any given candidate with
+///   one of the numbers in DesignOptions::exposures. If there is no such candidate, or the list is
+///   empty, it is never worse than any given candidate.
 /// @throws std::invalid_argument for invalid options or camera, an unsupported code, or no usable
 ///   candidate; Interrupted
 DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
@@ -273,9 +275,8 @@ struct RequirementOptions {
 };
 auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
   return std::tuple(
-      Field(
-          "error_m", o.error_m, above(0),
-          Help{"circular depth error that is asked for: geometric mean over the operating points"}),
+      Field("error_m", o.error_m, above(0),
+            Help{"required circular depth error: geometric mean over the operating points"}),
       Field("vary_bandwidth", o.vary_bandwidth, Help{"vary the bandwidth of both arms"}),
       Field("vary_power", o.vary_power, Help{"vary the power of the modulated light"}),
       Field("vary_exposure", o.vary_exposure, Help{"vary the integration time"}),
@@ -298,7 +299,7 @@ struct Sufficiency {
   double excluded_below = 0.0;
 };
 
-/// Error of the best code at each bandwidth and power, by a tenth of the trials.
+/// Error of the best code at each bandwidth and power, estimated with a tenth of the trials.
 struct RequirementMap {
   std::vector<double> bandwidth, power;  ///< factors, ascending
   Eigen::MatrixXd error_m;               ///< (bandwidth, power)
@@ -314,10 +315,10 @@ struct Requirements {
 };
 
 /// Finds the smallest amount of each quantity, varied separately, for which a code has at most the
-/// requested error. Codes are designed at factors of four and where the search ends; all are
-/// evaluated with the baselines on the same random numbers. The error decreases with each quantity,
-/// so bisection finds the factor to 0.5 %. The error is always circular, because there is no
-/// wrap-around at a given distance.
+/// requested error. Codes are designed in steps of a factor of 4, and again at the factor that the
+/// search finds. All codes and the baselines are evaluated with the same random numbers. The error
+/// decreases with each quantity, so bisection finds the factor to 0.5 %. The error is always
+/// circular, because a surface at a given distance causes no wrap-around.
 /// @throws std::invalid_argument as design(), for invalid options, or for bandwidth without a band
 ///   limit; Interrupted
 Requirements find_requirements(const Camera& camera, const RequirementOptions& options,
