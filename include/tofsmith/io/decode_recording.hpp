@@ -48,15 +48,15 @@ struct DecodeRequest {
   std::vector<DecodedPlane> outputs;
   DepthKind kind = DepthKind::radial;
   bool all_points = false;
-  /// For points and z, which require a lens or `view_deg`. With a map of rays, pixels without a ray
-  /// are invalid.
+  /// Lens for points and z-depth, which require a lens or `view_deg`. If it contains a map of rays,
+  /// pixels without a ray are invalid.
   std::optional<Lens> lens;
   std::optional<double> view_deg;
   bool undistort = false;  ///< requires a lens; has no effect without distortion
   std::optional<int> frame;
   bool stack = false;
-  /// Pixels that are invalid or saturated in one frame are also invalid or saturated in the mean.
-  /// At most the number of frames.
+  /// Number of consecutive frames to average, at most all. Pixels that are invalid or saturated in
+  /// one frame are also invalid or saturated in the mean.
   int average = 1;
   /// The recording consists of groups of frames, each merged by merge_exposures(). Cannot be
   /// combined with `average`.
@@ -67,8 +67,9 @@ struct DecodeRequest {
   bool sliding = false;
   std::filesystem::path stray_light;  ///< image with the kernel of StrayLight
   double averaged = 1.0;              ///< multiplied by `average`
-  /// Applied to consecutive frames, or means of frames. `frame` also uses the frames before it, and
-  /// with `look_ahead` the frames after it. With `filter`, `before_filter` is set.
+  /// Applied to consecutive frames, or to means of frames. If only one `frame` is decoded, the time
+  /// filter also reads the frames before it, and with `look_ahead` the frames after it. `filter`
+  /// sets `before_filter`.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< after the temporal filter
   std::optional<MixedPixels> mixed;     ///< see mark_mixed_pixels()
@@ -98,7 +99,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"description (.raw.toml) of a raw file without header; see docs/raw_formats.md"}),
       Field("output", r.output, FieldMark::from_above),
       Field("outputs", r.outputs, Help{help_of_outputs()},
-            IfAbsent{"depth to status, if the format supports them"}),
+            IfAbsent{"the planes from depth to status that the format supports"}),
       Field("kind", r.kind,
             Help{"depth to write: radial distance, or z along the optical axis; .ply and .pcd "
                  "contain points"}),
@@ -192,9 +193,9 @@ struct DecodedRecording {
 };
 
 /// Decodes a recording of any length with constant memory, in bands of rows (whole frames if they
-/// are filtered). The next band is read at the same time. Files are written completely or not at
-/// all.
-/// @param backend  the table of its decoder defines the raw numbers
+/// are filtered). The next band is read while a band is decoded. Files are written completely or
+/// not at all.
+/// @param backend  the table of its decoder defines the meaning of the raw numbers
 /// @throws std::invalid_argument "field = value; rule" for an invalid request, before any file is
 ///         written
 /// @throws IoError as RawFramesReader; for maps that do not match; for outputs that exist, are

@@ -21,8 +21,9 @@ struct DesignRecord {
 ///   details.json             targets and iteration histories, for reports
 ///   codes/NAME.code.json     every candidate
 ///   finished/NAME.json       finished designed codes, which a later run with the same camera,
-///                            target, options and seed reuses; damaged files are designed again
-/// NAME is file_name_of() the code's name.
+///                            target, options and seed reuses; codes in damaged files are
+///                            designed again
+/// NAME is the code's name, converted by file_name_of().
 class DesignDirectory {
  public:
   explicit DesignDirectory(std::filesystem::path path);

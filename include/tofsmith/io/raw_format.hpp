@@ -60,8 +60,8 @@ inline constexpr std::array<std::string_view, 3> negated_lines_words{"none", "ev
 inline constexpr std::array<std::string_view, 2> raw_byte_order_words{"little", "big"};
 inline constexpr std::array<std::string_view, 2> raw_tap_words{"keep", "subtract"};
 
-/// Layout of a raw dump of a sensor that does not describe itself: the content of a `*.raw.toml`
-/// file. describe() lists the keys; docs/raw_formats.md explains them.
+/// Layout of the raw dump of a sensor. The dump contains no description of its layout, so a
+/// `*.raw.toml` file provides it. describe() lists the keys; docs/raw_formats.md explains them.
 struct RawFormat {
   int width = 0;         ///< columns of an image in the file
   int height = 0;        ///< rows of an image in the file
@@ -80,8 +80,8 @@ struct RawFormat {
   std::optional<int> sign_bit;  ///< signed: bits above it are ignored; none: the highest
   NegatedLines negate_rows = NegatedLines::none;     ///< rows of the file, from 0
   NegatedLines negate_columns = NegatedLines::none;  ///< columns of the file, from 0
-  int negate_from_row = 0;     ///< first row of the file that is negated (again); 0: none
-  int negate_from_column = 0;  ///< first column of the file that is negated (again); 0: none
+  int negate_from_row = 0;     ///< numbers from this row of an image on are negated; 0: none
+  int negate_from_column = 0;  ///< the same for columns; two negations cancel
 
   RawOrder layout = RawOrder::planar;
   /// order[j] is the index of the measurement stored as number j of a pixel; -1: skipped. Numbers
@@ -200,13 +200,13 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                     "negated"),
                 f.negate_columns, negated_lines_words);
   fields.value(Key("negate_from_row",
-                   "First negated row of each image in the file, in addition to `negate_rows` and "
-                   "`negate_columns`; 0: none",
+                   "Row of each image in the file from which on numbers are negated, in addition "
+                   "to the other keys (two negations cancel); 0: none",
                    closed(0, 65535)),
                f.negate_from_row);
   fields.value(Key("negate_from_column",
-                   "First negated column of each image in the file, in addition to `negate_rows` "
-                   "and `negate_columns`; 0: none",
+                   "Column of each image in the file from which on numbers are negated, in "
+                   "addition to the other keys (two negations cancel); 0: none",
                    closed(0, 65535)),
                f.negate_from_column);
   fields.choice(Key("layout",
@@ -214,8 +214,8 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                     "(interleaved), or consecutive rows, one per measurement (by_rows)"),
                 f.layout, raw_order_words);
   fields.value(Key("order",
-                   "Measurement of the code, from 0, for each number of a pixel in the file; -1 "
-                   "and numbers beyond the list are skipped; default: 0, 1, 2, ...",
+                   "Index of the code's measurement, from 0, for each number of a pixel in the "
+                   "file; -1: skipped, as are numbers beyond the list; default: 0, 1, 2, ...",
                    closed(-1, 255)),
                f.order);
   fields.choice(Key("taps",
@@ -227,7 +227,7 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
   fields.value(Key("rotate_deg",
                    "Clockwise rotation of each image in the file, after flips: 0, 90, 180 or 270"),
                f.rotate_deg);
-  fields.value(Key("black_level", "Subtracted from every number", finite()), f.black_level);
+  fields.value(Key("black_level", "Value to subtract from every number", finite()), f.black_level);
   fields.value(Key("header_bytes", "Bytes to skip before the first frame", gap), f.header_bytes);
   fields.value(Key("trailer_bytes", "Bytes to skip after the last frame", gap), f.trailer_bytes);
   fields.value(Key("frame_header_bytes", "Bytes to skip before every frame", gap),
