@@ -11,8 +11,9 @@
 
 namespace tofsmith {
 
-/// Information on the delay of light that is blurred by arms with a given transfer function, if
-/// photons are recorded individually.
+/// Fisher information on the delay of light if photons are recorded individually. The light is
+/// blurred by one or both arms of the camera (light source and sensor), with a given transfer
+/// function.
 /// @see docs/bounds.md
 class PhotonInformation {
  public:
@@ -24,18 +25,19 @@ class PhotonInformation {
   /// Returns the integral over the period of (s x')^2 / (s x + other), with x the response of the
   /// arms: an upper limit for any light of mean at most 1. Infinite unless s x + other > 0.
   /// @param signal_e  s, electrons of the light
-  /// @param other_e   variance of everything else if it is collected together with the light
+  /// @param other_e   variance of everything else that is collected together with the light
   double of_impulses(double signal_e, double other_e) const;
-  /// Returns s^2 / other times the largest mean of x'^2 for light within [0, peak_factor] with mean
-  /// at most 1.
+  /// Returns an upper limit on s^2 / other times the mean of x'^2. It holds for any light within
+  /// [0, peak_factor] with mean at most 1.
   double of_ripple(double signal_e, double other_e, double peak_factor) const;
-  /// Returns the smaller of the two.
+  /// Returns the smaller of of_impulses() and of_ripple().
   double largest(double signal_e, double other_e, double peak_factor) const;
 
   /// max (2 pi n |H_n|)^2.
   double largest_slope_power() const { return largest_slope_power_; }
-  /// Returns how far light within [0, peak_factor] with mean at most 1 can fall below 0 behind the
-  /// arms; 0 unless the response itself is negative.
+  /// Returns the largest magnitude of negative values that light has after the arms have blurred
+  /// it, for any light within [0, peak_factor] with mean at most 1. This is 0 unless the response
+  /// itself has negative values.
   double undershoot(double peak_factor) const;
 
  private:
@@ -44,9 +46,9 @@ class PhotonInformation {
   double largest_slope_power_ = 0.0;
 };
 
-/// Upper limit on the information of one tap on a delay, given the number of electrons x that its
-/// gate passes in an exposure, for any gate (0 <= d <= 1) and light (mean at most 1). For a gate
-/// that passes x electrons of l(t) = s g + a, with g the response of the arms,
+/// Upper limit on the information that one tap provides on a delay. It holds for any light of mean
+/// at most 1 and any gate, 0 <= d <= 1. It depends on the number of electrons x that the gate passes
+/// in an exposure. With l(t) = s g + a, where g is the response of the arms,
 ///   |slope of x| <= Phi(x) = max of integral d l',
 ///   |curvature of x| <= Psi(x) = max of integral d l''
 /// over all gates with integral d l = x. The maximum is attained by gates that open where l'/l is
@@ -104,8 +106,8 @@ class CramerRaoBound {
   /// the depth entry of the inverse Fisher matrix over (depth, S, A), with variance mu_i + constant
   /// variance. Infinite if depth cannot be separated from signal and ambient light.
   Eigen::VectorXd sigma_m(const OperatingPoint& point) const;
-  /// Mean over depth, weighted as by the camera, of sqrt(2 / pi) sigma, the mean absolute value of
-  /// a normal deviation [m].
+  /// Mean over depth, weighted by the camera's distribution of depths, of sqrt(2 / pi) sigma, the
+  /// mean absolute value of a normal deviation [m].
   double mae_m(const OperatingPoint& point) const;
   /// As above, averaged over a signal scaled uniformly in (0, 1). At each albedo the bound is
   /// limited to range / 4, the mean circular error of a guess; otherwise the average diverges.
@@ -131,8 +133,8 @@ class CramerRaoBound {
 };
 
 /// Bound for unbiased estimators that observe all N time bins of an exposure with the light of a
-/// rows code: below the CramerRaoBound of any rows for this light. Without read noise; signal and
-/// ambient light unknown.
+/// code of rows (Readout::rows). It is below the CramerRaoBound of any rows for this light. Signal
+/// and ambient light are unknown, and there is no read noise.
 class HistogramBound {
  public:
   /// @param camera  the camera of `model`
@@ -141,7 +143,7 @@ class HistogramBound {
 
   /// Mean over depth of sqrt(2 / pi) sigma [m]; all bins are equivalent.
   double mae_m(const OperatingPoint& point) const;
-  /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
+  /// Averaged over a signal scaled uniformly in (0, 1), limited to range / 4 at each albedo.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
  private:
@@ -161,27 +163,30 @@ class ReceiverBound {
   /// @throws std::invalid_argument if the camera is invalid
   ReceiverBound(const Camera& camera, int exposures);
 
-  /// Upper limit on the mean over depth of the information [1 / period^2] that taps can gather,
-  /// from the largest harmonic that the arms pass and the capacity of a gate of duty kappa.
-  /// Multiplied by the largest relative density if depths are not uniform.
+  /// Upper limit on the mean over depth of the information [1 / period^2] that taps can gather. It
+  /// follows from the harmonic with the largest slope that the arms pass, and from the power that a
+  /// gate of duty kappa can have in harmonics. If depths are not uniform, it is multiplied by their
+  /// largest density relative to uniform depths.
   double tap_information(const OperatingPoint& point) const;
   /// As above for photons recorded individually behind both arms, with one read-out per exposure
-  /// (two if measurements are differences). The smallest of three limits: from the arms' response,
-  /// from the largest ripple within the peak, and from any gate.
+  /// (two if measurements are differences). It is the smallest of three limits: from the arms'
+  /// response, from the largest ripple within the peak, and from GateInformation::at_any_depth().
   double photon_information(const OperatingPoint& point) const;
-  /// As above for the mean over depth after any gate; infinite for rows and for measured responses,
-  /// which may ring.
+  /// As above for photons that pass gates, which do not record arrival times; from
+  /// GateInformation::mean_over_depths(). Infinite for rows, for mixers with analog weights and for
+  /// measured responses, which may ring.
   double gate_information(const OperatingPoint& point) const;
   /// Smallest of these limits.
   double information(const OperatingPoint& point) const;
 
   /// Lower limit on the mean circular error [m] of any estimator, biased or not, with S and A
   /// known; includes wraps and confused depths. It is the Ziv-Zakai bound computed from
-  /// information() and from the largest distance between any two depths that taps can achieve:
-  /// range / 4 without light, and about range sqrt(2 / pi) / sqrt(information) in bright light. If
-  /// depths are not uniform, the latter is used at all light levels. 0 without impulse responses.
+  /// information() and from the largest distance, in standard deviations, that taps can achieve
+  /// between the measurements of any two depths. It is range / 4 without light, and about range
+  /// sqrt(2 / pi) / sqrt(information) in bright light. If depths are not uniform, the latter is
+  /// used at all light levels. The bound is 0 without impulse responses.
   double mae_m(const OperatingPoint& point) const;
-  /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
+  /// Averaged over a signal scaled uniformly in (0, 1), limited to range / 4 at each albedo.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
  private:
@@ -218,10 +223,10 @@ class DirectTofBound {
   /// Upper limit for any modulation within the camera's peak and average power [1 / period^2];
   /// infinite if the light has no impulse response.
   double photon_information(const OperatingPoint& point) const;
-  /// range sqrt(2 / pi) / sqrt(photon_information) [m], or if depths are uniform the Ziv-Zakai
-  /// bound, which is range / 4 without light.
+  /// If depths are uniform: the Ziv-Zakai bound [m], which is range / 4 without light. Otherwise:
+  /// range sqrt(2 / pi) / sqrt(photon_information).
   double mae_m(const OperatingPoint& point) const;
-  /// Averaged over a signal scaled uniformly in (0, 1), at each albedo limited to range / 4.
+  /// Averaged over a signal scaled uniformly in (0, 1), limited to range / 4 at each albedo.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
 
   /// Exact information of one modulation [1 / period^2]; infinite without impulse response.
@@ -249,7 +254,7 @@ class MultipathBound {
   /// Smallest standard deviation of direct depth [m], at the centre of each bin (N).
   Eigen::VectorXd sigma_m(const OperatingPoint& point, double ratio, double delay_m) const;
   Eigen::VectorXd tail_sigma_m(const OperatingPoint& point, const ExponentialTail& tail) const;
-  /// Mean over depth of sqrt(2 / pi) sigma [m], at each depth limited to range / 4, the mean
+  /// Mean over depth of sqrt(2 / pi) sigma [m], limited at each depth to range / 4, the mean
   /// circular error of a guess.
   double mae_m(const Eigen::VectorXd& sigma_m) const;
 

@@ -53,7 +53,7 @@ struct EvaluateOptions {
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
   return std::tuple(
       Field("trials", o.trials, closed(2, 4e9),
-            Help{"trials per operating point; initial number if there is a target"}),
+            Help{"trials per operating point; initial number with target_standard_error"}),
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
@@ -68,7 +68,7 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
             Help{"relative standard error of the depth error at which trials end, such as 1% or "
                  "0.01; 0: no target"}),
       Field("max_trials", o.max_trials, closed(2, 4e9),
-            Help{"maximum number of trials per operating point with a target"}),
+            Help{"maximum number of trials per operating point with target_standard_error"}),
       Field("draw_every_measurement", o.draw_every_measurement,
             Help{"draw the noise of every measurement, so that all methods have the same noise"}),
       Field("bounds", o.bounds, Help{"compute the bounds; otherwise they are 0"}));
@@ -154,15 +154,15 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
 /// Trial t of point p uses only the random stream (seed, p, t). Its depth is uniform in the t-th of
 /// `trials` equal slices of the range (slices of equal probability if the camera weights depths);
 /// albedo (if uniform) and noise follow. All codes are thus compared at the same depths. Noise is
-/// normal or Poisson, as specified by the sensor, with the variance at that depth; for rows it is
-/// drawn in every time bin, or normal with their covariance. If the conversion is linear and the
-/// method is ZNCC, normal noise is drawn in the plane that ZNCC uses, with its covariance there:
-/// the same distribution from fewer random numbers. Standard errors are computed from differences
-/// of trials in neighbouring slices, and are slightly too large.
+/// normal or Poisson, as specified by the sensor, with the variance at that depth. For rows,
+/// Poisson noise is drawn in every time bin, and normal noise with the covariance of the rows. If
+/// the conversion is linear and the method is ZNCC, normal noise is drawn only in the subspace that
+/// ZNCC uses. This gives the same distribution of errors from fewer random numbers. Standard errors
+/// are computed from differences of trials in neighbouring slices, and are slightly too large.
 ///
 /// With a target, a point gets further rounds of trials, each sliced separately and at least half
-/// as large as all previous ones together. For the linear error there are enough trials for the
-/// number of wraps predicted from the circular error, even if none occurred.
+/// as large as all previous ones together. The number of trials for the linear error takes into
+/// account how many wraps the circular error predicts, because few trials may contain no wrap.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
 ///         the method cannot decode it; Interrupted if `progress` cancels
 /// @note same bits for any number of threads with the same dispatch_target()
@@ -172,8 +172,8 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
 /// The best origin of depth of a code.
 struct BestRotation {
   int rotation_bin = 0;  ///< argument of CodeSet::rotated with the smallest linear error
-  /// Geometric mean over the operating points of the linear error [m] for each rotation (N); of the
-  /// camera's error kind if it weights depths.
+  /// Geometric mean over the operating points of the linear error [m] for each rotation (N). If the
+  /// camera weights depths, it is that of the camera's error kind.
   std::vector<double> linear_geometric_mean_m;
 };
 
@@ -192,8 +192,9 @@ BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});
 
 /// Computes the mean circular depth error [m] of a table for frames simulated from the table
-/// itself, to compare measured tables with codes: expected electrons along the chords between its
-/// rows, normal noise of its variance, one depth in each of `trials` equal slices of the range.
+/// itself, in order to compare measured tables with codes. Expected electrons lie on the chords
+/// (straight lines) between its rows, noise is normal with its variance, and there is one depth in
+/// each of `trials` equal slices of the range.
 /// @param light   S relative to the light of the table's measurement, A in e/s
 /// @param trials  >= 2; odd numbers are rounded up
 /// @throws std::invalid_argument if the table or the number of trials is invalid
@@ -224,9 +225,9 @@ auto fields_of(ConstOrNot<OperatingMultipathReport> auto& r) {
 }
 
 /// Computes the depth error with a second return in every pixel, for zncc and for the two-return
-/// decoder on the same trials. Trial t of an operating point draws depth, uniform in the t-th slice
-/// of the range, albedo, return and noise from its own random stream. Only `trials` (per operating
-/// point) and `seed` of the options are used.
+/// decoder on the same trials. Trial t of an operating point draws albedo, return, noise and a
+/// depth from its own random stream. The depth is uniform in the t-th slice of the range. Only
+/// `trials` (per operating point) and `seed` of the options are used.
 /// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
 OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
                                                     const OperatingMultipath& later,
