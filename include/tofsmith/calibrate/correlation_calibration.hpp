@@ -104,13 +104,14 @@ struct CalibratedCorrelation {
 ///   1. Exclude dead pixels.
 ///   2. Determine the drift of light and level from delays that were measured more than once, as
 ///      straight lines in time. Remove drifts that exceed 3 standard errors.
-///   3. Compute the harmonics of the curve of every pixel. Delay and gain of a pixel relative to
-///      the mean curve maximize the sum over harmonics and measurements (least squares). Recompute
-///      the mean curve from the aligned pixels, and repeat until neither changes.
+///   3. Compute the harmonics of the curve of every pixel. Fit delay and gain of each pixel
+///      relative to the mean curve by least squares over harmonics and measurements. Recompute the
+///      mean curve from the aligned pixels, and repeat until neither changes.
 ///   4. The table is the aligned mean at N equally spaced positions of the period, where N is the
 ///      number of measured positions. Its errors follow from the residuals of the fits at each
-///      position. table.model_error_percent is twice their share of the part of the measurements
-///      that is due to the signal. It is too small for pixels whose curves have another shape.
+///      position. table.model_error_percent is twice the ratio of these errors to the part of the
+///      measurements that is due to the signal. It is too small for pixels whose curves have
+///      another shape.
 /// The mean gain is 1 and the mean offset is 0.
 /// @throws std::invalid_argument if sweep or options are invalid, or all pixels are dead
 CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
@@ -139,8 +140,10 @@ struct CalibratedTerm {
 
 /// Harmonic of a correlation function beyond the camera's model.
 struct CalibratedHarmonic {
-  int harmonic = 2;   ///< multiple of the frequency
-  Estimate in_phase;  ///< in phase with the fundamental at its maximum, relative to its amplitude
+  int harmonic = 2;  ///< multiple of the frequency
+  /// Amplitude relative to that of the fundamental, of the part in phase with the maximum of the
+  /// fundamental.
+  Estimate in_phase;
   Estimate quadrature;
 };
 
@@ -150,11 +153,11 @@ struct CalibratedFrequency {
   Estimate offset_m;  ///< constant that the camera adds to the depth of this frequency
   /// Amplitude relative to that of the camera's model; the geometric mean of all frequencies is 1.
   Estimate contrast;
-  std::vector<CalibratedHarmonic> harmonics;  ///< only determined ones
+  std::vector<CalibratedHarmonic> harmonics;  ///< only those that the frames determine
 };
 
-/// Error of the nominal depth minus its mean, for plots: means over the pixels that have weight;
-/// NaN without such pixels.
+/// Depth error for plots: the error of the nominal depth minus its mean over all pixels. Values are
+/// means over the pixels with weight in the fit, and NaN if there are none.
 struct DepthErrorPicture {
   std::vector<double> depth_m;   ///< centres of equal parts of the range, in nominal depth
   std::vector<double> before_m;  ///< mean error in each part
@@ -166,7 +169,7 @@ struct DepthErrorPicture {
 /// Result of calibrate_depth().
 struct CalibratedDepth {
   MeasuredTable table;    ///< nominal correlation functions with the correction
-  bool reversed = false;  ///< delay runs backwards; so does the table
+  bool reversed = false;  ///< chi(-z) was measured, so that the table is reversed, too
   /// One per frequency of the code; the table contains these values. Empty: a single frequency.
   std::vector<CalibratedFrequency> frequencies;
   /// For with_depth(): offset [m] and contrast of each frequency of the code, as in the keys
@@ -183,10 +186,12 @@ struct CalibratedDepth {
   /// Remaining error of far_terms on held-out parts of the range; none if the reference is at one
   /// distance.
   std::optional<double> far_rms_m;
-  /// Number of folds without data to hold out or to keep, of 2 folds of blocks and 4 of the range.
+  /// Number of folds of the cross-validation that were skipped, because they left no data to hold
+  /// out or to fit. There are 2 folds of blocks of pixels and 4 folds of the range.
   int skipped_folds = 0;
   double outlier_share = 0.0;  ///< share of pixels without weight
-  /// As DecodeOptions::model_error_percent, within 20 %; none: the code has no degrees of freedom.
+  /// As DecodeOptions::model_error_percent, found in steps of 20 % of its value; none: the code has
+  /// no degrees of freedom.
   std::optional<double> model_error_percent;
   std::int64_t pixels = 0;  ///< number of compared pixels
   DepthErrorPicture picture;
@@ -196,19 +201,19 @@ struct CalibratedDepth {
 /// Determines the depth error of a nominal code from reference depth on any part of the range.
 ///   1. For codes of several frequencies, fit offset, contrast and harmonics of each frequency.
 ///      They become part of the table.
-///   2. Decode the frames, and reverse delay that runs backwards. Fit an offset, harmonics 1 to 8
-///      of the phase, a field of degree 0 to 4 over rows and columns, and terms in the logarithm of
-///      the signal by least squares with Tukey's biweight (flying pixels and wrong references have
-///      no weight). Use the phase predicted from the reference, so that noise of the depth does not
-///      appear as an error that depends on depth.
-///   3. Choose terms by cross-validation: hold out alternate blocks among those with data. Beyond
+///   2. Decode the frames. If the measured delay decreases with distance, reverse the table. Fit an
+///      offset, harmonics 1 to 8 of the phase, a field of degree 0 to 4 over rows and columns, and
+///      terms in the logarithm of the signal. Use least squares with Tukey's biweight, so that
+///      flying pixels and wrong references have no weight. Use the phase predicted from the
+///      reference, so that noise of the depth does not appear as an error that depends on depth.
+///   3. Choose terms by cross-validation: hold out every other block of pixels with data. Beyond
 ///      the depths of the reference, use the terms that best predict held-out parts of the range.
 ///   4. Compute standard errors from tiles of pixels, whose errors may be correlated.
 ///   5. Find the model error with which at most 1 % of the pixels with the right depth are
 ///      inconsistent. Errors below the noise of the frames are not found.
 /// @param camera  provides the nominal model of the code
 /// @throws std::invalid_argument if sizes disagree, fewer than 100 pixels can be compared, or the
-///         reference is in another unit, flipped, or of something else
+///         reference is in another unit, flipped, or shows another scene
 CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& reference,
                                 const CodeSet& code, const Camera& camera,
                                 const Progress& progress = {});
@@ -262,7 +267,8 @@ struct TemperatureDrift {
 ///      of the frames around it, with Student's t of F - 2 degrees of freedom (F - 3 for two
 ///      temperatures). They thus include noise and other differences between frames. Drift with
 ///      time cannot be distinguished from drift with temperature.
-///   4. Fit hysteresis, the coefficient of the sign of the temperature's change, with the lines.
+///   4. Together with the lines, fit hysteresis: the coefficient of the sign of the temperature's
+///      change.
 /// If the two temperatures are collinear (condition number above 30), only the first is fitted.
 /// Notes report this, a curved dependence, temperatures that hardly vary, and hysteresis.
 /// @param temperatures  finite
@@ -335,7 +341,7 @@ struct HarmonicRatio {
 struct IdealCodeFit {
   std::string code;
   double delay_periods = 0.0;   ///< delay of the measured curves
-  bool reversed = false;        ///< delay runs backwards
+  bool reversed = false;        ///< chi(-z) was measured instead of chi(z)
   bool inverted = false;        ///< all signs are opposite
   std::vector<int> exposure;    ///< exposure of the code for each measured exposure
   double scale = 1.0;           ///< raw numbers per unit of the code's correlation
@@ -349,8 +355,8 @@ struct IdealCodeFit {
 
 /// Fits codes to a measured table, and returns the fits by ascending residual. The parameters are a
 /// common scale, delay, direction, sign, the order of exposures, and one symmetric impulse response
-/// for both arms (hann, gaussian or lowpass). Least squares over harmonics; means of columns are
-/// ignored.
+/// for both arms (hann, gaussian or lowpass). They are fitted by least squares over harmonics;
+/// means of columns are ignored.
 /// @param table   (N, K)
 /// @param error   standard errors of the table (N, K)
 /// @param codes   families or codes that fit the camera's taps, with K measurements
