@@ -47,8 +47,8 @@ class PhotonInformation {
 };
 
 /// Upper limit on the information that one tap provides on a delay. It holds for any light of mean
-/// at most 1 and any gate, 0 <= d <= 1. It depends on the number of electrons x that the gate passes
-/// in an exposure. With l(t) = s g + a, where g is the response of the arms,
+/// at most 1 and any gate, 0 <= d <= 1. It depends on the number of electrons x that the gate
+/// passes in an exposure. With l(t) = s g + a, where g is the response of the arms,
 ///   |slope of x| <= Phi(x) = max of integral d l',
 ///   |curvature of x| <= Psi(x) = max of integral d l''
 /// over all gates with integral d l = x. The maximum is attained by gates that open where l'/l is
