@@ -87,7 +87,7 @@ def _settings(keys: Mapping[str, Any]) -> list[str]:
 
 
 class Camera:
-    """A continuous-wave time-of-flight camera. Immutable; pickles.
+    """A continuous-wave time-of-flight camera. Immutable; can be pickled.
 
     Keywords are the keys of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`,
     `samples`, `light`, `sensor`, `raw`, `lens`, `optics`, `operating`, `playback`, `temperature`;
@@ -354,7 +354,8 @@ class Camera:
         return self._handle.bin_m()
 
     def transfer(self, highest: int) -> npt.NDArray[np.complex128]:
-        """Transfer function of both arms for n = 0 to `highest`: H_d(n f0) conj(H_m(n f0)).
+        """Returns the transfer function of the light source (H_m) and the sensor (H_d) together,
+        H_d(n f0) conj(H_m(n f0)), for n = 0 to `highest`.
 
         Returns
         -------

@@ -42,15 +42,16 @@ class Decoder:
     camera : Camera or its name
         Required unless `code` is a DecodingTable, for which only the lens is used.
     method : {"zncc", "ml", "unwrap", "two-return", "tail"}
-        zncc supports any code; ml is maximum likelihood, slower; unwrap is for sinusoids of one or
-        more frequencies; two-return and tail are for multipath, and require codes with many
-        independent measurements.
+        zncc and ml support any code; ml (maximum likelihood) is slower. unwrap supports sinusoids
+        of one or more frequencies. two-return and tail are for multipath, and require codes with
+        many independent measurements.
     unwrap_weights : {"variance", "frequency"}, optional
         Weights of the frequencies, for unwrap.
     device : str, optional
-        OpenCL device for averaging, filtering and decoding: "cpu" (none); "gpu", the first GPU;
-        "auto", the first GPU for frames with a spatial filter, else the CPU; or a number or part
-        of a name. Only zncc runs on devices. See docs/gpu.md.
+        OpenCL device for averaging, filtering and decoding. "cpu" uses no device; "gpu" uses the
+        first GPU; "auto" uses the first GPU for frames with a spatial filter, and the CPU for
+        others. Any other text is the number or part of the name of a device. Only zncc runs on
+        devices. See docs/gpu.md.
     multipath : dict, optional
         For two-return and tail: keys of MultipathOptions; see docs/multipath.md.
     **options
@@ -159,10 +160,10 @@ class Decoder:
         out : DepthImage, optional
             Planes to write to, instead of `planes`: C order, with the frame's shape.
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional
-            Number of measurements averaged into each pixel, > 0, which reduces the noise variance:
-            for averaged frames, or the output of Filter.apply(). For the latter prefer `filter`,
-            which accounts for the correlated noise after "normal" and "strong"; otherwise
-            confidence is up to 0.12 too high.
+            Number of measurements averaged into each pixel, > 0, which reduces the noise variance.
+            Required for averaged frames and the output of Filter.apply(). Instead of Filter.apply()
+            and `averaged`, prefer `filter`: it accounts for the correlated noise after "normal" and
+            "strong", without which confidence is up to 0.12 too high.
         delay_offset_m, gain : array_like, shape (H, W), or float, optional
             Excess depth of each pixel [m], and its relative response; NaN marks a dead pixel.
         filter : {"light", "normal", "strong"}, dict or Filter, optional
@@ -310,12 +311,14 @@ class Decoder:
         Parameters
         ----------
         source : binary file object
-            Its header, then frames as described by `raw_format`: e.g. `stdout` of subprocess,
-            sys.stdin.buffer, socket.makefile("rb"). It must block until data is available.
+            Stream that contains a header and frames, as described by `raw_format`: e.g. `stdout` of
+            subprocess, sys.stdin.buffer or socket.makefile("rb"). It must block until data is
+            available.
         sink : callable, or binary file object
             Called with the planes of each frame, a dict of arrays (H, W) with the names in
             `outputs`; returning False stops. A file object receives the bytes of these planes in
-            sequence: float32, status and returns uint8, bin int32, little endian.
+            sequence, little endian: uint8 for status and returns, int32 for bin, and float32 for
+            all others.
         raw_format : str or path
             A .raw.toml file; see docs/raw_formats.md.
         time_filter, filter, rays
@@ -362,8 +365,9 @@ class Decoder:
             _check.progress(progress)))
 
     def decode_depth_bins(self, measurements: npt.ArrayLike) -> FloatArray:
-        """Returns positions in [0, N) [bins], interpolated between bins, for measurements (..., K),
-        with shape (...); single-threaded. NaN for measurements that are NaN or infinite."""
+        """Returns the positions of measurements of shape (..., K), as an array of shape (...).
+        Positions are in [0, N) [bins] and interpolated between bins; NaN if a measurement is NaN
+        or infinite. Single-threaded."""
         array = np.asarray(measurements)
         if array.ndim < 1 or array.dtype.kind not in "fiu":
             raise ValueError(f"measurements: got {_check.shown(array)}; needs numbers of shape "

@@ -39,8 +39,8 @@ class MeasurementReport:
 
 @dataclass(frozen=True)
 class SearchRecord:
-    """Progress of a code search: `error_m` (steps,) over `work` (steps,), whether the code is
-    provably optimal among the searched kind (`proved`), and a summary of the search space."""
+    """Progress of a code search: `error_m` (steps,) over `work` (steps,). `proved` is true if no
+    other code in the search space is better; `account` is a summary of the search space."""
 
     work_unit: str
     error_name: str
@@ -132,7 +132,7 @@ class DesignResult:
         OSError
             If it contains a design and `overwrite` is not set, or cannot be written.
         ValueError
-            For a result that was pickled, which keeps only its numbers.
+            For a result that was pickled: pickling keeps only the numbers.
         """
         self._finished().write(_check.path(directory, "directory"), bool(overwrite))
 
@@ -219,9 +219,10 @@ def design(
     ----------
     camera : Camera or its name
     target : str, path, CodeSet or ndarray (N, K), optional
-        Correlation functions to factorize instead of Hamiltonian ones: a family, a code, a file of
-        either (.code.json; .csv, .txt, .npy or .npz with `corrfs`), or values at equal steps of
-        depth over one period without its end point.
+        Correlation functions to factorize instead of Hamiltonian ones: a family, a code, an array
+        (N, K), or a file with a code (.code.json) or an array (.csv, .txt, .npy, or .npz with
+        `corrfs`). Arrays contain values at equal steps of depth over one period without its end
+        point.
     normalize : bool
         Rescale the columns of a table to [0, 1].
     effort : float, optional

@@ -114,7 +114,8 @@ def table_depth_error_m(
     ----------
     table : DecodingTable
     signal : float
-        In multiples of the signal of the measurement; for a code's table S [e/s].
+        For a measured table: multiple of the signal at which it was measured. For the table of a
+        code: S [e/s].
     ambient_e_per_s : float
     trials, seed : int
 

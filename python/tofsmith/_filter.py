@@ -72,9 +72,9 @@ class Filter(_OfTable):
     """Averages the raw measurements of neighbouring pixels at the same depth, before decoding.
     Immutable and thread-safe.
 
-    Without ambient light, measurements of one depth are parallel for any albedo, so that they can
-    be averaged without bias. A test that accounts for the noise decides whether two pixels are
-    averaged. See docs/filtering.md.
+    After projecting out ambient light, the measurement vectors of one depth are parallel for any
+    albedo, so that they can be averaged without bias. A test that accounts for the noise decides
+    whether two pixels are averaged. See docs/filtering.md.
 
     Parameters
     ----------
@@ -83,8 +83,9 @@ class Filter(_OfTable):
     camera : Camera or its name
         Required unless `code` is a DecodingTable.
     strength : {"normal", "light", "strong"}
-        normal averages over 25 x 25 pixels, and once more along the estimated slopes; light over
-        5 x 5 pixels, several times as fast; strong repeats the pass along slopes.
+        light averages over 5 x 5 pixels, and is several times as fast as normal. normal averages
+        over 25 x 25 pixels, and once more along the estimated slopes. strong repeats the pass along
+        slopes.
     options : dict, optional
         For experts: keys of FilterOptions, which override the values of the strength.
     device : str, optional
@@ -176,8 +177,8 @@ class TimeFilter(_OfTable):
     decoding. Averaging restarts where the scene changes, so that motion is not smeared. Frames wait
     for later ones only with `look_ahead`. Stores the current mean; not thread-safe.
 
-    Changes are detected by tests of the pixel, of its neighbourhood, and of their common
-    difference, which account for the noise. See docs/filtering.md.
+    Three tests that account for the noise detect changes: of the pixel, of its neighbourhood, and
+    of the mean change of the neighbourhood. See docs/filtering.md.
 
     Parameters
     ----------
@@ -238,8 +239,8 @@ class TimeFilter(_OfTable):
         Returns
         -------
         raw : ndarray of float32, shape (H, W, K) or (F, H, W, K)
-            Raw numbers for any decoder. With `look_ahead` always a stack: the frames for which
-            enough later frames were added; empty at first.
+            Raw numbers for any decoder. With `look_ahead`, this is always a stack. It contains the
+            frames for which enough later frames were added, and is empty at first.
         averaged : ndarray of float32, shape (H, W) or (F, H, W)
             Effective number of averaged measurements (variance reduction), for `averaged` of
             Decoder.decode().
@@ -261,8 +262,8 @@ class TimeFilter(_OfTable):
         self, *, progress: Progress = None
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
         """Returns the frames that still wait for later ones, as stacks in the format of add(). Must
-        be called after the last frame; empty without `look_ahead`. The next frame starts a new
-        sequence and may have any size.
+        be called after the last frame. The stacks are empty without `look_ahead`. The next frame
+        starts a new sequence and may have any size.
         """
         return self._handle.end(_check.progress(progress))
 

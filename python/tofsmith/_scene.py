@@ -197,8 +197,9 @@ def capture(
     Parameters
     ----------
     scene : Scene, name of a built-in scene, .toml file, or radial distance [m] (H, W)
-        Depth beyond the unambiguous range wraps. Names and files are captured by capture_staged(),
-        through the camera's lens, and may move; planes have one ray per pixel and are static.
+        Depth beyond the unambiguous range wraps. capture_staged() captures scenes given by name or
+        file, through the camera's lens; these may move. Scene objects and arrays have one ray per
+        pixel and are static.
     code : CodeSet, name of a family or file
     camera : Camera or its name
     signal_e_per_s : float, optional
@@ -207,8 +208,8 @@ def capture(
     ambient_e_per_s : float, optional
         A [e/s], with the same default.
     stray_light : array_like, shape (2 R + 1, 2 Q + 1), optional
-        Share of a pixel's light that the lens scatters to each other pixel, the centre being the
-        pixel itself. remove_stray_light() corrects it.
+        Kernel of stray light: the share of a pixel's light that the lens scatters to each pixel
+        around it. The pixel itself is at the centre. remove_stray_light() corrects stray light.
     returns : MultipathReturns or sequence of (delay_m, ratio), optional
         Multipath returns: individual for each pixel, or the same for all pixels.
     tail : ExponentialTail, optional
@@ -217,8 +218,8 @@ def capture(
         Distributes the signal of each pixel over a histogram, instead of the direct return; cannot
         be combined with `returns` or `tail`.
     bounces, bounce_rays : int, optional
-        1: add indirect light over one other surface, sampled by this number of rays per pixel, see
-        bounced_light(); for names and files. (0)
+        If `bounces` is 1 (default 0), adds indirect light over one other surface, sampled by
+        `bounce_rays` rays per pixel; see bounced_light(). Only for scenes given by name or file.
     progress : callable, optional
     **options
         As in CaptureOptions.
@@ -318,7 +319,8 @@ def capture_staged(
     width, height : int, optional
         For a built-in scene or a mesh [px] (320 x 240).
     returns, tail, transients, bounces, bounce_rays, progress
-        As in capture(); lists have one entry per ray, `lens.pixel_samples` squared for each pixel.
+        As in capture(). Lists have one entry per ray; each pixel has `lens.pixel_samples` squared
+        rays.
     **options
         signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
         as in capture().
