@@ -158,7 +158,8 @@ class Decoder:
         planes : iterable of str, optional
             Planes of DepthImage to compute. None: the default planes.
         out : DepthImage, optional
-            Planes to write to, instead of `planes`: C order, with the frame's shape.
+            Image to write to, instead of `planes`. Its planes are computed; they must be in C order
+            and have the frame's shape.
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional
             Number of measurements averaged into each pixel, > 0, which reduces the noise variance.
             Required for averaged frames and the output of Filter.apply(). Instead of Filter.apply()

@@ -372,8 +372,8 @@ def find_requirements(
     progress: Progress = None,
     **options: Unpack[RequirementOptions],
 ) -> Requirements:
-    """Finds the smallest bandwidth, power and exposure, each by itself, with which a code reaches a
-    depth error, and the values below which no code can reach it.
+    """Finds the smallest bandwidth, power and exposure, each varied separately, with which a code
+    reaches a depth error, and the values below which no code can reach it.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ def generator_loss(
     progress: Progress = None,
     **options: Unpack[EvaluateOptions],
 ) -> GeneratorLoss:
-    """Computes the loss of depth error due to the limits of a camera's waveform generators.
+    """Computes the increase in depth error due to the limits of a camera's waveform generators.
 
     Parameters
     ----------

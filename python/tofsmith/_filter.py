@@ -166,7 +166,7 @@ class Filter(_OfTable):
 
         Notes
         -----
-        The same bits for any number of threads and any layout.
+        Results are identical for any number of threads and any layout.
         """
         return self._handle.apply(*_frames(raw, averaged, layout), _check.progress(progress))
 
@@ -254,7 +254,7 @@ class TimeFilter(_OfTable):
 
         Notes
         -----
-        The same bits for any number of threads and any layout.
+        Results are identical for any number of threads and any layout.
         """
         return self._handle.add(*_frames(raw, averaged, layout), _check.progress(progress))
 

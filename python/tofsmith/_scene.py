@@ -104,7 +104,7 @@ def load_scene(
         A built-in scene, a file of shapes and a pinhole (.toml), a mesh (.obj .ply .stl), or a
         depth image (.npy .npz .exr .pfm, .png in mm).
     lens : Lens, optional
-        For a depth image; default: 60 degrees wide.
+        For a depth image; default: a centred pinhole with a horizontal view of 60 degrees.
     **options
         As in SceneSource.
 

@@ -43,7 +43,7 @@ struct DelaySweep {
 struct DelaySweepOptions {
   std::filesystem::path shifts;  ///< delays of a stack of frames: text with one column, or .npy
   DelayUnit unit = DelayUnit::second;
-  double unit_scale = 1.0;                 ///< size of the number 1 in the file, in `unit`
+  double unit_scale = 1.0;                 ///< delays in the file are multiples of this, in `unit`
   double fundamental_frequency_hz = 15e6;  ///< f0: a period is 1/f0, or c/(2 f0) in metres
   int samples = 240;                       ///< N, number of bins per period
   DecimalMark decimal = DecimalMark::automatic;

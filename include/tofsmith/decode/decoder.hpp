@@ -85,9 +85,9 @@ class Decoder {
   ///   residual: chi-square, per degree of freedom, of the difference between the measurements and
   ///     those expected for the decoded light;
   ///   status: see PixelStatus. A pixel is inconsistent if its residual exceeds the chi-square
-  ///     quantile of false_alarm_rate by more than model_error_percent explains. low_signal depends
-  ///     on the noise at the best bin. If the measurements without the ambient component are below
-  ///     1e-12 of sum_i |y'_i|, they count as 0 and the pixel is no_return.
+  ///     quantile of false_alarm_rate by more than a model error of model_error_percent can cause.
+  ///     low_signal depends on the noise at the best bin. If the measurements without the ambient
+  ///     component are below 1e-12 of sum_i |y'_i|, they count as 0 and the pixel is no_return.
   /// All planes except `bin` are computed in single precision. The rounding error of depth is about
   /// 1e-7 / (angle between adjacent bins) bins. That of signal and ambient light is about 1e-6 of
   /// the brightest measurement. Pixels that are invalid or have no return are NaN in all planes of

@@ -192,9 +192,9 @@ struct DecodingTable : MeasurementTable {
   /// Converts a position from rows to bins.
   double in_bins(double row) const { return bins > 0 ? row * bins / samples() : row; }
 
-  /// Checks that depths can be distinguished: shapes match, everything is finite, there are 3 to 64
-  /// measurements (2 are enough if ambient light cancels), and the correlation without the ambient
-  /// component has rank >= 2 and at least two different directions.
+  /// Checks that shapes match and all numbers are finite, and that depths can be distinguished.
+  /// This requires 3 to 64 measurements, or 2 if ambient light cancels. The correlation without the
+  /// ambient component must have rank >= 2 and at least two different directions.
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };

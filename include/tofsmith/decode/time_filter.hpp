@@ -47,10 +47,10 @@ auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
 /// from the weighted mean of s and y. It includes shot noise of the collected light, read noise,
 /// and noise of light that cancels when buckets are subtracted. Three tests must find no change:
 /// chi^2 of the pixel, chi^2 of the 5 x 5 pixels around it, and chi^2 of the mean difference of
-/// those pixels, which detects common changes long before a single pixel does. If a test finds a
-/// change, the part of it that noise cannot explain is added to the variance of s, which reduces
-/// the weight of s. The weight is 0 from max_difference_sigma on: the pixel then has the value of
-/// the new frame alone.
+/// those pixels. The third test detects common changes long before a single pixel does. If a test
+/// finds a change, the part of it that noise cannot explain is added to the variance of s, which
+/// reduces the weight of s. The weight is 0 from max_difference_sigma on: the pixel then has the
+/// value of the new frame alone.
 ///
 /// With `look_ahead`, the frames after a frame are averaged in the same way, from the last one
 /// backwards. The frame is compared with the past mean s_past and the future mean s_future

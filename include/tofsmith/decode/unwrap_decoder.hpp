@@ -47,10 +47,10 @@ struct UnwrapOptions {
 
 /// Decodes depth by phase unwrapping, the classical decoder of multi-frequency sinusoids:
 ///   1. Fit offset, cosine and sine of each frequency by least squares; compute its phase.
-///   2. Candidate depths of each frequency are z_f = (phase_f + n) / f of the range, n = 0 to f -
-///      1.
-///   3. Choose one candidate per frequency to minimize sum_f w_f (z_f - z)^2. All choices of wraps
-///      are compared.
+///   2. Compute the candidate depths of each frequency f, z_f = (phase_f + n) / f with wraps n = 0,
+///      ..., f - 1. Phases are in periods, depths in shares of the range.
+///   3. Choose one candidate per frequency to minimize sum_f w_f (z_f - z)^2. All combinations of
+///      wraps are compared.
 ///   4. z is their weighted mean.
 /// Frequencies and phase offsets are determined from the correlation functions, so that delay and
 /// attenuation of the camera are compensated.
@@ -63,10 +63,10 @@ struct UnwrapOptions {
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 5, which compares with this decoder
 class UnwrapDecoder {
  public:
-  /// @throws std::invalid_argument if the table or the options are invalid; if a correlation
-  ///         function is not a sinusoid; if a frequency is measured in fewer than two phases or the
-  ///         offset cannot be determined; or if the frequencies have a common divisor, with the
-  ///         unambiguous range in the message
+  /// @throws std::invalid_argument if the table or the options are invalid, a correlation function
+  ///         is not a sinusoid, a frequency is measured in fewer than two phases, the offset cannot
+  ///         be determined, or the frequencies have a common divisor. In the last case, the message
+  ///         contains the unambiguous range.
   explicit UnwrapDecoder(DecodingTable table, const UnwrapOptions& options = {});
   ~UnwrapDecoder();
   UnwrapDecoder(UnwrapDecoder&&) noexcept;

@@ -185,8 +185,9 @@ DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
 DesignResult design(const Camera& camera, const DesignOptions& options = {},
                     const Progress& progress = {}, const DesignStore& store = {});
 
-/// Camera of the atlas of best codes, independent of frequency. Everything else is as in the
-/// paper's simulations: 15 MHz, 0.3 s in total, read noise of 20 e, 5 x 5 light levels.
+/// Camera of the atlas of best codes. Bandwidth and pulses are relative to the frequency. All other
+/// properties are as in the paper's simulations: 15 MHz, 0.3 s in total, read noise of 20 e, 5 x 5
+/// light levels.
 struct AtlasCamera {
   double peak_factor = 15.0;
   double bandwidth_f0 = 0.0;            ///< f_max of both arms' Hann responses [f0]; 0: no limit
@@ -236,8 +237,8 @@ struct AtlasLaw {
   double error_m(const AtlasCamera& camera) const;
 };
 
-/// Fits the entries with limited bandwidth. Returns nothing for fewer than 6, or for a single
-/// bandwidth or peak.
+/// Fits the entries with limited bandwidth. Returns none if there are fewer than 6 such entries, or
+/// if all have the same bandwidth or the same peak.
 std::optional<AtlasLaw> fit_atlas_law(const std::vector<AtlasEntry>& entries);
 
 /// Quantity that find_requirements() can vary.

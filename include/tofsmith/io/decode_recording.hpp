@@ -227,8 +227,8 @@ struct DecodedStream {
 /// Decodes the frames of a stream. Writes each frame before reading the next, unless a temporal
 /// filter looks ahead; needs memory for a few frames. The output of a frame consists of its planes
 /// in the order of the request's `outputs` (default: depth), each with H x W little-endian items,
-/// row by row: float32, uint8 for status and returns, int32 for bin. The numbers are the same as
-/// from decode_recording().
+/// row by row. Items are uint8 for status and returns, int32 for bin, and float32 for all other
+/// planes. The numbers are the same as from decode_recording().
 /// @param request  `raw_format` describes the stream, a header followed by frames; `raw`, `output`,
 ///                 `frame`, `stack`, `memory_mb` and `policy` are ignored
 /// @param result   updated after every frame, also if an exception is thrown

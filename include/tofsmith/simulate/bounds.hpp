@@ -23,7 +23,8 @@ class PhotonInformation {
   PhotonInformation(const Eigen::VectorXcd& transfer, bool may_ring);
 
   /// Returns the integral over the period of (s x')^2 / (s x + other), with x the response of the
-  /// arms: an upper limit for any light of mean at most 1. Infinite unless s x + other > 0.
+  /// arms. This is an upper limit on the information for any light of mean at most 1. It is
+  /// infinite unless s x + other > 0.
   /// @param signal_e  s, electrons of the light
   /// @param other_e   variance of everything else that is collected together with the light
   double of_impulses(double signal_e, double other_e) const;
@@ -48,7 +49,8 @@ class PhotonInformation {
 
 /// Upper limit on the information that one tap provides on a delay. It holds for any light of mean
 /// at most 1 and any gate, 0 <= d <= 1. It depends on the number of electrons x that the gate
-/// passes in an exposure. With l(t) = s g + a, where g is the response of the arms,
+/// passes in an exposure. For a gate d(t) that passes x electrons of the light l(t) = s g + a,
+/// where g is the response of the arms,
 ///   |slope of x| <= Phi(x) = max of integral d l',
 ///   |curvature of x| <= Psi(x) = max of integral d l''
 /// over all gates with integral d l = x. The maximum is attained by gates that open where l'/l is
@@ -66,9 +68,10 @@ class GateInformation {
   /// @param other_e2  variance without light
   double at_any_depth(double signal_e, double ambient_e, double other_e2) const;
 
-  /// Returns a tighter limit for the mean over all depths. x rises and falls; between two turning
-  /// points a and b its squared slope z(x) is at most Phi^2, and starts and ends at 0 with a slope
-  /// of at most 2 Psi. The mean of z / (x + other) is therefore at most the maximum over a and b of
+  /// Returns a tighter limit for the mean over all depths. x rises and falls with depth. Between
+  /// two turning points a and b, the squared slope of x, z(x), is at most Phi^2. It is 0 at both
+  /// ends, and its own slope is at most 2 Psi. The mean of z / (x + other) is therefore at most the
+  /// maximum over a and b of
   ///   integral sqrt(z) / (x + other) dx  /  integral dx / sqrt(z)   from a to b.
   double mean_over_depths(double signal_e, double ambient_e, double other_e2) const;
 
@@ -213,7 +216,8 @@ class ReceiverBound {
 /// records individual photons, with the camera's light source and total exposure time (no
 /// demodulation, read noise or dark current). Signal and ambient light are known.
 ///   J <= T integral over the period of (S m')^2 / (S m + A) du
-/// No receiver does better with the same light, so this never exceeds ReceiverBound.
+/// No receiver does better with the same light. This bound therefore never exceeds ReceiverBound,
+/// except possibly for a measured sensor response that rings.
 /// @see docs/bounds.md for derivation and assumptions
 class DirectTofBound {
  public:

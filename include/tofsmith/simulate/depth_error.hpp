@@ -152,13 +152,14 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
 /// bounds.
 ///
 /// Trial t of point p uses only the random stream (seed, p, t). Its depth is uniform in the t-th of
-/// `trials` equal slices of the range (slices of equal probability if the camera weights depths);
-/// albedo (if uniform) and noise follow. All codes are thus compared at the same depths. Noise is
-/// normal or Poisson, as specified by the sensor, with the variance at that depth. For rows,
-/// Poisson noise is drawn in every time bin, and normal noise with the covariance of the rows. If
-/// the conversion is linear and the method is ZNCC, normal noise is drawn only in the subspace that
-/// ZNCC uses. This gives the same distribution of errors from fewer random numbers. Standard errors
-/// are computed from differences of trials in neighbouring slices, and are slightly too large.
+/// `trials` equal slices of the range (slices of equal probability if the camera weights depths).
+/// Then the albedo, if it is uniform, and the noise are drawn. All codes are thus compared at the
+/// same depths. Noise is normal or Poisson, as specified by the sensor, with the variance at that
+/// depth. For rows, Poisson noise is drawn in every time bin, and normal noise with the covariance
+/// of the rows. If the conversion is linear and the method is ZNCC, normal noise is drawn only in
+/// the subspace that ZNCC uses. This gives the same distribution of errors from fewer random
+/// numbers. Standard errors are computed from differences of trials in neighbouring slices, and are
+/// slightly too large.
 ///
 /// With a target, a point gets further rounds of trials, each sliced separately and at least half
 /// as large as all previous ones together. The number of trials for the linear error takes into
