@@ -40,7 +40,8 @@ class Decoder:
     code : CodeSet, DecodingTable, name of a family or file
         A DecodingTable is used unchanged. Files are read by DecodingTable.load().
     camera : Camera or its name
-        Required unless `code` is a DecodingTable, for which only the lens is used.
+        Required unless `code` is a DecodingTable. With a DecodingTable, only the camera's lens is
+        used.
     method : {"zncc", "ml", "unwrap", "two-return", "tail"}
         zncc and ml support any code; ml (maximum likelihood) is slower. unwrap supports sinusoids
         of one or more frequencies. two-return and tail are for multipath, and require codes with

@@ -202,8 +202,9 @@ struct DecodingTable : MeasurementTable {
 /// Builds the table of a code on a camera. Raw numbers are counts if the camera has an ADC, and
 /// electrons otherwise. Differences of buckets are differences of converted values, so that the
 /// black level cancels. They are clipped at the ends of the converter's signed or unsigned range. A
-/// clipped bucket cannot be detected if the difference lies within this range. Rows are whitened by
-/// their covariance, averaged over depth, in the middle of the camera's operating points.
+/// clipped bucket cannot be detected if the difference lies within this range. For rows,
+/// measurements are whitened by their covariance at the camera's middle operating point, averaged
+/// over depth.
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera);
 
 /// Returns the table of the whitened measurements W (electrons - dark). It decodes these to the

@@ -56,7 +56,7 @@ struct DesignOptions {
   OptimizeOptions optimize;    ///< its seed is replaced by `seed`
   ChipSearchOptions search;    ///< its seed and exposures are replaced by `seed` and `exposures`
   /// If true, gradients include other bandwidths and edge jitter, and candidates are ranked by
-  /// their worst perturbation (simulate/robustness.hpp).
+  /// their error on the worst perturbed camera (simulate/robustness.hpp).
   bool robust = false;
   /// If absent: suggested_baselines() and, unless the method is factorize, up to eight other
   /// built-in codes from a quick screening.
