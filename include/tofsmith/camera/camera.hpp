@@ -423,8 +423,8 @@ Camera at_distances(Camera camera, std::vector<double> distances_m, double albed
                     std::optional<double> klux = {});
 
 /// Returns the default light of captures: the signal that the camera's optics receive from white
-/// surfaces at the given distance, and the ambient light from their sunlight. Without optics or
-/// sunlight, signal or ambient light are those of the middle operating point.
+/// surfaces at the given distance, and the ambient light from their sunlight. Without optics, both
+/// are taken from the middle operating point; without sunlight, the ambient light is.
 OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 
 /// Returns the camera on which codes are evaluated: one whose single pixels measure the sum of
