@@ -38,7 +38,7 @@ struct MatchedTile {
 ///     bright pixels vanishes at a bin. Negative variances of single measurements, which no light
 ///     causes, are replaced by 0 only in the sum.
 ///   - Confidence uses the noise at the best bin. It is 1 if LobeBound proves that other places
-///     have a posterior probability of at most about 1e-5; only other pixels need LobePosterior.
+///     have a posterior probability of at most about 1e-3; only other pixels need LobePosterior.
 /// The values of a plane do not depend on the other planes, on neighbouring pixels or on the
 /// processor: each product and sum is rounded.
 class OutputKernel {
