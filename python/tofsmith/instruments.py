@@ -480,7 +480,7 @@ def _answer(session: _Session, script: UploadScript, step: UploadStep,
             numbers.append(ReadBackNumber(check.channel, check.quantity, check.wanted, number))
     if difference:
         _fail(session, step, f"the waveform in the instrument differs from the one sent: {difference}. "
-              "Nothing is played; try again (--no-read-back skips this check)")
+              "No output is active; try again (--no-read-back skips this check)")
     return f"<{len(data)} bytes>" if data else _printable(line, 200)
 
 

@@ -20,7 +20,7 @@ Waveform scaled(const Waveform& waveform, double factor) {
 }
 
 /// Reorders exposures as in [playback], and complements or swaps taps if inverted.
-void play(const Playback& playback, int taps, ActualCode& actual) {
+void apply(const Playback& playback, int taps, ActualCode& actual) {
   const ActualCode said = actual;
   for (std::size_t e = 0; e < playback.order.size(); ++e) {
     const auto from = static_cast<std::size_t>(playback.order[e]), side = std::size_t(taps);
@@ -100,7 +100,7 @@ ActualCode actual_code(const CodeSet& code, const Camera& camera) {
       actual.demodulation.push_back(
           generated(code.demodulation(i), *camera.sensor.generator, frequency_hz));
   }
-  if (camera.playback) play(*camera.playback, code.taps(), actual);
+  if (camera.playback) apply(*camera.playback, code.taps(), actual);
   return actual;
 }
 

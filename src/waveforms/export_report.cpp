@@ -28,7 +28,7 @@ KeyValueList description(const WaveformExport& exported) {
   add("frequency", fmt::format("{:.9g} Hz", frequency_hz));
   for (const auto* generator : {&exported.light, &exported.sensor})
     add(generator == &exported.light ? "light" : "sensor",
-        fmt::format("table of {} points, {} of them played, {:.6g} MS/s, {} bits{}",
+        fmt::format("table of {} points, {} of them used, {:.6g} MS/s, {} bits{}",
                     generator->points_in_table(frequency_hz),
                     generator->points_per_period(frequency_hz), generator->sample_rate_hz / 1e6,
                     generator->amplitude_bits,
@@ -95,7 +95,7 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
   page.sections.push_back(
       {"Waveforms",
        {table_of_rows("generators",
-                      "Each waveform as designed (nominal) and as the generator plays it "
+                      "Each waveform as designed (nominal) and as the generator outputs it "
                       "(actual), before the impulse responses.",
                       generator_report_rows(exported.generators), {0}),
         waveform_figure({.id = "waveforms",
@@ -105,7 +105,7 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
                         code, actual),
         correlation_figure({.id = "correlation",
                             .title = "Correlation functions",
-                            .caption = "Lines: with the waveforms as the generator plays them."},
+                            .caption = "Lines: with the waveforms of the generator."},
                            code, actual)}});
   if (loss)
     page.sections.push_back(

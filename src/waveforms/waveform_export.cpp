@@ -80,7 +80,7 @@ Generator generator_of(const ExportOptions& options, const WaveformFormat& forma
       format.skips_points || points * frequency_hz <= generator.sample_rate_hz * (1 + 1e-9),
       "samples", points,
       fmt::format(
-          "must be at most {}, from {:.6g} points per second at {:.6g} Hz ({} plays every point)",
+          "must be at most {}, from {:.6g} points per second at {:.6g} Hz ({} outputs every point)",
           std::floor(generator.sample_rate_hz / frequency_hz * (1 + 1e-12)),
           generator.sample_rate_hz, frequency_hz, format.name));
   return generator;

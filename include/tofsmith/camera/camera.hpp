@@ -69,7 +69,7 @@ inline void describe(FieldVisitor& fields, LightSource& light) {
   fields.value(Key("edge_jitter_s", "Root mean square displacement of edges from period to period",
                    at_least(0)),
                light.edge_jitter_s);
-  fields.table(Key("generator", "Waveform generator that plays the modulation"), light.generator);
+  fields.table(Key("generator", "Waveform generator of the modulation"), light.generator);
   fields.part(Key("square", "Square waves that the design method frequencies can use"),
               light.square);
 }
@@ -124,8 +124,7 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
   fields.value(Key("edge_jitter_s", "Root mean square displacement of edges from period to period",
                    at_least(0)),
                sensor.edge_jitter_s);
-  fields.table(Key("generator", "Waveform generator that plays the demodulation"),
-               sensor.generator);
+  fields.table(Key("generator", "Waveform generator of the demodulation"), sensor.generator);
   fields.value(Key("read_noise_e", "Standard deviation of the noise of one readout", at_least(0))
                    .usually(0, 100),
                sensor.read_noise_e);
@@ -235,7 +234,7 @@ struct Playback {
 
 /// Keys of [playback].
 inline void describe(FieldVisitor& fields, Playback& playback) {
-  fields.value(Key("order", "Exposures of the code in the order in which the camera plays them",
+  fields.value(Key("order", "Order in which the camera measures the exposures of the code",
                    closed(0, 65535)),
                playback.order);
   fields.value(Key("reversed", "Measured delay decreases with distance: chi(-z) instead of chi(z)"),
@@ -408,7 +407,7 @@ inline void describe(FieldVisitor& fields, Camera& camera) {
                    "and ambient light"),
                camera.operating);
   fields.table(Key("playback",
-                   "Differences between the exposures that the camera plays and those of "
+                   "Differences between the exposures of the camera and the exposures of "
                    "the code"),
                camera.playback);
   fields.table(Key("temperature", "Dependence of depth and signal on the temperature"),

@@ -20,7 +20,7 @@ __all__ = ["Finding", "UsageError", "items", "reproduce"]
 
 #: Names and titles of everything that can be reproduced, in the paper's order.
 items = {
-    "fig2": "From a target to functions that can be played",
+    "fig2": "From a target to functions that hardware can generate",
     "fig3": "Hamiltonian codes at falling peak power",
     "fig4": "Mean depth error over signal and ambient light",
     "fig5": "Impulse responses and their band limits",

@@ -69,7 +69,7 @@ def reproduce(study: Study) -> None:
                 f"target's variation) at {F_MAX_IN_F0} f0. All binary: {'yes' if binary else 'no'}.")
     pairs = {"trivial": trivial, "no limit": free, f"{F_MAX_IN_F0} f0": band}
     study.picture("pairs", pair_panels(pairs, "hamiltonian-k4"),
-                  f"K = 4, code 3, p = {PEAK}. No light source can play the impulse of height {n}. At "
+                  f"K = 4, code 3, p = {PEAK}. No light source can emit the impulse of height {n}. At "
                   f"{F_MAX_IN_F0} f0 the arms smooth the waveforms, and sharp corners are lost.")
 
     # 5. Without total variation, with it, and projected to binary waveforms.

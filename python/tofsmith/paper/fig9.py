@@ -51,7 +51,7 @@ def reproduce(study: Study) -> None:
     generated = tofsmith.CodeSet.from_waveforms(*tofsmith.actual_waveforms(ours, camera), taps=ours.taps,
                                              samples=camera.samples, name="as generated")
     study.picture("waveforms", plot.waveforms(generated, camera),
-                  "The redesigned code as the generators play it, and its correlation functions.")
+                  "The redesigned code as the generators output it, and its correlation functions.")
     study.table("errors_percent_of_range", [
         {"code": name, "optical_density": density, "error": float(error), "standard_error": float(se)}
         for name, values in percent.items()

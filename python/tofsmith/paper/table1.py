@@ -40,7 +40,7 @@ def reproduce(study: Study) -> None:
     others = max(1.0, *(ratio for ratio in ratios.values() if ratio <= 1.1))
     raised = ", ".join(f"{name} by {100 * (ratio - 1):.0f} %" for name, ratio in spoiled.items())
     study.state(HOLDS if not spoiled else IN_PART if len(spoiled) < len(ratios) else FAILS,
-                "The codes can be played on existing hardware: generators of 150 MHz, 500 MS/s and 14 "
+                "Existing hardware can generate the codes: generators of 150 MHz, 500 MS/s and 14 "
                 "bits.",
                 f"At f0 = 5 MHz a period has {reports[0].points_per_period} points. They raise the depth "
                 f"error of {raised or 'no code by more than 10 %'}; of all other codes by "

@@ -49,7 +49,7 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
 }
 
 /// Applies the order of exposures and the direction of delay to a table.
-void play(const DecodingTableOptions& options, MeasuredTable& measured) {
+void apply(const DecodingTableOptions& options, MeasuredTable& measured) {
   if (!options.order.empty()) {
     const int side = measured.taps, exposures = measured.columns() / side;
     Playback{.order = options.order}.validate(side);
@@ -73,7 +73,7 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
       path, {.layout = {options.file.taps.value_or(camera.sensor.taps), options.file.tap_order},
              .axes = options.axes,
              .keep_end_point = options.keep_end_point});
-  play(options, measured);
+  apply(options, measured);
   measured.range_m = options.range_m;
   if (options.ambient)
     measured.ambient_gain = ambient_gain_of(measured.correlation, *options.ambient);
