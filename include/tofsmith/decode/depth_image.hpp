@@ -212,10 +212,10 @@ struct PixelMaps {
   void validate(int height, int width) const;
 };
 
-/// Corrects decoded pixels first to first + count - 1 (row by row) in place: depth becomes depth -
+/// Corrects `count` decoded pixels from `first` on (row by row) in place: depth becomes depth -
 /// offset, wrapped into [0, range); signal and ambient are divided by the gain. Confidence and
 /// deviation do not change, because shot noise depends on the collected electrons. Bins do not
-/// change either; they are rows of the table. Dead pixels become invalid, without depth.
+/// change either, because they refer to the table. Dead pixels become invalid, without depth.
 /// @param maps     valid for the frame
 /// @param range_m  range of the decoding table [m]
 /// @param decoded  planes whose first value belongs to pixel `first`
@@ -262,16 +262,17 @@ struct UnfilteredPixels {
 /// Finds flying pixels in a decoded frame: pixels that see two surfaces at a depth edge, because
 /// the lens blurs the image.
 ///
-/// The candidate surfaces of a pixel are pixels of its 9 x 9 neighbourhood. The depth of a
-/// candidate agrees with that of most of its neighbours, apart from the local slope. A pixel whose
-/// depth matches no candidate is tested for the light of two candidates,
-///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0,
-/// by weighted least squares. The pixel is mixed if this model explains its measurements within
-/// noise, much better than either surface alone, and not much worse than a single return at the
-/// decoded depth. For filtered pixels, the unfiltered measurements must pass the test too, because
-/// averaging over neighbours hides mixed light. With rank 2 (K = 3), two returns fit any
-/// measurement, and no pixel is marked. Pixels that are invalid, saturated or without depth do not
-/// change.
+/// The candidate surfaces of a pixel consist of pixels of its 9 x 9 neighbourhood. The depth of
+/// each of these pixels agrees with that of at least six of its eight neighbours, apart from the
+/// local slope. The light of two candidates is fitted to the measurements by weighted least
+/// squares,
+///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0.
+/// The pixel is mixed if this model explains its measurements better than either surface alone, and
+/// not much worse than a single return at the decoded depth. If the decoded depth matches a
+/// candidate, the model must be much better than the single return. A filtered pixel is also mixed
+/// if its unfiltered measurements pass the test, because averaging over neighbours hides mixed
+/// light. With rank 2 (K = 3), two returns fit any measurement, and no pixel is marked. Pixels that
+/// are invalid, saturated or without depth do not change.
 /// @param table    table of the decoder
 /// @param raw      numbers that were decoded; if filtered, with the number of averaged measurements
 /// @param maps     maps that were applied to `decoded`
