@@ -46,11 +46,12 @@ auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
 ///   y' = electrons - dark,  a = T o kappa,  x(z) = T o chi(z),  P = I - a a^T / |a|^2
 ///   z_hat = argmax_z (P y') . (P x(z)) / |P x(z)|
 /// o is the element-wise product. Terms of the table are explained in DecodingTable. The maximum is
-/// taken over all bins with contrast. Scores within 1e-11 |P y'| of the best score are ties, which
-/// the lowest bin wins. The result is then refined to the best point on the chords, the straight
-/// lines from x(z_hat) to both adjacent bins. The bin always equals the result of double precision
-/// arithmetic. It does not depend on the type of the raw numbers, the processor or the number of
-/// threads.
+/// taken over all rows with contrast. Scores within 1e-11 |P y'| of the best score are ties, which
+/// the lowest row wins. The depth is then refined between rows. In a smooth table, it is the
+/// maximum of the pixel's own correlation. Otherwise, it is the best point on the chords, the
+/// straight lines from x(z_hat) to both adjacent rows. The bin always equals the result of double
+/// precision arithmetic. It does not depend on the type of the raw numbers, the processor or the
+/// number of threads.
 ///
 /// Immutable and thread-safe.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 3; deviates: projects out ambient, not the mean
@@ -73,8 +74,9 @@ class Decoder {
   ///   bin: the best bin, as in decode_bins();
   ///   signal and ambient: least squares fit of y' to x(z_hat) and a;
   ///   predicted standard deviation: noise of the measurements, propagated through the least
-  ///     squares problem in (z, S, A) that z_hat solves. The noise has the variance at the
-  ///     estimate, mu_i + constant variance, averaged over a quarter of the chord;
+  ///     squares problem in (z, S, A) that z_hat solves. The variance of the noise is that of the
+  ///     estimated light, mu_i + constant variance. Each chord is divided into quarters, and the
+  ///     noise at the middle of the estimate's quarter is used;
   ///   confidence: posterior probability that the depth lies in the main lobe. A priori, all depths
   ///     are equally likely, the ambient light may have any value, and the density of the signal is
   ///     proportional to 1/S from a tenth of its standard deviation upwards. The noise is that at

@@ -15,9 +15,9 @@
 
 namespace tofsmith {
 
-/// Dependence of K measurements on signal and ambient light: that of their expected values, and
-/// that of the collected light, which determines their shot noise. The two differ only if buckets
-/// are subtracted.
+/// Dependence of K measurements on signal and ambient light. The table describes the expected
+/// measurements, and the collected light, which determines their shot noise. Measurements and
+/// collected light differ only if buckets are subtracted.
 struct MeasurementTable {
   Eigen::MatrixXd correlation;        ///< chi, (N, K), row n at depth_bin = n
   Eigen::VectorXd ambient_gain;       ///< kappa (K)
