@@ -423,7 +423,8 @@ Camera at_distances(Camera camera, std::vector<double> distances_m, double albed
 
 /// Returns the default light of captures: the signal that the camera's optics receive from white
 /// surfaces at the given distance, and the ambient light from their sunlight. Without optics, both
-/// are taken from the middle operating point; without sunlight, the ambient light is.
+/// are taken from the middle operating point. If the optics have no sunlight, only the ambient
+/// light is taken from there.
 OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 
 /// Returns the camera on which codes are evaluated: one whose single pixels measure the sum of
@@ -458,8 +459,9 @@ Camera in_buckets(Camera camera);
 /// Returns why the family `name` cannot be built for the camera. None: build_family() succeeds.
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera);
 
-/// Builds the family `name` for the camera: within its peak, with its samples, with the second
-/// bucket of every measurement if the sensor has two taps, and from -1 to 1 if it is a mixer.
+/// Builds the family `name` for the camera: with its number of samples, and without exceeding its
+/// peak. For a sensor with two taps, every demodulation gets its complement as second bucket. For a
+/// mixer, demodulations become weights from -1 to 1.
 /// @throws InvalidArgument with the text of why_no_family()
 CodeSet build_family(std::string_view name, const Camera& camera);
 

@@ -25,7 +25,8 @@ class CorrelationFunction {
   CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
                       const Eigen::VectorXcd& transfer);
 
-  /// Returns the function delayed by `delay` [periods] and, if `reversed`, in -u: f(+-(u - delay)).
+  /// Returns f(u - delay), the function delayed by `delay` [periods]. If `reversed`, returns
+  /// f(-(u - delay)), the mirrored and delayed function.
   CorrelationFunction moved(double delay, bool reversed) const;
 
   /// Returns the value at depth `u` [periods], any real number; the period is 1.
@@ -179,10 +180,11 @@ RowCovariance row_covariance(const ForwardModel& model, int points);
 /// Variance of one tap value without light [e^2]: read noise and quantization.
 double constant_variance_e2_of(const Sensor& sensor);
 
-/// Returns kappa (K) for an estimator on this camera. It is 0 for all differences of buckets, and
-/// for all rows, if the brightest operating ambient light contributes at most 5 % of the noise to
-/// each, e.g. if a generator rounds duties of 1/2. Estimating such a small contribution would cost
-/// a whole measurement, and ignoring it has almost no effect. Otherwise returns ambient_gain().
+/// Returns kappa (K) for an estimator on this camera: ambient_gain(), or 0 for all measurements if
+/// ambient light nearly cancels. The latter applies to rows, and to measurements that are
+/// differences of light, if the brightest operating ambient light changes none of them by more than
+/// 5 % of its noise (e.g. if a generator rounds duties of 1/2). Estimating such a small
+/// contribution would cost a whole measurement, and ignoring it has almost no effect.
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera);
 
 /// Exponential tail behind the direct return, as in haze or translucent materials: the light with
