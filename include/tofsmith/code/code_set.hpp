@@ -153,7 +153,7 @@ class CodeSet {
 
   const std::string& name() const { return name_; }
   int samples() const { return samples_; }
-  int taps() const { return taps_; }  ///< or rows
+  int taps() const { return taps_; }  ///< taps per exposure, or number of rows
   /// Returns true if the measurements are rows of one exposure.
   bool is_rows() const { return is_rows_; }
   /// Returns true if the demodulation is that of a mixer.

@@ -343,9 +343,9 @@ std::string sweep_csv(const WorkList& list, std::span<const SweepResult> results
 std::string sweep_json(const WorkList& list, std::span<const SweepResult> results,
                        std::string_view target);
 
-/// Returns the columns of the CSV file as arrays of equal length. A text axis consists of
-/// `NAME_index`, indices into `NAME_names`, an array of UTF-8 bytes padded with zeros (in NumPy:
-/// names.view(f"S{names.shape[1]}").ravel()).
+/// Returns the columns of the CSV file as arrays of equal length. A text axis is stored as two
+/// arrays: `NAME_index` contains indices into `NAME_names`, and `NAME_names` contains UTF-8 bytes
+/// padded with zeros (in NumPy: names.view(f"S{names.shape[1]}").ravel()).
 NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> results);
 
 }  // namespace tofsmith

@@ -57,8 +57,8 @@ struct QuantizedWaveform {
   friend bool operator==(const QuantizedWaveform&, const QuantizedWaveform&) = default;
 };
 
-/// Rounds a waveform that is constant over points to codes; the error is at most half a step. Name,
-/// voltages and sample rate are set by the caller.
+/// Rounds a waveform, which must be constant within each point, to integer codes. The error is at
+/// most half a step. The caller sets name, voltages and sample rate.
 /// @param table   from generator_table(), with `points` points
 /// @param scale   factor of the waveform; the full scale is its peak times this factor
 QuantizedWaveform quantized(const Waveform& table, int points, std::int32_t levels,
