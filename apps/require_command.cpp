@@ -106,6 +106,7 @@ void run(RequireArguments& arguments, const Session& session) {
         break;
     }
   const OutputKind kind = kind_of(arguments.output);
+  if (kind == OutputKind::none && !session.json) options.map = false;  // only in documents
   std::optional<FreshDirectory> directory;
   if (kind == OutputKind::directory) directory.emplace(arguments.output);
   const OutputPolicy policy = check_outputs(arguments.output, kind, session);
@@ -113,16 +114,14 @@ void run(RequireArguments& arguments, const Session& session) {
   const Requirements found = find_requirements(camera, options, terminal_progress("designing"));
   write(arguments.output, kind, camera, found, options, policy, session);
   if (session.json) return session.print_document(requirements_document(camera, found, options));
-  session.say(fmt::format("asked for {}; as it is, {} errs {}{}", length_text(options.error_m),
-                          found.code.name(), length_text(found.error_m),
+  session.say(fmt::format("target {}; error now {} with {}{}", length_text(options.error_m),
+                          length_text(found.error_m), found.code.name(),
                           found.bound_m > 0.0
-                              ? fmt::format(" (no code less than {})", length_text(found.bound_m))
+                              ? fmt::format(" (no code below {})", length_text(found.bound_m))
                               : std::string()));
   session.say(text_table(requirement_rows(camera, found, options)));
-  session.say(
-      fmt::format("each by itself, all else as the camera has it; circular error, designs of "
-                  "effort {:.3g}, {} trials, seed {}",
-                  options.effort, options.trials, options.seed));
+  session.say(fmt::format("each varied alone; circular error, {} trials, seed {}; {}",
+                          options.trials, options.seed, searched_codes_text(options)));
   if (kind == OutputKind::none) return;
   session.say(fmt::format("wrote {}", arguments.output));
   for (const Sufficiency& s : found.varied) {
@@ -154,7 +153,8 @@ void add_require_command(CLI::App& app, Session& session) {
       ->check(one_of({"bandwidth", "power", "exposure"}));
   const FieldOptions options(*command, arguments->options);
   options.add("max_factor", "--max-factor");
-  options.add("effort", "--effort");
+  CLI::Option* exact = options.add("exact", "--exact");
+  options.add("effort", "--effort")->needs(exact);
   options.add("trials", "--trials");
   options.add("seed", "--seed");
   options.add("map", "!--no-map");

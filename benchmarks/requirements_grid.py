@@ -84,7 +84,7 @@ def main(names):
         camera = camera.replace(operating={"error": "circular"})
         begin = time.perf_counter()
         (found,) = ts.find_requirements(
-            camera, error_m, effort=EFFORT, trials=TRIALS, map=False,
+            camera, error_m, exact=True, effort=EFFORT, trials=TRIALS, map=False,
             **{f"vary_{q}": q == quantity for q in ("bandwidth", "power", "exposure")}).varied
         seconds = time.perf_counter() - begin
         if found.factor is None:

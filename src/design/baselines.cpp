@@ -86,14 +86,7 @@ std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera&
 
 /// Atlas entries share some waveforms.
 std::size_t first_like(const std::vector<CodeSet>& codes, std::size_t i) {
-  const auto alike = [&](const CodeSet& code) {
-    if (code.taps() != codes[i].taps() || code.exposures() != codes[i].exposures()) return false;
-    for (int e = 0; e < code.exposures(); ++e)
-      if (code.modulation(e) != codes[i].modulation(e)) return false;
-    for (int k = 0; k < code.measurements(); ++k)
-      if (code.demodulation(k) != codes[i].demodulation(k)) return false;
-    return true;
-  };
+  const auto alike = [&](const CodeSet& code) { return has_same_waveforms(code, codes[i]); };
   return static_cast<std::size_t>(std::find_if(codes.begin(), codes.end(), alike) - codes.begin());
 }
 
@@ -119,6 +112,15 @@ void leave_out(DesignResult& result, const Contenders& contenders, const char* k
 }
 
 }  // namespace
+
+bool has_same_waveforms(const CodeSet& a, const CodeSet& b) {
+  if (a.taps() != b.taps() || a.exposures() != b.exposures()) return false;
+  for (int e = 0; e < a.exposures(); ++e)
+    if (a.modulation(e) != b.modulation(e)) return false;
+  for (int k = 0; k < a.measurements(); ++k)
+    if (a.demodulation(k) != b.demodulation(k)) return false;
+  return true;
+}
 
 void leave_out(DesignResult& result, const std::string& name, const std::string& reason) {
   const std::string ending = ": " + reason;
@@ -180,7 +182,8 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   return found;
 }
 
-Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options) {
+Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options,
+                                  std::optional<int> trials) {
   constexpr std::size_t max_of_exposures = 3;
   Contenders found;
   if (options.atlas_cameras == 0 || options.method == DesignMethod::factorize ||
@@ -196,8 +199,8 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
     reasons[at] = why_not_comparable(codes[at], camera);
     if (!reasons[at]) comparable[at] = &codes[at];
   });
-  std::vector<double> errors_m =
-      first_errors_m(comparable, camera, trials_per_point(camera), search_seed(options));
+  std::vector<double> errors_m = first_errors_m(
+      comparable, camera, trials.value_or(trials_per_point(camera)), search_seed(options));
   for (std::size_t i = 0; i < codes.size(); ++i) errors_m[i] = errors_m[first_like(codes, i)];
   const auto note = [](const std::string& name, std::vector<std::string>& names) {
     // Codes occur twice: unchanged and adapted.

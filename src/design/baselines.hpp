@@ -4,12 +4,16 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
+
+/// Returns true if taps, modulations and demodulations are equal.
+bool has_same_waveforms(const CodeSet& a, const CodeSet& b);
 
 /// Records why a code does not compete, in one line per reason.
 void leave_out(DesignResult& result, const std::string& name, const std::string& reason);
@@ -39,7 +43,9 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
 
 /// Returns the best codes of the nearest atlas cameras by a quick screening, best first, up to
 /// three per number of exposures. Empty if the options disable the atlas.
-Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options);
+/// @param trials  per operating point; none: 25000 divided among them, but at least 1000
+Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options,
+                                  std::optional<int> trials = {});
 
 /// Adds the best four as candidates and records which codes cannot compete.
 void add_atlas_codes(const Contenders& contenders, DesignResult& result);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/shared/enum_words.hpp"
+#include "design/baselines.hpp"
 #include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
 #include "tofsmith/core/error.hpp"
@@ -33,9 +34,8 @@ struct BestCode {
 
 using Codes = std::vector<const CodeSet*>;
 
-/// Uses the best origin if depths are weighted.
-CodeSet family_for(const std::string& name, const Camera& camera, const DesignOptions& options) {
-  CodeSet code = build_family(name, camera);
+/// Rotates the code to its best origin if depths are weighted.
+CodeSet at_best_origin(const CodeSet& code, const Camera& camera, const DesignOptions& options) {
   if (!rotates(camera, options) || why_no_depth(code, camera)) return code;
   const EvaluateOptions search{.trials = options.trials, .seed = search_seed(options)};
   return code.rotated(best_rotation(code, camera, search).rotation_bin);
@@ -48,23 +48,25 @@ class CodePool {
       : options_(options), design_(with_effort({}, options.effort)) {
     design_.seed = options.seed;
     design_.trials = std::clamp(options.trials / 10, 1000, 5000);
+    add_standard_codes(camera);
     design_.baselines = suggested_baselines(camera, design_);  // only these, for speed
-    for (const std::string& name : *design_.baselines)
-      if (!why_no_family(name, camera)) codes_.push_back(family_for(name, camera, design_));
   }
 
-  /// Adds the winner of a design.
+  /// Adds atlas codes or, for an exact answer, the winner of a design, which starts from them.
   /// @param exposures  empty: suggested_exposures()
   /// @param again  earlier designs for a similar camera; selects the seed
-  void design_for(const Camera& camera, const std::vector<int>& exposures, const Progress& progress,
-                  int again = 0) {
+  void add_codes_for(const Camera& camera, const std::vector<int>& exposures,
+                     const Progress& progress, int again = 0) {
     design_.exposures = exposures;
+    if (!options_.exact) return add_atlas_codes_for(camera, progress);
     design_.seed = options_.seed + static_cast<std::uint64_t>(again);
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
-  /// Exposures of the best code on a camera, and up to `difference` fewer and more.
+  /// Exposures of the best code on a camera, and up to `difference` fewer and more; empty, which
+  /// selects all, for lookups in the atlas.
   std::vector<int> exposures_near(const Camera& camera, int difference) const {
+    if (!options_.exact) return {};
     const int best = best_on(camera, all()).code->exposures();
     std::vector<int> near;
     for (int exposures = best - difference; exposures <= best + difference; ++exposures)
@@ -89,7 +91,7 @@ class CodePool {
     return codes;
   }
 
-  /// Screens with a tenth of the trials.
+  /// Screens with few trials.
   BestCode best_on(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first = first_errors(camera, codes);
     const double least_m = *std::min_element(first.begin(), first.end());
@@ -102,8 +104,7 @@ class CodePool {
     return best;
   }
 
-  /// Returns true if the best code reaches the requested error; a tenth of the trials decides clear
-  /// cases.
+  /// Returns true if the best code reaches the requested error; few trials decide clear cases.
   bool suffice_on(const Camera& camera, const Codes& codes) const {
     constexpr double far = 1.25;
     const double least_m = least_first_error_m(camera, codes);
@@ -112,21 +113,44 @@ class CodePool {
     return best_on(camera, codes).error_m <= options_.error_m;
   }
 
-  /// By a tenth of the trials.
+  /// By few trials.
   double least_first_error_m(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first_m = first_errors(camera, codes);
     return *std::min_element(first_m.begin(), first_m.end());
   }
 
  private:
-  /// By a tenth of the trials, with codes in parallel, because few trials use only one thread.
+  /// Adds the families and the standard codes of exclusive taps.
+  void add_standard_codes(const Camera& camera) {
+    DesignResult standard;
+    add_baselines(camera, design_, {}, standard);
+    for (const Candidate& candidate : standard.candidates) add(candidate.code, camera);
+  }
+
+  void add_atlas_codes_for(const Camera& camera, const Progress& progress) {
+    constexpr std::size_t most = 4;
+    const std::vector<CodeSet> codes =
+        contending_atlas_codes(camera, design_, first_trials()).codes;
+    for (std::size_t i = 0; i < std::min(most, codes.size()); ++i) add(codes[i], camera);
+    report(progress, 1.0, "atlas");
+  }
+
+  void add(const CodeSet& code, const Camera& camera) {
+    CodeSet placed = at_best_origin(code, camera, design_);
+    const auto is_placed = [&](const CodeSet& its) { return has_same_waveforms(its, placed); };
+    if (std::none_of(codes_.begin(), codes_.end(), is_placed)) codes_.push_back(std::move(placed));
+  }
+
+  int first_trials() const { return std::max(1000, options_.trials / (options_.exact ? 10 : 25)); }
+
+  /// By few trials, with codes in parallel, because few trials use only one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
       for (std::int64_t k = block.begin; k < block.end; ++k) {
         const auto i = static_cast<std::size_t>(k);
         if (!why_no_depth(*codes[i], camera))
-          errors_m[i] = error_of(*codes[i], camera, std::max(1000, options_.trials / 10));
+          errors_m[i] = error_of(*codes[i], camera, first_trials());
       }
     });
     return errors_m;
@@ -189,6 +213,8 @@ double excluded_below(const Camera& camera, CameraQuantity quantity,
 constexpr double stride = 4.0;  ///< factor between designs
 /// The error of each design is random by a few percent.
 constexpr int end_designs = 3;
+/// Repeated lookups in the atlas find the same codes.
+int designs_at_end(const RequirementOptions& options) { return options.exact ? end_designs : 1; }
 
 /// Scales the quantity by strides, with a design at each, until the requested error is bracketed;
 /// then bisects.
@@ -198,12 +224,13 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   std::optional<double> least;
   const int most_steps =
       static_cast<int>(std::ceil(std::log(options.max_factor) / std::log(stride)));
-  const ProgressParts parts(progress, static_cast<std::size_t>(most_steps + end_designs));
+  const ProgressParts parts(progress,
+                            static_cast<std::size_t>(most_steps + designs_at_end(options)));
   const auto on = [&](double factor) { return with_scaled(camera, quantity, factor); };
   const auto suffices = [&](double factor) { return pool.suffice_on(on(factor), pool.all()); };
   const auto design_at = [&](double factor, int difference, std::size_t part, int again = 0) {
     const Camera there = on(factor);
-    pool.design_for(there, pool.exposures_near(there, difference), parts[part], again);
+    pool.add_codes_for(there, pool.exposures_near(there, difference), parts[part], again);
   };
   const auto least_within = [&](double low, double high) {
     const Codes codes = pool.contenders(on(low), on(high));
@@ -219,8 +246,9 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   for (int step = 1; step <= most_steps && !bracketed; ++step) {
     const double factor = std::clamp(upwards ? high * stride : low / stride,
                                      1.0 / options.max_factor, options.max_factor);
-    // The best number of exposures depends mainly on bandwidth.
-    design_at(factor, quantity == CameraQuantity::bandwidth ? 1 : 0, part++);
+    // The best number of exposures, and the similar cameras of the atlas, depend on bandwidth.
+    if (options.exact || quantity == CameraQuantity::bandwidth)
+      design_at(factor, quantity == CameraQuantity::bandwidth ? 1 : 0, part++);
     const bool met = suffices(factor);
     if (upwards) {
       if (!met) low = factor;
@@ -249,7 +277,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
 
   // 2. Bisection, with new designs at the result while they lower it.
   least = least_within(low, high);
-  for (int round = 0; round < end_designs; ++round) {
+  for (int round = 0; round < designs_at_end(options); ++round) {
     design_at(*least, 1, part++, round);
     const double before = *least;
     if (suffices(before / stride)) break;
@@ -272,7 +300,7 @@ RequirementMap map_of(const Camera& camera, CodePool& pool, const Progress& prog
   const ProgressParts parts(progress, map.bandwidth.size());
   for (std::size_t b = 0; b < map.bandwidth.size(); ++b) {
     const Camera of_band = with_scaled(camera, CameraQuantity::bandwidth, map.bandwidth[b]);
-    if (b % 2 == 0) pool.design_for(of_band, pool.exposures_near(of_band, 1), parts[b]);
+    if (b % 2 == 0) pool.add_codes_for(of_band, pool.exposures_near(of_band, 1), parts[b]);
     const Codes codes = pool.contenders(of_band, of_band);
     for (std::size_t p = 0; p < map.power.size(); ++p)
       map.error_m(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(p)) =
@@ -345,7 +373,7 @@ Requirements find_requirements(const Camera& asked, const RequirementOptions& op
   const ProgressParts parts(progress, weights);
 
   CodePool pool(camera, options);
-  pool.design_for(camera, {}, parts[0]);
+  pool.add_codes_for(camera, {}, parts[0]);
   const BestCode now = pool.best_on(camera, pool.all());
   Requirements found{.error_m = now.error_m,
                      .code = *now.code,

@@ -70,6 +70,11 @@ Figure error_map(const RequirementMap& map, double error_m) {
 
 }  // namespace
 
+std::string searched_codes_text(const RequirementOptions& options) {
+  if (options.exact) return fmt::format("designs of effort {}", plain_number(options.effort, 3));
+  return "atlas codes, on the safe side: designed codes may need less (option exact)";
+}
+
 std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
                                                        const Requirements& found,
                                                        const RequirementOptions& options) {
@@ -129,7 +134,8 @@ KeyValueList conditions(const Camera& camera, const Requirements& found,
                       fmt::format("{} with {}", length_text(found.error_m), found.code.name())},
                      {"true depths", distance_text(camera)},
                      {"signal", levels_text(camera.operating.signal_e_per_s)},
-                     {"ambient light", levels_text(camera.operating.ambient_e_per_s)}}};
+                     {"ambient light", levels_text(camera.operating.ambient_e_per_s)},
+                     {"codes", searched_codes_text(options)}}};
   if (camera.optics) {
     list.entries.push_back({"distance of a white surface", white_distance_text(camera)});
     list.entries.push_back({"sunlight", sunlight_text(*camera.optics)});

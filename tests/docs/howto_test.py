@@ -23,7 +23,7 @@ from command_line import TOOL  # noqa: E402
 from sweep_text import sweep_text  # noqa: E402
 
 SHORTER = {" design ": " design --effort 0.01 --trials 1000 ",
-           " require ": " require --effort 0.01 --trials 1000 --vary power ",
+           " require ": " require --trials 1000 --vary power ",
            " reproduce all ": " reproduce fig5 --fast ",
            " --bounces 1 ": " --bounces 1 --bounce-rays 16 ",
            " --average 30 ": " --average 2 "}

@@ -267,9 +267,9 @@ def test_require(ways):
     ts.Camera("paper-10f0", samples=24, operating=levels).write(mine)
     camera = ts.Camera(mine)
     ways.command("require", "mine.toml", "--error", "20mm", "--vary", "power", "--max-factor", "4",
-                 "--effort", "0.01", "--trials", "1000", "-o", "found")
+                 "--exact", "--effort", "0.01", "--trials", "1000", "-o", "found")
     found = ts.find_requirements(camera, 0.02, vary_bandwidth=False, vary_exposure=False,
-                                 max_factor=4, effort=0.01, trials=1000)
+                                 max_factor=4, exact=True, effort=0.01, trials=1000)
     found.write("found")
     (power,) = found.varied
     assert power.quantity == "power" and power.error_m <= 0.02 and found.map is None

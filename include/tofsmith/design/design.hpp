@@ -263,7 +263,8 @@ struct RequirementOptions {
   bool vary_power = true;
   bool vary_exposure = true;
   double max_factor = 64.0;
-  double effort = 0.1;  ///< see with_effort()
+  bool exact = false;
+  double effort = 0.1;  ///< see with_effort(); only if exact
   int trials = 50000;
   bool map = true;
   std::uint64_t seed = 1;
@@ -283,7 +284,11 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("vary_exposure", o.vary_exposure, Help{"vary the integration time"}),
       Field("max_factor", o.max_factor, left_open(1, 1e6),
             Help{"largest factor by which a quantity is increased or decreased"}),
-      Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"}),
+      Field("exact", o.exact,
+            Help{"design codes along the way (minutes), instead of taking them from the atlas "
+                 "(seconds), which may ask for more than necessary"}),
+      Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
+            OnlyWith{"exact"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
       Field("map", o.map, Help{"compute the error over bandwidth and power, if both are varied"}),
       Field("seed", o.seed, Help{"seed of every random choice"}));
@@ -316,10 +321,11 @@ struct Requirements {
 };
 
 /// Finds the smallest amount of each quantity, varied separately, for which a code has at most the
-/// requested error. Codes are designed in steps of a factor of 4, and again at the factor that the
-/// search finds. All codes and the baselines are evaluated with the same random numbers. The error
-/// decreases with each quantity, so bisection finds the factor to 0.5 %. The error is always
-/// circular, because a surface at a given distance causes no wrap-around.
+/// requested error. Codes are taken from the atlas or, if `exact`, designed, in steps of a factor of
+/// 4 and again at the factor that the search finds. All codes and the standard codes are evaluated
+/// with the same random numbers. The codes found reach the error; a designed code may need less.
+/// The error decreases with each quantity, so bisection finds the factor to 0.5 %. The error is
+/// always circular, because a surface at a given distance causes no wrap-around.
 /// @throws std::invalid_argument as design(), for invalid options, or for bandwidth without a band
 ///   limit; Interrupted
 Requirements find_requirements(const Camera& camera, const RequirementOptions& options,

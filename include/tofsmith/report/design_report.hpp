@@ -34,6 +34,9 @@ Page design_report(const DesignedDirectory& found, const std::string& command_li
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        std::span<const EvaluatedCode> evaluated, const std::string& command_line);
 
+/// Describes the codes that find_requirements() tried, and whether others may need less.
+std::string searched_codes_text(const RequirementOptions& options);
+
 /// Rows of the table of changes that reach a target error, headings first.
 std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
                                                        const Requirements& found,
