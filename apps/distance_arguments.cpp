@@ -8,6 +8,7 @@
 
 #include "number_checks.hpp"
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/camera/optics.hpp"
 
 namespace tofsmith::apps {
 
@@ -33,6 +34,17 @@ void DistanceArguments::add_to(CLI::App& command) {
 
 Camera DistanceArguments::at(const Camera& camera, const Session& session) const {
   if (!is_asked()) return camera;
+  if (!camera.optics)
+    throw UsageError(fmt::format(
+        "--distance: found no [optics] in camera {}; expected them to compute the light "
+        "at a distance. Add these typical values, or your own:\n  --set '{}'",
+        camera.name, typical_optics_line()));
+  if (klux_ && !camera.optics->filter_width_m)
+    throw UsageError(
+        fmt::format("--klux: found no optics.filter_width_m in camera {}; expected the bandwidth "
+                    "of the optical filter. Add this typical value, or your own:\n"
+                    "  --set 'optics.{}'",
+                    camera.name, typical_filter_line));
   constexpr double brightest_klux = 200.0;  // sunlight at noon: 130 klx
   if (klux_ && *klux_ > brightest_klux)
     session.say(fmt::format(

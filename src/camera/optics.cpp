@@ -89,8 +89,7 @@ double Optics::source_power_for_w(double signal_e_per_s, double distance_m, doub
 Camera at_distances(Camera camera, std::vector<double> distances_m, double albedo,
                     std::optional<double> klux) {
   require(camera.optics.has_value(), "optics", "none",
-          "is required to compute the light at a distance: set source_power_w, wavelength_m, "
-          "field_of_view_deg, f_number, pixel_pitch_m, quantum_efficiency");
+          "is required to compute the light at a distance, such as " + typical_optics_line());
   require(!distances_m.empty(), "distances_m", "none", "must be at least one");
   if (klux) {
     camera.optics->sunlight_w_per_m2_nm.reset();
@@ -136,7 +135,20 @@ void Optics::validate() const {
                         1e9 * sun_first_m, 1e9 * sun_last_m));
   }
   require(filter_width_m || !(sunlight_klux || sunlight_w_per_m2_nm), "optics.filter_width_m",
-          "none", "is required with sunlight, to compute the light that passes the filter");
+          "none",
+          fmt::format(
+              "is required with sunlight, to compute the light that passes the filter, such as {}",
+              typical_filter_line));
+}
+
+std::string typical_optics_line() {
+  KeyList list;
+  Optics blank;
+  describe(list, blank);
+  std::string line = "optics = { ";
+  for (const KeyDescription& its : list.keys)
+    if (!its.key.example.empty()) line += fmt::format("{} = {}, ", its.name, its.key.example);
+  return line + std::string(typical_filter_line) + " }";
 }
 
 }  // namespace tofsmith

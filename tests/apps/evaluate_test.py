@@ -3,6 +3,7 @@
 """Output of `evaluate`: fields, targets, methods, settings."""
 
 import json
+import shlex
 import unittest
 
 from command_line import CommandLineTest
@@ -37,6 +38,14 @@ class Evaluate(CommandLineTest):
         self.assertEqual(len(self.bytes_of("e.csv").splitlines()), 26)
         self.do("evaluate", "sinusoid-k4", *FAST, "-o", "e.html")
         self.assertIn(b"sinusoid-k4", self.bytes_of("e.html"))
+
+    def test_the_offered_optics_can_be_copied(self):
+        command = ("evaluate", "sinusoid-k4", *FAST, "--distance", "3m", "--klux", "20")
+        _, offered = shlex.split(self.refuse(command, "[optics]", code=2).splitlines()[-1])
+        self.do(*command, "--set", offered)
+        without_filter = offered[:offered.index(", filter_width_m")] + "}"
+        error = self.refuse((*command, "--set", without_filter), "filter_width_m", code=2)
+        self.do(*command, "--set", without_filter, *shlex.split(error.splitlines()[-1]))
 
     def test_a_missing_bound_is_an_empty_field(self):
         self.do("evaluate", "sinusoid-k3", *FAST, "--set", 'light.impulse_response={kind="none"}',

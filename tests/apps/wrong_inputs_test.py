@@ -49,6 +49,7 @@ decode raw.npy --code sinusoid-k5 -o d.npy | 4 measurements; expected 5
 decode raw.npy --code sinus-k4 -o d.npy | sinus-k4; sinusoid-k4
 decode raw.npy -o d.npy | --code is required; raw.code.json
 decode raw.npy --code sinusoid-k4 | --output
+require paper-10f0 --error 5mm --distance 3m --klux 20 | [optics]; --set 'optics = {; filter_width_m = 30e-9
 decode raw.npy --code sinusoid-k4 -o d | .npz
 decode raw.npy --code sinusoid-k4 -o d.ply | --view-deg; [lens]
 decode raw.npy --code sinusoid-k4 --kind z -o d.npy | --view-deg; [lens]

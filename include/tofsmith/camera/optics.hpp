@@ -4,6 +4,8 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "tofsmith/camera/operating_range.hpp"
 #include "tofsmith/core/field_visitor.hpp"
@@ -93,5 +95,11 @@ inline void describe(FieldVisitor& fields, Optics& optics) {
                    at_least(0)),
                optics.sunlight_w_per_m2_nm);
 }
+
+/// Typical bandwidth of an optical filter, as a line of a camera file.
+inline constexpr std::string_view typical_filter_line = "filter_width_m = 30e-9";
+/// Returns typical values of all required keys and of the filter, as one line of a camera file:
+/// "optics = { source_power_w = 0.5, ... }".
+std::string typical_optics_line();
 
 }  // namespace tofsmith
