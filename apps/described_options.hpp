@@ -61,6 +61,9 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
       return parse_word<Single>("", word);
     });
     added->check(one_of(detail::texts_of_words<Single>()));
+    added->transform([](const std::string& name) {  // runs first
+      return std::string(usual_word(Single{}, name));
+    });
     if constexpr (std::is_enum_v<Value>)
       added->default_str(detail::texts_of_words<Value>().at(static_cast<std::size_t>(field.value)));
   } else if constexpr (std::is_same_v<Single, std::filesystem::path>) {

@@ -46,8 +46,12 @@ int main() {
                       {"is_usual", described.use == PlaneUse::usual},
                       {"is_multipath", described.use == PlaneUse::of_returns},
                       {"help", help_of(described.plane)}});
+  nlohmann::ordered_json synonyms;
+  for (const PlaneSynonym& synonym : plane_synonyms)
+    synonyms[synonym.name] = description_of(synonym.plane).member;
   const nlohmann::ordered_json all = {{"camera", nlohmann::ordered_json::parse(camera_keys_json())},
                                       {"options", options},
-                                      {"planes", planes}};
+                                      {"planes", planes},
+                                      {"plane_synonyms", synonyms}};
   return std::puts(all.dump().c_str()) < 0 ? 1 : 0;
 }

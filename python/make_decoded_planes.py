@@ -47,7 +47,8 @@ def members_with(mark, planes):
 def main():
     program, output = sys.argv[1:]
     printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
-    planes = json.loads(printed)["planes"]
+    described = json.loads(printed)
+    planes = described["planes"]
     text = HEADER + "".join(map(attribute_text, planes)) + '    """\n\n'
     for plane in planes:
         text += f"    {plane['member']}: Optional[npt.NDArray[np.{plane['type']}]] = None\n"
@@ -60,6 +61,8 @@ plane_types: dict[str, type[np.generic]] = {{
 #: Words that recordings and `tofsmith decode --outputs` have for planes.
 plane_words = {{
 {words}}}
+#: Other names of planes.
+plane_synonyms = {described["plane_synonyms"]!r}
 usual_planes = {members_with("is_usual", planes)!r}
 multipath_planes = {members_with("is_multipath", planes)!r}
 """

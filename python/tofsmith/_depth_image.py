@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check
-from ._decoded_planes import DecodedPlanes, multipath_planes, plane_types, plane_words
+from ._decoded_planes import (DecodedPlanes, multipath_planes, plane_synonyms, plane_types,
+                              plane_words)
 from ._notebook import depth_picture
 
 
@@ -82,7 +83,8 @@ def plane_names(planes: Iterable[str], is_multipath: bool) -> tuple[str, ...]:
     if isinstance(planes, str):
         raise TypeError(f"planes: got the text '{planes}'; needs a list of names")
     known = tuple(p for p in plane_types if is_multipath or p not in multipath_planes)
-    names = tuple(_check.one_of(plane_words.get(p, p), "planes", known) for p in planes)
+    other_names = {**plane_words, **plane_synonyms}
+    names = tuple(_check.one_of(other_names.get(p, p), "planes", known) for p in planes)
     if not names:
         raise ValueError("planes: got none; needs at least one of " + ", ".join(known))
     return names

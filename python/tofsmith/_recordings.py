@@ -11,7 +11,6 @@ from typing import Any, Optional
 
 from . import _check, _tofsmith
 from ._check import Path
-from ._decoded_planes import plane_words
 from ._filter import FilterLike, TimeFilterLike, filter_options, time_filter_options
 
 
@@ -81,11 +80,8 @@ def request_options(
     rays: Optional[Path],
 ) -> dict[str, Any]:
     """Converts options of recordings and streams for the library."""
-    words = {plane: word for word, plane in plane_words.items()}
-    outputs = options.get("outputs")
     return {
         **options,
-        "outputs": None if outputs is None else [words.get(plane, plane) for plane in outputs],
         "raw_format": raw_format,
         "time_filter": None if time_filter is None else time_filter_options(time_filter),
         "filter": None if filter is None else filter_options(filter),

@@ -100,8 +100,7 @@ std::vector<ReferenceSample> decoded_samples(const RawFrames& frames,
       for (int column = f % stride; column < frames.width; column += stride) {
         const PixelStatus status = image.status(row, column);
         const double reference_m = reference_at(reference, f, row, column);
-        const auto deviation_m =
-            static_cast<double>(image.predicted_standard_deviation_m(row, column));
+        const auto deviation_m = static_cast<double>(image.deviation_m(row, column));
         if (!(reference_m > 0.0) || !(deviation_m >= 0.0)) continue;
         if (status != PixelStatus::ok && status != PixelStatus::low_signal) continue;
         samples.push_back({f, row, column, static_cast<double>(image.depth_m(row, column)),

@@ -154,7 +154,7 @@ void compare_frames(const std::vector<DepthImage>& images, double range_m,
       const auto signal = static_cast<double>(image.signal_e_per_s.pixels[i]);
       counts = counts && image.status.pixels[i] == PixelStatus::ok && signal > 0.0;
       if (!counts) break;
-      const auto deviation_m = static_cast<double>(image.predicted_standard_deviation_m.pixels[i]);
+      const auto deviation_m = static_cast<double>(image.deviation_m.pixels[i]);
       direction += std::polar(1.0, turn * static_cast<double>(image.depth_m.pixels[i]) / range_m);
       mean_log += std::log(signal) / static_cast<double>(count);
       variance += deviation_m * deviation_m;

@@ -183,7 +183,7 @@ void DeviceFrame::find_depth(int from) {
   run(write_raw_, parameters_, result(from, from), &words_, raw_.averaged(), &planes_,
       raw.numbers(), raw.averaged());
   float wanted = 0.0f;  // non-null only to select the planes; nothing is fetched
-  tile_.decode({.depth_m = &wanted, .predicted_standard_deviation_m = &wanted});
+  tile_.decode({.depth_m = &wanted, .deviation_m = &wanted});
   decide_open_pixels();
   run(take_depth_, parameters_, tile_.plane(DecodedPlane::depth),
       tile_.plane(DecodedPlane::deviation), &planes_);
@@ -195,8 +195,8 @@ void DeviceFrame::decide_open_pixels() {
   if (open.empty()) return;
   const OpenNumbers numbers(tile_.open_numbers(open), plan_.measurements, {});
   std::vector<float> depth_m(open.size()), deviation_m(open.size());
-  plan_.decoder.decode(numbers.view(), {.depth_m = depth_m.data(),
-                                        .predicted_standard_deviation_m = deviation_m.data()});
+  plan_.decoder.decode(numbers.view(),
+                       {.depth_m = depth_m.data(), .deviation_m = deviation_m.data()});
   tile_.put_depth(open, depth_m, deviation_m);
 }
 

@@ -89,8 +89,7 @@ TEST(Decoder, IsIdenticalOnEveryInstructionSet) {
     const DepthImage image = setup.decoder.decode(frame);
     EXPECT_EQ(image.depth_m.pixels, expected.depth_m.pixels);
     EXPECT_EQ(image.confidence.pixels, expected.confidence.pixels);
-    EXPECT_EQ(image.predicted_standard_deviation_m.pixels,
-              expected.predicted_standard_deviation_m.pixels);
+    EXPECT_EQ(image.deviation_m.pixels, expected.deviation_m.pixels);
     EXPECT_EQ(image.status.pixels, expected.status.pixels);
   });
 }

@@ -201,7 +201,7 @@ TEST(Decoder, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_TRUE(same_bits(one.signal_e_per_s, many.signal_e_per_s));
   EXPECT_TRUE(same_bits(one.ambient_e_per_s, many.ambient_e_per_s));
   EXPECT_TRUE(same_bits(one.confidence, many.confidence));
-  EXPECT_TRUE(same_bits(one.predicted_standard_deviation_m, many.predicted_standard_deviation_m));
+  EXPECT_TRUE(same_bits(one.deviation_m, many.deviation_m));
   EXPECT_EQ(one.status.pixels, many.status.pixels);
 }
 

@@ -50,7 +50,7 @@ struct Repeats {
         for (int x = 0; x < width; ++x) {
           depth.back().push_back(std::remainder(
               image.depth_m(y, x) / table.bin_m() - scene(y, x).depth_bin, table.bin_count()));
-          deviation.back().push_back(image.predicted_standard_deviation_m(y, x) / table.bin_m());
+          deviation.back().push_back(image.deviation_m(y, x) / table.bin_m());
         }
     }
   }

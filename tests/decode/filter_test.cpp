@@ -206,7 +206,7 @@ TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
   const auto flat = frame_seen(table, 32, 32, [&](int, int) { return Seen{80.0, 3e4}; });
   const DepthImage alone = setup.decoder.decode(flat);
   double sigma = 0.0;
-  for (const float s : alone.predicted_standard_deviation_m.pixels) sigma += s / 1024;
+  for (const float s : alone.deviation_m.pixels) sigma += s / 1024;
   const double step = 5 * sigma / table.bin_m();
   const auto depth = [&](int column) { return column < 40 ? 80.0 : 80.0 + step; };
   const RawFrames raw = frame_seen(table, 64, 80, [&](int, int column) {

@@ -90,7 +90,7 @@ TEST(TwoReturnDecoder, ReducesTheErrorFourfoldWithCorrectDeviations) {
   for (std::size_t i = 0; i < true_m.size(); ++i)
     within +=
         std::abs(circular_difference(image.depth_m.pixels[i], true_m[i], setup.camera.range_m())) <
-        3.0 * image.predicted_standard_deviation_m.pixels[i];
+        3.0 * image.deviation_m.pixels[i];
   EXPECT_GT(within, 0.94 * 400);
 }
 

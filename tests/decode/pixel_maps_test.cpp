@@ -28,7 +28,7 @@ DepthImage decoded(const std::vector<float>& depth_m) {
     image.signal_e_per_s.pixels[i] = 1000.0f;
     image.ambient_e_per_s.pixels[i] = 200.0f;
     image.confidence.pixels[i] = 0.5f;
-    image.predicted_standard_deviation_m.pixels[i] = 0.01f;
+    image.deviation_m.pixels[i] = 0.01f;
     image.status.pixels[i] = PixelStatus::low_signal;
   }
   return image;
@@ -68,7 +68,7 @@ TEST(PixelMaps, GainsDivideLightOnly) {
   EXPECT_EQ(image.ambient_e_per_s.pixels, (std::vector<float>{400.0f, 100.0f}));
   EXPECT_EQ(image.depth_m.pixels, (std::vector<float>{1.0f, 2.0f}));
   EXPECT_EQ(image.confidence.pixels, (std::vector<float>{0.5f, 0.5f}));
-  EXPECT_EQ(image.predicted_standard_deviation_m.pixels, (std::vector<float>{0.01f, 0.01f}));
+  EXPECT_EQ(image.deviation_m.pixels, (std::vector<float>{0.01f, 0.01f}));
 }
 
 TEST(PixelMaps, NaNMarksADeadPixel) {

@@ -166,7 +166,7 @@ double deviation_ratio(const RowsSetup& setup, const AnyDecoder& decoder) {
   double square = 0.0, predicted = 0.0;
   for (int i = 0; i < pixels; ++i) {
     square += std::pow(image.depth_m(0, i) - depth_bin * setup.table.bin_m(), 2);
-    predicted += std::pow(image.predicted_standard_deviation_m(0, i), 2);
+    predicted += std::pow(image.deviation_m(0, i), 2);
   }
   return std::sqrt(predicted / square);
 }

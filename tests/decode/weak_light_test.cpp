@@ -102,7 +102,7 @@ TEST(WeakLight, DeviationIsTheSpreadOfDepthFromFiveSignalDeviationsOn) {
       const double error =
           std::remainder(image.depth_m.pixels[i] / table.bin_m() - depth_bin, table.bin_count()) *
           table.bin_m();
-      const double deviation = image.predicted_standard_deviation_m.pixels[i];
+      const double deviation = image.deviation_m.pixels[i];
       if (std::abs(error) > 4 * deviation) continue;  // in another lobe
       squares += std::pow(error / deviation, 2), ++count;
     }

@@ -393,10 +393,12 @@ TEST(DecodedPlanes, HaveUniqueNames) {
   for (const PlaneDescription& described : plane_descriptions) {
     names.insert(name_of(described.plane));
     EXPECT_EQ(parse_decoded_plane(described.word), described.plane);
+    EXPECT_EQ(parse_decoded_plane(described.member), described.plane);
     EXPECT_THAT(std::string(help_of_outputs()), HasSubstr(std::string(described.help)));
   }
   EXPECT_EQ(names.size(), plane_descriptions.size());
-  EXPECT_THROW(parse_decoded_plane("depth_m"), std::invalid_argument);
+  EXPECT_EQ(parse_decoded_plane("amplitude"), DecodedPlane::signal);
+  EXPECT_THROW(parse_decoded_plane("depth_mm"), std::invalid_argument);
   EXPECT_EQ(usual_planes().size(), 6u);
   EXPECT_EQ(usual_planes(true).size(), 9u);
 }

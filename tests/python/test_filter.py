@@ -23,7 +23,7 @@ def test_filtered_values_are_decoded_with_their_noise(camera, raw):
     assert (averaged.shape, averaged.dtype) == (raw[0].shape[:2], np.float32)
     assert np.median(averaged) > 10
     alone, filtered = decoder.decode(raw[0]), decoder.decode(numbers, averaged=averaged)
-    gain = (alone.predicted_standard_deviation_m / filtered.predicted_standard_deviation_m) ** 2
+    gain = (alone.deviation_m / filtered.deviation_m) ** 2
     assert np.nanmedian(gain / averaged) == pytest.approx(1, abs=0.2)
     of_three = ts.Filter(code, camera).apply(raw[0], averaged=3.0)[1]
     assert of_three.mean() == pytest.approx(3 * averaged.mean(), rel=0.5)

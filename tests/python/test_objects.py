@@ -124,7 +124,7 @@ def test_decoders_can_be_copied_and_pickled(decoder, tmp_path):
 
 def test_planes_accept_both_names(decoder, tmp_path):
     image = decoder.decode(raw, planes=["depth", "deviation"])
-    assert list(image.planes()) == ["depth_m", "predicted_standard_deviation_m"]
+    assert list(image.planes()) == ["depth_m", "deviation_m"]
     ts.write_raw(tmp_path / "raw.npy", raw)
     done = decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "d.npz",
                                     outputs=["depth_m", "signal"])

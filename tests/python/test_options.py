@@ -111,6 +111,8 @@ def test_every_plane_is_an_attribute_and_can_be_decoded():
     for name, plane in image.planes().items():
         assert plane.dtype == plane_types[name]
         assert f"{name} : ndarray of {plane.dtype}" in ts.DepthImage.__doc__
+    signal = decoder.decode(raw, planes=["amplitude"]).planes()
+    np.testing.assert_array_equal(signal["signal_e_per_s"], image.signal_e_per_s)
     assert set(decoder.decode(raw).planes()) == set(usual_planes + multipath_planes)
 
 

@@ -152,7 +152,7 @@ def test_decode(ways, camera):
     image = decoder.decode([np.load(phase) for phase in phases], averaged=12.5)
     for frame, file in enumerate(result.files):
         for name, plane in (("depth", image.depth_m),
-                            ("deviation", image.predicted_standard_deviation_m)):
+                            ("deviation", image.deviation_m)):
             np.testing.assert_array_equal(np.load(file)[name], plane[frame])
 
     command("raw.npy", "filtered.npz", "--filter", "strong", "--filter-set", "trusted_pixels=8",

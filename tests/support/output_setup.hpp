@@ -234,8 +234,7 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   // If the best row is not the nearest one, the kernel extrapolates the signal slightly.
   expect_near(outputs.ambient_e_per_s.pixels, expected.ambient_e_per_s.pixels, 2e-6,
               4e-6 * brightest_e_per_s, "ambient");
-  expect_similar(outputs.predicted_standard_deviation_m.pixels,
-                 expected.predicted_standard_deviation_m.pixels);
+  expect_similar(outputs.deviation_m.pixels, expected.deviation_m.pixels);
   const auto plus_one = [](std::vector<float> values) {
     for (float& value : values) value += 1.0f;
     return values;

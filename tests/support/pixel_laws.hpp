@@ -120,7 +120,7 @@ PixelEstimates estimates_at(const Setup& setup, double truth_bin, double signal,
     result.depth_m.add(image.depth_m(0, i));
     result.signal.add(image.signal_e_per_s(0, i));
     result.ambient.add(image.ambient_e_per_s(0, i));
-    result.predicted_m.add(image.predicted_standard_deviation_m(0, i));
+    result.predicted_m.add(image.deviation_m(0, i));
   }
   return result;
 }

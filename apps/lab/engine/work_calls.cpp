@@ -133,7 +133,7 @@ Answer scene_answer(const Request& request, const Progress& progress) {
   answer.add("true_depth_m", wrapped_depth_m(truth, camera));
   answer.add("deviation_m",
              depth_difference_m(decoded.depth_m, truth, camera, DepthErrorKind::circular));
-  answer.add("standard_deviation_m", decoded.predicted_standard_deviation_m);
+  answer.add("standard_deviation_m", decoded.deviation_m);
   return answer;
 }
 

@@ -81,6 +81,13 @@ concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {
 std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
                           std::string_view word);
 
+/// Returns the word for another name of a value, such as a synonym, or the name itself.
+/// Enumerations with other names have their own overload.
+template <HasWords Enum>
+constexpr std::string_view usual_word(Enum /*any*/, std::string_view name) {
+  return name;
+}
+
 template <HasWords Enum>
 constexpr std::string_view word_of(Enum value) {
   return words_of(value).at(static_cast<std::size_t>(value));
@@ -90,7 +97,7 @@ constexpr std::string_view word_of(Enum value) {
 template <HasWords Enum>
 Enum parse_word(std::string_view field, std::string_view word) {
   static constexpr auto words = words_of(Enum{});
-  return static_cast<Enum>(index_of_word(field, words, word));
+  return static_cast<Enum>(index_of_word(field, words, usual_word(Enum{}, word)));
 }
 
 /// See Field::help_text().

@@ -77,12 +77,13 @@ enum class PlaneUse {
 //   PLANE(type of a pixel, member, word, unit, use, help)
 #define TOFSMITH_DECODED_PLANES(PLANE)                                                          \
   PLANE(float, depth_m, depth, "m", usual, "distance along the ray, in [0, range)")             \
-  PLANE(float, signal_e_per_s, signal, "e/s", usual, "signal of the return")                    \
+  PLANE(float, signal_e_per_s, signal, "e/s", usual,                                            \
+        "signal of the return, also called amplitude")                                          \
   PLANE(float, ambient_e_per_s, ambient, "e/s", usual,                                          \
         "ambient light, NaN if it cancels in differences")                                      \
   PLANE(float, confidence, confidence, "", usual,                                               \
         "probability that the depth lies in the main lobe")                                     \
-  PLANE(float, predicted_standard_deviation_m, deviation, "m", usual,                           \
+  PLANE(float, deviation_m, deviation, "m", usual,                                              \
         "predicted standard deviation of the depth, given that it is in the correct peak")      \
   PLANE(PixelStatus, status, status, "", usual, "reliability of the depth")                     \
   PLANE(float, delay_m, delay, "m", of_returns, "delay of the second return, NaN without one")  \
@@ -128,8 +129,24 @@ constexpr auto words_of(DecodedPlane /*any*/) {
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = plane_descriptions[i].word;
   return words;
 }
+/// Another name of a plane.
+struct PlaneSynonym {
+  std::string_view name;
+  DecodedPlane plane;
+};
+inline constexpr std::array plane_synonyms = {PlaneSynonym{"amplitude", DecodedPlane::signal}};
+
+/// Returns the word of a plane for a synonym and for its name with unit ("deviation_m").
+constexpr std::string_view usual_word(DecodedPlane /*any*/, std::string_view name) {
+  for (const PlaneSynonym& synonym : plane_synonyms)
+    if (name == synonym.name) return description_of(synonym.plane).word;
+  for (const PlaneDescription& described : plane_descriptions)
+    if (name == described.member) return described.word;
+  return name;
+}
 /// "depth", "signal", ...: the word of the enumerator.
 std::string_view name_of(DecodedPlane plane);
+/// Returns the plane of a word, a synonym or a name with unit; see usual_word().
 /// @throws std::invalid_argument for any other word
 DecodedPlane parse_decoded_plane(std::string_view name);
 /// Returns the help text of a plane, with the meaning of its status codes and the methods that fill
@@ -276,7 +293,7 @@ struct UnfilteredPixels {
 /// @param table    table of the decoder
 /// @param raw      numbers that were decoded; if filtered, with the number of averaged measurements
 /// @param maps     maps that were applied to `decoded`
-/// @param decoded  whole frame, modified in place: depth_m, predicted_standard_deviation_m and
+/// @param decoded  whole frame, modified in place: depth_m, deviation_m and
 ///                 status are required; snap writes depth_m, its deviation, and status
 /// @param unfiltered  required if `raw` is filtered
 /// @return number of marked pixels

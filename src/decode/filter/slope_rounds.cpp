@@ -62,8 +62,7 @@ void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from,
                          .measurement_stride = grid.plane_floats(),
                          .averaged = averaged - grid.margin,
                          .is_marked = true};
-  decoder.decode(filtered, {.depth_m = depth - grid.margin,
-                            .predicted_standard_deviation_m = variance - grid.margin});
+  decoder.decode(filtered, {.depth_m = depth - grid.margin, .deviation_m = variance - grid.margin});
   const auto per_bin = static_cast<float>(1.0 / decoder.table().row_m());
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t first = row * grid.stride - grid.margin;

@@ -71,8 +71,7 @@ class Surroundings {
         same_m_(same_share * range_m),
         slope_m_(slope_share * range_m),
         depth_(decoded.depth_m, decoded.depth_m + size()),
-        deviation_(decoded.predicted_standard_deviation_m,
-                   decoded.predicted_standard_deviation_m + size()),
+        deviation_(decoded.deviation_m, decoded.deviation_m + size()),
         status_(decoded.status, decoded.status + size()),
         slope_(size()),
         is_firm_(size(), 0) {
@@ -361,8 +360,8 @@ void check(const DecodingTable& table, const RawView& raw, const DecodedView& de
   require_measurements(raw, table.measurements());
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
-  require(decoded.depth_m && decoded.predicted_standard_deviation_m && decoded.status, "decoded",
-          "a null plane", "must have depth, predicted standard deviation and status");
+  require(decoded.depth_m && decoded.deviation_m && decoded.status, "decoded", "a null plane",
+          "must have depth, predicted standard deviation and status");
   maps.validate(raw.height, raw.width);
   const auto fits = [&](const char* field, int height, int width) {
     require(height == raw.height && width == raw.width, field,
@@ -408,7 +407,7 @@ std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& stored
       if (mixed == MixedPixels::drop) drop(decoded, i);
       if (mixed == MixedPixels::snap && found->stronger) {
         decoded.depth_m[i] = around.depth_m(found->stronger->nearest);
-        decoded.predicted_standard_deviation_m[i] = around.deviation_m(found->stronger->nearest);
+        decoded.deviation_m[i] = around.deviation_m(found->stronger->nearest);
       }
     }
   });

@@ -361,8 +361,7 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
         nearest_bin(table().in_bins(position / curve_.points_per_row), table().bin_count());
   const auto depth_m = static_cast<float>(position * point_m);
   decoded.depth_m[at] = depth_m < static_cast<float>(table().range_m) ? depth_m : 0.0f;
-  if (decoded.predicted_standard_deviation_m)
-    decoded.predicted_standard_deviation_m[at] = static_cast<float>(deviation * point_m);
+  if (decoded.deviation_m) decoded.deviation_m[at] = static_cast<float>(deviation * point_m);
   if (!are_two) return;
   if (decoded.returns) decoded.returns[at] = ReturnStatus::two;
   if (decoded.signal_e_per_s) decoded.signal_e_per_s[at] = fits.signal_e_per_s[lane];

@@ -42,8 +42,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
     find_ambient(c, layout, chunk);
   }
   if (planes.ambient_e_per_s) write_ambient(c, chunk, planes.ambient_e_per_s);
-  if (planes.predicted_standard_deviation_m)
-    write_depth_noise(chunk, planes.predicted_standard_deviation_m);
+  if (planes.deviation_m) write_depth_noise(chunk, planes.deviation_m);
   if (steps.confidence) find_confidence(c, records, posterior, rank, chunk);
   if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
   if (steps.residual) find_residual<Rank>(c, records, limits, planes.residual != nullptr, chunk);
@@ -247,8 +246,8 @@ void OutputKernel::fill_limits(const AmbientProjection& projection) {
 }
 
 bool OutputKernel::needs_electrons(const DecodedView& planes) const {
-  return (constants_.sees_ambient && (planes.ambient_e_per_s || planes.confidence ||
-                                      planes.predicted_standard_deviation_m || planes.status)) ||
+  return (constants_.sees_ambient &&
+          (planes.ambient_e_per_s || planes.confidence || planes.deviation_m || planes.status)) ||
          (needs_residuals(planes) && (constants_.sees_ambient || constants_.off_plane_count > 0));
 }
 
@@ -261,8 +260,7 @@ void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) con
   OutputSteps steps;
   steps.confidence = needs_confidence(planes);
   steps.residual = needs_residuals(planes);
-  steps.noise =
-      steps.confidence || steps.residual || planes.predicted_standard_deviation_m || planes.status;
+  steps.noise = steps.confidence || steps.residual || planes.deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
   steps.fields = steps.confidence || steps.residual ? layout.end_of_bound()
                  : steps.noise                      ? layout.end_of_noise()

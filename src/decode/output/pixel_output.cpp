@@ -49,8 +49,7 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
   store(decoded.signal_e_per_s, estimate.signal_e_per_s);
   store(decoded.ambient_e_per_s, estimate.ambient_e_per_s);
   store(decoded.confidence, pixel.confidence);
-  store(decoded.predicted_standard_deviation_m,
-        estimate.depth_standard_deviation_row * table.row_m());
+  store(decoded.deviation_m, estimate.depth_standard_deviation_row * table.row_m());
   store(decoded.residual, pixel.residual.per_freedom);
   if (decoded.status) decoded.status[at] = status_of(table, options, raw, pixel);
 }
