@@ -67,6 +67,7 @@ class Calibrate(BenchRecordsTest):
         self.do("calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt", "--shift-unit",
                 "bin", "--camera", "camera.toml", "--code", "sinusoid-k4", "-o", "fitted.toml")
         self.assertIn("[playback]", self.bytes_of("fitted.toml").decode())
+        self.assertIn('name = "camera"', self.bytes_of("fitted.toml").decode())
         self.do("decode", "raw.npy", "--code", "sinusoid-k4", "--camera", "fitted.toml", "-o",
                 "d.npy")
         self.assertLess(self.errors_m("d.npy", truth).max(), 60e-3)       # its harmonics remain

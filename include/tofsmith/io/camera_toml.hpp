@@ -75,8 +75,9 @@ PixelRays rays_of(const std::optional<Lens>& lens, const PinholeView& view);
 /// parse_camera_toml(built_in_camera_toml(n)) == built_in_camera(n).
 /// @throws std::invalid_argument for an unknown name, with the most similar known one
 std::string built_in_camera_toml(const std::string& name);
-/// Writes camera_to_toml() with the file's name as the camera's. @throws IoError as AtomicFile
-void write_camera_toml(const std::filesystem::path& path, Camera camera, OutputPolicy policy);
+/// Writes camera_to_toml(). @throws IoError as AtomicFile
+void write_camera_toml(const std::filesystem::path& path, const Camera& camera,
+                       OutputPolicy policy);
 /// Returns the same document as JSON.
 std::string camera_to_json(const Camera& camera);
 

@@ -70,8 +70,8 @@ std::string built_in_camera_toml(const std::string& name) {
   return text;
 }
 
-void write_camera_toml(const std::filesystem::path& path, Camera camera, OutputPolicy policy) {
-  camera.name = path.stem().string();
+void write_camera_toml(const std::filesystem::path& path, const Camera& camera,
+                       OutputPolicy policy) {
   write_file_atomically(path, camera_to_toml(camera), policy);
 }
 
