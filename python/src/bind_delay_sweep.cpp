@@ -11,6 +11,7 @@
 #include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/image_file.hpp"
 
 namespace tofsmith::python {
@@ -276,6 +277,10 @@ py::dict stray_dict(const CalibratedStrayLight& found) {
 
 void bind_delay_sweep(py::module_& module) {
   module.def("read_reference_depth", &read_reference);
+  module.def("depth_kind_of", [](const std::string& path, const std::optional<std::string>& asked) {
+    const auto kind = asked ? std::optional(parse_depth_kind(*asked)) : std::nullopt;
+    return std::string(name_of(depth_kind_of(path, kind, DepthKind::radial)));
+  });
   module.def("calibrate_depth", &calibrate_by_reference);
   py::class_<CalibratedDepth>(module, "CalibratedDepth")
       .def("fields", &depth_dict)

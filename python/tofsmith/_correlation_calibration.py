@@ -210,7 +210,7 @@ def calibrate_correlation(
     target_distance_m: Optional[float] = None,
     geometry_m: Optional[npt.ArrayLike] = None,
     reference: None = None,
-    reference_kind: str = "radial",
+    reference_kind: Optional[str] = None,
     code: None = None,
     progress: Progress = None,
 ) -> CalibratedCorrelation: ...
@@ -222,7 +222,7 @@ def calibrate_correlation(
     camera: CameraLike,
     *,
     reference: Union[Path, npt.ArrayLike],
-    reference_kind: str = "radial",
+    reference_kind: Optional[str] = None,
     code: CodeLike,
     progress: Progress = None,
 ) -> CalibratedDepth: ...
@@ -238,7 +238,7 @@ def calibrate_correlation(
     target_distance_m: Optional[float] = None,
     geometry_m: Optional[npt.ArrayLike] = None,
     reference: Optional[Union[Path, npt.ArrayLike]] = None,
-    reference_kind: str = "radial",
+    reference_kind: Optional[str] = None,
     code: Optional[CodeLike] = None,
     progress: Progress = None,
 ) -> Union[CalibratedCorrelation, CalibratedDepth]:
@@ -265,8 +265,9 @@ def calibrate_correlation(
         Alternative to delays: true radial depth of the frames [m], NaN where unknown, or one
         distance per frame. `sweep` is then frames (F, H, W, K) or their file, and the result is a
         CalibratedDepth with the error of `code`.
-    reference_kind : {"radial", "z"}
-        Reference depth along the ray, or along the axis (requires the camera's lens).
+    reference_kind : {"radial", "z"}, optional
+        Reference depth along the ray, or along the axis (requires the camera's lens); None: as the
+        file states, or radial.
     code : CodeSet, name or file, optional
         Code of the recording; required with a reference.
     progress : callable, optional

@@ -125,15 +125,19 @@ def calibrate_depth(
     camera: CameraLike,
     reference: Union[Path, npt.ArrayLike],
     code: CodeLike,
-    reference_kind: str = "radial",
+    reference_kind: Optional[str] = None,
     progress: Progress = None,
 ) -> CalibratedDepth:
     """Implements calibrate_correlation() with a reference."""
     camera = camera_of(camera)
     if isinstance(frames, (str, os.PathLike)):
         frames = read_raw(frames)
+    kind = None if reference_kind is None else _check.one_of(
+        reference_kind, "reference_kind", ("radial", "z"))
     if isinstance(reference, (str, os.PathLike)):
-        images = _tofsmith.read_reference_depth(_check.path(reference, "reference"))
+        path = _check.path(reference, "reference")
+        kind = _tofsmith.depth_kind_of(path, kind)
+        images = _tofsmith.read_reference_depth(path)
     else:
         depth = np.asarray(reference, np.float32)
         if depth.ndim not in (1, 2, 3):
@@ -146,7 +150,7 @@ def calibrate_depth(
     handle = _tofsmith.calibrate_depth(
         _check.frames(frames, "frames"),
         images,
-        _check.one_of(reference_kind, "reference_kind", ("radial", "z")) == "z",
+        kind == "z",
         code_of(code, camera)._handle,
         camera._handle,
         _check.progress(progress),

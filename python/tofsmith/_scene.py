@@ -84,10 +84,15 @@ def built_in_scene_names() -> list[str]:
 
 
 def built_in_scene(
-    name: str, width: int = 320, height: int = 240, *, time_s: Optional[float] = None
+    name: str,
+    width: Optional[int] = None,
+    height: Optional[int] = None,
+    *,
+    lens: Optional[Lens] = None,
+    time_s: Optional[float] = None,
 ) -> Scene:
-    """Loads a built-in scene; see load_scene()."""
-    return load_scene(_check.text(name, "name"), width=width, height=height, time_s=time_s)
+    """Loads a built-in scene as seen through a lens, such as `camera.lens`; see load_scene()."""
+    return load_scene(_check.text(name, "name"), lens, width=width, height=height, time_s=time_s)
 
 
 @takes(SceneSource)
@@ -104,7 +109,8 @@ def load_scene(
         A built-in scene, a file of shapes and a pinhole (.toml), a mesh (.obj .ply .stl), or a
         depth image (.npy .npz .exr .pfm, .png in mm).
     lens : Lens, optional
-        For a depth image; default: a centred pinhole with a horizontal view of 60 degrees.
+        View of a built-in scene, a mesh or a depth image, such as `camera.lens`. Default: the view
+        of the scene, or a centred pinhole with a horizontal view of 60 degrees.
     **options
         As in SceneSource.
 

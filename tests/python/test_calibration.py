@@ -308,17 +308,38 @@ def test_kinect_frequencies_have_their_own_offsets_and_contrasts():
         assert np.abs(image.depth_m - depth[2])[image.status == 0].max() < 0.15
 
 
-def test_reference_depth_equals_the_command(both, cli):
+def frames_and_depth():
+    """A camera with four phases, frames (4, 40, 48, 4) of its own scale, and their depth."""
     camera = base.replace(fundamental_frequency_hz=60e6, sensor={
         "taps": 2, "readout": "difference", "drain": False})
-    camera.write(both[0] / "phases.toml")
     rows, columns = np.mgrid[0:40, 0:48]
     nominal = camera.range_m * (np.arange(4)[:, None, None] + 0.5 + 0.5 * np.sin(
         rows / 9 + columns / 7)) / 4
     phase = 2 * np.pi * nominal / camera.range_m
     raw = 2e4 * np.cos(phase[..., None] - np.arange(4) * np.pi / 2)
     raw = (raw + np.random.default_rng(3).normal(size=raw.shape) * 100).astype(np.float32)
-    depth = (nominal - 0.4 - 0.01 * np.cos(4 * phase)) % camera.range_m
+    return camera, raw, (nominal - 0.4 - 0.01 * np.cos(4 * phase)) % camera.range_m
+
+
+def test_the_kind_of_reference_depth_is_as_its_file_states(tmp_path):
+    camera, raw, depth = frames_and_depth()
+    lens = ts.Lens(fx_px=40.0, fy_px=40.0, cx_px=23.5, cy_px=19.5)
+    camera = camera.replace(lens=lens)
+    z_m = ts.z_from_radial(depth[0].astype(np.float32), lens)
+    np.savez(tmp_path / "z.npz", depth=z_m, depth_is_z=np.ones(1, np.uint8))
+
+    def terms(reference, **kind):
+        return ts.calibrate_correlation(raw[:1], camera, reference=reference, code="sinusoid-k4",
+                                        **kind).terms
+
+    assert terms(tmp_path / "z.npz") == terms(z_m, reference_kind="z") != terms(z_m)
+    with pytest.raises(OSError, match="kind z; expected radial"):
+        terms(tmp_path / "z.npz", reference_kind="radial")
+
+
+def test_reference_depth_equals_the_command(both, cli):
+    camera, raw, depth = frames_and_depth()
+    camera.write(both[0] / "phases.toml")
     np.save(both[0] / "frames.npy", raw)
     np.save(both[0] / "depth.npy", depth)
     said = printed(cli, both[0], "correlation", "frames.npy", "--reference", "depth.npy", "--code",

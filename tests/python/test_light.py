@@ -122,3 +122,10 @@ def test_options_are_passed_to_evaluations_and_decoders(small):
     image = ts.Decoder(code, small, method="two-return").decode(
         ts.capture(np.full((4, 5), 3.0), code, small, signal_e_per_s=1e8, returns=[(1.5, 0.4)]))
     assert {plane.shape for plane in (image.returns, image.delay_m, image.ratio)} == {(4, 5)}
+
+
+def test_built_in_scenes_are_seen_through_the_given_lens():
+    lens = ts.Lens(fx_px=20.0, fy_px=21.0, cx_px=9.0, cy_px=6.5, width_px=24, height_px=14)
+    scene = ts.built_in_scene("wall", lens=lens)
+    assert scene.depth_m.shape == (14, 24)
+    np.testing.assert_allclose(ts.points_m(scene.depth_m, lens)[..., 2], 0.5, rtol=1e-6)
