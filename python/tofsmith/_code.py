@@ -285,7 +285,8 @@ CodeLike = Union[CodeSet, Path]
 
 
 def code_of(code: CodeLike, camera: CameraLike) -> CodeSet:
-    if isinstance(code, Camera) or code in _tofsmith.built_in_camera_names():
+    if isinstance(code, Camera) or (
+            isinstance(code, str) and code in _tofsmith.built_in_camera_names()):
         raise TypeError(f"code: got {_check.shown(code)}, a camera; needs a code: does the camera "
                         "come second?")
     if isinstance(code, (str, os.PathLike)):  # as the command line does, with the camera's samples

@@ -63,7 +63,7 @@ class SweepResults:
         for name, value in values.items():
             column = self[name]
             kept &= np.isclose(column, value, 1e-9, 0) if column.dtype.kind in "fi" else (
-                column == value)
+                [each == value for each in column])
         return SweepResults({name: column[kept] for name, column in self.columns.items()})
 
     def __repr__(self) -> str:

@@ -3,6 +3,7 @@
 """Errors name the invalid argument, its value and the requirement."""
 
 import re
+import warnings
 from functools import cache
 
 import numpy as np
@@ -176,3 +177,13 @@ def test_existing_files_are_kept(tmp_path):
         ts.write_depth(path, depth)
     ts.write_depth(path, 2 * depth, overwrite=True)
     assert ts.read_depth(path)[0, 0] == 2
+
+
+def test_arrays_in_place_of_codes_cause_no_warning():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(TypeError, match="code: got an array of shape"):
+            ts.Decoder(np.ones((10, 4)), "paper-10f0")
+        sweep = ts.SweepResults({"code": np.array(["a", "b"]), "linear_mde_m": np.ones(2),
+                                 "circular_mde_m": np.ones(2)})
+        assert len(sweep.where(code="a")) == 1 and len(sweep.where(code=5)) == 0
