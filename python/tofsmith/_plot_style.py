@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Optional, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Optional, TypeVar
 
 import numpy as np
+
+from . import _check
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,8 +31,9 @@ _style = {
     "legend.frameon": False,
     "figure.dpi": 200,
 }
-column_in = 3.4
-page_in = 7.0
+column_in = 3.5
+page_in = 7.16
+Width = Literal["column", "page"]
 
 Draw = TypeVar("Draw", bound=Callable[..., Any])
 
@@ -56,9 +59,17 @@ def new_figure(
     width_in: float,
     height_in: float,
     margins: Optional[tuple[float, ...]] = None,
+    width: Optional[Width] = None,
+    keeps_shape: bool = False,
 ) -> Figure:
-    """Returns the given figure, or a new one of this size. Three-dimensional axes do not support
-    the constrained layout and have explicit margins."""
+    """Returns the given figure, or a new one of this size. `width`: one or two columns instead,
+    with the height scaled alike if the figure keeps its shape. Three-dimensional axes do not
+    support the constrained layout and have explicit margins."""
+    if width is not None:
+        other_in = {"column": column_in, "page": page_in}[
+            _check.one_of(width, "width", ("column", "page"))]
+        height_in *= other_in / width_in if keeps_shape else 1.0
+        width_in = other_in
     if figure is not None:
         return figure
     import matplotlib.pyplot as plt
@@ -111,6 +122,7 @@ def draw_depth_maps(
     range_m: Optional[tuple[float, float]] = None,
     columns: Optional[int] = None,
     label: Optional[str] = None,
+    width: Optional[Width] = None,
 ) -> Figure:
     """Draws named depth planes (H, W) next to each other with one colour scale; see
     plot.depth_maps(). Pixels without depth are grey. Differences of depths (with negative values)
@@ -124,9 +136,10 @@ def draw_depth_maps(
     low, high = (low, high) if range_m is None else range_m
     count = len(depths_m)
     rows, columns = grid(count) if columns is None else (-(-count // columns), columns)
-    height, width = next(iter(depths_m.values())).shape
+    height_px, width_px = next(iter(depths_m.values())).shape
     panel_in = (page_in - 0.8) / max(3, columns) if count > 1 else column_in - 0.8
-    figure = new_figure(figure, 0.8 + panel_in * columns, 0.3 + panel_in * height / width * rows)
+    height_in = 0.3 + panel_in * height_px / width_px * rows
+    figure = new_figure(figure, 0.8 + panel_in * columns, height_in, width=width, keeps_shape=True)
     axes = figure.subplots(rows, columns, squeeze=False)
     picture = None
     for axis, (name, depth_m) in zip(axes.flat, depths_m.items()):

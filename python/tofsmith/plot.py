@@ -7,7 +7,8 @@ Every function draws on a new figure, or on `figure`, and returns it:
 >>> from tofsmith import plot
 >>> plot.waveforms("hamiltonian-k4", "paper-10f0").savefig("code.pdf")  # doctest: +SKIP
 
-Sizes fit one or two columns of a paper, with fonts of 8 pt. Colours are those of Okabe and Ito,
+Sizes fit one or two columns of a paper, 3.5 or 7.16 in with `width="column"` or `width="page"`
+(default: by the contents), with fonts of 8 pt. Colours are those of Okabe and Ito,
 which are distinguishable with any colour vision; maps use viridis. Some publishers require
 matplotlib.rcParams["pdf.fonttype"] = 42.
 """
@@ -40,6 +41,7 @@ from ._figure_data import (
 )
 from ._forward_model import ForwardModel, coding_curve_in_space
 from ._plot_style import (
+    Width,
     colours,
     column_in,
     draw_depth_maps,
@@ -80,14 +82,15 @@ def __dir__() -> list[str]:
 
 @styled
 def waveforms(
-    code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
+    code: CodeLike, camera: CameraLike, *, width: Optional[Width] = None,
+    figure: Optional[Figure] = None
 ) -> Figure:
     """Shows modulation, demodulation and correlation function of every measurement, one per row."""
     fitted, camera = code_and_camera(code, camera)
     model = ForwardModel(fitted, camera)
     modulation, demodulation = fitted.modulation_waveforms(), fitted.demodulation_waveforms()
     rows = fitted.measurements
-    figure = new_figure(figure, page_in, 0.5 + 0.75 * rows)
+    figure = new_figure(figure, page_in, 0.5 + 0.75 * rows, width=width)
     axes = figure.subplots(rows, 3, squeeze=False, sharex="col", sharey="col")
     depth_m = np.arange(fitted.samples) * camera.bin_m
     chi = model.correlation_table() if model.measurements == rows else None
@@ -135,12 +138,13 @@ def _curves_in_one(column: Any, depth_m: Any, chi: Any) -> None:
 
 @styled
 def correlation_functions(
-    code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
+    code: CodeLike, camera: CameraLike, *, width: Optional[Width] = None,
+    figure: Optional[Figure] = None
 ) -> Figure:
     """Shows the K correlation functions over depth, including the camera's impulse responses."""
     fitted, camera = code_and_camera(code, camera)
     chi = ForwardModel(fitted, camera).correlation_table()
-    figure = new_figure(figure, column_in, 2.2)
+    figure = new_figure(figure, column_in, 2.2, width=width)
     axis = figure.subplots()
     depth_m = np.linspace(0, camera.range_m, len(chi) + 1)
     for i, values in enumerate(np.vstack([chi, chi[:1]]).T):
@@ -159,6 +163,7 @@ def coding_curve(
     codes: Union[CodeLike, Sequence[CodeLike]],
     camera: CameraLike,
     *,
+    width: Optional[Width] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Shows coding curves in their three principal directions, coloured by depth."""
@@ -170,7 +175,7 @@ def coding_curve(
         raise ValueError("codes: got none; needs at least one code")
     rows, columns = grid(len(listed))
     figure = new_figure(figure, 2.4 * columns + 0.8, 2.3 * rows,
-                        (0.01, 0.02, 0.97, 0.92, 0.02, 0.15))
+                        (0.01, 0.02, 0.97, 0.92, 0.02, 0.15), width, True)
     lines = None
     for i, one in enumerate(listed):
         fitted = code_of(one, camera)
@@ -194,7 +199,8 @@ def coding_curve(
 
 @styled
 def depth_error_map(
-    reports: Reports, *, kind: Optional[str] = None, figure: Optional[Figure] = None
+    reports: Reports, *, kind: Optional[str] = None, width: Optional[Width] = None,
+    figure: Optional[Figure] = None
 ) -> Figure:
     """Shows the mean depth error [mm] and its standard error at every operating point, one panel
     per code, with one colour scale. `kind`: linear or circular; None: that of the first report's
@@ -209,7 +215,7 @@ def depth_error_map(
     highest = max(float(np.nanmax(v)) for v in values_mm)
     norm = LogNorm(lowest, max(highest, 1.001 * lowest))
     rows, columns = grid(len(listed))
-    figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows)
+    figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows, width=width)
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     picture = None
     for axis, report, (signal, ambient, _, error_m), v in zip(
@@ -244,17 +250,22 @@ def depth_error_curves(
     along: str = "signal",
     at: Optional[float] = None,
     kind: Optional[str] = None,
+    width: Optional[Width] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Shows the mean depth error along signal or ambient light, with standard errors; the other
-    light is at the level nearest to `at` (default: the middle level). Dotted grey: the bound for
-    any code. `kind`: linear or circular; None: that of the first report's camera."""
+    light is at the level nearest to `at` (default: the middle level). Grey: the bound for
+    any code, one line for all codes that share it. `kind`: linear or circular; None: that of the
+    first report's camera."""
     listed = reports_of(reports)
     kind = kind_of(listed, kind)
     longest = max(len("bound of any code"), *(len(report.code) for report in listed))
-    figure = new_figure(figure, column_in + 0.4 + 0.055 * longest, 2.4)
+    narrow = width == "column"  # has the legend above the axes, else next to them
+    height_in = 2.4 + (0.15 * (len(listed) + 1) if narrow else 0.0)
+    figure = new_figure(figure, column_in + 0.4 + 0.055 * longest, height_in, width=width)
     axis = figure.subplots()
     bounds: dict[bytes, Any] = {}
+    bounded: dict[bytes, list[str]] = {}
     level = 0.0
     for i, report in enumerate(listed):
         x, mde, se, bound, level = error_curve(report, kind, along, at)
@@ -262,17 +273,23 @@ def depth_error_curves(
         dash = ("-", "--", ":", "-.")[i // len(colours) % 4]
         axis.errorbar(x, 1e3 * mde, 1e3 * se, marker="o", ms=2.5, ls=dash, color=colour,
                       label=report.code)
-        bounds[bound.tobytes()] = (x, bound)
-    for i, (x, bound) in enumerate(bounds.values()):
         if (bound > 0).any():
-            axis.plot(x, 1e3 * bound, ":", color="0.5", label=None if i else "bound of any code")
+            bounds[bound.tobytes()] = (x, bound)
+            bounded.setdefault(bound.tobytes(), []).append(report.code)
+    for i, (key, (x, bound)) in enumerate(bounds.items()):
+        label = "bound of any code"
+        if len(bounds) > 1:  # they depend on the number of exposures and on the camera
+            label = "bound for " + ", ".join(bounded[key])
+        dash = (":", "-.", "--")[i % 3]
+        axis.plot(x, 1e3 * bound, dash, color="0.5", lw=1.0, label=label)
     names = ("signal", "ambient light")
     varied, other = names if along == "signal" else names[::-1]
     axis.set(xscale="log", yscale="log", ylabel=f"mean depth error, {kind} (mm)")
     axis.set(xlabel=f"{varied} (e/s), at {other} {ten_to(level)} e/s")
     log_ticks_in_plain_numbers(axis.yaxis)
     axis.grid(True, which="major", lw=0.3, color="0.85")
-    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=1.6)  # next to the axes
+    axis.legend(loc="lower left" if narrow else "upper left",
+                bbox_to_anchor=(0, 1) if narrow else (1, 1), handlelength=1.6)
     return figure
 
 
@@ -283,6 +300,7 @@ def sweep_map(
     y: str,
     *,
     kind: str = "linear",
+    width: Optional[Width] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Shows the mean depth error [mm] over two numeric columns of a sweep, such as
@@ -293,7 +311,7 @@ def sweep_map(
     across, up, maps = sweep_maps(results, x, y, kind)
     norm = LogNorm(*error_range([m for m in maps.values()]))
     rows, columns = grid(len(maps))
-    figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows)
+    figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows, width=width)
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     picture = None
     for axis, (code, values_mm) in zip(axes.flat, maps.items()):
@@ -324,6 +342,7 @@ def depth_maps(
     range_m: Optional[tuple[float, float]] = None,
     columns: Optional[int] = None,
     label: Optional[str] = None,
+    width: Optional[Width] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Shows one depth map, or several of equal shape by name, with one colour scale. Pixels without
@@ -332,7 +351,7 @@ def depth_maps(
     per row."""
     named = named_depths(depths)
     shown = named if isinstance(depths, dict) else {"": named["depth"]}
-    return draw_depth_maps(shown, figure, range_m, columns, label)
+    return draw_depth_maps(shown, figure, range_m, columns, label, width)
 
 
 @styled
@@ -343,6 +362,7 @@ def point_cloud(
     *,
     label: str = "distance (m)",
     max_points: int = 20000,
+    width: Optional[Width] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Shows points in the camera's frame, coloured by radial distance or by `values` (H, W). If
@@ -359,7 +379,7 @@ def point_cloud(
         low, high = np.percentile(points[kept], (0.5, 99.5), axis=0)
         kept = kept[((points[kept] >= low) & (points[kept] <= high)).all(axis=1)]
     x, y, z = points[kept].T
-    figure = new_figure(figure, column_in + 1.2, 3.2, (0.0, 0.06, 0.94, 1.0))
+    figure = new_figure(figure, column_in + 1.2, 3.2, (0.0, 0.06, 0.94, 1.0), width, True)
     axis = figure.add_subplot(projection="3d")
     cloud = axis.scatter(x, z, -y, c=shown.reshape(-1)[kept], s=0.6, lw=0, cmap="viridis")
     if len(kept):

@@ -52,6 +52,27 @@ def test_plots_do_not_change_the_users_style(name, things, tmp_path):
     assert plt.rcParams["font.size"] == before and (tmp_path / "figure.pdf").stat().st_size > 2000
 
 
+@pytest.mark.parametrize("width, inches", [("column", 3.5), ("page", 7.16)])
+@pytest.mark.parametrize("name", drawings)
+def test_plots_are_as_wide_as_the_columns_of_a_paper(name, width, inches, things):
+    class Wide:
+        def __getattr__(self, function):
+            return lambda *given, **keys: getattr(plot, function)(*given, width=width, **keys)
+
+    assert drawings[name](Wide(), things).get_figwidth() == pytest.approx(inches)
+    plt.close("all")
+
+
+def test_different_bounds_have_separate_labels(camera):
+    names = ("sinusoid-k3", "sinusoid-k5")
+    reports = [ts.evaluate(name, camera, trials=20) for name in names]
+    labels = plot.depth_error_curves(reports).axes[0].get_legend_handles_labels()[1]
+    assert labels == ["bound for sinusoid-k3", "bound for sinusoid-k5", *names]
+    labels = plot.depth_error_curves(reports[:1]).axes[0].get_legend_handles_labels()[1]
+    assert labels == ["bound of any code", "sinusoid-k3"]
+    plt.close("all")
+
+
 def test_correlation_functions_draw_on_a_given_figure(things):
     figure = plt.figure()
     assert plot.correlation_functions("square-k4", things["camera"], figure=figure) is figure
@@ -78,6 +99,8 @@ def test_figures_reject_unsupported_input(things):
             of.depth_error_map(things["reports"], kind="mean")
         with pytest.raises(ValueError, match="reports: got none"):
             of.depth_error_curves([])
+    with pytest.raises(ValueError, match="width: got str 'wide'; needs one of column, page"):
+        plot.waveforms("hamiltonian-k4", things["camera"], width="wide")
         with pytest.raises(ValueError, match="x: got 'peak'; needs a column of numbers that vary: "
                                              "light.peak_factor, signal_e_per_s"):
             of.sweep_map(things["sweep"], "peak", "signal_e_per_s")
