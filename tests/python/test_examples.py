@@ -32,6 +32,17 @@ def test_counterparts_run_and_print_the_same(example, tmp_path):
         assert output_of([Path(programs) / example.stem], tmp_path / "cpp") == said
 
 
+tasks = sorted((folder / "python" / "tasks").glob("*.py"))
+
+
+@pytest.mark.parametrize("task", tasks, ids=lambda path: path.stem)
+def test_tasks_run_and_are_short(task, tmp_path):
+    printed, files = output_of([sys.executable, "-B", task], tmp_path / "task")
+    assert printed and (files or task.stem == "find_the_bandwidth")
+    text = task.read_text()
+    assert text.count("# %%") >= 2 and len(text.splitlines()) < 60
+
+
 def snippets():
     for page in ("README.md", "docs/python.md", "docs/calibration.md"):
         text = (folder.parent / page).read_text()
