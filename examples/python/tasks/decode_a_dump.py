@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Decodes a dump of 12-bit numbers with two modulation frequencies, four phases each."""
+"""Decodes a raw dump with 12 bits and two modulation frequencies, four phases each."""
 
 # %% The camera and its code. The dump is simulated here; use your own instead.
 from pathlib import Path

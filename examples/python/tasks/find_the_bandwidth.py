@@ -9,7 +9,7 @@ camera = tofsmith.Camera("indoor").at_distances(3, klux=20)
 print(f"S = {camera.operating.signal_e_per_s[0]:.3g} e/s, "
       f"A = {camera.operating.ambient_e_per_s[0]:.3g} e/s")
 
-# %% The least bandwidth for which a code of the atlas suffices; `exact=True` also designs codes.
+# %% Smallest bandwidth for which an atlas code suffices; `exact=True` also designs codes.
 found = tofsmith.find_requirements(
     camera, 5e-3, vary_power=False, vary_exposure=False, trials=5000)
 print(f"this camera: {found.error_m * 1e3:.1f} mm with {found.code.name}")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a filtered point cloud with the intrinsics of your own lens."""
+"""Writes a filtered point cloud with your lens intrinsics."""
 
 # %% The camera and its lens.
 import tofsmith
@@ -16,7 +16,7 @@ scene = tofsmith.built_in_scene("table-top", lens=camera.lens)
 tofsmith.write_raw("raw.npy", tofsmith.capture(
     scene, code, camera, signal_e_per_s=3e6, ambient_e_per_s=1e6), overwrite=True)
 
-# %% Filtered depth as points. Pixels whose depth cannot be trusted are left out.
+# %% Filtered depth as points. Pixels without a reliable depth are omitted.
 decoder = tofsmith.Decoder(code, camera)
 result = decoder.decode_recording(
     "raw.npy", "points.ply", filter="normal", outputs=["depth", "amplitude", "deviation"],

@@ -321,11 +321,11 @@ struct Requirements {
 };
 
 /// Finds the smallest amount of each quantity, varied separately, for which a code has at most the
-/// requested error. Codes are taken from the atlas or, if `exact`, designed, in steps of a factor of
-/// 4 and again at the factor that the search finds. All codes and the standard codes are evaluated
-/// with the same random numbers. The codes found reach the error; a designed code may need less.
-/// The error decreases with each quantity, so bisection finds the factor to 0.5 %. The error is
-/// always circular, because a surface at a given distance causes no wrap-around.
+/// requested error. Codes are taken from the atlas or, if `exact`, designed, in steps of a factor
+/// of 4 and again at the factor that the search finds. All codes and the standard codes are
+/// evaluated with the same random numbers. The codes found reach the error; a designed code may
+/// need less. The error decreases with each quantity, so bisection finds the factor to 0.5 %. The
+/// error is always circular, because a surface at a given distance causes no wrap-around.
 /// @throws std::invalid_argument as design(), for invalid options, or for bandwidth without a band
 ///   limit; Interrupted
 Requirements find_requirements(const Camera& camera, const RequirementOptions& options,
