@@ -9,6 +9,7 @@
 #include <string>
 
 #include "decode/search/distinct_directions.hpp"
+#include "decode/search/smooth_curve.hpp"
 #include "decode/shared/saturation_level.hpp"
 #include "decode/table_resolution.hpp"
 #include "tofsmith/core/error.hpp"
@@ -191,7 +192,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
 }
 
 DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double range_m) {
-  return resolved(table_of_rows(correlation, range_m));
+  return resolved(table_of_rows(without_noise_above_band_limit(correlation), range_m));
 }
 
 DecodingTable table_of_rows(const Eigen::MatrixXd& correlation, double range_m) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/shared/enum_words.hpp"
+#include "decode/search/smooth_curve.hpp"
 #include "decode/shared/saturation_level.hpp"
 #include "decode/table_resolution.hpp"
 #include "tofsmith/core/error.hpp"
@@ -169,8 +170,8 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
                                                    : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
-  const Eigen::MatrixXd correlation =
-      measured.differences ? measured.correlation : raised(measured.correlation, ambient_gain);
+  Eigen::MatrixXd correlation = without_noise_above_band_limit(measured.correlation);
+  if (!measured.differences) correlation = raised(correlation, ambient_gain);
   DecodingTable table =
       table_of_rows(correlation * readout.transpose(), measured.range_m.value_or(camera.range_m()));
   table.exposures = columns / measured.taps;
@@ -190,6 +191,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
   table.hidden_ambient_e_per_s = camera.operating.middle().ambient_e_per_s;
   table.working_distance_m = camera.operating.working_distance_m;
+  table = resolved(table);
   if (camera.temperature) {
     warm(*camera.temperature, table.row_m(), table.correlation);
     if (table.shot_correlation.size() > 0)
@@ -200,7 +202,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   set_saturation(camera, table);
   // The black level of the table also applies to unsigned numbers.
   if (measured.black_level.size() > 0) table.marking.unsigned_black_level = 0.0;
-  return resolved(table);
+  return table;
 }
 
 }  // namespace tofsmith

@@ -174,6 +174,106 @@ TEST(MeasuredTable, DriftIsInMetresForAnyRangeOfTheTable) {
   }
 }
 
+/// Two cosines in quadrature with a fifth harmonic, (rows, 3).
+Eigen::MatrixXd band_limited(int rows) {
+  Eigen::MatrixXd columns(rows, 3);
+  for (int n = 0; n < rows; ++n)
+    for (int k = 0; k < 3; ++k) {
+      const double phase = 2 * M_PI * (static_cast<double>(n) / rows - k / 3.0);
+      columns(n, k) = 2.0 + std::cos(phase) + 0.1 * std::cos(5 * phase + k);
+    }
+  return columns;
+}
+
+Eigen::MatrixXd with_noise(Eigen::MatrixXd columns, double deviation, std::uint64_t seed) {
+  RandomStream random(seed, 0);
+  for (double& value : columns.reshaped()) value += deviation * random.normal();
+  return columns;
+}
+
+/// Root mean square error of the table of `correlation` at all of its rows.
+double error_of_table(const Eigen::MatrixXd& correlation) {
+  const DecodingTable table =
+      make_decoding_table({.correlation = correlation}, camera_with("paper-10f0"));
+  EXPECT_GT(table.samples(), correlation.rows());
+  const Eigen::MatrixXd error = table.correlation - band_limited(table.samples());
+  return std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
+}
+
+TEST(MeasuredTable, IsExactBetweenDelaysIfItIsBandLimited) {
+  EXPECT_LT(error_of_table(band_limited(40)), 1e-9);
+}
+
+TEST(MeasuredTable, HasOnlyTheNoiseOfItsHarmonicsIfItIsBandLimited) {
+  constexpr double noise = 0.01;
+  constexpr int rows = 120, harmonics = 5;
+  // A fifth of the noise remains; the band limit may be found a few harmonics too high.
+  const double expected = noise * std::sqrt((2.0 * harmonics + 1.0) / rows);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    EXPECT_LT(error_of_table(with_noise(band_limited(rows), noise, seed)), 1.6 * expected);
+}
+
+/// The table of measured columns to which ambient light adds nothing.
+Eigen::MatrixXd table_of(const Eigen::MatrixXd& columns) {
+  return make_decoding_table({.correlation = columns, .ambient_gain = Eigen::Vector3d::Zero()},
+                             camera_with("paper-10f0"))
+      .correlation;
+}
+
+TEST(MeasuredTable, KeepsCornersAndJumpsThatStandOutFromNoise) {
+  Eigen::MatrixXd corners(120, 3), jumps(120, 3);
+  for (int n = 0; n < 120; ++n)
+    for (int k = 0; k < 3; ++k) {
+      const int place = (n + 40 * k) % 120;
+      corners(n, k) = std::abs(place - 60);
+      jumps(n, k) = place;
+    }
+  for (const double noise : {0.0, 0.01}) {
+    const Eigen::MatrixXd measured = with_noise(corners, noise, 3);
+    EXPECT_EQ(table_of(measured), measured) << noise;
+  }
+  for (const double noise : {0.0, 0.1, 1.0}) {
+    const Eigen::MatrixXd measured = with_noise(jumps, noise, 3);
+    EXPECT_EQ(table_of(measured), measured) << noise;
+  }
+}
+
+/// Mean absolute error of pixels at random depths [bin].
+double mean_error_bin(const DecodingTable& table, const DecodingTable& truth, double signal) {
+  constexpr int pixels = 20000;
+  std::vector<float> raw;
+  std::vector<double> depth_bin;
+  RandomStream random(7, 0);
+  for (int p = 0; p < pixels; ++p) {
+    depth_bin.push_back(truth.bin_count() * random.uniform());
+    append_noisy_pixel(truth, signal, 0.0, depth_bin.back(), random, raw);
+  }
+  const std::vector<double> found = depth_bins_of(Decoder(table), raw);
+  double sum = 0.0;
+  for (std::size_t p = 0; p < found.size(); ++p)
+    sum += std::abs(std::remainder(found[p] * truth.bin_count() / table.bin_count() - depth_bin[p],
+                                   truth.bin_count()));
+  return sum / pixels;
+}
+
+TEST(MeasuredTable, OfOneHundredTwentyDelaysDecodesLikeTheCode) {
+  const Camera camera = camera_with("paper-10f0");
+  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
+  const DecodingTable code = make_decoding_table(model, camera);
+  for (const double electrons : {3e4, 4e6}) {
+    // The mean of 64 pixels of the same light.
+    MeasuredTable measured{.correlation = electrons * model.correlation_table(120)};
+    RandomStream random(5, 0);
+    for (double& value : measured.correlation.reshaped())
+      value += std::sqrt(std::max(value, 0.0) / 64) * random.normal();
+    measured.correlation /= electrons;
+    const double signal = electrons / code.exposure_s[0];
+    EXPECT_LT(mean_error_bin(make_decoding_table(measured, camera), code, signal),
+              1.02 * mean_error_bin(code, code, signal))
+        << electrons;
+  }
+}
+
 TEST(MeasuredTable, SignedColumnsWithoutAmbientGainAreRaisedByTheirMinimum) {
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Constant(10, 3, 0.25);
   correlation(4, 1) = -2.0;

@@ -31,11 +31,36 @@ Eigen::MatrixXcd spectrum_of(const Eigen::MatrixXd& columns) {
   return spectrum;
 }
 
+/// Returns the columns (rows, K) of a spectrum (rows / 2 + 1, K).
+Eigen::MatrixXd columns_of(const Eigen::MatrixXcd& spectrum, int rows) {
+  const PeriodicTransform transform(rows);
+  Eigen::MatrixXd columns(rows, spectrum.cols());
+  Eigen::VectorXd one;
+  for (Eigen::Index j = 0; j < spectrum.cols(); ++j) {
+    transform.inverse(spectrum.col(j), one);
+    columns.col(j) = one;
+  }
+  return columns;
+}
+
 bool falls_off(const Eigen::MatrixXcd& spectrum) {
   const Eigen::Index upper = spectrum.rows() / 4;
   if (upper < 1) return false;
   const double whole = spectrum.bottomRows(spectrum.rows() - 1).norm();
   return spectrum.bottomRows(upper).norm() <= hidden_share * whole;
+}
+
+/// Returns the harmonic H described at without_noise_above_band_limit().
+Eigen::Index band_limit_of(const Eigen::VectorXd& power) {
+  const Eigen::Index top = power.size() / 4;
+  const double floor = power.tail(top).mean();
+  double gain = 0.0, largest = 0.0;
+  Eigen::Index limit = 0;
+  for (Eigen::Index h = 1; h < power.size(); ++h) {
+    gain += power[h] - 2.0 * floor;
+    if (gain > largest) largest = gain, limit = h;
+  }
+  return limit;
 }
 
 bool falls_back(const RowMajorMatrix& curve) {
@@ -95,40 +120,45 @@ std::optional<SmoothCurve> SmoothCurve::of(const RowMajorMatrix& curve) {
 }
 
 RowMajorMatrix SmoothCurve::at(double offset, bool as_slopes) const {
-  const PeriodicTransform transform(rows_);
-  RowMajorMatrix values(rows_, spectrum_.cols());
-  Eigen::VectorXcd one(spectrum_.rows());
-  Eigen::VectorXd column;
-  for (Eigen::Index j = 0; j < spectrum_.cols(); ++j) {
-    for (Eigen::Index k = 0; k < one.size(); ++k) {
-      const double turn = 2 * pi * static_cast<double>(k) / rows_;
-      one[k] = spectrum_(k, j) * std::polar(1.0, turn * offset);
-      if (as_slopes) one[k] *= std::complex<double>(0.0, turn);
-    }
-    if (rows_ % 2 == 0) one[one.size() - 1] = as_slopes ? 0.0 : one[one.size() - 1].real();
-    transform.inverse(one, column);
-    values.col(j) = column;
+  Eigen::MatrixXcd spectrum = spectrum_;
+  for (Eigen::Index k = 0; k < spectrum.rows(); ++k) {
+    const double turn = 2 * pi * static_cast<double>(k) / rows_;
+    spectrum.row(k) *= std::polar(1.0, turn * offset);
+    if (as_slopes) spectrum.row(k) *= std::complex<double>(0.0, turn);
   }
-  return values;
+  if (rows_ % 2 == 0) {
+    auto nyquist = spectrum.row(spectrum.rows() - 1);
+    nyquist = as_slopes ? Eigen::RowVectorXcd::Zero(nyquist.size()).eval()
+                        : nyquist.real().cast<std::complex<double>>().eval();
+  }
+  return columns_of(spectrum, rows_);
 }
 
 Eigen::MatrixXd interpolated(const Eigen::MatrixXd& columns, int factor) {
   const auto rows = static_cast<int>(columns.rows());
   const Eigen::MatrixXcd spectrum = spectrum_of(columns);
-  const PeriodicTransform transform(rows * factor);
-  Eigen::MatrixXd fine(rows * factor, columns.cols());
-  Eigen::VectorXcd one(transform.coefficients());
-  Eigen::VectorXd column;
-  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    one.setZero();
-    one.head(spectrum.rows()) = static_cast<double>(factor) * spectrum.col(j);
-    if (rows % 2 == 0) one[rows / 2] *= 0.5;
-    transform.inverse(one, column);
-    fine.col(j) = column;
-  }
+  Eigen::MatrixXcd fine_spectrum = Eigen::MatrixXcd::Zero(rows * factor / 2 + 1, columns.cols());
+  fine_spectrum.topRows(spectrum.rows()) = static_cast<double>(factor) * spectrum;
+  if (rows % 2 == 0) fine_spectrum.row(rows / 2) *= 0.5;
+  Eigen::MatrixXd fine = columns_of(fine_spectrum, rows * factor);
   // Rows of the input keep their exact values.
   for (Eigen::Index n = 0; n < rows; ++n) fine.row(n * factor) = columns.row(n);
   return fine;
+}
+
+Eigen::MatrixXd without_noise_above_band_limit(const Eigen::MatrixXd& columns) {
+  constexpr Eigen::Index fewest_rows = 32;
+  constexpr double largest_noise = 6.0;
+  if (columns.rows() < fewest_rows || !columns.allFinite()) return columns;
+  Eigen::MatrixXcd spectrum = spectrum_of(columns);
+  const Eigen::Index limit = band_limit_of(spectrum.rowwise().squaredNorm());
+  if (falls_off(spectrum) || limit == 0 || 2 * limit >= spectrum.rows()) return columns;
+  spectrum.bottomRows(spectrum.rows() - limit - 1).setZero();
+  const Eigen::MatrixXd kept = columns_of(spectrum, static_cast<int>(columns.rows()));
+  const Eigen::ArrayXXd removed = (columns - kept).array();
+  const bool is_noise =
+      removed.abs().maxCoeff() <= largest_noise * std::sqrt(removed.square().mean());
+  return is_noise ? kept : columns;
 }
 
 DepthPolynomials::DepthPolynomials(const SmoothCurve& curve) {

@@ -42,6 +42,17 @@ class SmoothCurve {
 /// Interpolates columns trigonometrically to `factor` times as many rows.
 Eigen::MatrixXd interpolated(const Eigen::MatrixXd& columns, int factor);
 
+/// Returns measured columns (N, K) without the harmonics above their band limit, which are noise.
+///   - The noise floor is the mean power P_h of harmonics above 3/8 N.
+///   - The band limit is the H that minimizes the expected square error of the remaining columns
+///     (Mallows' C_p): it maximizes the sum over h <= H of P_h - 2 floor.
+/// Returns the columns unchanged
+///   - if their upper harmonics are already negligible, see SmoothCurve::of(),
+///   - if the functions may have corners: H is above N / 4, or a single removed value exceeds 6
+///     times their root mean square,
+///   - if N is below 32, because the floor is then uncertain.
+Eigen::MatrixXd without_noise_above_band_limit(const Eigen::MatrixXd& columns);
+
 /// Derivative of the correlation of a pixel around each row of a smooth curve,
 ///   d/dt <q, u(n + t)> / |p_n| = <q, W_n + t B_n + t^2 C_n>,  u = p / |p|, |t| <= 1/2,
 /// for any vector q, on the curve or not. The quadratic interpolates at the Chebyshev nodes of

@@ -100,10 +100,10 @@ std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measu
   const double times = std::ceil(turn_deg / fine_deg);
   return fmt::format(
       "{} rows are few for this table: it rotates by up to {:.0f} degrees from row to row, and "
-      "depths between rows are interpolated linearly; {}",
+      "depths between rows are interpolated linearly; {}{:.0f}{}",
       table.samples(), turn_deg,
-      is_measured ? "measure it at more delays"
-                  : fmt::format("use --set samples={:.0f}", times * table.samples()));
+      is_measured ? "measure it at " : "use --set samples=", times * table.samples(),
+      is_measured ? " delays" : "");
 }
 
 /// Returns the camera with the user's order and direction of delay.
