@@ -104,20 +104,20 @@ double scene_gain(const SceneCapture& capture, std::size_t other) {
 
 void print_summary(const Session& session, const fs::path& directory, const Camera& camera,
                    const DesignResult& result, const SceneResult& scene, double seconds) {
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   const Candidate& winner = result.winner();
-  const double best_m = geometric_mean_error_m(winner.error, kind);
+  const double best_m = geometric_mean_error_m(winner.error, measure);
   session.say(fmt::format("winner on {}: {} ({} exposures)", camera.name, winner.code.name(),
                           winner.code.exposures()));
   session.say(fmt::format("  {} depth error {}, geometric mean over {} light levels (N = {})",
-                          name_of(kind), length_text(best_m), winner.error.points.size(),
+                          name_of(measure), length_text(best_m), winner.error.points.size(),
                           camera.samples));
   std::string gains;
   for (const char* name :
        {"sinusoid-k3", "sinusoid-k4", "square-k4", "multifrequency-k5", "pulsed-multifrequency-k5"})
     if (const Candidate* c = result.find(name); c && c != &winner)
       gains += fmt::format("{}{:.2f}x better than {}", gains.empty() ? "" : ", ",
-                           geometric_mean_error_m(c->error, kind) / best_m, name);
+                           geometric_mean_error_m(c->error, measure) / best_m, name);
   session.say("  " + gains);
   for (const SceneCapture& capture : scene.captures) {
     std::string line = fmt::format("scene {}, {} light: mean error {}", scene.name, capture.light,

@@ -27,7 +27,7 @@ void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResu
 
 /// Returns sentences about the winner and its advantage over other codes.
 std::string verdict(const Camera& camera, const DesignResult& result) {
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   const Candidate& winner = result.winner();
   const OperatingRange& range = camera.operating;
   std::string text = fmt::format("best: {} (geometric means over {} operating points, N = {}{})",
@@ -38,7 +38,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
   for (const std::string& sentence : result.explanation) text += "\n  " + sentence;
   std::string tied;
   for (const Candidate& c : result.candidates) {
-    const Estimate gain = gain_over(result, c, kind);
+    const Estimate gain = gain_over(result, c, measure);
     if (&c != &winner && gain.value - 1.0 < 2.0 * gain.standard_error)
       tied += (tied.empty() ? "" : ", ") + c.code.name();
   }
@@ -48,7 +48,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
       text +=
-          fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, kind).value, name);
+          fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, measure).value, name);
   for (const Candidate& c : result.candidates)
     if (c.is_designed())
       text += fmt::format("\n  {}: {} ({})", c.code.name(), c.message, time_text(c.seconds));
@@ -61,13 +61,19 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                   const DesignOptions& options) {
   if (session.json) return session.print_document(design_document(camera, result, options));
   const DepthErrorKind kind = camera.operating.error;
-  std::vector<std::vector<std::string>> rows{
-      {"code", "K", "linear (mm)", "circular (mm)", "rotation (bin)", "made by"}};
-  for (const Candidate* c : by_geometric_mean_error(result, kind))
+  const ErrorStatistic statistic = camera.operating.statistic;
+  const char* rms = statistic == ErrorStatistic::rmse ? "rms " : "";
+  const auto error_text = [&](const Candidate& c, DepthErrorKind of) {
+    return estimate_mm_text(c.error.of({of, statistic}).geometric_mean_m);
+  };
+  std::vector<std::vector<std::string>> rows{{"code", "K", fmt::format("linear {}(mm)", rms),
+                                              fmt::format("circular {}(mm)", rms), "rotation (bin)",
+                                              "made by"}};
+  for (const Candidate* c : by_geometric_mean_error(result, camera.operating.measure()))
     rows.push_back({c->code.name(), fmt::format("{}", c->error.measurements),
-                    estimate_mm_text(c->error.linear.geometric_mean_m),
-                    estimate_mm_text(c->error.circular.geometric_mean_m),
-                    fmt::format("{}", c->rotation_bin), c->method});
+                    error_text(*c, DepthErrorKind::linear),
+                    error_text(*c, DepthErrorKind::circular), fmt::format("{}", c->rotation_bin),
+                    c->method});
   if (camera.operating.multipath) add_multipath(rows, result, kind);
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)

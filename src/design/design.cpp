@@ -134,18 +134,18 @@ const Candidate* DesignResult::find(std::string_view name) const {
 }
 
 std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result,
-                                                      DepthErrorKind kind) {
+                                                      DepthErrorMeasure measure) {
   std::vector<const Candidate*> order;
   for (const Candidate& c : result.candidates) order.push_back(&c);
   std::stable_sort(order.begin(), order.end(), [&](const Candidate* a, const Candidate* b) {
-    return geometric_mean_error_m(a->error, kind) < geometric_mean_error_m(b->error, kind);
+    return geometric_mean_error_m(a->error, measure) < geometric_mean_error_m(b->error, measure);
   });
   return order;
 }
 
-Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind) {
-  return ratio_of(other.error.of(kind).geometric_mean_m,
-                  result.winner().error.of(kind).geometric_mean_m);
+Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorMeasure measure) {
+  return ratio_of(other.error.of(measure).geometric_mean_m,
+                  result.winner().error.of(measure).geometric_mean_m);
 }
 
 namespace {

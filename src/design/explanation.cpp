@@ -19,32 +19,33 @@ std::string length_mm(const Estimate& e) { return estimate_mm_text(e) + " mm"; }
 
 /// Returns the best baseline other than the winner, or null. Atlas codes are no baselines because
 /// they were designed.
-const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
-  for (const Candidate* c : by_geometric_mean_error(result, kind))
+const Candidate* best_baseline(const DesignResult& result, DepthErrorMeasure measure) {
+  for (const Candidate* c : by_geometric_mean_error(result, measure))
     if (c != &result.winner() && !c->is_designed() && c->method != "atlas") return c;
   return nullptr;
 }
 
 /// Returns " with 2 exposures" if the best of all codes has another number of exposures.
-std::string among_exposures(const DesignResult& result, DepthErrorKind kind,
+std::string among_exposures(const DesignResult& result, DepthErrorMeasure measure,
                             const std::vector<int>& exposures) {
-  const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
+  const std::vector<const Candidate*> order = by_geometric_mean_error(result, measure);
   if (exposures.empty() ||
       std::count(exposures.begin(), exposures.end(), order.front()->code.exposures()) > 0)
     return "";
   return fmt::format(" with {} exposures", fmt::join(exposures, ", "));
 }
 
-std::string what_it_beats(const Camera& camera, const DesignResult& result, DepthErrorKind kind,
-                          const std::vector<int>& exposures) {
+std::string what_it_beats(const Camera& camera, const DesignResult& result,
+                          DepthErrorMeasure measure, const std::vector<int>& exposures) {
   const Candidate& winner = result.winner();
-  const std::string among = among_exposures(result, kind, exposures);
-  std::string text = fmt::format("{} is the best code{}{}: {} {} error", winner.code.name(), among,
-                                 camera.operating.multipath ? " including multipath" : "",
-                                 length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
-  const Candidate* baseline = best_baseline(result, kind);
+  const std::string among = among_exposures(result, measure, exposures);
+  std::string text =
+      fmt::format("{} is the best code{}{}: {} {} error", winner.code.name(), among,
+                  camera.operating.multipath ? " including multipath" : "",
+                  length_mm(winner.error.of(measure).geometric_mean_m), name_of(measure));
+  const Candidate* baseline = best_baseline(result, measure);
   if (baseline) {
-    const Estimate gain = gain_over(result, *baseline, kind);
+    const Estimate gain = gain_over(result, *baseline, measure);
     text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
                         baseline->code.name());
   }
@@ -58,21 +59,21 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
                      any_designed ? "and no designed code is better" : "and no code was designed");
 }
 
-std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorKind kind) {
+std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorMeasure measure) {
   std::map<int, double> errors;
   for (const Candidate& c : result.candidates) {
     const auto [at, is_new] =
-        errors.try_emplace(c.error.exposures, geometric_mean_error_m(c.error, kind));
-    if (!is_new) at->second = std::min(at->second, geometric_mean_error_m(c.error, kind));
+        errors.try_emplace(c.error.exposures, geometric_mean_error_m(c.error, measure));
+    if (!is_new) at->second = std::min(at->second, geometric_mean_error_m(c.error, measure));
   }
   return errors;
 }
 
 std::string why_so_many_exposures(const Camera& camera, const DesignResult& result,
-                                  DepthErrorKind kind) {
+                                  DepthErrorMeasure measure) {
   const DepthErrorReport& winner = result.winner().error;
   std::string others;
-  for (const auto& [exposures, error_m] : error_by_exposures(result, kind))
+  for (const auto& [exposures, error_m] : error_by_exposures(result, measure))
     if (exposures != winner.exposures)
       others += fmt::format("{}{} would give {} mm", others.empty() ? "" : ", ", exposures,
                             plain_number(1e3 * error_m, 3));
@@ -147,13 +148,14 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
 
 std::vector<std::string> explain(const Camera& camera, const DesignResult& result,
                                  const std::vector<int>& exposures) {
-  const DepthErrorKind kind = camera.operating.error;
-  std::vector<std::string> sentences{what_it_beats(camera, result, kind, exposures)};
+  const DepthErrorMeasure measure = camera.operating.measure();
+  std::vector<std::string> sentences{what_it_beats(camera, result, measure, exposures)};
   if (!result.winner().code.is_rows())
-    sentences.push_back(why_so_many_exposures(camera, result, kind));
+    sentences.push_back(why_so_many_exposures(camera, result, measure));
   sentences.push_back(what_limits_it(result));
   if (camera.operating.multipath)
-    sentences.push_back(behind_multipath(*camera.operating.multipath, result, kind));
+    sentences.push_back(
+        behind_multipath(*camera.operating.multipath, result, camera.operating.error));
   return sentences;
 }
 

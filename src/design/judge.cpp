@@ -99,7 +99,7 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
     candidate.multipath =
         operating_multipath_report(candidate.code, camera, *later, judging, parts[2]);
   candidate.code.provenance.depth_error_m =
-      geometric_mean_error_m(candidate.error, camera.operating.error);
+      geometric_mean_error_m(candidate.error, camera.operating.measure());
 }
 
 void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
@@ -171,6 +171,11 @@ void require_judgeable(const Camera& camera, const DesignOptions& options) {
   camera.validate();
   require(!options.robust || !camera.operating.multipath, "DesignOptions::robust", "true",
           "must be false with operating.multipath");
+  const bool needs_mae = options.robust || camera.operating.multipath;
+  require(!needs_mae || camera.operating.statistic == ErrorStatistic::mae, "operating.statistic",
+          "rmse",
+          options.robust ? "must be \"mae\" with robust designs, which are ranked by mean errors"
+                         : "must be \"mae\" with operating.multipath, whose errors are means");
 }
 
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera) {
@@ -198,19 +203,18 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
   result.explanation = explain(camera, result, requested);
 }
 
-double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
-  return report.of(kind).geometric_mean_m.value;
+double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorMeasure measure) {
+  return report.of(measure).geometric_mean_m.value;
 }
 
 double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options) {
   if (options.robust && candidate.robustness)
     return candidate.robustness->worst_calibrated_m().value;
-  const DepthErrorKind kind = camera.operating.error;
-  const double error_m = geometric_mean_error_m(candidate.error, kind);
+  const double error_m = geometric_mean_error_m(candidate.error, camera.operating.measure());
   if (!camera.operating.multipath || !candidate.multipath) return error_m;
-  return camera.operating.multipath->weighed(error_m,
-                                             candidate.multipath->single_path.of(kind).value);
+  return camera.operating.multipath->weighed(
+      error_m, candidate.multipath->single_path.of(camera.operating.error).value);
 }
 
 DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,

@@ -32,20 +32,20 @@ std::vector<std::size_t> usable_levels(const DepthErrorReport& error) {
 
 /// Geometric mean of the depth error over some light levels [mm].
 double error_mm(const DepthErrorReport& error, const std::vector<std::size_t>& levels,
-                DepthErrorKind kind) {
+                DepthErrorMeasure measure) {
   double sum = 0.0;
   for (const std::size_t i : levels) {
     const PointDepthError& p = error.points[i];
-    sum += std::log(kind == DepthErrorKind::linear ? p.linear_mde_m.value : p.circular_mde_m.value);
+    sum += std::log(p.of(measure).value);
   }
   return 1e3 * std::exp(sum / static_cast<double>(levels.size()));
 }
 
 /// The best code, the best standard code of every family, and sinusoid-k4, by increasing error.
-std::vector<const Candidate*> compared(const DesignResult& result, DepthErrorKind kind) {
+std::vector<const Candidate*> compared(const DesignResult& result, DepthErrorMeasure measure) {
   std::vector<const Candidate*> codes{&result.winner()};
   std::set<std::string> families;
-  for (const Candidate* c : by_geometric_mean_error(result, kind)) {
+  for (const Candidate* c : by_geometric_mean_error(result, measure)) {
     if (c == &result.winner() || c->is_designed() || c->method == "atlas") continue;
     const std::string name = c->code.name();
     const bool is_first = families.insert(name.substr(0, name.find('-'))).second;
@@ -55,7 +55,7 @@ std::vector<const Candidate*> compared(const DesignResult& result, DepthErrorKin
 }
 
 Table comparison(const Camera& camera, const DesignResult& result) {
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   const DepthErrorReport& best = result.winner().error;
   const std::vector<std::size_t> levels = usable_levels(best);
   Table table{
@@ -65,36 +65,36 @@ Table comparison(const Camera& camera, const DesignResult& result) {
           "Error: geometric mean of the {} depth error over the {} of {} light levels at which the "
           "best code has at most {:.0f} % outliers (off by more than {:.2g} m). Ratio: error "
           "relative to the best code over all levels, by which codes are ranked.",
-          name_of(kind), levels.size(), best.points.size(), 100 * max_outlier_rate,
+          name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
           best.outlier_threshold_m),
       .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
       .highlighted_row = 0};
-  for (const Candidate* c : compared(result, kind))
+  for (const Candidate* c : compared(result, measure))
     table.rows.push_back({c->code.name(), fmt::format("{}", c->error.exposures),
-                          fmt::format("{:.1f}", error_mm(c->error, levels, kind)),
-                          fmt::format("{:.2f}", gain_over(result, *c, kind).value)});
+                          fmt::format("{:.1f}", error_mm(c->error, levels, measure)),
+                          fmt::format("{:.2f}", gain_over(result, *c, measure).value)});
   return table;
 }
 
 KeyNumbers headline(const Camera& camera, const DesignResult& result,
                     const std::optional<SceneResult>& scene) {
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   const Candidate& winner = result.winner();
   const std::vector<std::size_t> levels = usable_levels(winner.error);
   KeyNumbers numbers{
       {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
-       {fmt::format("{} depth error, {} of {} levels", name_of(kind), levels.size(),
+       {fmt::format("{} depth error, {} of {} levels", name_of(measure), levels.size(),
                     winner.error.points.size()),
-        fmt::format("{:.1f} mm", error_mm(winner.error, levels, kind))}}};
+        fmt::format("{:.1f} mm", error_mm(winner.error, levels, measure))}}};
   if (winner.multipath)
     numbers.entries.push_back(
         {"depth error with multipath, all levels",
-         fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(kind).value)});
+         fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(measure.kind).value)});
   for (const char* name : {"sinusoid-k4", "square-k4"})
     if (const Candidate* other = result.find(name); other && other != &winner)
       numbers.entries.push_back(
           {fmt::format("smaller error than {}", name),
-           fmt::format("{:.2f} times", gain_over(result, *other, kind).value)});
+           fmt::format("{:.2f} times", gain_over(result, *other, measure).value)});
   if (!scene || scene->captures.empty()) return numbers;
   const SceneCapture& brightest = scene->captures.back();
   for (const SceneDecoding& decoding : brightest.decodings)
@@ -157,7 +157,7 @@ Section design_front(const Camera& camera, const DesignResult& result,
                      const std::optional<SceneResult>& scene,
                      const std::vector<std::string>& files) {
   const Candidate& winner = result.winner();
-  const std::vector<const Candidate*> codes = compared(result, camera.operating.error);
+  const std::vector<const Candidate*> codes = compared(result, camera.operating.measure());
   Section front{.title = "Result", .layout = SectionLayout::front};
   front.blocks.push_back(headline(camera, result, scene));
   front.blocks.push_back(comparison(camera, result));

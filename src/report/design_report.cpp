@@ -174,14 +174,14 @@ Table explanation(const DesignResult& result, DepthErrorKind kind) {
 }
 
 Section candidates_section(const Camera& camera, const DesignResult& result) {
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   std::vector<DepthErrorRow> rows;
   for (const Candidate& c : result.candidates) {
     rows.push_back({&c.error, c.method});
     if (&c == &result.winner())
       rows.back().ratio = Estimate{1.0, 0.0};
     else
-      rows.back().ratio = gain_over(result, c, kind);
+      rows.back().ratio = gain_over(result, c, measure);
   }
   return depth_error_section(camera, rows, result.best, false);
 }
@@ -262,7 +262,7 @@ Page design_report(const Camera& camera, const DesignResult& result,
   const Candidate& winner = result.winner();
   Page page{.title = fmt::format("Codes for {}", camera.name),
             .subtitle = fmt::format("{} candidates, ranked by {} depth error",
-                                    result.candidates.size(), name_of(camera.operating.error)),
+                                    result.candidates.size(), name_of(camera.operating.measure())),
             .footer = fmt::format("tofsmith {}, seed {}", TOFSMITH_VERSION, winner.error.seed)};
   page.sections.push_back(design_front(camera, result, scene, files));
   page.sections.push_back({"Why this code", {explanation(result, camera.operating.error)}});
@@ -299,11 +299,12 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
             .footer = "tofsmith " TOFSMITH_VERSION};
   std::vector<DepthErrorRow> compared;
   std::size_t best = 0;
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const DepthErrorReport& error = evaluated[i].error;
     compared.push_back({&error, codes[i].provenance.method});
-    if (geometric_mean_error_m(error, kind) < geometric_mean_error_m(*compared[best].error, kind))
+    if (geometric_mean_error_m(error, measure) <
+        geometric_mean_error_m(*compared[best].error, measure))
       best = i;
   }
   page.sections.push_back(depth_error_section(camera, compared, best, true));

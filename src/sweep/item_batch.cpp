@@ -23,7 +23,7 @@ std::string computed(const WorkItem& item, const Progress& progress) {
   // Standard codes with three or more taps also compete, with other numbers of exposures.
   const DesignResult result = design(item.camera, *item.design, progress);
   const int exposures = item.design->exposures.front();
-  for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.error))
+  for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.measure()))
     if (c->code.exposures() == exposures) return item_result_json(c->error, &c->code);
   throw std::runtime_error(fmt::format("no code of {} exposures was found", exposures));
 }

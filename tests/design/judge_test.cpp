@@ -247,6 +247,36 @@ TEST(Design, TriesEveryBuiltInCodeAndReportsThoseNotJudged) {
             std::string::npos);
 }
 
+TEST(RankingError, IsOfTheKindAndStatisticOfTheCamera) {
+  Camera camera = small_camera("paper-10f0");
+  Candidate candidate = candidate_of("sinusoid-k4", camera);
+  candidate.error.linear.geometric_mean_m.value = 1.0;
+  candidate.error.circular.geometric_mean_m.value = 2.0;
+  candidate.error.linear_rmse.geometric_mean_m.value = 3.0;
+  candidate.error.circular_rmse.geometric_mean_m.value = 4.0;
+  EXPECT_EQ(camera.operating.statistic, ErrorStatistic::mae);
+  double expected = 1.0;
+  for (const ErrorStatistic statistic : {ErrorStatistic::mae, ErrorStatistic::rmse})
+    for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
+      camera.operating.error = kind;
+      camera.operating.statistic = statistic;
+      EXPECT_EQ(ranking_error_m(candidate, camera, {}), expected++);
+    }
+}
+
+TEST(Judge, RejectsRootMeanSquaresWhereOnlyMeansAreKnown) {
+  Camera camera = small_camera("paper-10f0");
+  camera.operating.statistic = ErrorStatistic::rmse;
+  DesignOptions options = small_options();
+  options.robust = true;
+  EXPECT_THAT([&] { judge(camera, {}, options); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("operating.statistic = rmse; must be")));
+  options.robust = false;
+  camera.operating.multipath = OperatingMultipath{};
+  EXPECT_THAT([&] { judge(camera, {}, options); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("operating.statistic = rmse; must be")));
+}
+
 TEST(DesignSeed, IsPassedToFactorization) {
   const Camera camera = small_camera("paper-5f0");
   DesignOptions options = small_options();

@@ -156,7 +156,7 @@ Answer design_answer(const Request& request, const Progress& progress) {
   answer["name"] = winner.code.name();
   answer["method"] = winner.method;
   answer["file"] = code_to_json(winner.code);
-  answer["error_m"] = geometric_mean_error_m(winner.error, camera.operating.error);
+  answer["error_m"] = geometric_mean_error_m(winner.error, camera.operating.measure());
   answer["explanation"] = result.explanation;
   answer["left_out"] = result.left_out;
   return answer;

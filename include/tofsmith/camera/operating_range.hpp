@@ -36,6 +36,31 @@ constexpr std::string_view name_of(DepthErrorKind kind) {
   return depth_error_kinds[static_cast<std::size_t>(kind)];
 }
 
+/// Statistic of the depth errors of trials.
+enum class ErrorStatistic {
+  mae,   ///< mean absolute error
+  rmse,  ///< root mean square error: wrong lobes, which are far away, count more
+};
+/// Words for the statistics, in their order.
+inline constexpr std::array<std::string_view, 2> error_statistics = {"mae", "rmse"};
+
+/// Depth error that designs minimize.
+struct DepthErrorMeasure {
+  DepthErrorKind kind = DepthErrorKind::circular;
+  ErrorStatistic statistic = ErrorStatistic::mae;
+
+  /// Mean absolute error of this kind.
+  constexpr DepthErrorMeasure(DepthErrorKind kind_) : kind(kind_) {}
+  constexpr DepthErrorMeasure(DepthErrorKind kind_, ErrorStatistic statistic_)
+      : kind(kind_), statistic(statistic_) {}
+};
+/// "linear", "circular", "linear root mean square" or "circular root mean square".
+constexpr std::string_view name_of(DepthErrorMeasure measure) {
+  if (measure.statistic == ErrorStatistic::mae) return name_of(measure.kind);
+  return measure.kind == DepthErrorKind::linear ? "linear root mean square"
+                                                : "circular root mean square";
+}
+
 /// Multipath light in the scenes of a camera: one second return, whose ratio and delay are uniform
 /// between their limits.
 struct OperatingMultipath {
@@ -77,6 +102,7 @@ struct OperatingRange {
   std::vector<double> signal_e_per_s;   ///< S [e/s]
   std::vector<double> ambient_e_per_s;  ///< A [e/s]
   DepthErrorKind error = DepthErrorKind::circular;
+  ErrorStatistic statistic = ErrorStatistic::mae;
   double albedo = 1.0;          ///< scales the signal
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
   /// Number of pixels of one depth that a filter adds before decoding: codes are evaluated on such
@@ -92,6 +118,8 @@ struct OperatingRange {
 
   /// All pairs, in the order of the signals.
   std::vector<OperatingPoint> points() const;
+  /// Depth error that designs minimize.
+  DepthErrorMeasure measure() const { return {error, statistic}; }
   /// The pair in the middle of both lists.
   OperatingPoint middle() const;
 
@@ -116,6 +144,10 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                     "as in the paper")
                     .basic(),
                 range.error, depth_error_kinds);
+  fields.choice(Key("statistic",
+                    "Statistic by which design ranks codes, and which designed rows minimize: mean "
+                    "absolute or root mean square error"),
+                range.statistic, error_statistics);
   fields.value(Key("albedo",
                    "Factor of the signal; \"uniform\": a fresh draw in (0, 1) for every "
                    "trial",

@@ -128,7 +128,7 @@ struct DesignResult {
   const Candidate* find(std::string_view name) const;
 };
 
-/// Returns the error by which candidates are ranked [m]: linear or circular, as selected by the
+/// Returns the error by which candidates are ranked [m]: of the kind and statistic selected by the
 /// camera. With DesignOptions::robust, it is the error on the worst perturbed camera with a
 /// calibrated decoder. On cameras with operating.multipath it includes the error in that multipath
 /// and a penalty for large two-return errors (OptimizeOptions::max_two_return_loss).
@@ -136,7 +136,7 @@ double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options);
 
 /// Returns the geometric mean over the operating points [m].
-double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind);
+double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorMeasure measure);
 
 /// Callbacks for finished designs. `load` returns candidates saved earlier under `name` for the
 /// same inputs; if none, the code is designed and passed to `save`. Candidates of one name are
@@ -148,11 +148,11 @@ struct DesignStore {
 
 /// Returns all candidates by ascending geometric_mean_error_m().
 std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result,
-                                                      DepthErrorKind kind);
+                                                      DepthErrorMeasure measure);
 
 /// Returns the ratio of another candidate's geometric_mean_error_m() to the winner's, from the same
 /// trials. The standard error ignores their correlation, so it is an overestimate.
-Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind);
+Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorMeasure measure);
 
 /// Returns suitable numbers of exposures: fewer with more taps, more with larger bandwidth.
 std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);

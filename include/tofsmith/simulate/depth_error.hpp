@@ -87,6 +87,13 @@ struct PointDepthError {
   /// ReceiverBound of the camera for the code's exposures; for rows, HistogramBound of their light.
   double receiver_bound_mae_m = 0.0;
   double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: none
+
+  const Estimate& of(DepthErrorMeasure measure) const {
+    const bool is_linear = measure.kind == DepthErrorKind::linear;
+    if (measure.statistic == ErrorStatistic::rmse)
+      return is_linear ? linear_rmse_m : circular_rmse_m;
+    return is_linear ? linear_mde_m : circular_mde_m;
+  }
 };
 /// Returns a bound for numeric tables: NaN for 0, which means no bound.
 inline double bound_or_nan(double bound_m) {
@@ -132,8 +139,10 @@ struct DepthErrorReport {
   DepthErrorMean linear_rmse, circular_rmse;  ///< of root mean square errors
   std::vector<PointDepthError> points;        ///< in the order of OperatingRange::points()
 
-  const DepthErrorMean& of(DepthErrorKind kind) const {
-    return kind == DepthErrorKind::linear ? linear : circular;
+  const DepthErrorMean& of(DepthErrorMeasure measure) const {
+    const bool is_linear = measure.kind == DepthErrorKind::linear;
+    if (measure.statistic == ErrorStatistic::rmse) return is_linear ? linear_rmse : circular_rmse;
+    return is_linear ? linear : circular;
   }
 };
 auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {

@@ -24,7 +24,7 @@ std::optional<std::string> dim_light_note(const Camera& camera, const DesignResu
                                           const DesignOptions& options) {
   constexpr int max_trials = 4000;
   constexpr double standard_errors = 3.0;
-  const DepthErrorKind kind = camera.operating.error;
+  const DepthErrorMeasure measure = camera.operating.measure();
   std::vector<double> signal = camera.operating.signal_e_per_s,
                       ambient = camera.operating.ambient_e_per_s;
   std::sort(signal.begin(), signal.end());
@@ -35,7 +35,7 @@ std::optional<std::string> dim_light_note(const Camera& camera, const DesignResu
   const auto error_of = [&](const CodeSet& code) {
     const EvaluateOptions judging{
         .trials = std::min(options.trials, max_trials), .seed = options.seed, .bounds = false};
-    return evaluate(code, dim, judging).of(kind).geometric_mean_m;
+    return evaluate(code, dim, judging).of(measure).geometric_mean_m;
   };
   const Candidate& winner = result.winner();
   const Candidate* best = nullptr;

@@ -230,13 +230,17 @@ class ToneSearch {
       factor.matrixL().solveInPlace(by_signal);
       by_signal.normalize();
       by_depth -= by_depth.dot(by_signal) * by_signal;
-      const double local_m = range_m * std::sqrt(2 / pi) / by_depth.norm();
+      const double local_rms_m = range_m / by_depth.norm();
       const double variance_e2 = 0.5 * (signal_e + other_e) + read_e2;
       Eigen::VectorXd power(static_cast<Eigen::Index>(code.tones.size()));
       for (Eigen::Index i = 0; i < power.size(); ++i)
         power[i] = mean.segment(2 * i, std::min<Eigen::Index>(2, rows_ - 2 * i)).squaredNorm() *
                    signal_e * signal_e / variance_e2;
-      return std::min(local_m + lobes_m(code.tones, power), 0.25 * range_m);
+      if (camera_.operating.statistic == ErrorStatistic::rmse)
+        return std::min(std::sqrt(local_rms_m * local_rms_m + lobes(code.tones, power, 2)),
+                        range_m / std::sqrt(12.0));
+      return std::min(std::sqrt(2 / pi) * local_rms_m + lobes(code.tones, power, 1),
+                      0.25 * range_m);
     };
     const auto mean_m = [&](const Camera& camera) {
       double logarithms = 0.0;
@@ -259,8 +263,9 @@ class ToneSearch {
     return slope;
   }
 
-  /// Error by side lobes mistaken for the main lobe.
-  double lobes_m(const Tones& tones, const Eigen::VectorXd& power) const {
+  /// Mean `exponent`-th power of the distance of side lobes mistaken for the main lobe
+  /// [m^exponent].
+  double lobes(const Tones& tones, const Eigen::VectorXd& power, int exponent) const {
     // At u = j / points, 8 per period of the highest tone; minima by parabolas.
     const int points = std::min(samples_, 8 * tones.back());
     const int half = points / 2;
@@ -279,9 +284,10 @@ class ToneSearch {
       const double bend = before + after - 2 * here, tilt = after - before;
       const double least = bend > 0.0 ? std::max(0.0, here - tilt * tilt / (8 * bend)) : here;
       // Both sides, with Q(x) = erfc(x / sqrt 2) / 2.
-      error += static_cast<double>(j) / points * std::erfc(0.5 * std::sqrt(least));
+      error +=
+          std::pow(camera_.range_m() * j / points, exponent) * std::erfc(0.5 * std::sqrt(least));
     }
-    return camera_.range_m() * error;
+    return error;
   }
 
   double cosine_of(double turns) const {
@@ -341,7 +347,7 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
         .seed = search_seed(options),
         .bounds = false};
     return geometric_mean_error_m(evaluate(search.code_set(codes[index]), on, judging),
-                                  camera.operating.error);
+                                  camera.operating.measure());
   };
   const Camera dim = in_share_of_light(camera, dim_share);
   const ProgressParts parts(progress, {20, 30, 50});
