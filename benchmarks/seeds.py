@@ -75,10 +75,7 @@ def cpu_s():
 def designed(tool, camera, seed):
     """Returns the name of the winner, its error and standard error [m] and the CPU time [s]."""
     words = camera.words()
-    if camera.exposures:
-        exposures = ["--exposures", str(camera.exposures)]
-    else:
-        exposures = []
+    exposures = ["--exposures", str(camera.exposures)] if camera.exposures else []
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "design")
         begin_s = cpu_s()
