@@ -66,8 +66,8 @@ std::vector<CodeSet> starts_of(const std::vector<CodeSet>& atlas_codes,
 /// Returns the tasks: one for every target, then one for every number of exposures. They keep
 /// references to all five arguments.
 std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
-                            const std::vector<TargetSet>& targets,
-                            const std::vector<CodeSet>& atlas_codes, DesignResult& result) {
+                            const std::vector<TargetSet>& targets, const Contenders& atlas,
+                            DesignResult& result) {
   std::vector<Task> tasks;
   for (const TargetSet& target : targets)
     tasks.push_back({DesignMethod::factorize, target.name + "-factorized", 1.0, std::nullopt,
@@ -97,12 +97,12 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                          return searched_candidates(camera, exposures, options, part);
                        }});
   if (includes(options.method, DesignMethod::optimize))
-    for (const int exposures : optimizable_exposures(camera, options))
+    for (const int exposures : optimizable_exposures(camera, options, atlas))
       tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
                        why_not_optimizable(camera, exposures),
                        [&, exposures](const Progress& part) {
                          return optimized_candidates(camera, exposures, options,
-                                                     starts_of(atlas_codes, result), part);
+                                                     starts_of(atlas.codes, result), part);
                        }});
   std::erase_if(
       tasks, [&](const Task& task) { return !serves(task.method, task.why_not, options, result); });
@@ -205,7 +205,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   add_atlas_codes(atlas, result);
 
   // 2. Design codes. The direct optimization starts at the candidates found before it.
-  const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas.codes, result);
+  const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
   const ProgressParts parts(progress, {80, options.split_exposures ? 10.0 : 0.0, 20});

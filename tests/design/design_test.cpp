@@ -193,13 +193,13 @@ std::string refusal(const Camera& camera, const DesignOptions& options) {
 TEST(Design, EffortScalesSearchesOnly) {
   const DesignOptions full, quick = with_effort(full, 0.05), longer = with_effort(full, 3);
   EXPECT_EQ(quick.optimize.starts, 2);
-  EXPECT_EQ(quick.optimize.hops, 2);
+  EXPECT_EQ(quick.optimize.hops, 1);
   EXPECT_EQ(quick.optimize.refinement_steps, 50);
   EXPECT_EQ(quick.factorize.random_starts, 2);
   EXPECT_EQ(quick.search.annealing_starts, 2);
   EXPECT_EQ(quick.optimize.steps_per_start, full.optimize.steps_per_start);
   EXPECT_EQ(quick.trials, full.trials);
-  EXPECT_EQ(longer.optimize.starts, 60);
+  EXPECT_EQ(longer.optimize.starts, 108);
   EXPECT_EQ(longer.factorize.random_starts, 90);
   EXPECT_EQ(with_effort(full, 0.0).method, DesignMethod::atlas);
   EXPECT_THROW(with_effort({.method = DesignMethod::optimize}, 0.0), std::invalid_argument);

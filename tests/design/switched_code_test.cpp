@@ -53,8 +53,7 @@ TEST(SwitchedCode, ReadsRunsFromCellsRoundThePeriod) {
 TEST(SwitchedCode, SamplesEqualThoseOfTheCodeSet) {
   for (const int taps : {1, 2, 3}) {
     const DesignProblem problem = problem_with(taps);
-    const CodeJudge judge(problem, 100, 1, 1);
-    const SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
+    const SwitchedCode code = binarized(problem, rendered(problem, 4.0));
     const SampledCode samples = sampled_on(problem.space, code);
     const CodeSet set = code_set("x", problem.space, code, problem.space.samples());
     EXPECT_LT((samples.modulation - set.modulation_samples()).cwiseAbs().maxCoeff(), 1e-12);
@@ -65,18 +64,15 @@ TEST(SwitchedCode, SamplesEqualThoseOfTheCodeSet) {
 
 TEST(Binarization, DoesNotChangeASwitchedCode) {
   const DesignProblem problem = problem_with(3);
-  const CodeJudge judge(problem, 100, 1, 1);
-  const SampledCode code =
-      sampled_on(problem.space, binarized(problem, rendered(problem, 4.0), judge));
-  const SampledCode again = sampled_on(problem.space, binarized(problem, code, judge));
+  const SampledCode code = sampled_on(problem.space, binarized(problem, rendered(problem, 4.0)));
+  const SampledCode again = sampled_on(problem.space, binarized(problem, code));
   EXPECT_EQ((again.demodulation - code.demodulation).cwiseAbs().maxCoeff(), 0.0);
 }
 
 TEST(EdgePolish, GradientWithRespectToEdgesMatchesFiniteDifferences) {
   for (const int taps : {1, 2, 4}) {
     const DesignProblem problem = problem_with(taps);
-    const CodeJudge judge(problem, 100, 1, 1);
-    SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
+    SwitchedCode code = binarized(problem, rendered(problem, 4.0));
     for (auto* arm : {&code.light, &code.gates})  // away from cell borders
       for (SwitchedLabels& labels : *arm)
         for (double& time : labels.at) time += 0.4 / problem.space.samples();
@@ -110,8 +106,7 @@ TEST(EdgePolish, KeepsRunLengthsPeakAndOrderOfEdges) {
   const double shortest = 1.0 / 21.0;
   const DesignProblem problem = problem_with(1, shortest);
   EXPECT_EQ(problem.space.cells, 20);
-  const CodeJudge judge(problem, 100, 1, 1);
-  const SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
+  const SwitchedCode code = binarized(problem, rendered(problem, 4.0));
   const SwitchedCode polished = polish_edges(problem, code, 30, 40, 1, 2);
   bool moved = false;
   for (std::size_t e = 0; e < 3; ++e) {

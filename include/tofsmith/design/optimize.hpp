@@ -17,15 +17,15 @@ namespace tofsmith {
 /// Options of optimize().
 struct OptimizeOptions {
   int samples = 120;
-  int starts = 20;
-  int steps_per_start = 300;
-  int hops = 40;
-  int steps_per_hop = 300;
-  int patience = 30;
-  int refined = 1;
-  int refinement_steps = 1000;
+  int starts = 36;
+  int steps_per_start = 80;
+  int hops = 24;
+  int steps_per_hop = 200;
+  int patience = 20;
+  int refined = 6;
+  int refinement_steps = 200;
   int trials_per_step = 200;
-  int pool_trials = 20000;
+  int pool_trials = 80000;
   bool polish = true;
   int polish_steps = 250;
   std::uint64_t seed = 1;
@@ -48,17 +48,20 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("starts", o.starts, at_least(1), ByEffort{2}, Help{"descents from different codes"}),
       Field("steps_per_start", o.steps_per_start, at_least(1), Help{"gradient steps per start"}),
       Field("hops", o.hops, at_least(0), ByEffort{0},
-            Help{"descents from changed copies of the best codes"}),
+            Help{"descents from the best codes and from changed copies of them"}),
       Field("steps_per_hop", o.steps_per_hop, at_least(1), Help{"gradient steps per hop"}),
       Field("patience", o.patience, at_least(0),
             Help{"hops without a better code after which hopping ends; 0: never"}),
-      Field("refined", o.refined, at_least(1), Help{"how many of the best codes are refined"}),
+      Field("refined", o.refined, at_least(1),
+            Help{"how many of the best codes are continued and refined; at most one, and one more "
+                 "for every 6 starts"}),
       Field("refinement_steps", o.refinement_steps, at_least(0), ByEffort{50},
             Help{"gradient steps per refined code"}),
       Field("trials_per_step", o.trials_per_step, at_least(8),
             Help{"noisy measurements per gradient, over all light levels"}),
       Field("pool_trials", o.pool_trials, at_least(1000),
-            Help{"trials that rank codes while searching, over all light levels"}),
+            Help{"trials that rank codes while searching, over all light levels; a quarter of them "
+                 "for codes that are clearly worse"}),
       Field("polish", o.polish, Help{"move the switching times of the result continuously"}),
       Field("polish_steps", o.polish_steps, at_least(0), Help{"steps of that"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),
@@ -76,22 +79,22 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 /// mean over its operating points, linear or circular as selected by the camera.
 ///
 /// Waveforms follow stochastic gradients through band limit, correlation, noise and a soft decoder,
-/// from a pool of starts (families, random codes and the codes in `also`). The best are perturbed
-/// and descend again; the best of all are refined, binarized for binary arms, and their edges
-/// optimized. Light may stay below its peak. Receivers: one tap; two buckets that share all charge;
-/// more exclusive taps, with drain if the camera has one; a mixer. Pulses and gaps of binary
-/// waveforms are at least sensor.shortest_pulse_s long.
+/// from a pool of starts (families, mixtures of frequencies, random codes and the codes in `also`).
+/// Short descents select the best, which are continued, perturbed and descend again; the best of
+/// several starts are refined, binarized for binary arms, and their edges optimized. Light may stay
+/// below its peak. Receivers: one tap; two buckets that share all charge; more exclusive taps, with
+/// drain if the camera has one; a mixer. Pulses and gaps of binary waveforms are at least
+/// sensor.shortest_pulse_s long.
 ///
 /// For analog arms, the search also runs for binary arms first and then starts from those results.
 /// From twice the default effort on (with_effort()), it starts with all of a search of half the
 /// effort. The candidates of both are returned, so more freedom or effort never gives a worse code.
 /// @param exposures  1 to 8, with at least 3 measurements (2 differences)
 /// @param also  further starts, if they have the same number of exposures
-/// @return feasible codes named "optimized-k<exposures>", best first by the error of the search:
-///   with switching times on the grid, with optimized edges, then of binary arms and of lower
-///   effort. They are not ranked: Candidate::error is empty. judge() (design/design.hpp) compares
-///   them, at their best origins, with the initial codes on independent random numbers, as design()
-///   does.
+/// @return feasible codes named "optimized-k<exposures>": the best of every stage of the search,
+///   with operating multipath all refined ones; stages of binary arms and of lower effort come
+///   first. Candidate::error is empty. judge() (design/design.hpp) compares them, at their best
+///   origins, with the initial codes on independent random numbers, as design() does.
 /// @throws std::invalid_argument for invalid options or camera, too few measurements, or a camera
 ///   without band limit and without sensor.shortest_pulse_s; Interrupted
 /// @note bit-identical for any number of threads

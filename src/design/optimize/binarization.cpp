@@ -72,8 +72,7 @@ int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, i
 
 }  // namespace
 
-SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code,
-                       const CodeJudge& judge) {
+SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code) {
   const WaveformSpace& space = problem.space;
   SwitchedCode result;
   result.sampled = code;
@@ -83,27 +82,10 @@ SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code,
 
   const int min_on =
       std::max(1, static_cast<int>(std::ceil(space.cells / space.peak_factor - 1e-9)));
-  std::vector<std::vector<int>> order;
-  std::vector<int> count;
   for (int e = 0; e < space.exposures; ++e) {
     const Eigen::VectorXd cells = cell_values(space, code.modulation.col(e));
-    order.push_back(ranked(cells));
-    count.push_back(nearest_count(cells, order.back(), min_on));
-    result.light.push_back(first_of(order.back(), count.back()));
-  }
-  for (std::size_t e = 0; e < order.size(); ++e) {
-    double smallest = judge.score(sampled_on(space, result)).log_error_bin;
-    SwitchedLabels best = result.light[e];
-    for (const int change : {-2, -1, 1, 2}) {
-      const int on = count[e] + change;
-      if (on < min_on || on >= space.cells) continue;
-      result.light[e] = first_of(order[e], on);
-      const double error = judge.score(sampled_on(space, result)).log_error_bin;
-      if (error >= smallest) continue;
-      smallest = error;
-      best = result.light[e];
-    }
-    result.light[e] = best;
+    const std::vector<int> order = ranked(cells);
+    result.light.push_back(first_of(order, nearest_count(cells, order, min_on)));
   }
   return result;
 }

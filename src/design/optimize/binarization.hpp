@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "design/optimize/code_score.hpp"
+#include "design/optimize/design_problem.hpp"
 #include "design/optimize/switched_code.hpp"
 
 namespace tofsmith {
 
 /// Converts rendered waveforms to binary ones. Every cell goes to its largest gate class; with
 /// equal duties, the half that favours the first bucket most goes to it. Light is on in the
-/// brightest cells, whose number the judge chooses near the best approximation and within the peak.
-/// Non-binary arms stay unchanged.
-SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code,
-                       const CodeJudge& judge);
+/// brightest cells, whose number approximates the waveform best within the peak. Non-binary arms
+/// stay unchanged.
+SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code);
 
 }  // namespace tofsmith

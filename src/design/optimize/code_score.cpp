@@ -51,14 +51,32 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
   return batches;
 }
 
+/// Linear error [bin], averaged over origins of depth within `window` of bin 0. Close to the best
+/// origin it hardly depends on the origin, and the average has a much smaller variance, because all
+/// errors near the origin contribute, not only errors across it.
+double linear_error_bin(double true_bin, double decoded_bin, int samples, double window) {
+  const double difference = decoded_bin - true_bin;
+  const double error = difference - samples * std::round(difference / samples);
+  const double low = std::min(true_bin, true_bin + error), high = low + std::abs(error);
+  double separating = 0.0;  // length of origins between the two depths
+  for (const int origin : {0, samples})
+    separating += std::max(0.0, std::min(high, origin + window) - std::max(low, origin - window));
+  const double circular = std::abs(error);
+  return circular + separating / (2.0 * window) * (samples - 2.0 * circular);
+}
+
 /// Mean error [bin]; always circular for two-return decoding.
 double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
                       bool linear) {
+  constexpr double window_periods = 1.0 / 120.0;
   linear = linear && !batch.two_returns;
   double sum = 0.0;
   for (std::size_t t = 0; t < decoded_bin.size(); ++t) {
-    const double error = std::abs(batch.trials[t].depth_periods * samples - decoded_bin[t]);
-    sum += batch.trials[t].weight * (linear ? error : std::min(error, samples - error));
+    const double true_bin = batch.trials[t].depth_periods * samples;
+    const double error = std::abs(true_bin - decoded_bin[t]);
+    sum += batch.trials[t].weight *
+           (linear ? linear_error_bin(true_bin, decoded_bin[t], samples, window_periods * samples)
+                   : std::min(error, samples - error));
   }
   return sum / static_cast<double>(decoded_bin.size());
 }
@@ -81,8 +99,11 @@ CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t see
                      std::uint64_t work_item)
     : problem_(&problem),
       judging_(draw_batches(problem, trials, problem.linear(), problem.depths, seed, work_item)) {
+  // Fewer trials find the rotation, but with too few codes are rotated away from their origin.
+  constexpr int enough = 1000;
+  const int rotating_trials = std::min(trials, std::max(enough, trials / 4));
   if (problem.linear() || !problem.depths.is_uniform())
-    rotating_ = draw_batches(problem, trials, false, DepthPrior(), seed, work_item);
+    rotating_ = draw_batches(problem, rotating_trials, false, DepthPrior(), seed, work_item);
 }
 
 CodeScore CodeJudge::score(const SampledCode& code) const {

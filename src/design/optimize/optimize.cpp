@@ -27,7 +27,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::uint64_t polish_key = 103;
+constexpr std::uint64_t polish_key = 103, judging_key = 104;
 
 bool tells_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
@@ -37,16 +37,16 @@ bool tells_two_returns(const CodeSet& code, const Camera& camera) {
 /// Selects the best entries and, with operating multipath, the best few others for which two
 /// returns can be decoded.
 std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const OptimizePool& pool,
-                                        const Camera& camera, const OptimizeOptions& options,
+                                        const Camera& camera, const PoolStage& stage,
                                         const Sharpness& sharpness) {
   constexpr std::size_t max_others = 3;
   const std::vector<PoolEntry>& all = pool.entries();
-  const std::size_t best = std::min(static_cast<std::size_t>(options.refined), all.size());
-  std::vector<PoolEntry> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(best));
+  std::vector<PoolEntry> chosen = best_of_starts(all, static_cast<std::size_t>(stage.refined), 2);
+  const std::size_t best = chosen.size();
   if (!camera.operating.multipath) return chosen;
   for (std::size_t k = best; k < all.size() && chosen.size() < best + max_others; ++k) {
     const SwitchedCode code =
-        binarized(problem, render(problem.space, all[k].parameters, sharpness), pool.judge());
+        binarized(problem, render(problem.space, all[k].parameters, sharpness));
     if (tells_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
       chosen.push_back(all[k]);
   }
@@ -56,6 +56,7 @@ std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const Opti
 /// A search with twice the default effort starts with all of the default search, and so on, so more
 /// effort never gives a worse code.
 std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
+  constexpr int starts_per_refined = 6;
   const OptimizeOptions usual;
   std::vector<PoolStage> stages;
   for (int times = 1;
@@ -64,54 +65,82 @@ std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
        times *= 2)
     stages.push_back({times * usual.starts, times * usual.hops, times * usual.refinement_steps});
   stages.push_back({options.starts, options.hops, options.refinement_steps});
+  for (PoolStage& stage : stages)
+    stage.refined = std::min(options.refined, 1 + stage.starts / starts_per_refined);
   return stages;
 }
 
-SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
+SearchRecord record_of(const OptimizePool& pool) {
   return {.work_unit = "descents",
           .error_name = "smallest depth error found, in trials of the search",
           .steps = pool.history(),
-          .account = fmt::format("{} gradient steps", steps)};
+          .account = fmt::format("{} gradient steps", pool.steps())};
 }
 
-/// Converts the best entries to feasible codes, with and without optimized edges.
-/// @param before  number of codes from earlier stages
-std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
-                                           const Camera& camera, const OptimizeOptions& options,
-                                           std::uint64_t before, const Progress& progress) {
-  const WaveformSpace& space = problem.space;
+/// Judges finished codes by more trials than the pool, which did not choose them.
+CodeJudge final_judge(const DesignProblem& problem, const OptimizeOptions& options) {
+  constexpr int more = 4;
+  OptimizeOptions precise = options;
+  precise.pool_trials *= more;
+  return {problem, trials_per_level(problem, precise), options.seed, judging_key};
+}
+
+struct FinishedCode {
+  SwitchedCode code;
+  double log_error_bin = 0.0;  ///< by final_judge()
+  std::string start;
+};
+
+/// Converts the best entries to feasible codes with optimized edges, best first.
+/// @param before  number of codes from earlier stages, for random numbers
+std::vector<FinishedCode> finished_codes(const DesignProblem& problem, OptimizePool& pool,
+                                         const Camera& camera, const OptimizeOptions& options,
+                                         const PoolStage& stage, std::uint64_t before,
+                                         const Progress& progress) {
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  const std::vector<PoolEntry> entries =
-      playable_entries(problem, pool, camera, options, sharpness);
-  const auto count = std::ssize(entries);
-  std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
-  SharedProgress shared(progress, static_cast<double>(count) * options.polish_steps, "edges");
-  parallel_for(count, [&](std::int64_t i) {
-    const auto k = static_cast<std::size_t>(i);
-    codes[2 * k] =
-        binarized(problem, render(space, entries[k].parameters, sharpness), pool.judge());
-    codes[2 * k + 1] = codes[2 * k];
-    if (options.polish)
-      codes[2 * k + 1] = polish_edges(
-          problem, codes[2 * k], options.polish_steps, options.trials_per_step, options.seed,
-          combine_keys(polish_key, before + static_cast<std::uint64_t>(i)), &shared);
+  const std::vector<PoolEntry> entries = playable_entries(problem, pool, camera, stage, sharpness);
+  const int polish_steps = options.polish ? options.polish_steps : 0;
+  const CodeJudge judge = final_judge(problem, options);
+  std::vector<FinishedCode> finished(entries.size());
+  SharedProgress shared(progress, static_cast<double>(entries.size()) * polish_steps, "edges");
+  parallel_for(std::ssize(entries), [&](std::int64_t i) {
+    const PoolEntry& entry = entries[static_cast<std::size_t>(i)];
+    const std::uint64_t work_item =
+        combine_keys(polish_key, before + static_cast<std::uint64_t>(i));
+    FinishedCode& its = finished[static_cast<std::size_t>(i)];
+    its.code = polish_edges(
+        problem, binarized(problem, render(problem.space, entry.parameters, sharpness)),
+        polish_steps, options.trials_per_step, options.seed, work_item, &shared);
+    its.log_error_bin = judge.score(sampled_on(problem.space, its.code)).log_error_bin;
+    its.start = entry.start;
   });
-  const std::string name = optimized_name(space.exposures);
+  pool.add_steps(std::ssize(entries) * polish_steps);
+  std::stable_sort(finished.begin(), finished.end(),
+                   [](const FinishedCode& a, const FinishedCode& b) {
+                     return a.log_error_bin < b.log_error_bin;
+                   });
+  return finished;
+}
+
+/// Returns the best finished code, or all with operating multipath: linear errors differ more
+/// between sets of as many trials as judge() uses than between the finished codes.
+std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
+                                           const Camera& camera, const OptimizeOptions& options,
+                                           std::vector<FinishedCode> finished) {
+  const WaveformSpace& space = problem.space;
+  if (!camera.operating.multipath) finished.resize(1);
   std::vector<Candidate> candidates;
-  for (std::size_t k = 0; k < codes.size(); ++k) {
-    const bool polished = k % 2 == 1;
-    if (polished && !options.polish) continue;
-    const std::string& start = entries[k / 2].start;
-    pool.record(pool.judge().score(sampled_on(space, codes[k])).log_error_bin);
-    Candidate candidate{.code = signed_by(code_set(name, space, codes[k], camera.samples),
-                                          "optimize", camera, options.seed),
+  for (const FinishedCode& its : finished) {
+    pool.record(its.log_error_bin);
+    const CodeSet code = code_set(optimized_name(space.exposures), space, its.code, camera.samples);
+    Candidate candidate{.code = signed_by(code, "optimize", camera, options.seed),
                         .method = "optimize"};
-    candidate.message =
-        fmt::format("gradient descent from {}{}{}", start, polished ? ", with refined edges" : "",
-                    pool.ended_early() ? "; stopped early without further gain" : "");
-    candidate.per_measurement = reports_of(candidate.code, start);
+    candidate.message = fmt::format(
+        "gradient descent from {}{}{}", its.start, options.polish ? ", with refined edges" : "",
+        pool.ended_early() ? "; stopped early without further gain" : "");
+    candidate.per_measurement = reports_of(candidate.code, its.start);
     candidates.push_back(std::move(candidate));
   }
   return candidates;
@@ -145,21 +174,21 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     pool.run_starts(stages[s], also, parts[0]);
     pool.run_hops(stages[s], parts[1]);
     pool.refine(stages[s], parts[2]);
+    std::vector<FinishedCode> finished =
+        finished_codes(problem, pool, camera, options, stages[s], candidates.size(), parts[3]);
     std::vector<Candidate> made =
-        playable_candidates(problem, pool, camera, options, candidates.size(), parts[3]);
+        playable_candidates(problem, pool, camera, options, std::move(finished));
     std::move(made.begin(), made.end(), std::back_inserter(candidates));
   }
 
   // 3. Add the record of the search.
-  const std::int64_t polished =
-      options.polish ? std::ssize(candidates) / 2 * options.polish_steps : 0;
-  const std::int64_t steps = pool.steps() + polished;
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Candidate& c : candidates) {
-    c.iterations = static_cast<int>(std::min<std::int64_t>(steps, std::numeric_limits<int>::max()));
+    c.iterations =
+        static_cast<int>(std::min<std::int64_t>(pool.steps(), std::numeric_limits<int>::max()));
     c.seconds = seconds;
-    c.search = record_of(pool, steps);
+    c.search = record_of(pool);
   }
   return candidates;
 }
@@ -172,7 +201,7 @@ std::vector<Candidate> search_analog(std::span<const Camera> variants, int expos
   std::vector<Camera> switching(variants.begin(), variants.end());
   for (Camera& camera : switching) camera.light.binary = camera.sensor.binary = true;
   std::vector<Candidate> switched = search_codes(switching, exposures, options, also, parts[0]);
-  std::vector<CodeSet> starts{switched.back().code.renamed("what switches")};
+  std::vector<CodeSet> starts{switched.front().code.renamed("binary code")};
   starts.insert(starts.end(), also.begin(), also.end());
   std::vector<Candidate> analog = search_codes(variants, exposures, options, starts, parts[1]);
   std::vector<Candidate> candidates = std::move(switched);

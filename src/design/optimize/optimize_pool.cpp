@@ -8,6 +8,7 @@
 #include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/stochastic_gradient.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
@@ -38,18 +39,19 @@ constexpr std::size_t together = 10;  // descents between sorts of the pool
 constexpr std::size_t hops_together = 5;
 constexpr std::size_t max_pool = 24;
 constexpr double refinement_softness = 1.5;
+constexpr double contending_log_ratio = 0.05;  // to the best; others are not judged precisely
 
 std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
   return combine_keys(phase, static_cast<std::uint64_t>(item));
 }
+
+}  // namespace
 
 int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options) {
   constexpr int min_trials = 100;
   const std::size_t levels = problem.variants.front().levels.size();
   return std::max(min_trials, options.pool_trials / static_cast<int>(levels));
 }
-
-}  // namespace
 
 void Adam::step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate) {
   if (mean_.size() == 0) {
@@ -112,14 +114,35 @@ WaveformParameters softened(WaveformParameters parameters, double limit) {
   return parameters;
 }
 
+std::vector<PoolEntry> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
+                                      std::ptrdiff_t of_each) {
+  std::vector<PoolEntry> best;
+  for (const PoolEntry& entry : pool) {
+    const auto from_same = std::count_if(best.begin(), best.end(), [&](const PoolEntry& other) {
+      return other.start == entry.start;
+    });
+    if (from_same < of_each && best.size() < count) best.push_back(entry);
+  }
+  return best;
+}
+
+namespace {
+
+PoolEntry softened(PoolEntry entry) {
+  entry.parameters = softened(std::move(entry.parameters), softness);
+  return entry;
+}
+
+}  // namespace
+
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
               RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int columns = space.columns();
   const auto entries = static_cast<int>(pool.size());
-  const int base = random.uniform() < 0.6 ? 0 : below(std::min(3, entries), random);
-  PoolEntry next = pool[static_cast<std::size_t>(base)];
-  next.parameters = softened(std::move(next.parameters), softness);
+  const std::vector<PoolEntry> bases = best_of_starts(pool, 3, 1);
+  const int base = random.uniform() < 0.5 ? 0 : below(static_cast<int>(bases.size()), random);
+  PoolEntry next = softened(bases[static_cast<std::size_t>(base)]);
   const int e = below(space.exposures, random);
   const double kind = random.uniform();
   if (kind < 0.3) {
@@ -146,6 +169,8 @@ OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& 
     : problem_(&problem),
       options_(options),
       bin_m_(bin_m),
+      quick_judge_(problem, trials_per_level(problem, options) / 4, options.seed,
+                   work_item(Phase::judging, 1)),
       judge_(problem, trials_per_level(problem, options), options.seed,
              work_item(Phase::judging, 0)) {}
 
@@ -155,7 +180,8 @@ void OptimizePool::record(double log_error_bin) {
   history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
 }
 
-/// Replaces entries by the results of descents, with the origin at the best rotation.
+/// Replaces entries by the results of descents, with the origin at the best rotation. Results that
+/// are clearly worse than the best are only judged by few trials.
 void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
                                std::uint64_t phase, std::size_t first_item,
                                SharedProgress& progress) const {
@@ -165,12 +191,16 @@ void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, doubl
   schedule.trials_per_step = options_.trials_per_step;
   if (!problem_->binary_modulation) schedule.final_sharpness.modulation = 1.0;
   if (!problem_->binary_demodulation) schedule.final_sharpness.demodulation = 1.0;
+  const double contending =
+      entries_.empty() ? infinity : entries_.front().score.log_error_bin + contending_log_ratio;
   parallel_for(std::ssize(entries), [&](std::int64_t i) {
     PoolEntry& entry = entries[static_cast<std::size_t>(i)];
     entry.parameters =
         descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
                 work_item(phase, first_item + static_cast<std::size_t>(i)), &progress);
-    entry.score = judge_.score(render(problem_->space, entry.parameters, schedule.final_sharpness));
+    const SampledCode code = render(problem_->space, entry.parameters, schedule.final_sharpness);
+    entry.score = quick_judge_.score(code);
+    if (entry.score.log_error_bin < contending) entry.score = judge_.score(code);
     entry.parameters = rotated(problem_->space, entry.parameters, entry.score.rotation_bin);
     entry.score.rotation_bin = 0;
   });
@@ -208,6 +238,8 @@ void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> a
 
 void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
   const auto count = static_cast<std::size_t>(stage.hops);
+  // The first hops continue the short descents of the best starts.
+  const std::size_t continued = std::min(static_cast<std::size_t>(stage.refined), entries_.size());
   int without_gain = 0;
   ended_early_ = false;
   SharedProgress shared(progress, static_cast<double>(count - hops_done_) * options_.steps_per_hop,
@@ -216,7 +248,7 @@ void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);
-      entries.push_back(hop(*problem_, entries_, random));
+      entries.push_back(i < continued ? softened(entries_[i]) : hop(*problem_, entries_, random));
     }
     descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first, shared);
     steps_ += std::ssize(entries) * options_.steps_per_hop;
@@ -235,9 +267,8 @@ void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
 
 void OptimizePool::refine(const PoolStage& stage, const Progress& progress) {
   if (stage.refinement_steps == 0) return;
-  std::vector<PoolEntry> entries(
-      entries_.begin(),
-      entries_.begin() + std::min<std::ptrdiff_t>(options_.refined, std::ssize(entries_)));
+  std::vector<PoolEntry> entries =
+      best_of_starts(entries_, static_cast<std::size_t>(stage.refined), 2);
   for (PoolEntry& entry : entries)
     entry.parameters = softened(std::move(entry.parameters), refinement_softness);
   SharedProgress shared(progress, static_cast<double>(entries.size()) * stage.refinement_steps,

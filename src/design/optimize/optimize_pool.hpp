@@ -53,8 +53,14 @@ struct PoolEntry {
   std::string start;
 };
 
-/// Jumps out of a local minimum: softens one of the best entries, replaces one pair of waveforms
-/// (randomly or from another entry) or rotates its gates against its light, and adds noise.
+/// Returns up to `count` entries, best first, with at most `of_each` from the same start, so that
+/// several local minima compete although entries of the best one follow one another.
+std::vector<PoolEntry> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
+                                      std::ptrdiff_t of_each);
+
+/// Jumps out of a local minimum: softens the best entry of one of three starts, replaces one pair
+/// of waveforms (randomly or from another entry) or rotates its gates against its light, and adds
+/// noise.
 /// @param pool  best first, not empty
 /// @return parameters and name of the start
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
@@ -63,10 +69,14 @@ PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
 /// Clips parameters to [-limit, limit], so that a descent can change them.
 WaveformParameters softened(WaveformParameters parameters, double limit);
 
+/// Trials per light level of a judge that ranks codes by OptimizeOptions::pool_trials.
+int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options);
+
 /// Work of a stage; starts and hops include earlier stages.
 struct PoolStage {
   int starts = 0, hops = 0;
   int refinement_steps = 0;  ///< of this stage only
+  int refined = 0;
 };
 
 /// Codes from descents, best first, with the history of the search. Stages continue from one
@@ -85,8 +95,8 @@ class OptimizePool {
   /// Smallest error after every descent.
   const std::vector<SearchStep>& history() const { return history_; }
   std::int64_t steps() const { return steps_; }
+  void add_steps(std::int64_t steps) { steps_ += steps; }
   bool ended_early() const { return ended_early_; }
-  const CodeJudge& judge() const { return judge_; }
   void record(double log_error_bin);
 
  private:
@@ -97,6 +107,7 @@ class OptimizePool {
   const DesignProblem* problem_;
   OptimizeOptions options_;
   double bin_m_;
+  CodeJudge quick_judge_;  ///< finds codes that are clearly worse
   CodeJudge judge_;
   std::vector<PoolEntry> entries_;
   std::vector<SearchStep> history_;

@@ -37,7 +37,7 @@ SampledCode empty_code(const WaveformSpace& space) {
 
 int highest_useful_frequency(const DesignProblem& problem) {
   constexpr double useful = 0.02;  // fraction of the amplitude
-  constexpr int max_frequency = 14;
+  constexpr int max_frequency = 16;
   int highest = 1;
   for (int n = 1; n <= std::min(max_frequency, problem.space.cells / 4); ++n)
     if (std::abs(problem.variants.front().camera.transfer(n)) > useful) highest = n;
@@ -93,6 +93,7 @@ void write_smooth_light(const WaveformSpace& space, int highest_frequency, int e
 constexpr double start_scale = 1.5;  // parameters of a waveform that is on
 constexpr double start_noise = 0.05;
 constexpr double rough_noise = 0.6;
+constexpr int max_high_frequency = 16;
 
 void add_noise(WaveformParameters& parameters, double deviation, RandomStream& random) {
   for (Eigen::MatrixXd* values : {&parameters.modulation, &parameters.demodulation})
@@ -133,7 +134,7 @@ OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double
 SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);
-  const int highest = std::min(12, highest_useful_frequency(problem));
+  const int highest = std::min(max_high_frequency, highest_useful_frequency(problem));
   const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets add the opposite phase
   SampledCode code = empty_code(space);
   for (int e = 0; e < space.exposures; ++e) {
@@ -214,26 +215,27 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
   if (index < count)
     return start_at(problem, codes[static_cast<std::size_t>(index)], start_noise, random);
 
-  const int kind = (index - count) % 5, cycle = (index - count) / 5;
-  if (kind == 4 && count > 0) {
+  const int highest = std::min(max_high_frequency, highest_useful_frequency(problem));
+  const int high = 2 + index - count;  // every frequency once, then random starts
+  const int kind = (high - highest - 1) % 4, cycle = (high - highest - 1) / 4;
+  if (high > highest && kind == 1 && count > 0) {
     OptimizeStart start =
         start_at(problem, codes[static_cast<std::size_t>(cycle % count)], rough_noise, random);
     start.name += " with noise";
     return start;
   }
-  const int highest = highest_useful_frequency(problem);
-  const int high = 2 + cycle % std::max(1, std::min(12, highest) - 1);
   SampledCode code;
   std::string name;
-  if (kind == 0) {
+  if (high <= highest) {
     name = fmt::format("frequencies 1 and {}", high);
     code = mixture_of_frequencies(problem, high, random);
-  } else if (kind == 2) {
-    name = "mixture of frequencies";
+  } else if (kind != 3) {
+    name = fmt::format("mixture of frequencies {}", 3 * cycle + kind + 1);
     code = mixture_of_frequencies(problem, 0, random);
   } else {
-    name = kind == 1 ? "random gates, one pulse" : "random gates, random light";
-    code = random_gates(problem, /*random_light=*/kind != 1, random);
+    const bool random_light = cycle % 2 == 1;
+    name = random_light ? "random gates, random light" : "random gates, one pulse";
+    code = random_gates(problem, random_light, random);
   }
   OptimizeStart start{name, parameters_near(space, code, start_scale)};
   add_noise(start.parameters, start_noise, random);

@@ -18,8 +18,9 @@ struct OptimizeStart {
 };
 
 /// Returns start `index`: given codes and then families (Hamiltonian, pulsed multi-frequency, Gray)
-/// that fit the space; then in turn random mixtures of frequencies, random smooth gates with a
-/// pulse or with random light, and Hamiltonian and pulsed codes with noise.
+/// that fit the space; then the lowest frequency with every higher one in turn; then in turn random
+/// mixtures of frequencies, the codes with noise, and random smooth gates with a pulse or with
+/// random light.
 OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
                              RandomStream& random);
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "design/judge.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -23,9 +25,20 @@ std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& optio
 
 }  // namespace
 
-std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options) {
+std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options,
+                                       const Contenders& atlas) {
+  constexpr std::size_t max_tried = 3;
   if (!options.exposures.empty()) return options.exposures;
-  return suggested_exposures(camera, DesignMethod::optimize);
+  // The atlas does not consider second returns.
+  if (atlas.codes.empty() || camera.operating.multipath)
+    return suggested_exposures(camera, DesignMethod::optimize);
+  std::vector<int> exposures;
+  for (const CodeSet& code : atlas.codes)
+    if (exposures.size() < max_tried &&
+        std::find(exposures.begin(), exposures.end(), code.exposures()) == exposures.end())
+      exposures.push_back(code.exposures());
+  std::sort(exposures.begin(), exposures.end());
+  return exposures;
 }
 
 std::string optimized_name(int exposures) { return fmt::format("optimized-k{}", exposures); }

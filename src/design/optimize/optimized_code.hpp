@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "design/baselines.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
 
-/// Returns the listed numbers of exposures, or else the suggested ones.
-std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options);
+/// Returns the listed numbers of exposures; else the three with the best codes in the atlas;
+/// without such codes, or with multipath, the suggested ones.
+std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options,
+                                       const Contenders& atlas);
 
 std::string optimized_name(int exposures);
 
