@@ -102,7 +102,10 @@ Camera every_field_set() {
                          .fill_factor = 0.9,
                          .filter_width_m = 30e-9,
                          .sunlight_w_per_m2_nm = 0.4};
-  camera.operating = {{1e3}, {0.0, 1e2}, DepthErrorKind::circular, 1.0, true};
+  camera.operating = {.signal_e_per_s = {1e3},
+                      .ambient_e_per_s = {0.0, 1e2},
+                      .statistic = ErrorStatistic::rmse,
+                      .uniform_albedo = true};
   camera.operating.neighbours = 50;
   camera.operating.working_distance_m = {0.5, 4.0};
   camera.operating.depths = {0.0, 2.5, 1.0};
