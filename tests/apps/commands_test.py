@@ -283,7 +283,7 @@ class Commands(CommandLineTest):
         self.assertRegex(self.do("--version"),
                          r"^tofsmith \d+\.\d+\.\d+ \(commit ([0-9a-f]{12}(\+dirty)?|unknown)\)\n"
                          r"built by \w+ [\d.]+, \w+, (static|shared) library\n"
-                         r"kernels for (\w+ ?)+; here runs \w+\n"
+                         r"kernels for (\w+ ?)+; this computer uses \w+\n"
                          r"with .+\n$")
         for command in ("demo", "codes", "design", "evaluate", "scene", "simulate", "decode",
                         "report"):

@@ -60,7 +60,7 @@ class Export(CommandLineTest):
         (note,) = notes("--samples", "72", "--rate", "1.08e9")  # preserves the duties, but exceeds
                                                                 # the sample rate
         self.assertIn("no SCPI script was written: modulation_1 sample_rate_hz = 1.08e+09; must be "
-                      "at most 1e+09, what 33622 plays", note)
+                      "at most 1e+09, the limit of 33622", note)
 
     def test_wrong_usage(self):
         for arguments, code, words in (

@@ -156,7 +156,7 @@ class Rig:
         before = self.made()
         code, error = self.run(command, force)
         found = self.made()
-        if code == 1 and re.search("exists already|already exists", error):
+        if code == 1 and re.search("already exists", error):
             # Everything was completed: the command is rejected as after any complete run.
             require(whole.keys() <= before.keys(), "the same command does not go on:", error)
         else:

@@ -152,7 +152,7 @@ class Refusals(CommandLineTest):
         self.write("c.code.json", '{"format": "tofsmith-code",')
         self.refuse(["evaluate", "c.code.json"], "c.code.json:1:")
         self.write("c.txt", "")
-        self.refuse(["evaluate", "c.txt"], "c.txt", "expected one of .json, .npz")
+        self.refuse(["evaluate", "c.txt"], "c.txt", "expected .json, .npz")
 
     def test_codes_for_another_camera(self):
         self.do("codes", "hamiltonian-k3", "-o", "h.code.json")

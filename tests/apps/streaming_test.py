@@ -91,7 +91,7 @@ class Streaming(CommandLineTest):
         self.refuse(["decode", "-", *code, "-o", "d.npy"], "-o -", code=2)
         self.refuse(["decode", "raw.npy", *code, "-o", "-"], "RAW -", code=2)
         self.refuse(["decode", "-", *code, "-o", "-"], "--raw-format", code=2)
-        self.refuse(["decode", "-", "-", *code, "-o", "-"], "alone", code=2)
+        self.refuse(["decode", "-", "-", *code, "-o", "-"], "cannot be combined with other input files", code=2)
 
     def arguments(self, *more, raw="raw.npy", output="d.npy"):
         return ["decode", raw, "--code", "hamiltonian-k3", "-o", output, *more]

@@ -60,7 +60,7 @@ decode raw.npy --code sinusoid-k4 --layout planar -o d.npy | raw.npy
 decode raw.npy --code sinusoid-k4 --camera absent.toml -o d.npy | absent.toml
 decode raw.npy --code sinusoid-k4 --camera paper-10fo -o d.npy | did you mean paper-10f0?
 decode raw.npy --code sinusoid-k4 --outputs amplitudes -o d.npz | amplitudes; signal
-decode raw.npy --code sinusoid-k4 --outputs signal -o d.npy | depth only
+decode raw.npy --code sinusoid-k4 --outputs signal -o d.npy | only depth
 decode raw.npy --code sinusoid-k4 --filter medium -o d.npy | medium; normal
 decode raw.npy --code sinusoid-k4 --frame 3 -o d.npy | --frame; 1 frame
 decode raw.npy --code sinusoid-k4 --average 2 -o d.npy | --average; 1 frame

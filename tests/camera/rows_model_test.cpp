@@ -105,9 +105,10 @@ TEST(RowsModel, ADelayedDetectionAppearsFartherAway) {
 TEST(RowsModel, RowsAndTapsAreNotInterchangeable) {
   const Camera rows = rows_camera(), taps = built_in_camera("paper-10f0");
   const CodeSet code = build_family("fourier-k4", rows);
-  EXPECT_EQ(why_not_playable(code.resampled(240), taps),
-            "code fourier-k4 receiver = rows of one exposure; needs a camera with sensor.readout = "
-            "\"rows\"");
+  EXPECT_EQ(
+      why_not_playable(code.resampled(240), taps),
+      "code fourier-k4 receiver = rows of one exposure; requires a camera with sensor.readout = "
+      "\"rows\"");
   EXPECT_TRUE(why_no_family("fourier-k4", taps));
   EXPECT_TRUE(why_not_playable(make_family("hamiltonian-k4", {.samples = 60}), rows));
   EXPECT_FALSE(why_no_family("hamiltonian-k4", rows));

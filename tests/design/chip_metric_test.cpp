@@ -233,7 +233,7 @@ TEST(ChipCode, RejectsInvalidCodesAndCameras) {
   Camera camera = nine_chips();
   camera.sensor.shortest_pulse_s = 11e-9;
   EXPECT_THAT([&] { chips_of(camera); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("whole number")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("integer")));
   camera = nine_chips();
   camera.sensor.modulation_contrast = 0.9;
   EXPECT_THAT([&] { chip_metric_rms_m(three_phase(), camera, high); },

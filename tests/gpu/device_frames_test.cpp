@@ -295,7 +295,7 @@ TEST_F(DeviceFramesOf, InvalidFramesAreRejected) {
   there.take(RawView::interleaved(raw.data(), 10, 10, 4));
   EXPECT_THAT(
       [&] { there.take(RawView::interleaved(raw.data(), 5, 10, 4)); },
-      ThrowsMessage<InvalidArgument>(HasSubstr("must equal that of the frames before, 10")));
+      ThrowsMessage<InvalidArgument>(HasSubstr("must equal that of the previous frames, 10")));
   const DeviceDecoder elsewhere(Device::all().front(), setup.decoder);
   Outputs outputs(100);
   EXPECT_THROW(there.decode(elsewhere, outputs.view()), InvalidArgument);

@@ -303,7 +303,8 @@ TEST(CameraToml, TooManyDepthWeightsAreRejected) {
   std::string list = "1";
   for (int i = 0; i < 10000; ++i) list += ",1";
   EXPECT_EQ(refusal(std::string(shortest) + "operating.depths = [" + list + "]"),
-            "c.toml:2:20: operating.depths = 10001 weights; must be at most 10000, of equal parts "
+            "c.toml:2:20: operating.depths = 10001 weights; must be at most 10000, one for each "
+            "equal part "
             "of the working distance or range");
 }
 

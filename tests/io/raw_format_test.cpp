@@ -316,8 +316,8 @@ TEST(RawFormatToml, ReportsThePlaceAndTheProblem) {
   EXPECT_THAT(error("negate_from_row = 2"), HasSubstr("must be below height = 2"));
   EXPECT_THAT(error("frame_trailer_bytes = -1"), HasSubstr("frame_trailer_bytes = -1; must be"));
   EXPECT_THAT(error("layout = \"by_rows\"\nimage_trailer_bytes = 4"), HasSubstr("planar"));
-  EXPECT_THAT(error("row_bytes = 15"), HasSubstr("at least the 16 bytes"));
-  EXPECT_THAT(error("row_header_bytes = 3\nrow_bytes = 18"), HasSubstr("at least the 19 bytes"));
+  EXPECT_THAT(error("row_bytes = 15"), HasSubstr("at least 16 bytes"));
+  EXPECT_THAT(error("row_header_bytes = 3\nrow_bytes = 18"), HasSubstr("at least 19 bytes"));
   EXPECT_THAT(error("rows_start_bytes = false"), HasSubstr("lsb_first or msb_first"));
   EXPECT_THAT(error("layout = \"interleaved\"\nimage_header_bytes = 4"), HasSubstr("planar"));
   EXPECT_THAT(error("taps = \"subtract\"\nblack_level = 3.0"), HasSubstr("which cancels it"));

@@ -38,8 +38,9 @@ def random_table(rng):
             swing = rng.normal(size=measurements) / harmonic
             table += swing * np.cos(harmonic * phase[:, None]
                                     + rng.uniform(0, 2 * np.pi, measurements))
-        # Noise prevents interpolation of the table as a smooth curve.
+        # Noise and an outlier prevent interpolation of the table as a smooth curve.
         table += rng.normal(scale=1e-4, size=table.shape)
+        table[0, 0] += 1e-2
     elif kind == "chips":
         light, sensor = rng.integers(0, 2, (2, samples, measurements))
         light[0], sensor[0] = 1, 1

@@ -263,7 +263,7 @@ refusals = [
     (lambda: ts.photon_transfer([np.ones((2, 4, 4, 1))], base), ValueError, "dark frames = 0; must be > 0, or the black level must be given"),
     (lambda: ts.photon_transfer([frames[0]], base), ValueError, "levels[0]: got shape (2, 2, 4); needs (F, H, W, K)"),
     (lambda: ts.photon_transfer([frames], base, black_level_dn="0"), TypeError, "black_level_dn: got str '0'; needs a number"),
-    (lambda: ts.photon_transfer([frames], base.replace(sensor={"taps": 2, "readout": "difference"})), ValueError, "reads differences"),
+    (lambda: ts.photon_transfer([frames], base.replace(sensor={"taps": 2, "readout": "difference"})), ValueError, "mean of differences"),
 ]
 
 
@@ -278,7 +278,7 @@ def test_existing_files_are_kept(both, scope, sweep):
     path = both[1] / "kept.toml"
     found.write_camera(path, base)
     for write in (lambda: found.write_camera(path, base), lambda: base.write(path)):
-        with pytest.raises(OSError, match="exists already; .* overwrite=True"):
+        with pytest.raises(OSError, match="already exists; .* overwrite=True"):
             write()
     means = ts.DelaySweep(sweep.delay_periods, sweep.frames.mean((1, 2), keepdims=True))
     with pytest.raises(ValueError, match="a table of means, which has no pixels"):

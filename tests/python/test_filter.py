@@ -79,7 +79,7 @@ def test_time_filter_accepts_single_frames_and_stacks(camera, raw):
     assert rest[0].tobytes() == numbers[2].tobytes() and rest[1].tobytes() == averaged[2].tobytes()
     filter.forget()
     assert np.median(filter.add(raw[0], averaged=np.full((30, 40), 3))[1]) == 3
-    with pytest.raises(ValueError, match="raw width = 20; must equal that of the frames before, 40"):
+    with pytest.raises(ValueError, match="raw width = 20; must equal that of the previous frames, 40"):
         filter.add(raw[0, :, :20])
 
 

@@ -114,7 +114,7 @@ def test_rejects_lenses_that_do_not_fit(tmp_path):
             (folding, None, {}, OSError, "raw.npy: found frames of 240 x 320 pixels; lens.distortion"),
             ("paper-10f0", np.ones((24, 32, 2)), {}, OSError, r"found shape \(24, 32, 2\)"),
             ("paper-10f0", -np.ones((240, 320, 3)), {}, OSError, r"found the ray .* of pixel \(0, 0\); expected z > 0"),
-            ("paper-10f0", None, {"undistort": True}, ValueError, r"undistort = true; needs a camera with \[lens\]")):
+            ("paper-10f0", None, {"undistort": True}, ValueError, r"undistort = true; requires a camera with \[lens\]")):
         if rays is not None:
             np.save(tmp_path / "rays.npy", rays)
             options = {"rays": tmp_path / "rays.npy"}

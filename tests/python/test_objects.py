@@ -196,7 +196,7 @@ def test_a_scalar_is_accepted_as_a_list():
     (lambda: ts.CodeSet.from_arrays(np.ones((4, 240)), np.ones((4, 240))), ValueError,
      "turn it over"),
     (lambda: ts.decode("raw.npy", "hamiltonian-k4", "paper-10f0"), TypeError,
-     "a measurement; read_raw('raw.npy') reads one"),
+     "one per measurement; read_raw('raw.npy') reads one"),
     (lambda: ts.plot.depth_maps("depth.npy"), TypeError, "not the name of a file (read_depth()"),
     (lambda: ts.multipath_error("hamiltonian-k5", "paper-10f0", delay_m="1 m"), TypeError,
      "delay_m: got str '1 m'; needs a list of numbers"),

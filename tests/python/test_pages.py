@@ -34,7 +34,7 @@ def test_evaluation_page_equals_the_command(small, cli, tmp_path):
     assert page_without_command(tmp_path / "c.html") == page_without_command(tmp_path / "p.html")
     again = pickle.loads(pickle.dumps(reports[0]))
     ts.write_evaluation_report(tmp_path / "one.html", codes[0], camera, again)
-    with pytest.raises(OSError, match="exists already; .* overwrite=True"):
+    with pytest.raises(OSError, match="already exists; .* overwrite=True"):
         ts.write_evaluation_report(tmp_path / "one.html", codes[0], camera, again)
 
 

@@ -173,7 +173,7 @@ def test_unsuitable_codes_are_reported_or_raise():
 def test_existing_files_are_kept(tmp_path):
     path = tmp_path / "depth.npy"
     ts.write_depth(path, depth)
-    with pytest.raises(OSError, match="exists already; .* overwrite=True"):
+    with pytest.raises(OSError, match="already exists; .* overwrite=True"):
         ts.write_depth(path, depth)
     ts.write_depth(path, 2 * depth, overwrite=True)
     assert ts.read_depth(path)[0, 0] == 2

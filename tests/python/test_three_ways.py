@@ -246,7 +246,7 @@ def test_evaluate_at_distances(ways):
     assert [p["signal_e_per_s"] for p in code["points"]] == list(signals)
     assert signals[0] == pytest.approx(16 * signals[1])
     assert camera.optics.sunlight_klux is None and asked.optics.sunlight_klux == 20
-    with pytest.raises(ValueError, match="optics = none; must be given"):
+    with pytest.raises(ValueError, match="optics = none; is required"):
         ts.Camera("paper-10f0").at_distances(1.0)
 
 

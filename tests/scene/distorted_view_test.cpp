@@ -78,10 +78,10 @@ TEST(DistortedView, IsInvalidIfItFoldsBackInsideTheImage) {
     view.validate();
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        "lens.distortion = [-0.6, 0, 0, 0]; must not fold back inside the image: it does 30.18 px "
-        "from the axis, towards pixel (row 0, column 0), which is 49.51 px from the axis");
+    EXPECT_EQ(std::string(error.what()),
+              "lens.distortion = [-0.6, 0, 0, 0]; must not fold back inside the image: it does so "
+              "30.18 px "
+              "from the axis, towards pixel (row 0, column 0), which is 49.51 px from the axis");
   }
   view.fx_px = view.fy_px = 120.0;  // a narrower view ends before the fold
   EXPECT_NO_THROW(view.validate());
