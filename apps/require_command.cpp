@@ -120,7 +120,7 @@ void run(RequireArguments& arguments, const Session& session) {
                               ? fmt::format(" (no code below {})", length_text(found.bound_m))
                               : std::string()));
   session.say(text_table(requirement_rows(camera, found, options)));
-  session.say(fmt::format("each varied alone; circular error, {} trials, seed {}; {}",
+  session.say(fmt::format("one quantity varied at a time; circular error, {} trials, seed {}; {}",
                           options.trials, options.seed, searched_codes_text(options)));
   if (kind == OutputKind::none) return;
   session.say(fmt::format("wrote {}", arguments.output));
@@ -139,15 +139,15 @@ void run(RequireArguments& arguments, const Session& session) {
 void add_require_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RequireArguments>();
   CLI::App* command = app.add_subcommand(
-      "require", "how much bandwidth, power or exposure a depth error takes, and what no code can");
+      "require",
+      "bandwidth, power or exposure that a depth error requires, and limits for any code");
   arguments->camera.add_positional(*command);
   arguments->camera.add_to(*command);
-  command->add_option("--error", arguments->error, "depth error that is asked for, such as 5mm")
-      ->required();
+  command->add_option("--error", arguments->error, "required depth error, such as 5mm")->required();
   arguments->distance.add_to(*command);
   command
       ->add_option("--vary", arguments->vary,
-                   "what to vary, each by itself: bandwidth,power,exposure (all three)")
+                   "quantities to vary, one at a time: bandwidth,power,exposure (all three)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(one_of({"bandwidth", "power", "exposure"}));

@@ -284,9 +284,10 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("vary_exposure", o.vary_exposure, Help{"vary the integration time"}),
       Field("max_factor", o.max_factor, left_open(1, 1e6),
             Help{"largest factor by which a quantity is increased or decreased"}),
-      Field("exact", o.exact,
-            Help{"design codes along the way (minutes), instead of taking them from the atlas "
-                 "(seconds), which may ask for more than necessary"}),
+      Field(
+          "exact", o.exact,
+          Help{"design codes (minutes) instead of taking them from the atlas (seconds), which can "
+               "require more than necessary"}),
       Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
             OnlyWith{"exact"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
