@@ -355,7 +355,7 @@ TEST(TimeFilter, RejectsFramesOfAnotherSizeAndInvalidOptions) {
   other.height = height - 1;
   EXPECT_THAT([&] { filter.add(other); },
               ThrowsMessage<InvalidArgument>(HasSubstr("raw height = 36; must equal that of the "
-                                                       "frames before, 37")));
+                                                       "previous frames, 37")));
   other = view_of_frame(raw, 0);
   other.width = width - 1;
   EXPECT_THROW(filter.add(other), InvalidArgument);
