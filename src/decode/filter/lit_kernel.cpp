@@ -78,7 +78,8 @@ HWY_INLINE Mask is_lit_by_bars(const float* amplitude, const std::ptrdiff_t* poi
 }
 
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share) {
-  const LitScales scales = lit_scales();
+  // Static: GCC 12 misaligns such arrays on the stack of AddressSanitizer.
+  static const LitScales scales = lit_scales();
   const Vector one = all(1.0f);
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
