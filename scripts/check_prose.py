@@ -90,7 +90,8 @@ def check_markdown(path, text, findings):
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()
         if stripped.startswith(("```", "~~~", "$$")):
-            fenced = not fenced if stripped in ("$$",) or not stripped.endswith("$$") else fenced
+            if stripped.count("$$") != 2:  # two: a formula on one line
+                fenced = not fenced
             finish()
             continue
         if fenced or line.startswith("    ") and not paragraph:

@@ -29,16 +29,16 @@ namespace {
 
 constexpr std::uint64_t polish_key = 103, judging_key = 104;
 
-bool tells_two_returns(const CodeSet& code, const Camera& camera) {
+bool separates_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
       make_decoding_table(ForwardModel(code, camera), camera));
 }
 
 /// Selects the best entries and, with operating multipath, the best few others for which two
 /// returns can be decoded.
-std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const OptimizePool& pool,
-                                        const Camera& camera, const PoolStage& stage,
-                                        const Sharpness& sharpness) {
+std::vector<PoolEntry> entries_to_finish(const DesignProblem& problem, const OptimizePool& pool,
+                                         const Camera& camera, const PoolStage& stage,
+                                         const Sharpness& sharpness) {
   constexpr std::size_t max_others = 3;
   const std::vector<PoolEntry>& all = pool.entries();
   std::vector<PoolEntry> chosen = best_of_starts(all, static_cast<std::size_t>(stage.refined), 2);
@@ -47,7 +47,7 @@ std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const Opti
   for (std::size_t k = best; k < all.size() && chosen.size() < best + max_others; ++k) {
     const SwitchedCode code =
         binarized(problem, render(problem.space, all[k].parameters, sharpness));
-    if (tells_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
+    if (separates_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
       chosen.push_back(all[k]);
   }
   return chosen;
@@ -100,7 +100,7 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, OptimizeP
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  const std::vector<PoolEntry> entries = playable_entries(problem, pool, camera, stage, sharpness);
+  const std::vector<PoolEntry> entries = entries_to_finish(problem, pool, camera, stage, sharpness);
   const int polish_steps = options.polish ? options.polish_steps : 0;
   const CodeJudge judge = final_judge(problem, options);
   std::vector<FinishedCode> finished(entries.size());
@@ -126,9 +126,9 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, OptimizeP
 
 /// Returns the best finished code, or all with operating multipath: linear errors differ more
 /// between sets of as many trials as judge() uses than between the finished codes.
-std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
-                                           const Camera& camera, const OptimizeOptions& options,
-                                           std::vector<FinishedCode> finished) {
+std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool& pool,
+                                     const Camera& camera, const OptimizeOptions& options,
+                                     std::vector<FinishedCode> finished) {
   const WaveformSpace& space = problem.space;
   if (!camera.operating.multipath) finished.resize(1);
   std::vector<Candidate> candidates;
@@ -177,7 +177,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     std::vector<FinishedCode> finished =
         finished_codes(problem, pool, camera, options, stages[s], candidates.size(), parts[3]);
     std::vector<Candidate> made =
-        playable_candidates(problem, pool, camera, options, std::move(finished));
+        candidates_of(problem, pool, camera, options, std::move(finished));
     std::move(made.begin(), made.end(), std::back_inserter(candidates));
   }
 

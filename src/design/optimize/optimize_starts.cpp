@@ -93,7 +93,6 @@ void write_smooth_light(const WaveformSpace& space, int highest_frequency, int e
 constexpr double start_scale = 1.5;  // parameters of a waveform that is on
 constexpr double start_noise = 0.05;
 constexpr double rough_noise = 0.6;
-constexpr int max_high_frequency = 16;
 
 void add_noise(WaveformParameters& parameters, double deviation, RandomStream& random) {
   for (Eigen::MatrixXd* values : {&parameters.modulation, &parameters.demodulation})
@@ -134,7 +133,7 @@ OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double
 SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);
-  const int highest = std::min(max_high_frequency, highest_useful_frequency(problem));
+  const int highest = highest_useful_frequency(problem);
   const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets add the opposite phase
   SampledCode code = empty_code(space);
   for (int e = 0; e < space.exposures; ++e) {
@@ -215,7 +214,7 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
   if (index < count)
     return start_at(problem, codes[static_cast<std::size_t>(index)], start_noise, random);
 
-  const int highest = std::min(max_high_frequency, highest_useful_frequency(problem));
+  const int highest = highest_useful_frequency(problem);
   const int high = 2 + index - count;  // every frequency once, then random starts
   const int kind = (high - highest - 1) % 4, cycle = (high - highest - 1) / 4;
   if (high > highest && kind == 1 && count > 0) {
