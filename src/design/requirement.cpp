@@ -53,8 +53,8 @@ class CodePool {
   }
 
   /// Adds atlas codes or, for an exact answer, the winner of a design, which starts from them.
-  /// @param exposures  empty: suggested_exposures()
-  /// @param again  earlier designs for a similar camera; selects the seed
+  /// @param exposures  numbers of exposures of designs; empty: as design() selects them
+  /// @param again      number of earlier designs for a similar camera; selects the seed
   void add_codes_for(const Camera& camera, const std::vector<int>& exposures,
                      const Progress& progress, int again = 0) {
     design_.exposures = exposures;
@@ -63,8 +63,8 @@ class CodePool {
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
-  /// Exposures of the best code on a camera, and up to `difference` fewer and more; empty, which
-  /// selects all, for lookups in the atlas.
+  /// Returns the number of exposures of the best code on a camera, and numbers that differ from it
+  /// by up to `difference`. Empty for lookups in the atlas, which consider all numbers.
   std::vector<int> exposures_near(const Camera& camera, int difference) const {
     if (!options_.exact) return {};
     const int best = best_on(camera, all()).code->exposures();
@@ -91,7 +91,7 @@ class CodePool {
     return codes;
   }
 
-  /// Screens with few trials.
+  /// Returns the best code on a camera, after a screening with few trials.
   BestCode best_on(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first = first_errors(camera, codes);
     const double least_m = *std::min_element(first.begin(), first.end());
@@ -113,7 +113,7 @@ class CodePool {
     return best_on(camera, codes).error_m <= options_.error_m;
   }
 
-  /// By few trials.
+  /// Returns the smallest error, by first_trials().
   double least_first_error_m(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first_m = first_errors(camera, codes);
     return *std::min_element(first_m.begin(), first_m.end());
@@ -143,7 +143,8 @@ class CodePool {
 
   int first_trials() const { return std::max(1000, options_.trials / (options_.exact ? 10 : 25)); }
 
-  /// By few trials, with codes in parallel, because few trials use only one thread.
+  /// Returns the error of each code by first_trials(). Codes are evaluated in parallel, because so
+  /// small a number of trials uses only one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
@@ -213,7 +214,7 @@ double excluded_below(const Camera& camera, CameraQuantity quantity,
 constexpr double stride = 4.0;  ///< factor between designs
 /// The error of each design is random by a few percent.
 constexpr int end_designs = 3;
-/// Repeated lookups in the atlas find the same codes.
+/// Returns 1 for lookups in the atlas, because repeated lookups find the same codes.
 int designs_at_end(const RequirementOptions& options) { return options.exact ? end_designs : 1; }
 
 /// Scales the quantity by strides, with a design at each, until the requested error is bracketed;
@@ -246,7 +247,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   for (int step = 1; step <= most_steps && !bracketed; ++step) {
     const double factor = std::clamp(upwards ? high * stride : low / stride,
                                      1.0 / options.max_factor, options.max_factor);
-    // The best number of exposures, and the similar cameras of the atlas, depend on bandwidth.
+    // Bandwidth changes the best number of exposures and the similar cameras of the atlas.
     if (options.exact || quantity == CameraQuantity::bandwidth)
       design_at(factor, quantity == CameraQuantity::bandwidth ? 1 : 0, part++);
     const bool met = suffices(factor);

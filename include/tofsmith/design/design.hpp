@@ -286,8 +286,8 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
             Help{"largest factor by which a quantity is increased or decreased"}),
       Field(
           "exact", o.exact,
-          Help{"design codes (minutes) instead of taking them from the atlas (seconds), which can "
-               "require more than necessary"}),
+          Help{"design codes (minutes) instead of taking them from the atlas (seconds); the result "
+               "can be smaller"}),
       Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
             OnlyWith{"exact"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
@@ -306,7 +306,7 @@ struct Sufficiency {
   double excluded_below = 0.0;
 };
 
-/// Error of the best code at each bandwidth and power, estimated with a tenth of the trials.
+/// Error of the best code at each bandwidth and power, estimated with few trials.
 struct RequirementMap {
   std::vector<double> bandwidth, power;  ///< factors, ascending
   Eigen::MatrixXd error_m;               ///< (bandwidth, power)
@@ -322,11 +322,12 @@ struct Requirements {
 };
 
 /// Finds the smallest amount of each quantity, varied separately, for which a code has at most the
-/// requested error. Codes are taken from the atlas or, if `exact`, designed, in steps of a factor
-/// of 4 and again at the factor that the search finds. All codes and the standard codes are
-/// evaluated with the same random numbers. The codes found reach the error; a designed code may
-/// need less. The error decreases with each quantity, so bisection finds the factor to 0.5 %. The
-/// error is always circular, because a surface at a given distance causes no wrap-around.
+/// requested error. Codes are taken from the atlas or, if `exact`, designed. This is done at steps
+/// of a factor of 4, and again at the factor that the search finds. These codes and the standard
+/// codes are evaluated with the same random numbers. The codes found reach the error; a designed
+/// code may need less. Bisection finds the factor to 0.5 %, because the error decreases with each
+/// quantity. The error is always circular, because a surface at a given distance causes no
+/// wrap-around.
 /// @throws std::invalid_argument as design(), for invalid options, or for bandwidth without a band
 ///   limit; Interrupted
 Requirements find_requirements(const Camera& camera, const RequirementOptions& options,

@@ -52,18 +52,18 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("steps_per_hop", o.steps_per_hop, at_least(1), Help{"gradient steps per hop"}),
       Field("patience", o.patience, at_least(0),
             Help{"hops without a better code after which hopping ends; 0: never"}),
-      Field("refined", o.refined, at_least(1),
-            Help{"how many of the best codes are continued and refined; at most one, and one more "
-                 "for every 6 starts"}),
+      Field(
+          "refined", o.refined, at_least(1),
+          Help{"number of the best codes that are continued and refined; at most 1 + starts / 6"}),
       Field("refinement_steps", o.refinement_steps, at_least(0), ByEffort{50},
             Help{"gradient steps per refined code"}),
       Field("trials_per_step", o.trials_per_step, at_least(8),
             Help{"noisy measurements per gradient, over all light levels"}),
       Field("pool_trials", o.pool_trials, at_least(1000),
-            Help{"trials that rank codes while searching, over all light levels; a quarter of them "
-                 "for codes that are clearly worse"}),
+            Help{"trials that rank codes while searching, over all light levels; codes that are "
+                 "clearly worse than the best are ranked by a quarter of them"}),
       Field("polish", o.polish, Help{"move the switching times of the result continuously"}),
-      Field("polish_steps", o.polish_steps, at_least(0), Help{"steps of that"}),
+      Field("polish_steps", o.polish_steps, at_least(0), Help{"gradient steps of polish"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),
       Field("two_return_weight", o.two_return_weight, at_least(0),
             Help{"weight of the error decoded as two returns in the search, so that codes can be "
@@ -80,21 +80,22 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 ///
 /// Waveforms follow stochastic gradients through band limit, correlation, noise and a soft decoder,
 /// from a pool of starts (families, mixtures of frequencies, random codes and the codes in `also`).
-/// Short descents select the best, which are continued, perturbed and descend again; the best of
-/// several starts are refined, binarized for binary arms, and their edges optimized. Light may stay
-/// below its peak. Receivers: one tap; two buckets that share all charge; more exclusive taps, with
-/// drain if the camera has one; a mixer. Pulses and gaps of binary waveforms are at least
-/// sensor.shortest_pulse_s long.
+/// Short descents select the best starts, whose descents are continued. The best codes are
+/// perturbed and descend again. The best codes of several starts are refined and, for binary arms,
+/// binarized; their edges are then optimized. Light may stay below its peak. Receivers: one tap;
+/// two buckets that share all charge; more exclusive taps, with drain if the camera has one; a
+/// mixer. Pulses and gaps of binary waveforms are at least sensor.shortest_pulse_s long.
 ///
 /// For analog arms, the search also runs for binary arms first and then starts from those results.
 /// From twice the default effort on (with_effort()), it starts with all of a search of half the
 /// effort. The candidates of both are returned, so more freedom or effort never gives a worse code.
 /// @param exposures  1 to 8, with at least 3 measurements (2 differences)
 /// @param also  further starts, if they have the same number of exposures
-/// @return feasible codes named "optimized-k<exposures>": the best of every stage of the search,
-///   with operating multipath all refined ones; stages of binary arms and of lower effort come
-///   first. Candidate::error is empty. judge() (design/design.hpp) compares them, at their best
-///   origins, with the initial codes on independent random numbers, as design() does.
+/// @return feasible codes named "optimized-k<exposures>": the best code of every stage of the
+///   search or, with operating multipath, all refined codes of every stage. Stages for binary arms
+///   and of lower effort come first. Candidate::error is empty. judge() (design/design.hpp)
+///   compares them, at their best origins, with the initial codes on independent random numbers, as
+///   design() does.
 /// @throws std::invalid_argument for invalid options or camera, too few measurements, or a camera
 ///   without band limit and without sensor.shortest_pulse_s; Interrupted
 /// @note bit-identical for any number of threads

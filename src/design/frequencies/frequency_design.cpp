@@ -215,7 +215,7 @@ void add_frequency_candidates(const Camera& camera, const DesignOptions& options
   if (search.best.empty()) require(nothing_found(camera, search, choice));
   std::vector<SquareCode> codes;
   for (const RatedCode& its : search.best) codes.push_back(its.code);
-  std::optional<SquareCode> usual;  // has equal times, which need not be listed
+  std::optional<SquareCode> usual;  // has equal times, which listed times may not contain
   if (choice.time_shares.empty()) usual = rule_of_thumb(choice);
   if (usual) codes.push_back(*usual);
 

@@ -26,12 +26,12 @@ struct FrequencySearch {
   std::vector<RatedCode> best;       ///< the smallest error first
   std::int64_t sets = 0;             ///< sets of frequencies, times duties
   std::int64_t ambiguous = 0;        ///< sets that repeat within the working distance
-  std::int64_t pruned_by_bound = 0;  ///< sets that no split of the time makes one of the best
+  std::int64_t pruned_by_bound = 0;  ///< sets that are not among the best for any split of time
 };
 
 /// Moves time from each frequency of a code to each other one, and keeps the moves that reduce the
 /// error. Exposures keep at least min_exposure_share.
-/// @param moved       share of the time of the first frequency
+/// @param moved       fraction of the time of the first frequency that is moved
 /// @param error_m_of  returns the error of a SquareCode [m]
 /// @return true if the error decreased
 template <typename ErrorOf>

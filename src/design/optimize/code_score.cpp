@@ -51,9 +51,9 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
   return batches;
 }
 
-/// Linear error [bin], averaged over origins of depth within `window` of bin 0. Close to the best
-/// origin it hardly depends on the origin, and the average has a much smaller variance, because all
-/// errors near the origin contribute, not only errors across it.
+/// Returns the linear error [bin], averaged over origins of depth within `window` of bin 0. The
+/// expected error hardly depends on the origin close to the best one. The average has a much
+/// smaller variance, because all errors near the origin contribute, not only errors across it.
 double linear_error_bin(double true_bin, double decoded_bin, int samples, double window) {
   const double difference = decoded_bin - true_bin;
   const double error = difference - samples * std::round(difference / samples);
@@ -99,7 +99,8 @@ CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t see
                      std::uint64_t work_item)
     : problem_(&problem),
       judging_(draw_batches(problem, trials, problem.linear(), problem.depths, seed, work_item)) {
-  // Fewer trials find the rotation, but with too few codes are rotated away from their origin.
+  // Fewer trials are enough to find the rotation. Too few would rotate codes from their best
+  // origin.
   constexpr int enough = 1000;
   const int rotating_trials = std::min(trials, std::max(enough, trials / 4));
   if (problem.linear() || !problem.depths.is_uniform())

@@ -77,7 +77,8 @@ SearchRecord record_of(const OptimizePool& pool) {
           .account = fmt::format("{} gradient steps", pool.steps())};
 }
 
-/// Judges finished codes by more trials than the pool, which did not choose them.
+/// Returns the judge of finished codes. It has more trials than the pool, and other trials, which
+/// did not select the codes.
 CodeJudge final_judge(const DesignProblem& problem, const OptimizeOptions& options) {
   constexpr int more = 4;
   OptimizeOptions precise = options;
@@ -124,8 +125,9 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, OptimizeP
   return finished;
 }
 
-/// Returns the best finished code, or all with operating multipath: linear errors differ more
-/// between sets of as many trials as judge() uses than between the finished codes.
+/// Returns the best finished code or, with operating multipath, all of them. Without multipath,
+/// judge() would choose by chance: with its number of trials, the standard error of linear errors
+/// is larger than the difference between finished codes.
 std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool& pool,
                                      const Camera& camera, const OptimizeOptions& options,
                                      std::vector<FinishedCode> finished) {
@@ -158,11 +160,11 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
-  const Camera camera = in_buckets(variants.front());  // whose codes are searched
+  const Camera camera = in_buckets(variants.front());  // camera of the searched codes
 
   // For every stage:
-  // 1. Descend from many codes, from perturbed copies of the best, and again from the best.
-  // 2. Convert the best to feasible codes.
+  // 1. Descend from many codes, from copies of the best codes, and again from the best codes.
+  // 2. Convert the best codes to feasible codes.
   OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
   const std::vector<PoolStage> stages = stages_of(options);
   std::vector<double> weights;

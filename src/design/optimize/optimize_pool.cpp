@@ -39,7 +39,8 @@ constexpr std::size_t together = 10;  // descents between sorts of the pool
 constexpr std::size_t hops_together = 5;
 constexpr std::size_t max_pool = 24;
 constexpr double refinement_softness = 1.5;
-constexpr double contending_log_ratio = 0.05;  // to the best; others are not judged precisely
+/// Codes whose error exceeds the smallest one by this logarithm are only judged by few trials.
+constexpr double contending_log_ratio = 0.05;
 
 std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
   return combine_keys(phase, static_cast<std::uint64_t>(item));

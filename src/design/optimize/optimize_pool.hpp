@@ -54,13 +54,13 @@ struct PoolEntry {
 };
 
 /// Returns up to `count` entries, best first, with at most `of_each` from the same start, so that
-/// several local minima compete although entries of the best one follow one another.
+/// several local minima compete. Without this limit, most entries are from the best start.
 std::vector<PoolEntry> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
                                       std::ptrdiff_t of_each);
 
-/// Jumps out of a local minimum: softens the best entry of one of three starts, replaces one pair
-/// of waveforms (randomly or from another entry) or rotates its gates against its light, and adds
-/// noise.
+/// Jumps out of a local minimum: softens the best entry of one of the best three starts, replaces
+/// one pair of waveforms (by a random pair or from another entry) or rotates its gates against its
+/// light, and adds noise.
 /// @param pool  best first, not empty
 /// @return parameters and name of the start
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
@@ -76,7 +76,7 @@ int trials_per_level(const DesignProblem& problem, const OptimizeOptions& option
 struct PoolStage {
   int starts = 0, hops = 0;
   int refinement_steps = 0;  ///< of this stage only
-  int refined = 0;
+  int refined = 0;           ///< number of entries that are continued and refined
 };
 
 /// Codes from descents, best first, with the history of the search. Stages continue from one
@@ -86,9 +86,10 @@ class OptimizePool {
   OptimizePool(const DesignProblem& problem, const OptimizeOptions& options, double bin_m);
 
   void run_starts(const PoolStage& stage, std::span<const CodeSet> also, const Progress& progress);
-  /// Descends from perturbed copies of the best, until hops or patience are used up.
+  /// Descends from the best entries and then from perturbed copies (hop()), until hops or patience
+  /// are used up.
   void run_hops(const PoolStage& stage, const Progress& progress);
-  /// Descends from softened copies of the best; keeps the better of each.
+  /// Descends from softened copies of the best entries; keeps the better of each.
   void refine(const PoolStage& stage, const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
@@ -107,7 +108,7 @@ class OptimizePool {
   const DesignProblem* problem_;
   OptimizeOptions options_;
   double bin_m_;
-  CodeJudge quick_judge_;  ///< finds codes that are clearly worse
+  CodeJudge quick_judge_;  ///< few trials; rejects codes that are clearly worse than the best
   CodeJudge judge_;
   std::vector<PoolEntry> entries_;
   std::vector<SearchStep> history_;

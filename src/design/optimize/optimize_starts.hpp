@@ -17,10 +17,11 @@ struct OptimizeStart {
   WaveformParameters parameters;
 };
 
-/// Returns start `index`: given codes and then families (Hamiltonian, pulsed multi-frequency, Gray)
-/// that fit the space; then the lowest frequency with every higher one in turn; then in turn random
-/// mixtures of frequencies, the codes with noise, and random smooth gates with a pulse or with
-/// random light.
+/// Returns start `index` of an endless list:
+///   - given codes and families (Hamiltonian, pulsed multi-frequency, Gray) that fit the space,
+///   - frequency 1 with each higher useful frequency,
+///   - in turn: random mixtures of frequencies, the given codes and families with noise, and random
+///     smooth gates, with one pulse or with random light.
 OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
                              RandomStream& random);
 

@@ -10,8 +10,9 @@
 
 namespace tofsmith {
 
-/// Returns the listed numbers of exposures; else the three with the best codes in the atlas;
-/// without such codes, or with multipath, the suggested ones.
+/// Returns the numbers of exposures to search: DesignOptions::exposures or, if empty, the three
+/// numbers with the best atlas codes. Without atlas codes, or with operating multipath, returns
+/// suggested_exposures().
 std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options,
                                        const Contenders& atlas);
 

@@ -263,8 +263,7 @@ class ToneSearch {
     return slope;
   }
 
-  /// Mean `exponent`-th power of the distance of side lobes mistaken for the main lobe
-  /// [m^exponent].
+  /// Returns the sum over lobes of row_candidates() with (|u| R)^exponent [m^exponent].
   double lobes(const Tones& tones, const Eigen::VectorXd& power, int exponent) const {
     // At u = j / points, 8 per period of the highest tone; minima by parabolas.
     const int points = std::min(samples_, 8 * tones.back());

@@ -30,7 +30,8 @@ std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows);
 /// one depth, with the covariance of the rows, plus the side-lobe error
 ///   sum_lobes 2 |u| R Q(sqrt(g(u) / 2)), g(u) = sum_n q_n (1 - cos 2 pi n u),
 ///   q_n = (S |M_n|)^2 / variance of a row in constant light.
-/// For operating.statistic = "rmse", their squares are added, with (u R)^2 in place of |u| R.
+/// For operating.statistic = "rmse", the predicted error is the square root of the sum of the
+/// squared Cramer-Rao bound and the same sum over lobes with (u R)^2 in place of |u| R.
 /// Light is computed by fixed-point iteration: it is on where the sum of the tones, with their
 /// current phases and weighted by information, is largest.
 ///
