@@ -91,8 +91,8 @@ class BlockRestriction {
     double depth_m = 0.0;  ///< corrected
   };
 
-  /// Removes the depth of a certain pixel that is outside the limits. Uncertain pixels are decoded
-  /// again.
+  /// Removes the depth of a pixel with confidence 1 if it is outside the limits. Selects other
+  /// pixels for decoding again.
   void choose(std::size_t at) {
     if (std::isnan(decoded_.depth_m[at])) return;
     const double range_m = decoder_.table().range_m;

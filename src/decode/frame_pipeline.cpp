@@ -90,7 +90,8 @@ void keep_averaged(const RawView& raw, float* averaged) {
     std::fill_n(averaged, raw.pixels(), 1.0f);
 }
 
-/// Adds the planes that limits need to `decoded`. @return their memory
+/// Adds the planes that depth limits need and `decoded` lacks.
+/// @return memory of the added planes
 DepthImage planes_for_limits(std::size_t pixels, DecodedView& decoded) {
   const std::vector<DecodedPlane> wanted = decoded.planes();
   std::vector<DecodedPlane> missing;

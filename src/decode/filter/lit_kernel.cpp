@@ -67,7 +67,7 @@ LitScales lit_scales() {
   return scales;
 }
 
-/// Returns whether the bars of one size have enough light in all directions.
+/// Returns true if the bars of one size have enough light in all directions.
 HWY_INLINE Mask is_lit_by_bars(const float* amplitude, const std::ptrdiff_t* points,
                                const LitBar& bar, const float* scale, Vector added) {
   const Vector most = hn::Add(added, all(lit_excess_sigma));

@@ -23,24 +23,24 @@ struct LitBar {
 inline constexpr std::array<LitBar, 4> lit_bars = {
     {{3, 2, 1e30f}, {5, 3, 3.0f}, {9, 5, 1.8f}, {13, 11, 0.9f, 0.75f}}};
 inline constexpr int lit_directions = 8;
-/// Largest distance of a pixel of a bar from its pixel, in rows or columns.
+/// Largest distance between a pixel and the pixels of its bars, in rows or columns.
 inline constexpr int lit_reach = [] {
   int reach = 0;
-  for (const LitBar& bar : lit_bars)  // straight and diagonal bars
+  for (const LitBar& bar : lit_bars)  // reach of straight and of diagonal bars
     reach = std::max({reach, bar.depth - 1, bar.length / 2 + bar.depth / 2});
   return reach;
 }();
 static_assert(lit_reach <= slope_reach, "bars must end within the margins of planes");
-/// Amplitude from which a pixel's own measurements prove its light [standard deviations].
+/// Smallest amplitude of a pixel's own measurements that proves its light [standard deviations].
 inline constexpr float lit_pixel_sigma = 3.5f;
-/// Amplitude from which a bar proves light [standard deviations].
+/// Smallest amplitude of a bar that proves light [standard deviations].
 inline constexpr float lit_bar_sigma = 4.0f;
 /// Minimum light of each bar, and of the mean of the 3 x 3 pixels around a pixel, relative to the
 /// light added to the pixel.
 inline constexpr float lit_bar_share = 0.6f;
-/// The 3 x 3 pixels are only tested for more added light than this [standard deviations].
+/// The 3 x 3 pixels are only tested if the added light exceeds this [standard deviations].
 inline constexpr float lit_around_sigma = 1.4f;
-/// The amplitude of a pixel in a bar counts as at most that of the added light plus this [standard
+/// The amplitude of each pixel of a bar is limited to that of the added light plus this [standard
 /// deviations].
 inline constexpr float lit_excess_sigma = 2.0f;
 
@@ -50,12 +50,12 @@ std::vector<WindowStep> lit_bar_points();
 /// Returns 1 / the standard deviation of the sum of the first rows of a bar of independent pixels.
 float lit_bar_scale(const LitBar& bar, int rows);
 
-/// Writes for a row the amplitude of each pixel's measured light in the direction of the light that
-/// was added to it [standard deviations]; 0 for unusable pixels. Writes whole vectors.
+/// Writes for each pixel of a row the amplitude of its measured light in the direction of the light
+/// that was added to it [standard deviations]; 0 for unusable pixels. Writes whole vectors.
 void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
                         float* amplitude);
 
-/// Test whether pixels have any light.
+/// Inputs of find_lit_share().
 struct LitTest {
   const OwnLightTest* light = nullptr;
   const float* amplitude = nullptr;  ///< from find_own_amplitude(), with margins of 0
@@ -63,11 +63,11 @@ struct LitTest {
   /// lit_bar_points() as offsets in the grid [floats].
   const std::ptrdiff_t* points = nullptr;
 };
-/// Writes for a row 1 if a pixel is lit or not usable, else v / (v + |u|^2) with the added light u
-/// and its variance v: all of u may be light of neighbours, so that u is its own error. A pixel is
-/// lit if its own measurements prove it, or if the bars in all directions have light in some of
-/// their first rows. Next to an object, the bar that points away from the object has none. Writes
-/// whole vectors.
+/// Writes for each pixel of a row 1 if it is lit or not usable, else v / (v + |u|^2) with the added
+/// light u and its variance v: all of u may be light of neighbours, in which case the error is u. A
+/// pixel is lit if its own measurements prove it, or if the bars in all directions have light in
+/// some of their first rows. Next to an object, the bar that points away from the object has no
+/// light. Writes whole vectors.
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share);
 
 }  // namespace tofsmith

@@ -48,8 +48,8 @@ Eigen::MatrixXd interpolated(const Eigen::MatrixXd& columns, int factor);
 ///     (Mallows' C_p): it maximizes the sum over h <= H of P_h - 2 floor.
 /// Returns the columns unchanged
 ///   - if their upper harmonics are already negligible, see SmoothCurve::of(),
-///   - if the functions may have corners: H is above N / 4, or a single removed value exceeds 6
-///     times their root mean square,
+///   - if the functions may have corners: H is at least N / 4, or a removed value exceeds 6 times
+///     the root mean square of all removed values,
 ///   - if N is below 32, because the floor is then uncertain.
 Eigen::MatrixXd without_noise_above_band_limit(const Eigen::MatrixXd& columns);
 
