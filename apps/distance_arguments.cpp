@@ -36,8 +36,8 @@ Camera DistanceArguments::at(const Camera& camera, const Session& session) const
   if (!is_asked()) return camera;
   if (!camera.optics)
     throw UsageError(fmt::format(
-        "--distance: found no [optics] in camera {}; expected them to compute the light "
-        "at a distance. Add these typical values, or your own:\n  --set '{}'",
+        "--distance: found no [optics] in camera {}; expected its keys, from which the light at "
+        "a distance is computed. Add these typical values, or your own:\n  --set '{}'",
         camera.name, typical_optics_line()));
   if (klux_ && !camera.optics->filter_width_m)
     throw UsageError(
