@@ -23,7 +23,7 @@ namespace {
 struct Member {
   std::function<std::optional<BrokenRule>(const FamilyOptions&)> misfit;
   std::function<CodeSet(const FamilyOptions&)> build;
-  bool has_phase_steps = false;  ///< that three and more taps can share
+  bool has_phase_steps = false;  ///< three and more taps can share them
 };
 
 std::optional<int> integer(std::string_view text) {

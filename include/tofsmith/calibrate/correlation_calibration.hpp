@@ -153,7 +153,8 @@ struct CalibratedFrequency {
   Estimate offset_m;  ///< constant that the camera adds to the depth of this frequency
   /// Amplitude relative to that of the camera's model; the geometric mean of all frequencies is 1.
   Estimate contrast;
-  std::vector<CalibratedHarmonic> harmonics;  ///< only those that the frames determine
+  /// Harmonics that the frames determine.
+  std::vector<CalibratedHarmonic> harmonics;
 };
 
 /// Depth error for plots: the error of the nominal depth minus its mean over all pixels. Values are

@@ -179,8 +179,8 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                    closed(1, 16)),
                sensor.max_exposures);
   fields.value(Key("integration_times_s",
-                   "Possible integration times of one exposure for the design method frequencies; "
-                   "those of a code add up to exposure_s; without it, any",
+                   "Possible integration times of one exposure for the design method frequencies "
+                   "(default: any); the times of a code add up to exposure_s",
                    above(0)),
                sensor.integration_times_s);
 }

@@ -39,9 +39,9 @@ constexpr std::string_view name_of(DepthErrorKind kind) {
 /// Statistic of the depth errors of trials.
 enum class ErrorStatistic {
   mae,   ///< mean absolute error
-  rmse,  ///< root mean square error: wrong lobes, which are far away, count more
+  rmse,  ///< root mean square error: wrong lobes, which are far away, have more weight
 };
-/// Words for the statistics, in their order.
+/// Words for the statistics, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 2> error_statistics = {"mae", "rmse"};
 
 /// Depth error that designs minimize.
@@ -49,7 +49,7 @@ struct DepthErrorMeasure {
   DepthErrorKind kind = DepthErrorKind::circular;
   ErrorStatistic statistic = ErrorStatistic::mae;
 
-  /// Mean absolute error of this kind.
+  /// Measures the mean absolute error of this kind.
   constexpr DepthErrorMeasure(DepthErrorKind kind_) : kind(kind_) {}
   constexpr DepthErrorMeasure(DepthErrorKind kind_, ErrorStatistic statistic_)
       : kind(kind_), statistic(statistic_) {}
