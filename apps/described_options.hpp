@@ -61,7 +61,7 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
       return parse_word<Single>("", word);
     });
     added->check(one_of(detail::texts_of_words<Single>()));
-    added->transform([](const std::string& name) {  // runs first
+    added->transform([](const std::string& name) {  // precedes the check
       return std::string(usual_word(Single{}, name));
     });
     if constexpr (std::is_enum_v<Value>)

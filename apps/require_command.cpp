@@ -106,7 +106,7 @@ void run(RequireArguments& arguments, const Session& session) {
         break;
     }
   const OutputKind kind = kind_of(arguments.output);
-  if (kind == OutputKind::none && !session.json) options.map = false;  // only in documents
+  if (kind == OutputKind::none && !session.json) options.map = false;  // part of documents only
   std::optional<FreshDirectory> directory;
   if (kind == OutputKind::directory) directory.emplace(arguments.output);
   const OutputPolicy policy = check_outputs(arguments.output, kind, session);

@@ -104,8 +104,8 @@ std::string time_text(double seconds);
 /// Returns a rate with three digits and no exponent: "8.53", "1204".
 std::string rate_text(double per_second);
 
-/// Returns a table of text with a header. The first column is left-aligned, the others to the
-/// right.
+/// Returns a table of text with a header. The first column is aligned to the left, the others to
+/// the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace tofsmith::apps

@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// Returns the spelling of unit_of_key().
+/// Returns the unit in the spelling of unit_of_key().
 std::string_view spelling(std::string_view unit) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> others = {
       {{"lux", "lx"},

@@ -81,8 +81,8 @@ concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {
 std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
                           std::string_view word);
 
-/// Returns the word for another name of a value, such as a synonym, or the name itself.
-/// Enumerations with other names have their own overload.
+/// Returns the word of a value for one of its other names, such as a synonym; other text is
+/// returned unchanged. Enumerations with synonyms have their own overload.
 template <HasWords Enum>
 constexpr std::string_view usual_word(Enum /*any*/, std::string_view name) {
   return name;
