@@ -62,9 +62,9 @@ def new_figure(
     width: Optional[Width] = None,
     keeps_shape: bool = False,
 ) -> Figure:
-    """Returns the given figure, or a new one of this size. `width`: one or two columns instead,
-    with the height scaled alike if the figure keeps its shape. Three-dimensional axes do not
-    support the constrained layout and have explicit margins."""
+    """Returns the given figure, or a new one of this size. `width` replaces the width of a new
+    figure by one or two columns; with `keeps_shape`, the height is scaled by the same factor.
+    Three-dimensional axes do not support the constrained layout and have explicit margins."""
     if width is not None:
         other_in = {"column": column_in, "page": page_in}[
             _check.one_of(width, "width", ("column", "page"))]

@@ -7,9 +7,9 @@ Every function draws on a new figure, or on `figure`, and returns it:
 >>> from tofsmith import plot
 >>> plot.waveforms("hamiltonian-k4", "paper-10f0").savefig("code.pdf")  # doctest: +SKIP
 
-Sizes fit one or two columns of a paper, 3.5 or 7.16 in with `width="column"` or `width="page"`
-(default: by the contents), with fonts of 8 pt. Colours are those of Okabe and Ito,
-which are distinguishable with any colour vision; maps use viridis. Some publishers require
+With `width="column"` or `width="page"`, figures are 3.5 or 7.16 in wide, as one or two columns of a
+paper (default: a width that suits the contents). Fonts have 8 pt. The palette of Okabe and Ito is
+distinguishable with any colour vision; maps use viridis. Some publishers require
 matplotlib.rcParams["pdf.fonttype"] = 42.
 """
 
@@ -254,13 +254,13 @@ def depth_error_curves(
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Shows the mean depth error along signal or ambient light, with standard errors; the other
-    light is at the level nearest to `at` (default: the middle level). Grey: the bound for
-    any code, one line for all codes that share it. `kind`: linear or circular; None: that of the
-    first report's camera."""
+    light is at the level nearest to `at` (default: the middle level). Grey lines are bounds
+    for any code; codes with the same bound share a line. `kind`: linear or circular; None: as in
+    the first report's camera."""
     listed = reports_of(reports)
     kind = kind_of(listed, kind)
     longest = max(len("bound of any code"), *(len(report.code) for report in listed))
-    narrow = width == "column"  # has the legend above the axes, else next to them
+    narrow = width == "column"  # the legend is then above the axes, otherwise next to them
     height_in = 2.4 + (0.15 * (len(listed) + 1) if narrow else 0.0)
     figure = new_figure(figure, column_in + 0.4 + 0.055 * longest, height_in, width=width)
     axis = figure.subplots()
@@ -278,7 +278,7 @@ def depth_error_curves(
             bounded.setdefault(bound.tobytes(), []).append(report.code)
     for i, (key, (x, bound)) in enumerate(bounds.items()):
         label = "bound of any code"
-        if len(bounds) > 1:  # they depend on the number of exposures and on the camera
+        if len(bounds) > 1:  # bounds depend on the number of exposures and on the camera
             label = "bound for " + ", ".join(bounded[key])
         dash = (":", "-.", "--")[i % 3]
         axis.plot(x, 1e3 * bound, dash, color="0.5", lw=1.0, label=label)
