@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Depth error with a measured correlation table relative to the exact camera, for various taps,
 orders, signs and directions. Each camera is swept over 121 delays of 64 pixels and calibrated with
-its nominal description. Both decoders use the same 40,000 pixels at random depths. Sweep and pixels
-have signals of 3e6 and 3e5 e/s, and of 4e8 e/s both. Target: at most 1.02.
+its nominal description. Both decoders use the same 40,000 pixels at random depths. The signals of
+sweep and pixels are 3e6 and 3e5 e/s, then 4e8 e/s for both. Target: a ratio of at most 1.02.
 
     PYTHONPATH=build-dev/python measured_tables.py
 """

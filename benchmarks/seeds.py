@@ -22,16 +22,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 REQUIRED, REQUIRED_OF_ALL, SHARE_OF_CAMERAS = 0.01, 0.02, 0.95
-#: The standard error of linear errors is larger, due to depths decoded at the other end.
+#: Linear errors have a larger standard error, due to depths decoded at the other end of the range.
 TRIALS = {"circular": 40000, "linear": 400000}
 JUDGING_SEED = 77
 
 
 class Camera(NamedTuple):
-    """Changes of the camera paper-10f0."""
+    """Changes to the camera paper-10f0."""
 
     taps: int
-    exposures: int  # 0: the default numbers of exposures
+    exposures: int  # 0: numbers of exposures that design tries by default
     peak: float
     limit_f0: float
     response: str = "hann"
@@ -48,7 +48,7 @@ class Camera(NamedTuple):
         return ["--camera", "paper-10f0", "--threads", "1", *(word for pair in settings for word in pair)]
 
 
-#: The first eight with their best number of exposures.
+#: The first eight have their best number of exposures.
 CAMERAS = (Camera(1, 5, 10, 10), Camera(1, 3, 5, 5), Camera(2, 4, 10, 10), Camera(2, 4, 5, 14),
            Camera(3, 2, 10, 10), Camera(3, 3, 11, 14), Camera(4, 2, 10, 10), Camera(4, 2, 11, 14),
            Camera(1, 0, 12, 13, error="linear"),
@@ -96,7 +96,7 @@ def stored_designs(store):
 
 
 def spread_of(camera, found):
-    """Prints the line of a camera. Returns the spread without four standard errors of judging."""
+    """Prints the results of a camera. Returns the spread minus four standard errors of judging."""
     errors_mm = [1e3 * error for _, error, _, _ in found]
     deviation_mm = 1e3 * max(deviation for _, _, deviation, _ in found)
     spread = max(errors_mm) / min(errors_mm) - 1
@@ -115,7 +115,7 @@ def main():
     parser.add_argument("seeds", nargs="?", type=int, default=10, help="number of seeds (default 10)")
     parser.add_argument("store", nargs="?", type=Path, help="file of finished designs, which are not repeated")
     parser.add_argument("--random", type=int, metavar="N", help="use N random cameras instead of the fixed ones")
-    parser.add_argument("--cameras-seed", type=int, default=1, help="seed of these cameras (default 1)")
+    parser.add_argument("--cameras-seed", type=int, default=1, help="seed of the random cameras (default 1)")
     options = parser.parse_args()
     cameras = random_cameras(options.random, options.cameras_seed) if options.random else CAMERAS
     designs = stored_designs(options.store)

@@ -29,7 +29,7 @@ layout = "planar"
 unused_bits = "ignored"  # copies of the sign
 ''')
 
-# %% Depth, and whether it can be trusted.
+# %% Depth and status of the pixels.
 raw = tofsmith.read_raw("dump.bin", raw_format="dump.raw.toml")
 image = tofsmith.Decoder(code, camera).decode(raw[0])
 ok = image.status == tofsmith.PixelStatus.ok

@@ -15,7 +15,7 @@ camera = tofsmith.Camera(
     operating={"signal_e_per_s": [1e6], "ambient_e_per_s": [1e5], "error": "circular"},
 )
 
-# %% A short search: remove `effort` for a real one.
+# %% A short search. Omit `effort` and `trials` for a full one.
 result = tofsmith.design(camera, exposures=[2], effort=0.01, trials=1000)
 for candidate in result.by_ranking_error()[:4]:
     print(f"{candidate.code.name}: {candidate.ranking_error_m * 1e3:.1f} mm ({candidate.method})")

@@ -11,7 +11,7 @@ lens = tofsmith.Lens(
 code = "hamiltonian-k4"
 camera = tofsmith.Camera("indoor", lens=lens)
 
-# %% A frame: simulated here; read_raw() reads your own.
+# %% A frame, which is simulated here. decode_recording() also reads your own file.
 scene = tofsmith.built_in_scene("table-top", lens=camera.lens)
 tofsmith.write_raw("raw.npy", tofsmith.capture(
     scene, code, camera, signal_e_per_s=3e6, ambient_e_per_s=1e6), overwrite=True)
