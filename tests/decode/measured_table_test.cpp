@@ -207,13 +207,13 @@ TEST(MeasuredTable, IsExactBetweenDelaysIfItIsBandLimited) {
 TEST(MeasuredTable, HasOnlyTheNoiseOfItsHarmonicsIfItIsBandLimited) {
   constexpr double noise = 0.01;
   constexpr int rows = 120, harmonics = 5;
-  // A fifth of the noise remains; the band limit may be found a few harmonics too high.
+  // The noise of 11 of 120 coefficients remains, and of a few more if the band limit found is high.
   const double expected = noise * std::sqrt((2.0 * harmonics + 1.0) / rows);
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
     EXPECT_LT(error_of_table(with_noise(band_limited(rows), noise, seed)), 1.6 * expected);
 }
 
-/// The table of measured columns to which ambient light adds nothing.
+/// Returns the table of measured columns if ambient light contributes nothing to them.
 Eigen::MatrixXd table_of(const Eigen::MatrixXd& columns) {
   return make_decoding_table({.correlation = columns, .ambient_gain = Eigen::Vector3d::Zero()},
                              camera_with("paper-10f0"))
@@ -256,12 +256,12 @@ double mean_error_bin(const DecodingTable& table, const DecodingTable& truth, do
   return sum / pixels;
 }
 
-TEST(MeasuredTable, OfOneHundredTwentyDelaysDecodesLikeTheCode) {
+TEST(MeasuredTable, WithOneHundredTwentyDelaysDecodesLikeTheCode) {
   const Camera camera = camera_with("paper-10f0");
   const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
   const DecodingTable code = make_decoding_table(model, camera);
   for (const double electrons : {3e4, 4e6}) {
-    // The mean of 64 pixels of the same light.
+    // The mean of 64 pixels with the same light.
     MeasuredTable measured{.correlation = electrons * model.correlation_table(120)};
     RandomStream random(5, 0);
     for (double& value : measured.correlation.reshaped())

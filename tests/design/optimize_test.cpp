@@ -246,7 +246,7 @@ TEST(Optimize, HistoryNeverRisesAndStopsEarlyWithoutGain) {
   EXPECT_THAT(found.message, HasSubstr("stopped early without further gain"));
 }
 
-TEST(OptimizableExposures, AreThoseOfTheBestAtlasCodesUnlessListed) {
+TEST(OptimizableExposures, AreTheNumbersOfTheBestAtlasCodesUnlessListed) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 12.0;
   camera.light.impulse_response.f_max_hz = camera.sensor.impulse_response.f_max_hz = 195e6;

@@ -67,7 +67,7 @@ TEST(Requirements, CodesOfTheAtlasReachTheErrorWithAtLeastTheExactAmount) {
   const Requirements exact = find_requirements(camera, options);
   options.exact = false;
   const Requirements fast = find_requirements(camera, options);
-  constexpr double sampling = 0.97;  // exact codes are chosen by few trials
+  constexpr double sampling = 0.97;  // few trials choose the exact codes
   for (std::size_t i = 0; i < exact.varied.size(); ++i) {
     const Sufficiency& s = fast.varied[i];
     if (!s.factor) continue;  // only a designed code may suffice
