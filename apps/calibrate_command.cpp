@@ -41,7 +41,8 @@ void CalibrateOutput::write_camera(const Camera& camera, const Session& session,
   if (camera_path.empty()) return;
   write_camera_toml(camera_path, camera, policy);
   session.say(fmt::format(
-      "wrote {} (values that were not fitted: camera {})\nnext: {}", camera_path, camera.name,
+      "wrote {} (values that were not fitted are from camera {})\nnext: {}", camera_path,
+      camera.name,
       next.empty() ? fmt::format("tofsmith design {} -o designed", camera_path) : next));
 }
 
