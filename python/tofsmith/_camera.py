@@ -164,8 +164,7 @@ class Camera:
         return self._handle.to_toml()
 
     def write(self, path: Path, *, overwrite: bool = False) -> None:
-        """Writes a camera file (.toml) with the file's name as the camera's name, for `design`,
-        `evaluate` and `decode`.
+        """Writes a camera file (.toml) for `design`, `evaluate` and `decode`.
 
         Raises
         ------
