@@ -86,7 +86,7 @@ struct Fold {
   NormalSums out, kept;
 };
 
-/// Returns the folds with samples that are held out and samples that are kept.
+/// Returns the folds that hold out some samples and keep others.
 std::vector<Fold> folds_of(const std::vector<NormalSums>& sums, bool by_range) {
   std::vector<Fold> folds;
   for (int fold = 0; fold < (by_range ? slabs : checkers); ++fold) {

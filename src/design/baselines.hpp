@@ -43,8 +43,7 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
 
 /// Returns the best codes of the nearest atlas cameras by a quick screening, best first, up to
 /// three per number of exposures. Empty if the options disable the atlas.
-/// @param trials  per operating point; none: 25000 over all operating points, at least 1000 for
-/// each
+/// @param trials  per operating point; none: 25000 for all points together, at least 1000 for each
 Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options,
                                   std::optional<int> trials = {});
 

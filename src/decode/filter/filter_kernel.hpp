@@ -30,7 +30,8 @@ struct FilterGrid {
     return static_cast<std::size_t>(planes * plane_floats() + rows_above * stride + margin);
   }
 };
-inline constexpr int slope_reach = 12;  ///< of the pixels that determine a slope
+/// Largest distance between a pixel and the pixels that determine its slope, in rows or columns.
+inline constexpr int slope_reach = 12;
 /// Number of rows and columns by which windows extend beyond a frame. Columns include a vector.
 constexpr int margin_rows(int largest_step) { return std::max(2 * largest_step + 2, slope_reach); }
 constexpr int margin_columns(int largest_step) {

@@ -468,7 +468,7 @@ IoError TableReader::missing(std::string_view key, std::string_view example) con
 void TableReader::refuse(std::initializer_list<std::string_view> keys, std::string_view condition) {
   for (const std::string_view key : keys)
     if (contains(key)) {
-      if (missing_) throw *missing_;  // the missing key may be the condition
+      if (missing_) throw *missing_;  // the missing key may be this condition
       fail(key, fmt::format("is only valid with {}", condition));
     }
 }
