@@ -99,8 +99,6 @@ def test_figures_reject_unsupported_input(things):
             of.depth_error_map(things["reports"], kind="mean")
         with pytest.raises(ValueError, match="reports: got none"):
             of.depth_error_curves([])
-    with pytest.raises(ValueError, match="width: got str 'wide'; needs one of column, page"):
-        plot.waveforms("hamiltonian-k4", things["camera"], width="wide")
         with pytest.raises(ValueError, match="x: got 'peak'; needs a column of numbers that vary: "
                                              "light.peak_factor, signal_e_per_s"):
             of.sweep_map(things["sweep"], "peak", "signal_e_per_s")
@@ -108,6 +106,8 @@ def test_figures_reject_unsupported_input(things):
             of.sweep_map(things["sweep"], "signal_e_per_s", "signal_e_per_s")
         with pytest.raises(ValueError, match=r"depth: got shape \(3,\); needs \(H, W\)"):
             of.depth_maps(np.ones(3))
+    with pytest.raises(ValueError, match="width: got str 'wide'; needs one of column, page"):
+        plot.waveforms("hamiltonian-k4", things["camera"], width="wide")
 
 
 def test_error_maps_use_the_cameras_error_kind_and_show_standard_errors(things):
