@@ -46,12 +46,10 @@ inline constexpr std::array<std::string_view, 2> error_statistics = {"mae", "rms
 
 /// Depth error that designs minimize.
 struct DepthErrorMeasure {
-  DepthErrorKind kind = DepthErrorKind::circular;
-  ErrorStatistic statistic = ErrorStatistic::mae;
+  DepthErrorKind kind;
+  ErrorStatistic statistic;
 
-  /// Measures the mean absolute error of this kind.
-  constexpr DepthErrorMeasure(DepthErrorKind kind_) : kind(kind_) {}
-  constexpr DepthErrorMeasure(DepthErrorKind kind_, ErrorStatistic statistic_)
+  constexpr DepthErrorMeasure(DepthErrorKind kind_, ErrorStatistic statistic_ = ErrorStatistic::mae)
       : kind(kind_), statistic(statistic_) {}
 };
 /// "linear", "circular", "linear root mean square" or "circular root mean square".

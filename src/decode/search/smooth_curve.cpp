@@ -58,7 +58,9 @@ Eigen::Index band_limit_of(const Eigen::VectorXd& power) {
   Eigen::Index limit = 0;
   for (Eigen::Index h = 1; h < power.size(); ++h) {
     gain += power[h] - 2.0 * floor;
-    if (gain > largest) largest = gain, limit = h;
+    if (gain <= largest) continue;
+    largest = gain;
+    limit = h;
   }
   return limit;
 }

@@ -94,16 +94,15 @@ struct FinishedCode {
 
 /// Converts the best entries to feasible codes with optimized edges, best first.
 /// @param before  number of codes from earlier stages, for random numbers
-std::vector<FinishedCode> finished_codes(const DesignProblem& problem, OptimizePool& pool,
-                                         const Camera& camera, const OptimizeOptions& options,
-                                         const PoolStage& stage, std::uint64_t before,
-                                         const Progress& progress) {
+std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
+                                         OptimizePool& pool, const Camera& camera,
+                                         const OptimizeOptions& options, const PoolStage& stage,
+                                         std::uint64_t before, const Progress& progress) {
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
   const std::vector<PoolEntry> entries = entries_to_finish(problem, pool, camera, stage, sharpness);
   const int polish_steps = options.polish ? options.polish_steps : 0;
-  const CodeJudge judge = final_judge(problem, options);
   std::vector<FinishedCode> finished(entries.size());
   SharedProgress shared(progress, static_cast<double>(entries.size()) * polish_steps, "edges");
   parallel_for(std::ssize(entries), [&](std::int64_t i) {
@@ -166,6 +165,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   // 1. Descend from many codes, from copies of the best codes, and again from the best codes.
   // 2. Convert the best codes to feasible codes.
   OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
+  const CodeJudge judge = final_judge(problem, options);
   const std::vector<PoolStage> stages = stages_of(options);
   std::vector<double> weights;
   for (const PoolStage& stage : stages) weights.push_back(stage.starts);
@@ -176,8 +176,8 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     pool.run_starts(stages[s], also, parts[0]);
     pool.run_hops(stages[s], parts[1]);
     pool.refine(stages[s], parts[2]);
-    std::vector<FinishedCode> finished =
-        finished_codes(problem, pool, camera, options, stages[s], candidates.size(), parts[3]);
+    std::vector<FinishedCode> finished = finished_codes(problem, judge, pool, camera, options,
+                                                        stages[s], candidates.size(), parts[3]);
     std::vector<Candidate> made =
         candidates_of(problem, pool, camera, options, std::move(finished));
     std::move(made.begin(), made.end(), std::back_inserter(candidates));
