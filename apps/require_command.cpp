@@ -111,13 +111,13 @@ void run(RequireArguments& arguments, const Session& session) {
   if (kind == OutputKind::directory) directory.emplace(arguments.output);
   const OutputPolicy policy = check_outputs(arguments.output, kind, session);
   const Camera camera = arguments.distance.at(arguments.camera.load(), session);
-  const Requirements found = find_requirements(camera, options, terminal_progress("designing"));
+  const Requirements found = find_requirements(camera, options, terminal_progress("searching"));
   write(arguments.output, kind, camera, found, options, policy, session);
   if (session.json) return session.print_document(requirements_document(camera, found, options));
   session.say(fmt::format("target {}; error now {} with {}{}", length_text(options.error_m),
                           length_text(found.error_m), found.code.name(),
                           found.bound_m > 0.0
-                              ? fmt::format(" (no code below {})", length_text(found.bound_m))
+                              ? fmt::format(" (bound for any code: {})", length_text(found.bound_m))
                               : std::string()));
   session.say(text_table(requirement_rows(camera, found, options)));
   session.say(fmt::format("one quantity varied at a time; circular error, {} trials, seed {}; {}",
@@ -159,8 +159,8 @@ void add_require_command(CLI::App& app, Session& session) {
   options.add("seed", "--seed");
   options.add("map", "!--no-map");
   command->add_option("-o,--output", arguments->output,
-                      "write a page (.html), all numbers (.json), or a directory with both, the "
-                      "codes found and the cameras that suffice");
+                      "write a page (.html), all numbers (.json), or a directory with page, "
+                      "numbers, codes and sufficient cameras");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -62,17 +62,19 @@ Figure error_map(const RequirementMap& map, double error_m) {
   return heat_map_figure(
       {.id = "error-map",
        .title = "Depth error over bandwidth and power",
-       .caption = fmt::format("Best code found for each bandwidth, designed at the power of the "
-                              "camera. Cells of at most {} suffice.",
-                              length_text(error_m))},
+       .caption =
+           fmt::format("Smallest error of the codes found for each bandwidth at the power of "
+                       "the camera. Cells of at most {} suffice.",
+                       length_text(error_m))},
       {values}, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
 }  // namespace
 
 std::string searched_codes_text(const RequirementOptions& options) {
-  if (options.exact) return fmt::format("designs of effort {}", plain_number(options.effort, 3));
-  return "atlas codes, on the safe side: designed codes may need less (option exact)";
+  if (options.exact)
+    return fmt::format("codes designed with effort {}", plain_number(options.effort, 3));
+  return "atlas codes, although designed codes may require less (option exact)";
 }
 
 std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
@@ -89,7 +91,7 @@ std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
                     plain_number(1e3 * s.error_m, 4), s.code.name(),
                     s.excluded_below == 0.0 ? "(no bound)"
                     : s.excluded_below >= options.max_factor
-                        ? fmt::format("even {} x", plain_number(options.max_factor, 3))
+                        ? fmt::format("at least {} x", plain_number(options.max_factor, 3))
                         : scaled_text(camera, s.quantity, s.excluded_below)});
   }
   return rows;
