@@ -106,7 +106,7 @@ export class ErrorsView {
           element(
               'th', {scope: 'row'},
               element('span', {class: 'row-dot', style: `background:${seriesColour(i)}`}),
-              problem ? `${one.name}, before the error` : one.name),
+              problem ? `${one.name}, last valid result` : one.name),
           cell(String(one.measurements)),
           ...['linear', 'circular'].map(
               (which) =>

@@ -182,7 +182,7 @@ class Page(LabTest):
     def test_an_unknown_family_is_reported_at_its_code(self):
         self.run_script("enter(byId('family-0'), '?'); enter(byId('other-0'), '<img src=x onerror=alert(1)>'); await settled();")
         self.assertIn("<img", self.text(".slot .problem"))
-        self.assertIn("before the error", self.text("#error-table tbody tr"))
+        self.assertIn("last valid result", self.text("#error-table tbody tr"))
         self.assertEqual(self.driver.execute_script("return document.querySelectorAll('figure.pale').length"), 4)
         self.assertEqual(self.driver.execute_script("return document.querySelectorAll('main img').length"), 0)
 
