@@ -157,7 +157,8 @@ Page atlas_page(const std::vector<AtlasEntry>& entries, const std::string& comma
   page.sections.push_back({"Laws",
                            {laws_table(law_rows(entries),
                                        "Fitted to cameras with limited bandwidth: error = (at 1) "
-                                       "bandwidth^-a peak^-b, with residuals of the logarithm.")}});
+                                       "bandwidth^-a peak^-b. The columns rms and max contain "
+                                       "residuals of the logarithm of the error.")}});
   return page;
 }
 

@@ -64,7 +64,7 @@ Table comparison(const Camera& camera, const DesignResult& result) {
       .caption = fmt::format(
           "Error: geometric mean of the {} depth error over the {} of {} light levels at which the "
           "best code has at most {:.0f} % outliers (off by more than {:.2g} m). Ratio: error "
-          "relative to the best code over all levels, by which codes are ranked.",
+          "over all levels, relative to the best code; codes are ranked by this error.",
           name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
           best.outlier_threshold_m),
       .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},

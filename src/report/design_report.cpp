@@ -39,10 +39,11 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
   Table table{
       .id = "operating-multipath",
       .caption = fmt::format(
-          "Geometric means over the operating points: {} error of single returns (E1), error with "
-          "a second return of ratio {} to {} at a delay of {} to {} m with single-path decoding "
-          "(E2), and its circular error with two-return decoding. Codes are ranked by E1^{:.3g} "
-          "E2^{:.3g}; two-return errors much larger than those of standard codes are penalized.",
+          "Geometric means over the operating points. E1: {} error of single returns. E2: error "
+          "with a second return of ratio {} to {} at a delay of {} to {} m and single-path "
+          "decoding. Two-return: circular error with the same second return and two-return "
+          "decoding. Codes are ranked by E1^{:.3g} E2^{:.3g}; two-return errors much larger than "
+          "those of standard codes are penalized.",
           name_of(kind), returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},

@@ -59,8 +59,8 @@ Table distance_table(std::span<const DepthErrorRow> codes, const std::vector<std
                   "Ratio of the circular error to each bound (geometric mean over the operating "
                   "points). The Cramér-Rao bound limits unbiased estimators of one code, the "
                   "receiver bound all codes of the camera, the direct time-of-flight bound all "
-                  "receivers with this light. The bounds ignore wraps and wrong lobes: an error "
-                  "close to that of guessing can be below them.",
+                  "receivers with this light. The bounds ignore wraps and wrong lobes, so they can "
+                  "exceed large errors, which the unambiguous range limits.",
               .columns = {{"code"},
                           {"error / Cramér-Rao", true},
                           {"error / receiver bound", true},
@@ -191,14 +191,15 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
   add_bound("Cramér-Rao bound", Dash::dot, &PointDepthError::cramer_rao_mae_m);
   add_bound("receiver bound", Dash::dash_dot, &PointDepthError::receiver_bound_mae_m);
   add_bound("direct ToF bound", Dash::dash, &PointDepthError::direct_tof_bound_mae_m);
-  return line_figure({.id = id,
-                      .title = "Circular depth error over light",
-                      .caption = fmt::format(
-                          "At ambient light of {} e/s. Cramér-Rao bound of {}; receiver bound of "
-                          "the camera; direct time-of-flight bound of the light.",
-                          level_text(ambient), first.code)},
-                     series, {.label = "signal", .unit = "e/s", .logarithmic = true},
-                     {.label = "circular depth error", .unit = "mm", .logarithmic = true});
+  return line_figure(
+      {.id = id,
+       .title = "Circular depth error over light",
+       .caption =
+           fmt::format("At ambient light of {} e/s, with the Cramér-Rao bound of {}, the receiver "
+                       "bound of the camera and the direct time-of-flight bound of the light.",
+                       level_text(ambient), first.code)},
+      series, {.label = "signal", .unit = "e/s", .logarithmic = true},
+      {.label = "circular depth error", .unit = "mm", .logarithmic = true});
 }
 
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,

@@ -63,7 +63,7 @@ Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, con
   }
   return image_figure({.id = figure_id("decoded", capture.light),
                        .title = fmt::format("Decoded depth, {}", light_text(capture)),
-                       .caption = "Mean errors above; errors are circular (wrapped).",
+                       .caption = "Titles contain mean errors; all errors are circular.",
                        .alt_text = "Maps of decoded depth and its error"},
                       images,
                       {.label = "depth", .unit = "m", .range = depth_range(scene.truth, camera)},
@@ -85,14 +85,14 @@ std::optional<Figure> averaged_figure(const SceneResult& scene, const std::strin
     if (const SceneDecoding* const d = decoding_of(capture, best_code); d && d->filtered)
       images.push_back({.title = capture.light + " light", .pixels = d->filtered->averaged});
   if (images.empty()) return std::nullopt;
-  return image_figure({.id = "averaged",
-                       .title = "Averaged measurements",
-                       .caption = "Number of measurements that the filter averaged in each pixel, "
-                                  "by variance: smallest at edges and where no light returns.",
-                       .alt_text = "Maps of the number of averaged measurements"},
-                      images,
-                      {.label = "measurements", .map = ColourMap::cividis, .logarithmic = true},
-                      {.max_side = 160});  // smooth images
+  return image_figure(
+      {.id = "averaged",
+       .title = "Averaged measurements",
+       .caption = "Effective number of averaged measurements of each pixel (ratio of "
+                  "variances), which is smallest at edges and where no light returns.",
+       .alt_text = "Maps of the number of averaged measurements"},
+      images, {.label = "measurements", .map = ColourMap::cividis, .logarithmic = true},
+      {.max_side = 160});  // smooth images
 }
 
 std::vector<std::string> error_row(const std::string& light, const std::string& code,
