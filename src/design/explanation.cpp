@@ -46,8 +46,8 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result,
   const Candidate* baseline = best_baseline(result, measure);
   if (baseline) {
     const Estimate gain = gain_over(result, *baseline, measure);
-    text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
-                        baseline->code.name());
+    text += fmt::format(", smaller by a factor of {:.2f} ± {:.2f} than with {}", gain.value,
+                        gain.standard_error, baseline->code.name());
   }
   if (!among.empty()) return text + " (with any number of exposures).";
   if (winner.is_designed()) return text + (baseline ? ", the best standard code." : ".");
@@ -81,7 +81,8 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
   const std::string band =
       harmonics == 0
           ? std::string("unlimited bandwidth")
-          : fmt::format("a bandwidth of {} harmonics (transmitted by at least 4 %)", harmonics);
+          : fmt::format("a bandwidth of {} harmonics (each with a transmission of at least 4 %)",
+                        harmonics);
   return fmt::format(
       "With {} and {} per exposure, it has {} exposure{}{}: more exposures or taps distinguish "
       "more depths, but divide the same light and add read noise.",
