@@ -192,7 +192,7 @@ std::vector<Entry> entries() {
           "nine raw frames in the long-range mode: ToF SDK, mode_info.cpp; 1 ms each is assumed"}}},
        two_tap_camera(10e6, 9e-3)},
       {{"arducam-tof",
-        "Arducam ToF camera, 240 x 180: 37.5 MHz, the mode of 4 m, four phases",
+        "Arducam ToF camera in its 4 m mode, 240 x 180: 37.5 MHz, four phases",
         "sinusoid-k4",
         {{"fundamental_frequency_hz",
           "Arducam's SDK: _f_mod = 375e5 for a range of 4 (Arducam_tof_camera, issue 62)"}}},

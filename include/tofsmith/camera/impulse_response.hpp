@@ -70,7 +70,8 @@ inline void describe(FieldVisitor& fields, ImpulseResponse& response) {
                    .required("[0.1, 0.5, 0.3, 0.1]")
                    .only(is_file && !has_file, "kind = \"file\" and no file"),
                response.samples);
-  Key time_step("time_step_s", "Time between samples; of a file without times", above(0));
+  Key time_step("time_step_s",
+                "Time between samples, or between the values of a file without times", above(0));
   if (!has_file) time_step.required("1e-9");
   fields.value(time_step.only(is_file, "kind = \"file\""), response.time_step_s);
 }

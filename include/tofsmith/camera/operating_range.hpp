@@ -138,13 +138,13 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                    .usually(1e2, 1e8),
                range.ambient_e_per_s);
   fields.choice(Key("error",
-                    "Definition of the depth error: the shorter way around the range, or linear "
-                    "as in the paper")
+                    "Definition of the depth error: circular (the shorter way around the range), "
+                    "or linear as in the paper")
                     .basic(),
                 range.error, depth_error_kinds);
   fields.choice(Key("statistic",
-                    "Statistic by which design ranks codes, and which designed rows minimize: mean "
-                    "absolute or root mean square error"),
+                    "Statistic by which design ranks codes and optimizes rows: mean absolute or "
+                    "root mean square error"),
                 range.statistic, error_statistics);
   fields.value(Key("albedo",
                    "Factor of the signal; \"uniform\": a fresh draw in (0, 1) for every "
