@@ -146,8 +146,11 @@ void add_atlas_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<AtlasArguments>();
   CLI::App* command = app.add_subcommand(
       "atlas", "browse precomputed best codes by bandwidth, peak factor, taps and exposures");
-  command->add_option("--taps", arguments->taps, "numbers of taps (1,2)")->delimiter(',');
-  command->add_option("--exposures", arguments->exposures, "numbers of exposures (3,4)")
+  command->add_option("--taps", arguments->taps, "numbers of taps, such as 1,2 (all)")
+      ->delimiter(',');
+  command
+      ->add_option("--exposures", arguments->exposures,
+                   "numbers of exposures, such as 3,4 (the best)")
       ->delimiter(',');
   command->add_option("--peak", arguments->peak, "peak factor, or a range from:to");
   command->add_option(

@@ -155,14 +155,14 @@ void add_calibrate_temperature(CLI::App& calibrate, Session& session) {
   CLI::Option* const sensor_column = command->add_option(
       "--sensor-column", arguments->sensor_column,
       "name or number (from 1) of the column with the temperature of the sensor; the drifts with "
-      "both temperatures are fitted together (one temperature)");
+      "both temperatures are fitted together (none: one temperature of the camera)");
   command->add_option("--light-column", arguments->light_column,
                       "name or number (from 1) of the column with the temperature of the light "
                       "source, or of the camera (the only other column)");
   command->add_option("--code", arguments->code, "code that the camera used")->required();
   command->add_option("--reference-c", arguments->reference_c,
-                      "reference temperature, at which depth and signal are not corrected: that of "
-                      "the other calibrations [degrees C] (the mean of the frames)");
+                      "temperature of the other calibrations [degrees C], at which depth and "
+                      "signal are not corrected (the mean of the frames)");
   command
       ->add_option("--sensor-reference-c", arguments->sensor_reference_c,
                    "reference temperature of the sensor [degrees C] (the mean of the frames)")

@@ -124,7 +124,7 @@ void add_export_command(CLI::App& app, Session& session) {
       ->delimiter(',')
       ->expected(2);
   const FieldOptions evaluate(*command, arguments->evaluate);
-  evaluate.add("trials", "--trials");
+  evaluate.add("trials", "--trials")->description("trials per operating point");
   evaluate.add("seed", "--seed");
   command->add_flag("--no-loss", arguments->no_loss,
                     "do not evaluate the depth error with the exported waveforms");

@@ -122,7 +122,6 @@ ValueText value_text(const CLI::Option& option) {
     return {rule, ""};
   }
   if (rule.starts_with(kind + " ")) rule.erase(0, kind.size() + 1);
-  if (rule == "SHARE") rule = "a share, or a percentage such as 1%";
   const bool is_number = kind == "FLOAT" || kind == "INT" || kind == "UINT";
   return {is_number ? "NUMBER" : "VALUE", rule};
 }
@@ -138,7 +137,7 @@ std::string remarks(const CLI::Option& option, const std::string& rule) {
       !option.get_positional() && option.get_description().find("repeatable") == std::string::npos)
     all.emplace_back("repeatable");
   for (const CLI::Option* other : option.get_needs())
-    all.push_back("needs " + option_names(*other));
+    all.push_back("requires " + option_names(*other));
   for (const CLI::Option* other : option.get_excludes())
     all.push_back("not with " +
                   (other->get_positional() ? other->get_single_name() : option_names(*other)));

@@ -84,7 +84,7 @@ inline CLI::Validator share_or_percentage(double min, double max) {
             text = fmt::format("{}", value);
             return std::string();
           },
-          "SHARE"};
+          ""};
 }
 
 }  // namespace tofsmith::apps

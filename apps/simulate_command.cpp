@@ -381,7 +381,9 @@ void add_simulate_command(CLI::App& app, Session& session) {
                    "signal of albedo 1 at the reference distance [e/s] (from the camera's "
                    "[optics], or the middle of its operating points)")
       ->transform(number_in("e/s"));
-  command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (as --signal)")
+  command
+      ->add_option("--ambient", arguments->ambient_e_per_s,
+                   "ambient light [e/s] (from the same source as --signal)")
       ->transform(number_in("e/s"));
   command
       ->add_option(

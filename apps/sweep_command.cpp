@@ -162,7 +162,7 @@ void add_sweep_command(CLI::App& app, Session& session) {
       ->allow_extra_args(false);
   command->add_option("--report", arguments->report, "write a page (.html)");
   command->add_option("--shard", arguments->shard,
-                      "i/n: compute only the i-th of n parts, whose stores sweep merge combines");
+                      "i/n: compute only the i-th of n parts; sweep merge combines their stores");
   command->add_flag("--yes", arguments->yes, "allow more than 1e7 items");
 
   auto merging = std::make_shared<MergeArguments>();

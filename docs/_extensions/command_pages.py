@@ -32,7 +32,7 @@ def rule_of(entry: Entry) -> str:
         return f"From {between[1]} to {between[2]}."
     if entry.rule.startswith("{"):
         return "One of " + ", ".join(f"`{word}`" for word in entry.rule[1:-1].split(",")) + "."
-    if entry.rule in ("", "SHARE") or entry.rule in entry.description:
+    if not entry.rule or entry.rule in entry.description:
         return ""
     return f"Must be {plain(entry.rule.lower())}."
 
@@ -47,7 +47,7 @@ def facts_of(entry: Entry) -> str:
     if entry.repeats and "repeatable" not in entry.description:
         facts.append("Takes several.")
     if entry.needs:
-        facts.append("Needs " + " and ".join(f"`{name}`" for name in entry.needs) + ".")
+        facts.append("Requires " + " and ".join(f"`{name}`" for name in entry.needs) + ".")
     if entry.excludes:
         facts.append("Not with " + " or ".join(f"`{name}`" for name in entry.excludes) + ".")
     return " ".join(filter(None, facts))

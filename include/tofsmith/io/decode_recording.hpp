@@ -107,14 +107,14 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"also write points of pixels that are not ok (.ply, .pcd)"}),
       Field("lens", r.lens, FieldMark::from_above),
       Field("view_deg", r.view_deg, open(0, 180),
-            Help{"horizontal angle of view for points and z if the camera has no [lens]"},
-            IfAbsent{"points and z require a lens"}),
+            Help{"horizontal angle of view; points and z require it if the camera has no [lens]"},
+            IfAbsent{"none"}),
       Field("undistort", r.undistort,
             Help{"write undistorted planes (nearest pixel); pixels outside the lens's view are "
                  "invalid"}),
       Field("frame", r.frame, at_least(0),
-            Help{"index of the only frame to decode, from 0; counts means or merged exposures if "
-                 "these are used"},
+            Help{"index of the only frame to decode, from 0; with average or hdr, the index of a "
+                 "mean or merged frame"},
             IfAbsent{"all"}),
       Field("stack", r.stack,
             Help{"write all frames to one .npy (F,H,W), and each plane except depth to "
@@ -123,10 +123,10 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"average this many consecutive frames before decoding; the last group may be "
                  "smaller"}),
       Field("hdr", r.hdr,
-            Help{"merge groups of frames with these exposures relative to the shortest (the "
-                 "camera's), e.g. 1,4,16"}),
+            Help{"merge groups of frames with these exposures, as multiples of the camera's, e.g. "
+                 "1,4,16; the shortest is 1"}),
       Field("sliding", r.sliding,
-            Help{"decode every exposure with the preceding ones of a frame: one depth image per "
+            Help{"decode a sliding window of exposures instead of frames: one depth image per "
                  "exposure"}),
       Field("stray_light", r.stray_light,
             Help{"stray-light kernel from calibrate stray-light (.npy .npz .exr .pfm), removed "

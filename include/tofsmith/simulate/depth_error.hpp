@@ -53,7 +53,7 @@ struct EvaluateOptions {
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
   return std::tuple(
       Field("trials", o.trials, closed(2, 4e9),
-            Help{"trials per operating point; initial number with target_standard_error"}),
+            Help{"trials per operating point; with target_standard_error, the initial number"}),
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
