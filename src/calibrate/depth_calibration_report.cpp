@@ -56,12 +56,12 @@ Figure error_figure(const CalibratedDepth& found) {
   for (const Series& curve : series) colours.style(curve.name);
   series.push_back(points("error", found.picture.before_m));
   series.push_back(points("remaining error", found.picture.after_m));
-  return line_figure({.id = "error-over-depth",
-                      .title = "Depth error over depth",
-                      .caption = "Without its mean. Curve: correction in the middle of the image "
-                                 "at the usual signal. Points: means over the image."},
-                     series, {.label = "decoded depth", .unit = "m"},
-                     {.label = "depth error", .unit = "mm"});
+  return line_figure(
+      {.id = "error-over-depth",
+       .title = "Depth error over depth",
+       .caption = "Depth error minus its mean over all pixels. Curve: correction in the "
+                  "middle of the image at the usual signal. Points: means over the image."},
+      series, {.label = "decoded depth", .unit = "m"}, {.label = "depth error", .unit = "mm"});
 }
 
 /// Returns a figure of frame values over temperature, with the fitted line.
@@ -158,7 +158,8 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
   page.sections.push_back(
       {"Over the image",
        {image("error-image", "Depth error",
-              "Without its mean, over all frames. Pixels that do not fit the model are empty.")}});
+              "Mean over all frames, minus the mean over all pixels. Pixels that do not fit the "
+              "model are empty.")}});
   return finished_calibration_page(std::move(page), found.notes, command_line);
 }
 

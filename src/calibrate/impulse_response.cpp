@@ -359,8 +359,8 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
         clipped, sign * values.maxCoeff()));
   if (!result.fit_is_good())
     result.notes.push_back(fmt::format(
-        "no parametric kind describes the record to its noise (best {}, residual {:.2g} % of the "
-        "height, noise {:.2g} %); use the measured response (--as file)",
+        "no parametric kind describes the record down to its noise (best {}, residual {:.2g} % of "
+        "the height, noise {:.2g} %); use the measured response (--as file)",
         name_of(result.fits.front().response.kind), 100 * result.fits.front().residual_rms,
         100 * result.noise_rms / result.height));
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);

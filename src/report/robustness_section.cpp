@@ -54,8 +54,8 @@ Section robustness_section(const std::vector<JudgedCode>& codes) {
   const bool is_linear = codes.empty() || codes.front().robustness.kind == DepthErrorKind::linear;
   std::string caption = fmt::format(
       "{} depth error (geometric mean over the operating points) on cameras that differ from their "
-      "description: with a decoder that knows the difference (calibrated) and with one that does "
-      "not (uncalibrated). All use the same depths and noise.",
+      "description, decoded with the correlation functions of the actual camera (calibrated) and "
+      "of the described camera (uncalibrated). All use the same depths and noise.",
       is_linear ? "Linear" : "Circular");
   return {"Robustness",
           {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};

@@ -113,9 +113,9 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
          {table_of_rows(
              "loss",
              fmt::format(
-                 "{} depth error of the nominal waveforms, of the actual ones with a decoder that "
-                 "knows them, and with one that assumes the nominal ones (uncalibrated). All use "
-                 "the same depths and noise, {} trials each, seed {}.",
+                 "{} depth error with nominal waveforms, with actual waveforms, and with actual "
+                 "waveforms that are decoded as if they were nominal (uncalibrated). All use the "
+                 "same depths and noise, {} trials each, seed {}.",
                  kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->nominal.trials,
                  loss->nominal.seed),
              generator_loss_rows(*loss, kind), {0})}});

@@ -196,11 +196,11 @@ std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& ru
                        const ChipSearchOptions& options, bool is_found) {
   return fmt::format(
       "All codes of {} exposure{}, {} taps of {} duty and {} chips were searched: {:.0f} of {:.4g} "
-      "are different after symmetry. {} by the metric among the unambiguous codes with sufficient "
-      "margin.",
+      "are different after symmetry. Among the unambiguous codes with sufficient margin, {} by the "
+      "metric.",
       options.exposures, options.exposures == 1 ? "" : "s", rules.taps,
       options.equal_duty ? "equal" : "any", rules.chips, counts.after_symmetry, counts.raw,
-      is_found ? "No code is better than the finalists" : "None can be ranked");
+      is_found ? "no code is better than the finalists" : "none can be ranked");
 }
 
 }  // namespace

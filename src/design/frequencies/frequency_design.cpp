@@ -131,7 +131,7 @@ SearchRecord record_of(const FrequencySearch& search, const FrequencyChoice& cho
               "Of all {} sets of 1 to {} of {} frequencies with {} {}, {} repeat within the "
               "working distance and {} have a lower bound above the best {} estimates. The others "
               "were estimated with exposure times optimized by descent. No other set has a better "
-              "estimate; trials selected among the best {}.",
+              "estimate; trials selected the result among the best {}.",
               search.sets, choice.max_frequencies, choice.frequencies.size(), choice.duties.size(),
               choice.duties.size() == 1 ? "duty" : "duties", search.ambiguous,
               search.pruned_by_bound, search.best.size(), search.best.size())};
