@@ -83,7 +83,7 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
                  "search: exhaustive, on a chip clock; atlas: no search, rank known codes only; "
                  "frequencies: square waves at frequencies of the chip"}),
       Field("exposures", o.exposures, closed(1, 16),
-            Help{"numbers of exposures to try (3,4,5), or of rows"},
+            Help{"numbers of exposures or rows to try, such as 3,4,5"},
             IfAbsent{"suitable numbers for the camera"}),
       Field("target", o.target, FieldMark::apart),
       Field("factorize", o.factorize, Help{"options of factorization"}),

@@ -66,13 +66,14 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("polish_steps", o.polish_steps, at_least(0), Help{"gradient steps of polish"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),
       Field("two_return_weight", o.two_return_weight, at_least(0),
-            Help{"weight of the error decoded as two returns in the search, so that codes can be "
-                 "decoded so; 0: none"},
+            Help{"weight of the error of two-return decoding in the search, so that the code "
+                 "supports this decoding; 0: none"},
             multipath),
-      Field("max_two_return_loss", o.max_two_return_loss, at_least(1).or_infinity(),
-            Help{"error of two-return decoding that a code may have, relative to the best "
-                 "baseline that can be decoded so"},
-            multipath));
+      Field(
+          "max_two_return_loss", o.max_two_return_loss, at_least(1).or_infinity(),
+          Help{"largest accepted error of two-return decoding, relative to the best baseline that "
+               "supports it"},
+          multipath));
 }
 
 /// Optimizes all modulations and demodulations jointly for the depth error of a camera: geometric
