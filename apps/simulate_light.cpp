@@ -58,8 +58,8 @@ void MultipathLightArguments::add_to(CLI::App& command) {
       ->group(for_experts);
   CLI::Option* transient = command
                                .add_option("--transient", transient_,
-                                           "histogram over time that distributes the signal of a "
-                                           "pixel (.npy): (T,) for all pixels, or (H,W,T)")
+                                           "histogram of light over time that distributes the "
+                                           "signal (.npy): (T,) for all pixels, or (H,W,T)")
                                ->group(for_experts);
   command
       .add_option("--transient-bin-s", transient_bin_s_, "duration of one bin of --transient [s]")
