@@ -246,7 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Views, SceneTomlRefusesBesideABall,
     testing::Values(
-        BadScene{"[view]\nwidth_px = 0", "s.toml:5:12: view.width_px: found 0; expected 1 to 65536"},
+        BadScene{"[view]\nwidth_px = 0",
+                 "s.toml:5:12: view.width_px: found 0; expected 1 to 65536"},
         BadScene{"[view]\nwidth_px = 60000\nheight_px = 60000", "s.toml:6:13: view.height_px: "},
         BadScene{"[view]\nhorizontal_angle_deg = 180",
                  "s.toml:5:24: view.horizontal_angle_deg: found 180; expected more than 0 and"},
