@@ -39,7 +39,8 @@ int trials_per_point(const Camera& camera) {
 }
 
 double circular_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options) {
-  return geometric_mean_error_m(evaluate(code, camera, options), DepthErrorKind::circular);
+  return geometric_mean_error_m(evaluate(code, camera, options),
+                                {DepthErrorKind::circular, camera.operating.statistic});
 }
 
 double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {

@@ -159,7 +159,7 @@ class CodePool {
 
   double error_of(const CodeSet& code, const Camera& camera, int trials) const {
     const EvaluateOptions judging{.trials = trials, .seed = options_.seed + 2, .bounds = false};
-    return geometric_mean_error_m(evaluate(code, camera, judging), camera.operating.error);
+    return geometric_mean_error_m(evaluate(code, camera, judging), camera.operating.measure());
   }
 
   RequirementOptions options_;

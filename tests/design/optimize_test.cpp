@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "design/optimize/optimize_pool.hpp"
 #include "design/optimize/optimized_code.hpp"
 #include "same_code.hpp"
 #include "tofsmith/core/error.hpp"
@@ -244,6 +245,18 @@ TEST(Optimize, HistoryNeverRisesAndStopsEarlyWithoutGain) {
     EXPECT_EQ(found.search->steps[i].work, found.search->steps[i - 1].work + 1);
   }
   EXPECT_THAT(found.message, HasSubstr("stopped early without further gain"));
+}
+
+TEST(BestOfStarts, TakesTheFirstEntriesOfEveryStart) {
+  std::vector<PoolEntry> pool(5);
+  const std::vector<std::size_t> starts = {7, 7, 7, 2, 7};
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    pool[i].start = "random gates, one pulse";
+    pool[i].start_index = starts[i];
+  }
+  EXPECT_THAT(best_of_starts(pool, 3, 2), testing::ElementsAre(0, 1, 3));
+  EXPECT_THAT(best_of_starts(pool, 2, 2), testing::ElementsAre(0, 1));
+  EXPECT_THAT(best_of_starts(pool, 9, 1), testing::ElementsAre(0, 3));
 }
 
 TEST(OptimizableExposures, AreTheNumbersOfTheBestAtlasCodesUnlessListed) {

@@ -39,17 +39,21 @@ bool separates_two_returns(const CodeSet& code, const Camera& camera) {
 std::vector<PoolEntry> entries_to_finish(const DesignProblem& problem, const OptimizePool& pool,
                                          const Camera& camera, const PoolStage& stage,
                                          const Sharpness& sharpness) {
-  constexpr std::size_t max_others = 3;
+  constexpr std::ptrdiff_t max_others = 3;
   const std::vector<PoolEntry>& all = pool.entries();
-  std::vector<PoolEntry> chosen = best_of_starts(all, static_cast<std::size_t>(stage.refined), 2);
-  const std::size_t best = chosen.size();
+  std::vector<PoolEntry> chosen, others;
+  const std::vector<std::size_t> best =
+      best_of_starts(all, static_cast<std::size_t>(stage.refined), 2);
+  for (const std::size_t i : best) chosen.push_back(all[i]);
   if (!camera.operating.multipath) return chosen;
-  for (std::size_t k = best; k < all.size() && chosen.size() < best + max_others; ++k) {
+  for (std::size_t i = 0; i < all.size() && std::ssize(others) < max_others; ++i) {
+    if (std::find(best.begin(), best.end(), i) != best.end()) continue;
     const SwitchedCode code =
-        binarized(problem, render(problem.space, all[k].parameters, sharpness));
+        binarized(problem, render(problem.space, all[i].parameters, sharpness));
     if (separates_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
-      chosen.push_back(all[k]);
+      others.push_back(all[i]);
   }
+  chosen.insert(chosen.end(), others.begin(), others.end());
   return chosen;
 }
 
@@ -171,13 +175,15 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   for (const PoolStage& stage : stages) weights.push_back(stage.starts);
   const ProgressParts of_stages(progress, weights);
   std::vector<Candidate> candidates;
+  std::uint64_t finished_before = 0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const ProgressParts parts(of_stages[s], {40, 35, 10, 15});
     pool.run_starts(stages[s], also, parts[0]);
     pool.run_hops(stages[s], parts[1]);
     pool.refine(stages[s], parts[2]);
     std::vector<FinishedCode> finished = finished_codes(problem, judge, pool, camera, options,
-                                                        stages[s], candidates.size(), parts[3]);
+                                                        stages[s], finished_before, parts[3]);
+    finished_before += finished.size();
     std::vector<Candidate> made =
         candidates_of(problem, pool, camera, options, std::move(finished));
     std::move(made.begin(), made.end(), std::back_inserter(candidates));

@@ -115,14 +115,14 @@ WaveformParameters softened(WaveformParameters parameters, double limit) {
   return parameters;
 }
 
-std::vector<PoolEntry> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
-                                      std::ptrdiff_t of_each) {
-  std::vector<PoolEntry> best;
-  for (const PoolEntry& entry : pool) {
-    const auto from_same = std::count_if(best.begin(), best.end(), [&](const PoolEntry& other) {
-      return other.start == entry.start;
+std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
+                                        std::ptrdiff_t of_each) {
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < pool.size() && best.size() < count; ++i) {
+    const auto from_same = std::count_if(best.begin(), best.end(), [&](std::size_t other) {
+      return pool[other].start_index == pool[i].start_index;
     });
-    if (from_same < of_each && best.size() < count) best.push_back(entry);
+    if (from_same < of_each) best.push_back(i);
   }
   return best;
 }
@@ -141,9 +141,9 @@ PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
   const WaveformSpace& space = problem.space;
   const int columns = space.columns();
   const auto entries = static_cast<int>(pool.size());
-  const std::vector<PoolEntry> bases = best_of_starts(pool, 3, 1);
+  const std::vector<std::size_t> bases = best_of_starts(pool, 3, 1);
   const int base = random.uniform() < 0.5 ? 0 : below(static_cast<int>(bases.size()), random);
-  PoolEntry next = softened(bases[static_cast<std::size_t>(base)]);
+  PoolEntry next = softened(pool[bases[static_cast<std::size_t>(base)]]);
   const int e = below(space.exposures, random);
   const double kind = random.uniform();
   if (kind < 0.3) {
@@ -228,19 +228,19 @@ void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> a
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
       OptimizeStart start = optimize_start(*problem_, also, static_cast<int>(i), random);
-      entries.push_back({std::move(start.parameters), {}, std::move(start.name)});
+      entries.push_back({std::move(start.parameters), {}, std::move(start.name), i});
     }
     descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first, shared);
     steps_ += std::ssize(entries) * options_.steps_per_start;
     keep(std::move(entries));
   }
   starts_done_ = count;
+  continued_.assign(entries_.begin(),
+                    entries_.begin() + std::min<std::ptrdiff_t>(stage.refined, std::ssize(entries_)));
 }
 
 void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
   const auto count = static_cast<std::size_t>(stage.hops);
-  // The first hops continue the short descents of the best starts.
-  const std::size_t continued = std::min(static_cast<std::size_t>(stage.refined), entries_.size());
   int without_gain = 0;
   ended_early_ = false;
   SharedProgress shared(progress, static_cast<double>(count - hops_done_) * options_.steps_per_hop,
@@ -249,7 +249,9 @@ void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);
-      entries.push_back(i < continued ? softened(entries_[i]) : hop(*problem_, entries_, random));
+      const std::size_t of_stage = i - hops_done_;
+      entries.push_back(of_stage < continued_.size() ? softened(continued_[of_stage])
+                                                     : hop(*problem_, entries_, random));
     }
     descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first, shared);
     steps_ += std::ssize(entries) * options_.steps_per_hop;
@@ -268,10 +270,11 @@ void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
 
 void OptimizePool::refine(const PoolStage& stage, const Progress& progress) {
   if (stage.refinement_steps == 0) return;
-  std::vector<PoolEntry> entries =
-      best_of_starts(entries_, static_cast<std::size_t>(stage.refined), 2);
-  for (PoolEntry& entry : entries)
-    entry.parameters = softened(std::move(entry.parameters), refinement_softness);
+  std::vector<PoolEntry> entries;
+  for (const std::size_t i : best_of_starts(entries_, static_cast<std::size_t>(stage.refined), 2)) {
+    entries.push_back(entries_[i]);
+    entries.back().parameters = softened(entries_[i].parameters, refinement_softness);
+  }
   SharedProgress shared(progress, static_cast<double>(entries.size()) * stage.refinement_steps,
                         "refinement");
   descend_all(entries, stage.refinement_steps, 0.03, Phase::refining, refinements_done_, shared);

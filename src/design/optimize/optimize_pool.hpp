@@ -50,13 +50,15 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
 struct PoolEntry {
   WaveformParameters parameters;
   CodeScore score;
-  std::string start;
+  std::string start;            ///< name; random starts share one
+  std::size_t start_index = 0;  ///< differs between all starts
 };
 
-/// Returns up to `count` entries, best first, with at most `of_each` from the same start, so that
-/// several local minima compete. Without this limit, most entries are from the best start.
-std::vector<PoolEntry> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
-                                      std::ptrdiff_t of_each);
+/// Returns the indices of up to `count` entries, best first, with at most `of_each` from the same
+/// start, so that several local minima compete. Without this limit, most entries are from the best
+/// start.
+std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
+                                        std::ptrdiff_t of_each);
 
 /// Jumps out of a local minimum: softens the best entry of one of the best three starts, replaces
 /// one pair of waveforms (by a random pair or from another entry) or rotates its gates against its
@@ -110,7 +112,8 @@ class OptimizePool {
   double bin_m_;
   CodeJudge quick_judge_;  ///< few trials; rejects codes that are clearly worse than the best
   CodeJudge judge_;
-  std::vector<PoolEntry> entries_;
+  std::vector<PoolEntry> entries_;    ///< best first
+  std::vector<PoolEntry> continued_;  ///< entries after the starts, which the first hops continue
   std::vector<SearchStep> history_;
   std::int64_t steps_ = 0;
   std::size_t starts_done_ = 0, hops_done_ = 0, refinements_done_ = 0;
