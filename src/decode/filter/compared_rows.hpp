@@ -14,8 +14,8 @@ namespace tofsmith {
 inline constexpr int patch_side = 2 * patch_reach + 1;
 inline constexpr int patch_pixels = patch_side * patch_side;
 
-/// Returns the chi^2 quantile with the tail probability of `sigma` standard deviations of a normal
-/// distribution (Wilson-Hilferty approximation).
+/// Returns the chi^2 quantile with the tail probability of `sigma` standard deviations
+/// (Wilson-Hilferty approximation).
 inline float chi2_limit(int freedom, double sigma) {
   const double spread = 2.0 / (9.0 * freedom);
   return static_cast<float>(freedom * std::pow(1.0 - spread + sigma * std::sqrt(spread), 3));
@@ -30,18 +30,18 @@ struct ChangeTest {
       : certain(chi2_limit(freedom, certain_share * max_sigma)),
         most(chi2_limit(freedom, max_sigma)) {}
 
-  /// Fraction of the past that is kept, in [0, 1].
+  /// Fraction of the past that is kept.
   float share(float chi2) const { return std::clamp((most - chi2) / (most - certain), 0.0f, 1.0f); }
   float beyond(float chi2) const { return std::max(0.0f, chi2 - certain); }
 
   float certain, most;
 };
 
-/// sums[i] += values[i] (time_kernel.cpp).
+/// Adds values to sums (time_kernel.cpp).
 void add_to_sums(const float* values, std::ptrdiff_t count, float* sums);
 
-/// Rows of a strip and of the patches around it, with a margin at both ends. Planes: chi^2, usable
-/// flag, and K differences in standard deviations.
+/// Rows of a strip and of the patches around it. Planes: chi^2, usable flag, and K differences in
+/// standard deviations.
 class ComparedRows {
  public:
   ComparedRows(int rows, int width, int measurements, std::vector<float>& room)
@@ -55,19 +55,18 @@ class ComparedRows {
            static_cast<std::size_t>(width + 2 * patch_reach);
   }
 
-  /// Pointers to the first pixel of a row (after the margin).
+  /// First pixel of a row.
   float* chi2(int row) { return plane(row, 0) + patch_reach; }
   float* counts(int row) { return plane(row, 1) + patch_reach; }
   /// Distance between measurements [floats].
   std::ptrdiff_t pitch() const { return pitch_; }
   float* difference(int row, int k) { return plane(row, 2 + k) + patch_reach; }
 
-  /// Sets a row to the given chi^2, with no usable pixels.
   void clear(int row, float chi2) {
     std::fill_n(plane(row, 0), pitch_, chi2);
     std::fill_n(plane(row, 1), (planes_ - 1) * pitch_, 0.0f);
   }
-  /// Adds the rows of a patch; returns the index of the row with the sums.
+  /// Adds the rows of a patch; returns the index of the sums.
   int add_rows(int first_row) {
     float* const sums = plane(rows_, 0);
     std::copy_n(plane(first_row, 0), planes_ * pitch_, sums);

@@ -10,7 +10,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/filter_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/filter/own_light-inl.hpp"
@@ -22,8 +21,8 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Computes lambda for the pixels of a row and their neighbours at offset `away`; rank - 1 if one
-/// of them is not usable.
+/// Computes lambda for pixels and their neighbours at offset `away`; rank - 1 if one of them is not
+/// usable.
 HWY_INLINE void test_row(const SimilarityTest& test, std::ptrdiff_t at, std::ptrdiff_t away,
                          int columns, float* lambda) {
   const Vector half = all(0.5f), four = all(4.0f),
@@ -64,7 +63,7 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
   for (std::size_t i = 0; i < half_window.size(); ++i) {
     const int down = half_window[i].rows * strip.step, right = half_window[i].columns * strip.step;
     const std::ptrdiff_t away = down * grid.stride + right;
-    const int top = strip.first_row - down;  // first row whose weights are used
+    const int top = strip.first_row - down;
     const int test_rows = strip.rows + down + 2 * reach;
     for (int r = 0; r < test_rows; ++r) {
       float* const row = lambda + r * weights.stride;
@@ -85,7 +84,7 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
       for (int x = 0; x < grid.width; x += lanes_of()) {
         Vector s = load(sums + r * weights.stride + x);
         for (int n = 1; n < side; ++n) s = hn::Add(s, load(sums + (r + n) * weights.stride + x));
-        // A pair's own noise must not select it; only differences too large for noise count.
+        // Only differences too large for noise count: a pair's own noise must not select it.
         const Vector own = load(lambda + (r + reach) * weights.stride + x + reach);
         s = hn::Sub(s, hn::Min(own, noise_limit));
         const Vector w = weight_of(hn::MulSub(s, by, expected), inverse_max);
@@ -96,7 +95,6 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
   }
 }
 
-/// Computes weighted means of `Count` planes from the inverse sums of weights.
 template <int Count>
 HWY_INLINE void add_planes(const WeightedSums& sums, int first, const RowPairs& pairs, int width,
                            std::ptrdiff_t row, const float* inverse_sum) {
@@ -119,7 +117,6 @@ HWY_INLINE void add_planes(const WeightedSums& sums, int first, const RowPairs& 
   }
 }
 
-/// Computes the inverse sums of weights and the variances of the weighted means.
 HWY_INLINE void add_variances(const WeightedSums& sums, const RowPairs& pairs, int width,
                               std::ptrdiff_t row, float* inverse_sum) {
   for (int x = 0; x < width; x += lanes_of()) {
@@ -139,8 +136,8 @@ HWY_INLINE void add_variances(const WeightedSums& sums, const RowPairs& pairs, i
   }
 }
 
-/// Computes the mean of a plane multiplied by its depth beyond the slope. The sign is opposite for
-/// neighbours behind, because weights are stored for the pair as seen from the other pixel.
+/// Computes the mean of a plane multiplied by its depth beyond the slope, which has the opposite
+/// sign for neighbours behind.
 HWY_INLINE void add_shifted(const WeightedSums& sums, const RowPairs& pairs, int width,
                             std::ptrdiff_t row, const float* inverse_sum) {
   for (int x = 0; x < width; x += lanes_of()) {
@@ -155,7 +152,7 @@ HWY_INLINE void add_shifted(const WeightedSums& sums, const RowPairs& pairs, int
   }
 }
 
-/// Layout of the scratch rows: inverse sums, then the row's own weights and shifts.
+/// Layout: inverse sums, then the row's own weights and shifts.
 BalancedRow balanced_row(const FilterGrid& grid, const FilterStrip& strip,
                          const PairWeights& weights, int r) {
   constexpr auto both_ways = static_cast<std::ptrdiff_t>(2 * half_window.size());
@@ -291,7 +288,6 @@ HWY_EXPORT(find_own_light);
 HWY_EXPORT(fuses);
 
 namespace {
-/// Pair differences above this many standard deviations are not noise.
 constexpr double own_difference_sigma = 3.0;
 
 std::size_t row_floats(const FilterGrid& grid) {

@@ -11,35 +11,31 @@
 
 namespace tofsmith {
 
-/// Layout of the planes of a frame, one float per pixel, with a margin on all sides in which
-/// `usable` is 0. The pointer of a plane points to its first pixel. The margin right of a row is
-/// the left margin of the next row, and the margin below a plane is the upper margin of the next
-/// plane.
+/// Layout of the planes of a frame, one float per pixel, with margins in which `usable` is 0. The
+/// margin right of a row is the left margin of the next row; the margin below a plane is the upper
+/// margin of the next plane. Pointers to planes point to the first pixel.
 struct FilterGrid {
   int height = 0;
   int width = 0;
   std::ptrdiff_t stride = 0;  ///< between rows [floats]
-  int margin = 0;             ///< columns of the left margin
-  int rows_above = 0;         ///< rows of the upper margin
+  int margin = 0;
+  int rows_above = 0;
 
   std::ptrdiff_t plane_floats() const { return (height + rows_above) * stride; }
-  /// Offset of the first pixel of a plane from the beginning of its margin.
   std::ptrdiff_t origin() const { return rows_above * stride + margin; }
-  /// Size of `planes` planes with all their margins.
   std::size_t floats(int planes) const {
     return static_cast<std::size_t>(planes * plane_floats() + rows_above * stride + margin);
   }
 };
-/// Largest distance between a pixel and the pixels that determine its slope, in rows or columns.
+/// Reach of the pixels that determine a slope, in rows or columns.
 inline constexpr int slope_reach = 12;
-/// Number of rows and columns by which windows extend beyond a frame. Columns include a vector.
+/// Rows and columns by which windows extend beyond a frame. Columns include a vector.
 constexpr int margin_rows(int largest_step) { return std::max(2 * largest_step + 2, slope_reach); }
 constexpr int margin_columns(int largest_step) {
   return whole_vectors(margin_rows(largest_step)) + widest_vector;
 }
 
-/// Offset within one half of a window of 5 x 5 pixels without its centre; the other half is the
-/// opposite one.
+/// Offset within one half of a window of 5 x 5 pixels without its centre.
 struct WindowStep {
   int rows = 0;
   int columns = 0;
@@ -59,74 +55,69 @@ inline constexpr std::array<WindowStep, 12> half_window = {{{0, 1},
 inline constexpr int window_reach = 2;
 inline constexpr int patch_reach = 2;
 
-/// Rows of a frame that are processed together.
+/// Rows that are processed together.
 struct FilterStrip {
   int first_row = 0;
   int rows = 0;
   int step = 1;  ///< of the window [pixels]
-  /// Number of rows above the strip for which weights are needed.
   int rows_above() const { return window_reach * step; }
 };
 
-/// Weights of the pairs of a strip, w(pixel, pixel + step of half_window), of shape [12][rows above
-/// and rows][width], and the products of weight and depth difference beyond the slope.
+/// Weights w(pixel, pixel + step of half_window) of a strip, (12, rows above and rows, width), and
+/// products of weight and depth difference beyond the slope.
 struct PairWeights {
   float* weight = nullptr;
   float* shifted = nullptr;  ///< null without slopes
   float* scratch = nullptr;  ///< rows of the test, see scratch_floats()
   std::ptrdiff_t stride = 0;
 };
-/// Distance between rows of weights, which have separate margins [floats].
 inline std::ptrdiff_t weight_stride(const FilterGrid& grid) {
   return whole_vectors(grid.width + 2 * grid.margin);
 }
 std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip);
 std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
 
-/// Sets the margins of a row of weights to zero. Vectors that extend into the margins write 0 there
-/// as well, because no pixel of a margin is usable.
+/// Vectors that extend into the margins write 0 there as well, because no pixel of a margin is
+/// usable.
 inline void clear_margins(const FilterGrid& grid, float* row) {
   std::fill_n(row, grid.margin, 0.0f);
   const std::ptrdiff_t end = grid.margin + grid.width;
   std::fill_n(row + end, weight_stride(grid) - end, 0.0f);
 }
 
-/// Returns true if this processor computes products and sums with a single rounding (FMA).
+/// Returns true if this processor has fused multiply-add (FMA).
 bool fuses_products();
 
-/// Inputs of the test of parallelism.
 struct SimilarityTest {
   std::array<const float*, max_measurements> u{};  ///< (rank) planes
   int rank = 0;
   const float* energy = nullptr;         ///< |u|^2 / v
   const float* inverse_sigma = nullptr;  ///< 1 / sqrt(v)
-  const float* usable = nullptr;         ///< 1 or 0
+  const float* usable = nullptr;
   int patch_reach = 0;
   float max_difference_sigma = 0.0f;
 };
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
                    const PairWeights& weights);
 
-/// Converts the sum of lambda over a patch without the pair itself to standard deviations.
+/// Converts the sum of lambda over a patch to standard deviations.
 struct PatchScale {
   PatchScale(int rank, int patch_reach);
 
   float by;           ///< standard deviations per unit of the sum
   float expected;     ///< mean of the sum from noise alone [standard deviations]
-  float noise_limit;  ///< upper limit of a pair's own lambda that noise can cause
+  float noise_limit;  ///< upper limit of a pair's lambda from noise
 };
 
-/// With balanced light, the brighter of two opposite neighbours contributes at most this many times
-/// the light of the other one.
+/// Maximum ratio of the light of a neighbour to that of the opposite one.
 inline constexpr float balanced_light = 3.0f;
-/// Fraction of a shift along the slope that may be wrong.
+/// Relative error of a shift along the slope.
 inline constexpr float slope_error_share = 0.5f;
-/// Minimum squared signal-to-noise ratio of sums that are balanced.
+/// Minimum squared signal-to-noise ratio for balancing.
 inline constexpr float balanced_energy = 25.0f;
 
-/// Balancing of light against errors of slopes. Such errors cancel if equal amounts of light come
-/// from opposite sides of a pixel. They do not cancel at edges and at silhouettes, where pixels
-/// become darker in one direction. Balancing removes them there, but increases the noise. Each
+/// Balances light from opposite sides of a pixel, so that errors of slopes cancel at edges and
+/// silhouettes, where pixels become darker in one direction. Balancing increases the noise, so each
 /// pixel uses the mixture of both sums that minimizes error plus noise.
 struct LightBalance {
   const float* depth = nullptr;  ///< [bin], in [0, N)
@@ -139,59 +130,53 @@ struct LightBalance {
   int step = 0;  ///< of the window [pixels]
 };
 
-/// Planes to be averaged with the weights: inputs, and their weighted means as outputs.
 struct WeightedSums {
   std::array<const float*, max_measurements + 1> in{};
   std::array<float*, max_measurements + 1> out{};
   int planes = 0;
   const float* variance = nullptr;
   float* variance_out = nullptr;
-  const float* shifted_in = nullptr;  ///< plane for the shifted mean; may be null
+  const float* shifted_in = nullptr;  ///< may be null
   float* shifted_out = nullptr;
   const LightBalance* balance = nullptr;  ///< for shifted_in; null: no balancing
 };
-/// Averages one row of a strip.
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
                   const PairWeights& weights, int row);
 
-/// Computes the squared distance of the centroid of the averaged light in shifted_in from the
-/// pixel, in steps of the window: 0 if equal amounts come from opposite sides. Applies to the row
-/// of the last call of add_weighted().
+/// Computes the squared distance of the centroid of the light in shifted_in from the pixel [window
+/// steps^2], for the row of the last call of add_weighted().
 void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
                   const PairWeights& weights, int row, float* offset2);
 
-/// Computes energy and inverse_sigma of a SimilarityTest, with `floor` as the lower limit of
-/// variances.
+/// Computes energy and inverse_sigma of a SimilarityTest; `floor` limits the variances.
 void find_energy(const std::array<const float*, max_measurements>& u, int rank,
                  const float* variance, const float* floor, float floor_share,
                  const FilterGrid& grid, int first_row, int rows, float* energy,
                  float* inverse_sigma);
 
-/// Light of a single pixel above which its neighbourhood is not tested [standard deviations].
+/// Pixels with more light are not tested [standard deviations].
 inline constexpr float evident_sigma = 3.0f;
 inline constexpr int own_light_reach = 3, own_light_side = 2 * own_light_reach + 1;
-/// Minimum light of the pixels around a pixel, in standard deviations of its error and relative to
-/// the averaged light.
+/// Minimum light around a pixel, in standard deviations of its error and relative to the averaged
+/// light.
 inline constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
-/// Maximum fraction of darker pixels around a pixel: fewer than half of them are on the far side of
-/// a straight edge. This quantile of normal noise is own_light_below_mean standard deviations below
-/// the mean, and its error is own_light_noise times that of the mean.
+/// Maximum fraction of darker pixels around a pixel: fewer than half are beyond a straight edge.
+/// For normal noise this quantile is own_light_below_mean standard deviations below the mean, and
+/// its error is own_light_noise times that of the mean.
 inline constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f;
 inline constexpr float own_light_noise = 1.28f;
 
-/// Inputs of find_own_light().
 struct OwnLightTest {
-  std::array<const float*, max_measurements> added{};     ///< (rank) planes
-  std::array<const float*, max_measurements> measured{};  ///< (rank) planes of measured light
+  std::array<const float*, max_measurements> added{};  ///< (rank) planes
+  std::array<const float*, max_measurements> measured{};
   int rank = 0;
   const float* usable = nullptr;    ///< 1 or 0
   const float* variance = nullptr;  ///< of a coordinate of the measurements
   float limit_sigma = 0.0f;         ///< FilterOptions::own_light_sigma
 };
-/// Tests for each pixel of a row whether the averaged light can come from the pixel itself. Writes
-/// 1 if it can, and 0 if it cannot or the pixel is not usable. It cannot if the surrounding pixels
-/// have no light, or less than the average. Dark pixels next to an edge thus receive no light from
-/// its other side. Writes whole vectors.
+/// Writes 1 for each pixel of a row whose averaged light can come from the pixel itself, else 0: it
+/// cannot if the surrounding pixels have no light, or less than the average. Dark pixels next to an
+/// edge thus receive no light from its other side. Writes whole vectors.
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own);
 
 }  // namespace tofsmith

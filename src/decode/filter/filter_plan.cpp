@@ -17,14 +17,12 @@ namespace {
 
 constexpr int pixels_per_block = 256;
 
-/// Measurements of some pixels of a row, [K][pixels_per_block].
 struct RowBlock {
   alignas(64) std::array<float, max_measurements * pixels_per_block> values;
 
   float* operator[](int k) { return values.data() + k * pixels_per_block; }
 };
 
-/// Calls work(first column, columns) for the blocks of a row.
 template <typename Work>
 void for_each_block_of_row(int width, const Work& work) {
   for (int first = 0; first < width; first += pixels_per_block)
@@ -42,7 +40,7 @@ void mix(const float* matrix, int count, const In& in, int pixels, float* out) {
   }
 }
 
-/// Returns the coordinates of measurements: the decoding subspace, then its complement (K, K).
+/// Returns a basis of the decoding subspace followed by its complement (K, K).
 Eigen::MatrixXd whole_basis(const Eigen::MatrixXd& plane) {
   const Eigen::Index k = plane.rows(), rank = plane.cols();
   Eigen::MatrixXd basis(k, k);
@@ -53,7 +51,6 @@ Eigen::MatrixXd whole_basis(const Eigen::MatrixXd& plane) {
   return basis;
 }
 
-/// Computes LightBalance::squares.
 std::vector<float> curve_squares(const Eigen::MatrixXd& curve) {
   std::vector<float> squares;
   for (Eigen::Index n = 0; n < curve.rows(); ++n) {
@@ -71,12 +68,10 @@ std::vector<float> row_by_row(const RowMajorMatrix& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-/// Returns the numbers of averaged measurements in a row from a column on; null: 1.
 const float* averaged_of(const RawView& raw, int row, int column) {
   return raw.averaged ? raw.averaged + std::ptrdiff_t{row} * raw.width + column : nullptr;
 }
 
-/// Computes the mean variance of a coordinate from the measurements.
 void find_variance(const Filter::Plan& plan, RowBlock& electrons, int pixels, float* variance) {
   std::fill_n(variance, pixels, plan.hidden.floor_variance_e2);
   for (int k = 0; k < plan.measurements; ++k) {
@@ -130,7 +125,6 @@ void Filter::Plan::read_again(const RawView& raw, FilterPlanes& frame, int set,
   });
 }
 
-/// @param row_usable, row_variance  outputs for the row; row_variance may be null
 void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, int set,
                             float* row_usable, float* row_variance) const {
   const SaturationLevels levels(decoder.table());
@@ -177,7 +171,6 @@ void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, in
   });
 }
 
-/// Computes the noise of light that cancels in the measurements, from the signal around each pixel.
 void Filter::Plan::find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const {
   const FilterGrid& grid = frame.grid;
   const float* const averaged = averaged_of(raw, row, 0);
@@ -254,7 +247,6 @@ void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window
   }
 }
 
-/// @param averaged  number of averaged measurements for each pixel of the row
 void Filter::Plan::write_raw_row(const RawView& raw, FilterPlanes& frame, int from, int to, int row,
                                  float* averaged) const {
   const std::ptrdiff_t start = row * frame.grid.stride;

@@ -14,21 +14,18 @@
 
 namespace tofsmith {
 
-/// Number of rows that one thread processes at a time.
+/// Rows that one thread processes at a time.
 inline constexpr int filter_rows = 32;
 inline constexpr int window_side = 2 * window_reach + 1;
 
-/// Distance between the pixels of a window.
 int window_step(int window);
 
-/// Planes with the variances before and after a window.
 struct WindowVariances {
   FilterPlanes::Scalar in, out;
 
   explicit WindowVariances(int window);
 };
 
-/// Constants of a Filter, and its steps over a frame.
 struct Filter::Plan {
   Plan(DecodingTable table, const FilterOptions& options_, const AmbientProjection& projection);
 
@@ -41,32 +38,28 @@ struct Filter::Plan {
   std::vector<float> curve;            // x = T o chi in coordinates (N, K)
   std::vector<float> squares;          // of LightBalance (N, 2)
   HiddenSignal hidden;
-  bool has_own_shot_noise = false;  // light that cancels in the measurements causes noise
+  bool has_own_shot_noise = false;  // from light that cancels in the measurements
 
   int samples() const { return decoder.table().samples(); }
-  /// Variance after the last window.
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 
-  /// Noise of filtered numbers relative to the noise stated by their `averaged`.
   NoiseRatios noise_ratios() const;
 
-  /// Converts raw numbers to the first set of light, with variances and usable flags.
+  /// Reads the first set of light, with variances and usable flags.
   void read(const RawView& raw, FilterPlanes& frame) const;
-  /// Converts raw numbers to another set of light, with usable flags in another plane.
+  /// Reads another set of light, with usable flags in another plane.
   void read_again(const RawView& raw, FilterPlanes& frame, int set,
                   FilterPlanes::Scalar usable) const;
-  /// Applies one window of the first pass, which averages neighbours with parallel vectors.
+  /// Applies a window of the first pass, which averages neighbours with parallel vectors.
   void add_similar(FilterPlanes& frame, int from, int to, int window) const;
-  /// Marks pixels that fail find_own_light() as unusable, because they do not determine slopes.
-  /// Overwrites the other set.
+  /// Marks pixels that fail find_own_light() as unusable. Overwrites the other set.
   void leave_dark(const RawView& raw, FilterPlanes& frame, int set, int other) const;
-  /// Computes the depth of a set of light; overwrites another set with raw numbers.
+  /// Computes the depth of a set of light; overwrites another set.
   void find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const;
-  /// Applies one window of a pass along slopes, which averages neighbours of the same surface.
-  /// `light` is split into signal along the depth and a remainder, stored in `rest`; the result is
-  /// stored in `to`.
+  /// Applies a window of a pass along slopes. `light` is split into signal along the depth and a
+  /// remainder, stored in `rest`; the result is stored in `to`.
   void add_along_slopes(FilterPlanes& frame, int light, int rest, int to, int window) const;
-  /// Adds the effect of the noise of slopes to the variances of the sums of a pass.
+  /// Adds the noise of slopes to the variances of a pass.
   void add_slope_noise(FilterPlanes& frame, int round) const;
   /// Converts a set of light to raw numbers. Pixels that fail find_own_light() keep their
   /// measurements, and `averaged` is multiplied by find_lit_share(). Overwrites the other set.
@@ -84,12 +77,10 @@ struct Filter::Plan {
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
   void join(FilterPlanes& frame, int set, int row) const;
-  /// Restores in `to` the values before a window, whose remainders are in `rest`, where that window
-  /// averaged pixels of another surface.
+  /// Restores in `to` the values before a window where it averaged pixels of another surface.
   void keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const;
 };
 
-/// Calls work(row) for all rows of a frame, on all threads.
 template <typename Work>
 void for_each_row(const FilterPlanes& frame, const Work& work) {
   parallel_for_blocks(frame.grid.height, filter_rows, [&](IndexRange rows) {
@@ -97,7 +88,6 @@ void for_each_row(const FilterPlanes& frame, const Work& work) {
   });
 }
 
-/// Calls work(strip, memory for its weights) for all strips of a frame, on all threads.
 template <typename Work>
 void for_each_strip(FilterPlanes& frame, int step, bool with_shifts, const Work& work) {
   parallel_for_blocks(frame.grid.height, filter_rows, [&](IndexRange rows) {

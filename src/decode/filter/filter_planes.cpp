@@ -55,7 +55,6 @@ void FilterPlanes::resize(int height, int width, int measurements_, int largest_
   if (fits) return;
   grid = wanted;
   measurements = measurements_;
-  // Margins remain 0.
   storage.assign(floats(grid, measurements), 0.0f);
   averaged = Image<float>(height, width, 1.0f);
   lit_points.clear();

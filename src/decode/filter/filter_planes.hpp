@@ -12,14 +12,12 @@
 
 namespace tofsmith {
 
-/// Working memory for one strip.
 struct StripBuffers {
   std::vector<float> weight, shifted, scratch;
 
   PairWeights weights(const FilterGrid& grid, const FilterStrip& strip, bool with_shifts);
 };
 
-/// Pool of buffers; there are as many buffers as strips in progress.
 class StripBufferPool {
  public:
   std::unique_ptr<StripBuffers> take();
@@ -30,13 +28,13 @@ class StripBufferPool {
   std::vector<std::unique_ptr<StripBuffers>> free_;
 };
 
-/// State of the pixels of a frame during filtering. `light` consists of two sets of K planes with
-/// coordinates of the measurements without dark electrons [e]; the first `rank` coordinates span
-/// the decoding subspace. The original measurements are read again from the raw frame when needed.
+/// Pixels of a frame during filtering. `light` has two sets of K planes with coordinates of the
+/// measurements without dark electrons [e]; the first `rank` coordinates span the decoding
+/// subspace. The original measurements are read again from the raw frame.
 struct FilterPlanes {
   enum Scalar {
     usable,    ///< 1 if neighbours may use a pixel's light (along slopes, if it has a depth)
-    variance,  ///< of a coordinate of the measurements [e^2]; later of intermediate results
+    variance,  ///< of a coordinate [e^2]; later of intermediate results
     variance_next,
     variance_last,
     energy,         ///< of SimilarityTest; then slope_x
@@ -56,15 +54,14 @@ struct FilterPlanes {
   std::vector<float> storage;
   Image<float>
       averaged;  ///< along slopes: variance of a coordinate that determined the depth [e^2]
-  std::vector<std::ptrdiff_t> lit_points;  ///< lit_bar_points() as offsets in the grid [floats]
-  NoiseRatios noise;                       ///< of the filtered numbers
-  const std::uint8_t* left_out = nullptr;  ///< of the current frame, (H, W), or null
-  int result = 0;                          ///< set of `light` that contains raw numbers at the end
+  std::vector<std::ptrdiff_t> lit_points;  ///< lit_bar_points() as offsets [floats]
+  NoiseRatios noise;
+  const std::uint8_t* left_out = nullptr;  ///< (H, W), or null
+  int result = 0;                          ///< set of `light` with the result
   StripBufferPool buffers;
 
   static FilterGrid grid_of(int height, int width, int largest_step);
   static std::size_t floats(const FilterGrid& grid, int measurements);
-  /// Allocates memory for a frame unless the existing memory has this size.
   void resize(int height, int width, int measurements_, int largest_step);
   float* plane(int index) { return storage.data() + index * grid.plane_floats() + grid.origin(); }
   const float* plane(int index) const { return const_cast<FilterPlanes*>(this)->plane(index); }

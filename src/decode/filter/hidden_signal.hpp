@@ -10,10 +10,9 @@
 
 namespace tofsmith {
 
-/// Estimates the signal from its contrast if subtracted buckets hide the light, and provides the
-/// variance of a coordinate of the decoding subspace without light. A signal S with variance f + S
-/// m in each of `rank` coordinates yields <|u|^2> = S^2 <p^2> + rank (f + S m). For averages of n
-/// measurements, f and m are n times smaller.
+/// Estimates the signal from its contrast if subtracted buckets hide the light. A signal S with
+/// variance f + S m in each of `rank` coordinates yields <|u|^2> = S^2 <p^2> + rank (f + S m). For
+/// averages of n measurements, f and m are n times smaller.
 struct HiddenSignal {
   HiddenSignal(const ExpectedNoise& noise, const AmbientProjection& projection)
       : rank(static_cast<float>(projection.rank())),
@@ -26,8 +25,7 @@ struct HiddenSignal {
     shot_per_signal = static_cast<float>((noise.shot_gated * share).mean());
   }
 
-  /// Returns S [e/s] for averages of `averaged` measurements.
-  /// @param squares  |u|^2 [e^2]
+  /// Returns S [e/s] for |u|^2 = `squares` [e^2].
   float of(float squares, float averaged) const {
     const float per_mean = rank / averaged;
     const float m = per_mean * shot_per_signal;

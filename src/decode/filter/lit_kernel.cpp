@@ -8,7 +8,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/lit_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/filter/own_light-inl.hpp"
@@ -31,8 +30,8 @@ void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int ro
   }
 }
 
-/// Returns the light of the darkest bar over all directions. The light of a bar is that of its
-/// first rows, as many as give the largest value.
+/// Returns the light of the darkest bar. The light of a bar is the largest value over its first
+/// rows.
 HWY_INLINE Vector least_of_bars(const float* amplitude, const std::ptrdiff_t* points,
                                 const LitBar& bar, const float* scale, Vector most) {
   Vector least = all(1e30f);
@@ -48,7 +47,6 @@ HWY_INLINE Vector least_of_bars(const float* amplitude, const std::ptrdiff_t* po
   return least;
 }
 
-/// Returns the mean of the 3 x 3 pixels around each pixel.
 HWY_INLINE Vector mean_around(const float* amplitude, std::ptrdiff_t stride) {
   Vector sum = hn::Zero(Floats());
   for (int dy = -1; dy <= 1; ++dy)
@@ -58,7 +56,6 @@ HWY_INLINE Vector mean_around(const float* amplitude, std::ptrdiff_t stride) {
 
 using LitScales = std::array<std::array<float, lit_reach + 1>, lit_bars.size()>;
 
-/// Returns lit_bar_scale() of each bar for 1 to `depth` rows.
 LitScales lit_scales() {
   LitScales scales{};
   for (std::size_t b = 0; b < lit_bars.size(); ++b)
@@ -67,7 +64,6 @@ LitScales lit_scales() {
   return scales;
 }
 
-/// Returns true if the bars of one size have enough light in all directions.
 HWY_INLINE Mask is_lit_by_bars(const float* amplitude, const std::ptrdiff_t* points,
                                const LitBar& bar, const float* scale, Vector added) {
   const Vector most = hn::Add(added, all(lit_excess_sigma));
@@ -124,7 +120,6 @@ HWY_EXPORT(find_own_amplitude);
 HWY_EXPORT(find_lit_share);
 
 namespace {
-/// Returns place i of row r of the bar in direction (down, right), relative to its pixel.
 WindowStep bar_point(int down, int right, int r, int i) {
   if (down == 0 || right == 0) return {r * down - i * right, r * right + i * down};
   const int along = i + (r + 1) / 2;  // rows of diagonals are half a step apart

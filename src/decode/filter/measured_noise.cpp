@@ -19,14 +19,14 @@ namespace {
 constexpr int block_side = 8;
 constexpr std::size_t min_blocks = 16;
 constexpr double flattest_share = 0.25;
-constexpr double median_of_normal = 0.6745;  // median of |x| of a standard normal variable
+constexpr double median_of_normal = 0.6745;  // of |x| of a standard normal variable
 
-/// Second differences of the coordinates along one direction of a block, in standard deviations.
+/// Second differences along one direction of a block [standard deviations].
 class Differences {
  public:
   Differences(FilterPlanes& frame, int rank) : frame_(frame), rank_(rank) {}
 
-  /// Returns the median of their absolute values; none if fewer than half of them are known.
+  /// Returns the median of the absolute values; none if fewer than half are known.
   std::optional<double> median_of(int first_row, int first_column, std::ptrdiff_t step) {
     found_.clear();
     for (int row = first_row; row < first_row + block_side; ++row)
@@ -53,7 +53,7 @@ class Differences {
   std::vector<double> found_;
 };
 
-/// Returns at most 128 rows in the middle of a frame, to limit the memory.
+/// Returns at most 128 rows in the middle of a frame.
 RawView middle_rows(RawView raw) {
   constexpr int max_rows = 128;
   const int rows = std::min(raw.height, max_rows), first = (raw.height - rows) / 2;

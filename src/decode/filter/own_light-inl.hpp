@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Light of an OwnLightTest. Compiled once per instruction set.
+// Light of an OwnLightTest.
 #if defined(TOFSMITH_DECODE_FILTER_OWN_LIGHT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_FILTER_OWN_LIGHT_INL_HPP
 #undef TOFSMITH_DECODE_FILTER_OWN_LIGHT_INL_HPP
@@ -16,7 +16,6 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Returns the square of the light added to the pixels from `at` on.
 HWY_INLINE Vector added_square(const OwnLightTest& test, std::ptrdiff_t at) {
   Vector square = hn::Zero(Floats());
   for (int j = 0; j < test.rank; ++j) {
@@ -26,7 +25,7 @@ HWY_INLINE Vector added_square(const OwnLightTest& test, std::ptrdiff_t at) {
   return square;
 }
 
-/// Returns the scalar product of the measured light of one pixel and the added light of another.
+/// Scalar product of the measured light of one pixel and the added light of another.
 HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
                               std::ptrdiff_t measured) {
   Vector sum = hn::Zero(Floats());

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Weights of pairs of pixels. Compiled once per instruction set.
+// Weights of pairs of pixels.
 #if defined(TOFSMITH_DECODE_FILTER_PAIR_WEIGHT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_FILTER_PAIR_WEIGHT_INL_HPP
 #undef TOFSMITH_DECODE_FILTER_PAIR_WEIGHT_INL_HPP
@@ -18,7 +18,7 @@ namespace {
 HWY_INLINE Vector load(const float* from) { return hn::LoadU(Floats(), from); }
 HWY_INLINE void store(Vector value, float* to) { hn::StoreU(value, Floats(), to); }
 
-/// Returns 1 without difference, 0 from the maximum on, with a smooth transition.
+/// Decreases smoothly from 1 without difference to 0 from the maximum on.
 HWY_INLINE Vector weight_of(Vector difference, Vector inverse_max) {
   const Vector zero = hn::Zero(Floats());
   const Vector left =

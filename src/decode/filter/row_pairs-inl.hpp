@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Weighted pairs of the pixels of a row and their neighbours. Compiled once per instruction set.
+// Weighted pairs of neighbouring pixels.
 #if defined(TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP
 #undef TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP
@@ -37,7 +37,7 @@ RowPairs pairs_of_row(const FilterGrid& grid, const FilterStrip& strip, const fl
   return pairs;
 }
 
-/// Returns pairs whose weights belong to one row only and are stored in `room`.
+/// Returns pairs whose weights, for one row only, are stored in `room`.
 RowPairs own_pairs(const RowPairs& pairs, const float* room, std::ptrdiff_t stride) {
   RowPairs own = pairs;
   for (std::size_t i = 0; i < half_window.size(); ++i) {
@@ -47,21 +47,19 @@ RowPairs own_pairs(const RowPairs& pairs, const float* room, std::ptrdiff_t stri
   return own;
 }
 
-/// Weights of a row in the strip, and memory for the row's own weights.
 struct BalancedRow {
   RowPairs weights, shifted;         // as stored for the strip
   float *own_weights, *own_shifted;  // of this row only
   std::ptrdiff_t stride;
 };
 
-/// Returns the factor that limits the weighted light of a neighbour to `balanced_light` times that
-/// of the opposite one.
+/// Limits the weighted light of a neighbour to `balanced_light` times that of the opposite one.
 HWY_INLINE Vector share_of_light(Vector light, Vector opposite) {
   const Vector most = hn::Mul(all(balanced_light), opposite);
   return hn::Min(hn::Div(most, hn::Max(light, all(1e-30f))), all(1.0f));
 }
 
-/// Computes weights of a row that balance noise and the error of slopes (see LightBalance).
+/// Balances noise and the error of slopes (see LightBalance).
 HWY_INLINE void balance_row(const WeightedSums& sums, const BalancedRow& pairs, int width,
                             std::ptrdiff_t row) {
   const LightBalance& balance = *sums.balance;
@@ -120,7 +118,7 @@ HWY_INLINE void balance_row(const WeightedSums& sums, const BalancedRow& pairs, 
     const Vector more =
         hn::Max(hn::Sub(hn::Div(noise_balanced, balanced2), hn::Div(noise, light2)), zero);
     const Vector wanted = hn::Div(error2, hn::Max(hn::Add(error2, more), tiny));
-    // `wanted` refers to depth; convert it to light.
+    // Convert the weight of depth to light.
     const Vector of_balanced = hn::Mul(wanted, light);
     const Vector of_all = hn::Mul(hn::Sub(one, wanted), light_balanced);
     // Noise alone must not change the weights.

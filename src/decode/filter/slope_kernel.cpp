@@ -10,7 +10,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/slope_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/filter/pair_weight-inl.hpp"
@@ -74,7 +73,7 @@ struct RingPlace {
         yy(y * y) {}
 };
 
-/// Returns all neighbours ahead, each followed by the opposite one.
+/// Returns the neighbours ahead, each followed by the opposite one.
 std::array<RingPlace, 2 * std::size(half_rings)> ring_places(std::ptrdiff_t stride) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     return std::array{RingPlace(half_rings.data()[I / 2], I % 2 == 0 ? 1 : -1, stride)...};
@@ -82,7 +81,7 @@ std::array<RingPlace, 2 * std::size(half_rings)> ring_places(std::ptrdiff_t stri
   (std::make_index_sequence<2 * std::size(half_rings)>());
 }
 
-/// Weighted sums for fitting the slopes of a plane: x^2, x y, y^2, x d, y d.
+/// Sums for fitting slopes: x^2, x y, y^2, x d, y d.
 struct SlopeSums {
   Vector xx, xy, yy, xd, yd;
   HWY_INLINE SlopeSums() : xx(hn::Zero(Floats())), xy(xx), yy(xx), xd(xx), yd(xx) {}
@@ -94,7 +93,7 @@ struct SlopeSums {
     xd = hn::MulAdd(d, all(place.x), xd);
     yd = hn::MulAdd(d, all(place.y), yd);
   }
-  /// Solves for the slopes. Regularized, because neighbours may lie on one line.
+  /// Regularized, because neighbours may lie on one line.
   HWY_INLINE void solve(Vector& slope_x, Vector& slope_y) const {
     const Vector little = hn::MulAdd(hn::Add(xx, yy), all(1e-4f), all(1e-20f));
     const Vector a = hn::Add(xx, little), b = hn::Add(yy, little);
@@ -120,7 +119,7 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         noise = hn::Max(load(test.variance + p + away), tiny);
         return load(test.usable + p + away);
       };
-      // Initial fit: opposite neighbours whose differences from the pixel are opposite.
+      // First, use opposite neighbours whose differences from the pixel are opposite.
       SlopeSums pairs;
       for (std::size_t i = 0; i < std::size(half_rings); ++i) {
         const RingPlace& place = places.data()[2 * i];
@@ -137,7 +136,7 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
       }
       Vector across, along;
       pairs.solve(across, along);
-      // Final fit: all neighbours that agree with the initial plane.
+      // Then, use all neighbours that agree with this plane.
       SlopeSums singles;
       Vector chi2 = zero, count = zero;
       for (std::size_t i = 0; i < places.size(); ++i) {
@@ -181,7 +180,6 @@ struct CurvePlaces {
     const auto size = hn::Set(di, curve.coordinates);
     from = hn::Mul(at, size), to = hn::Mul(next, size);
   }
-  /// Returns the difference of coordinate k between the two bins.
   HWY_INLINE Vector per_bin(const CurvePoints& curve, int k) const {
     return hn::Sub(hn::GatherIndex(Floats(), curve.points + k, to),
                    hn::GatherIndex(Floats(), curve.points + k, from));
@@ -217,7 +215,7 @@ void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
   const Vector zero = hn::Zero(Floats());
   for (int x = 0; x < width; x += lanes_of()) {
     const Vector signal = load(row.signal + x), shift = row.shift ? load(row.shift + x) : zero;
-    // If noise leaves almost no signal, the shift is meaningless.
+    // Without signal, the shift is meaningless.
     const Mask can_move = hn::Gt(signal, hn::Mul(hn::Abs(shift), all(0.25f)));
     const Vector beyond = hn::IfThenElseZero(can_move, hn::Div(shift, signal));
     const CurvePlaces places(curve, hn::Add(load(row.depth + x), beyond));
@@ -244,7 +242,7 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
       far2 = hn::MulAdd(far, far, far2);
       dot = hn::MulAdd(per_bin[j], far, dot);
     }
-    // Project the near sum on the direction in which the far sum would move with its depth.
+    // Project the near sum on the direction in which the far sum moves with its depth.
     const Vector along = hn::Div(dot, hn::Max(far2, tiny));
     Vector moved = zero, move2 = tiny;
     for (int j = 0; j < curve.rank; ++j) {
@@ -252,7 +250,7 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
       moved = hn::MulAdd(move, load(sums.near.data()[j] + at), moved);
       move2 = hn::MulAdd(move, move, move2);
     }
-    // The far sum includes the near one, so their difference has less noise than the near sum.
+    // The far sum includes the near one, so the difference has less noise than the near sum.
     const Vector near_variance = hn::Max(load(sums.near_variance + at), all(1e-12f));
     const Vector noise = hn::Max(hn::Sub(near_variance, load(sums.far_variance + at)),
                                  hn::Mul(near_variance, all(least_noise_share)));
@@ -272,9 +270,8 @@ HWY_INLINE Vector near_square(const NearAndFar& sums, std::ptrdiff_t at) {
   return square;
 }
 
-/// Replaces a share of the far sum by the near sum: share `kept` of the light, and `share2` of the
-/// additional variance of the near sum. The covariance of both sums equals the variance of the far
-/// sum, which is the mean of all pixels.
+/// Replaces a share of the far sum by the near sum. The covariance of both sums equals the variance
+/// of the far sum, which is the mean of all pixels.
 HWY_INLINE void keep_share(const NearAndFar& sums, std::ptrdiff_t at, Vector kept, Vector share2,
                            Vector near_variance) {
   for (int k = 0; k < sums.planes; ++k) {
@@ -287,8 +284,7 @@ HWY_INLINE void keep_share(const NearAndFar& sums, std::ptrdiff_t at, Vector kep
   store(hn::MulAdd(share2, beyond, far), sums.far_variance + at);
 }
 
-/// Returns the share of the near sum that minimizes bias and noise, given the difference that noise
-/// does not explain.
+/// Share of the near sum that minimizes bias and noise.
 HWY_INLINE Vector kept_of(Vector excess, float half) {
   return hn::Div(excess, hn::Add(excess, all(half)));
 }
@@ -335,7 +331,7 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
         hn::Max(kept_of(hn::Max(around, zero), half_kept), kept_of(best, half_kept_along_lines));
     store(kept, sums.kept + at);
     if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
-    // If noise alone causes `kept` > 0, the noise of the near sum is larger than usual.
+    // If noise alone causes `kept` > 0, the near sum has more noise than usual.
     keep_share(sums, at, kept, hn::Mul(hn::Mul(kept, kept), all(kept_noise)), near_variance);
   }
 }

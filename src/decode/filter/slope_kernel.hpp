@@ -6,10 +6,10 @@
 
 namespace tofsmith {
 
-inline constexpr float min_depth_variance = 1e-8f;  // [bin^2], lower limit for noiseless scenes
+inline constexpr float min_depth_variance = 1e-8f;  // [bin^2], for noiseless scenes
 
-/// Neighbours from which slopes are estimated (the opposite ones are used, too). They are sparse
-/// and distant, because close neighbours share noise after filtering.
+/// Neighbours from which slopes are estimated, with the opposite ones. They are distant, because
+/// close neighbours share noise after filtering.
 inline constexpr std::array<WindowStep, 12> half_rings = {{{0, 3},
                                                            {3, -3},
                                                            {3, 0},
@@ -25,7 +25,7 @@ inline constexpr std::array<WindowStep, 12> half_rings = {{{0, 3},
 /// Index of the first neighbour that shares few measurements with the pixel.
 inline constexpr std::size_t first_far_ring = 8;
 
-/// Inputs of the test of depths along slopes, in bins.
+/// Inputs of the test of depths along slopes [bin].
 struct SlopeTest {
   const float* depth = nullptr;
   const float* variance = nullptr;  ///< of depth
@@ -39,10 +39,10 @@ struct SlopeTest {
 void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
                         const PairWeights& weights);
 
-/// Fits a plane to the depths of the pixels 3 to 12 away that lie on the same surface, and computes
-/// its slopes; 0 if there are too few pixels.
-/// @param excess  factor >= 1 by which the scatter of far pixels about the plane exceeds the
-///   variance of their depths
+/// Computes the slopes of a plane through the depths of pixels 3 to 12 away on the same surface; 0
+/// if there are too few pixels.
+/// @param excess  factor >= 1 by which the scatter of far pixels exceeds the variance of their
+///     depths
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
                  float* slope_x, float* slope_y, float* excess);
 
@@ -54,8 +54,8 @@ struct CurvePoints {
   int rank = 0;
 };
 
-/// Splits the light of a row into signal along its depth and a remainder. Without a depth, all
-/// light is remainder.
+/// Splits light into signal along the depth and a remainder, which contains all light of pixels
+/// without a depth.
 struct SplitRow {
   const float* depth = nullptr;   ///< [bin], in [0, N)
   const float* guided = nullptr;  ///< > 0 if the pixel has a depth
@@ -65,7 +65,7 @@ struct SplitRow {
 };
 void split_row(const CurvePoints& curve, const SplitRow& row, int width);
 
-/// Adds the signal of a row to the remainder, at the depth shifted by shift / signal.
+/// Adds the signal to the remainder, at the depth shifted by shift / signal.
 struct JoinRow {
   const float* depth = nullptr;
   const float* guided = nullptr;
@@ -75,28 +75,28 @@ struct JoinRow {
 };
 void join_row(const CurvePoints& curve, const JoinRow& row, int width);
 
-/// Pixels around a pixel that are compared: every second one of 13 x 13, because the near sums of
-/// adjacent pixels share most of their measurements.
+/// Compared pixels: every second one of 13 x 13, because adjacent near sums share most
+/// measurements.
 inline constexpr int compared_reach = 6, compared_step = 2;
-/// Pixels of a line through the pixel, in each of four directions: 9, every third one.
+/// Pixels of a line in each of four directions: 9, every third one.
 inline constexpr int line_side = 4, line_step = 3, line_reach = line_side * line_step;
 inline constexpr std::array<WindowStep, 4> line_directions = {{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
-/// Lower limit of the noise of the difference, as a fraction of the near sum's variance.
+/// Lower limit of the difference's variance, relative to that of the near sum.
 inline constexpr float least_noise_share = 0.25f;
 /// Thresholds that noise explains: mean squared difference of the pixels around [standard
 /// deviations], and squared mean along the best line and around, divided by the number of pixels.
 inline constexpr float explained_by_noise = 2.3f, explained_along_lines = 18.0f;
 inline constexpr float explained_in_patch = 12.0f;
-/// An excess above the threshold keeps the share excess / (excess + this) of the near sum.
+/// An excess e above the threshold keeps the share e / (e + this) of the near sum.
 inline constexpr float half_kept = 0.2f, half_kept_along_lines = 0.3f;
-/// Factor of the near sum's variance if noise alone caused it to be kept.
+/// Factor of the near sum's variance if noise alone causes it to be kept.
 inline constexpr float kept_noise = 1.6f;
-/// Near sums with a lower squared signal-to-noise ratio have no useful depth.
+/// Minimum squared signal-to-noise ratio of near sums with a useful depth.
 inline constexpr float least_energy = 25.0f;
-/// Signal-to-noise ratio from which near sums alone determine slopes and small curvatures.
+/// Signal-to-noise ratio from which near sums alone determine slopes.
 inline constexpr float bright_sigma = 50.0f;
 
-/// Two sums per pixel: near neighbours only, and near and far neighbours.
+/// Sums over near neighbours only, and over near and far neighbours.
 struct NearAndFar {
   std::array<const float*, max_measurements> near{};
   std::array<float*, max_measurements> far{};  ///< input; then the mixture of both sums
@@ -110,21 +110,19 @@ struct NearAndFar {
 };
 void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const FilterGrid& grid,
                   int row);
-/// Mixes the near sum back in where far neighbours belong to another or a curved surface, although
-/// the test of pairs did not detect it. If the depths of both sums differ by more than noise
-/// explains, in the pixels around or along a line through the pixel, the share of the near sum
-/// minimizes the remaining bias and noise. Requires `difference` of the surrounding rows.
+/// Mixes the near sum back in where far neighbours belong to another or a curved surface: where the
+/// depths of both sums differ by more than noise, around a pixel or along a line through it. Its
+/// share minimizes bias and noise. Requires `difference` of the surrounding rows.
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
 /// Mixes the near sum back in for bright pixels, before slopes are known: none below bright_sigma,
-/// all from twice that signal-to-noise ratio on. The depth of a bright near sum yields good slopes,
-/// whereas far neighbours, whose slopes are still unknown, would bias it.
+/// all from twice that ratio on. Far neighbours would bias the depth and thus the slopes.
 void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row);
 
-/// Additional variance of a sum along slopes due to the noise of the slopes,
-///   v (sum + sum_offset d^2) + v' (before + before_offset d^2).
-/// v is the variance of the sum without it, v' that of the depth from which slopes were estimated,
-/// and d the distance of the averaged pixels' centroid from the pixel in steps of the last window.
-/// The constant is the measured reduction for near sums inside a plane.
+/// Variance added to a sum along slopes by the noise of the slopes:
+///   v (sum + sum_offset d^2) + v' (before + before_offset d^2)
+/// with the variance v of the sum without it, the variance v' of the depth that determined the
+/// slopes, and the distance d of the averaged pixels' centroid in steps of the last window. The
+/// constant is the measured reduction for near sums inside a plane.
 inline constexpr float slope_noise_of_near = 0.67f;
 struct SlopeNoise {
   float sum, sum_offset, before, before_offset;

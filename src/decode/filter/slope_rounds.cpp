@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Passes of a Filter along slopes. The light of a neighbour q is split into signal along its depth
-// and a remainder, y_q = S_q x(z_q) + e_q. Remainders are averaged unchanged. Signals are moved to
-// the depth z of the pixel plus the neighbour's distance d_q from the plane:
+// Passes of a Filter along slopes. The light of a neighbour q is split into signal and remainder,
+// y_q = S_q x(z_q) + e_q. Signals are moved to the depth z of the pixel plus the neighbour's
+// distance d_q from the plane:
 //   sum_q w_q e_q + (sum_q w_q S_q) x(z + sum_q w_q S_q d_q / sum_q w_q S_q).
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,11 @@ namespace tofsmith {
 
 namespace {
 
-/// By number of windows. All steps are linear in the noise of depth. The coefficients are the
-/// energy of their impulse response on a plane with equal weights, inside and at its border.
+/// By number of windows: energy of the impulse response of all steps on a plane with equal weights,
+/// inside and at its border.
 constexpr SlopeNoise first_slope_noise[] = {
     {0.005f, 0.1f, 0.003f, 0.065f}, {0.27f, 0.3f, 0.03f, 0.085f}, {0.44f, 0.65f, 0.05f, 0.19f}};
-/// The same for later passes, whose slopes come from sums along slopes.
+/// Later passes use slopes from sums along slopes.
 constexpr SlopeNoise later_slope_noise[] = {
     {0.005f, 0.1f, 0.003f, 0.065f}, {0.31f, 0.45f, 0.03f, 0.085f}, {0.62f, 1.48f, 0.05f, 0.19f}};
 
@@ -28,10 +28,10 @@ SlopeNoise slope_noise_of(int windows, int round) {
   return (round == 0 ? first_slope_noise : later_slope_noise)[windows - 1];
 }
 
-/// The noise of slopes affects the depth only, not the residual. For two passes no ratio of the
-/// residual is used, because they add errors in bright light that would cause false alarms.
-/// Neighbours with the same wrong lobe support each other, because slopes are fitted to the depths
-/// of one lobe. The ratio for lobes, 1.3, was determined with benchmarks/reliability.py.
+/// The noise of slopes affects the depth only, not the residual. Neighbours with the same wrong
+/// lobe support each other, because slopes are fitted to the depths of one lobe; the ratio 1.3 was
+/// determined with benchmarks/reliability.py. After two passes the residual has no ratio: errors in
+/// bright light would cause false alarms.
 NoiseRatios Filter::Plan::noise_ratios() const {
   if (options.slope_rounds == 0) return {};
   NoiseRatios ratios{.of_lobes = 1.3f};
@@ -50,7 +50,7 @@ void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from,
     std::copy_n(frame.scalar(last_variance()) + row * grid.stride, grid.width,
                 &frame.averaged(row, 0));
   });
-  // Decode whole rows with margins, so that planes have the layout that decoders write.
+  // Include margins, because decoders write whole rows.
   float* const depth = frame.scalar(FilterPlanes::depth);
   float* const variance = frame.scalar(FilterPlanes::depth_variance);
   const RawView filtered{.data = static_cast<const float*>(frame.light(into, 0) - grid.margin),
@@ -118,7 +118,7 @@ void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int win
 void Filter::Plan::add_slope_noise(FilterPlanes& frame, int round) const {
   const int window = options.windows - 1;
   const SlopeNoise noise = slope_noise_of(options.windows, round);
-  // Only the last pass includes all terms: later passes test depths by their noise alone.
+  // Later passes test depths by their noise alone.
   const bool is_last = round + 1 == options.slope_rounds;
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t at = row * frame.grid.stride;

@@ -34,7 +34,6 @@ std::size_t TimeFilter::memory_bytes(const TimeFilterOptions& options, int heigh
   const auto pixels = static_cast<std::size_t>(height) * static_cast<std::size_t>(width);
   const auto k_count = static_cast<std::size_t>(measurements);
   const auto ahead = static_cast<std::size_t>(options.look_ahead);
-  // Means of both sides, and the waiting frames with their numbers of averaged measurements.
   const std::size_t frames =
       (ahead > 0 ? 2 * (k_count + 2) + (ahead + 1) * (k_count + 1) : k_count + 2) +
       (options.before_filter ? 1 : 0);

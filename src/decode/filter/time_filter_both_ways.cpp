@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Time filter with later frames (look_ahead).
 #include <algorithm>
 
 #include "decode/filter/time_filter_state.hpp"
 
 namespace tofsmith {
 
-/// Past and future are each compared with the frame, not with each other. Linear changes from past
-/// to future cancel if both have the same weight.
+/// Past and future are each compared with the frame. Linear changes cancel if both have the same
+/// weight.
 void TimeFilter::State::join_row(const RawView& raw, int row) {
   Numbers numbers;
   BlockOfPixels averaged_now;

@@ -63,8 +63,6 @@ void TimeFilter::State::resize(const RawView& raw) {
   cells.assign(cell_changes.size() * static_cast<std::size_t>(measurements + 1), 0.0f);
 }
 
-/// Reads raw values of a block of a row, [K][block_pixels], and their numbers of averaged
-/// measurements.
 void TimeFilter::State::read(const RawView& raw, std::ptrdiff_t first, int pixels, Numbers& numbers,
                              BlockOfPixels& averaged_now) const {
   for_each_run(raw, first, pixels, [&](const auto* pixel, std::int64_t length, std::int64_t) {
@@ -103,7 +101,6 @@ void TimeFilter::State::compare_row(const RawView& raw, const AddedFrames& added
   }
 }
 
-/// @param compared_row  index of the row in `compared`
 void TimeFilter::State::weigh_row(const RawView& raw, AddedFrames& added, int row,
                                   ComparedRows& compared, int compared_row) {
   const int sums = compared.add_rows(compared_row - patch_reach);
@@ -120,7 +117,7 @@ void TimeFilter::State::weigh_row(const RawView& raw, AddedFrames& added, int ro
                          .past = added.averaged.pixels.data() + first,
                          .averaged_now = raw.averaged ? raw.averaged + first : nullptr,
                          .pixels = pixels,
-                         // Only find_shares_of_row() distinguishes invalid pixels.
+                         // find_shares_of_row() handles invalid pixels.
                          .none = options.before_filter ? tells_nothing : 0.0f,
                          .weight = added.weights.data() + first,
                          .unchanged = unchanged.data()});
@@ -140,7 +137,7 @@ void TimeFilter::State::compare(const RawView& raw, AddedFrames& added, IndexRan
   buffers.give_back(std::move(buffer));
 }
 
-/// @param unchanged  1 if no test detected a change, else 0; only unchanged pixels are added
+/// @param unchanged  1 if no test detected a change, else 0
 void TimeFilter::State::add_to_cells(int row, int column, int pixels,
                                      const BlockOfPixels& unchanged, ComparedRows& compared,
                                      int compared_row) {
@@ -185,15 +182,14 @@ void TimeFilter::State::weigh_row_by_cells(const RawView& raw, AddedFrames& adde
   float* const weight = added.weights.data() + first;
   for (int i = 0; i < width; ++i) {
     const float n = raw.averaged ? raw.averaged[first + i] : 1.0f;
-    // A change common to many pixels does not decrease with averaging, so compare it with the noise
-    // of the average.
+    // A change common to many pixels does not decrease with averaging: compare it with the noise of
+    // the average.
     const float changed = changes[i / cell_side] * (1.0f / past[i] + 1.0f / n);
     if (weight[i] > 0.0f) weight[i] /= 1.0f + weight[i] * changed;
   }
 }
 
-/// Computes the least share of the past kept by the five pixels of the row around each pixel,
-/// divided by telling_share.
+/// Computes the least share of the past kept by five adjacent pixels, divided by telling_share.
 void TimeFilter::State::find_shares_of_row(const RawView& raw, const AddedFrames& added, int row) {
   const std::ptrdiff_t first = pixel(row, 0);
   const float* const weight = added.weights.data() + first;
@@ -208,7 +204,6 @@ void TimeFilter::State::find_shares_of_row(const RawView& raw, const AddedFrames
   }
 }
 
-/// Limits the weight of each pixel by the shares of the rows around it.
 void TimeFilter::State::weigh_row_by_shares(const RawView& raw, AddedFrames& added, int row) const {
   const std::ptrdiff_t first = pixel(row, 0);
   float* const weight = added.weights.data() + first;

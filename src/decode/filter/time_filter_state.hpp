@@ -17,32 +17,30 @@ namespace tofsmith {
 
 inline constexpr int compared_strip_rows = 32;
 
-/// Side of the cells whose sums detect changes common to many pixels, and their neighbourhood.
+/// Side of the cells that detect changes common to many pixels, and their neighbourhood.
 inline constexpr int cell_side = 8, cell_reach = 1;
 static_assert(compared_strip_rows % cell_side == 0, "a strip is of whole cells");
 
 /// Weight of an invalid pixel until its neighbours have been compared.
 inline constexpr float tells_nothing = -1.0f;
-/// Smaller kept shares of the past also lower the weights of adjacent pixels; larger ones are
-/// considered random.
+/// Smaller shares of the past also lower the weights of adjacent pixels; larger ones count as
+/// random.
 inline constexpr float telling_share = 0.5f;
 
-/// Average of the past or future frames.
 struct AddedFrames {
   bool is_empty = true;
   std::vector<float> means;    ///< raw values (K, H, W)
-  std::vector<float> weights;  ///< weight of the average in the next mean (H, W)
-  Image<float> averaged;       ///< n
+  std::vector<float> weights;  ///< of the average in the next mean (H, W)
+  Image<float> averaged;
 
   void resize(const RawView& raw);
 };
 
-/// Queue of frames that wait for later frames.
 class WaitingFrames {
  public:
   int count() const { return count_; }
   void push(const RawView& raw);
-  /// Returns frame `index` (0: oldest). A view remains valid after pop() until the next push().
+  /// Returns frame `index` (0: oldest), which remains valid after pop() until the next push().
   RawView view(int index) const;
   void pop();
   void clear() { count_ = 0; }
@@ -60,7 +58,6 @@ class WaitingFrames {
   int height_ = 0, width_ = 0, measurements_ = 0;
 };
 
-/// Constant data of a TimeFilter, its state, and its steps over a frame.
 struct TimeFilter::State {
   static constexpr int block_pixels = 256;
   using BlockOfPixels = std::array<float, block_pixels>;
@@ -74,7 +71,7 @@ struct TimeFilter::State {
   SaturationLevels levels;
   HiddenSignal hidden;
   bool has_own_shot_noise;
-  std::vector<float> floor_variance_e2;  // of each measurement, without light (K)
+  std::vector<float> floor_variance_e2;  // without light (K)
   std::vector<float> shot_per_signal;    // averaged over all depths (K)
   std::vector<float> dark_raw, gain;     // electrons = (raw - dark_raw) gain (K)
   std::vector<float> to_plane;           // V^T (rank, K)
@@ -83,23 +80,20 @@ struct TimeFilter::State {
   int height = 0, width = 0;
   AddedFrames past, future;
   WaitingFrames waiting;
-  std::vector<float> shares;  // of the past that are kept, if before_filter (H, W)
+  std::vector<float> shares;  // of the past, if before_filter (H, W)
   int cell_columns = 0;
   std::vector<float> cells;         // sums of differences, and number of pixels (cell, K + 1)
-  std::vector<float> cell_changes;  // change of a cell beyond noise, chi^2 divided by K
+  std::vector<float> cell_changes;  // beyond noise, chi^2 divided by K
   StripBufferPool buffers;
 
   static std::size_t cell_floats(int height, int width, int measurements);
   bool is_empty() const { return past.is_empty && waiting.count() == 0; }
-  /// Resets the state for frames of this size.
   void resize(const RawView& raw);
   void weigh(const RawView& raw, AddedFrames& added);
   void add(const RawView& raw, AddedFrames& added);
-  /// Replaces `future` by the average of past, frame and future.
   void join(const RawView& raw);
-  /// Returns the oldest waiting frame, averaged with the frames before and after it.
+  /// Returns the average of the oldest waiting frame and the frames before and after it.
   RawView finish_oldest();
-  /// Returns measurement k of the average, from a pixel on.
   float* mean(AddedFrames& added, int k, std::ptrdiff_t pixel) const {
     return added.means.data() + std::ptrdiff_t{k} * height * width + pixel;
   }
@@ -128,7 +122,6 @@ struct TimeFilter::State {
       for (std::int64_t row = rows.begin; row < rows.end; ++row) work(static_cast<int>(row));
     });
   }
-  /// Returns the maximum weight of a pixel's average.
   float most_weight(const RawView& raw, const AddedFrames& added, std::ptrdiff_t pixel) const {
     const float n = raw.averaged ? raw.averaged[pixel] : 1.0f;
     return std::min(added.averaged.pixels[static_cast<std::size_t>(pixel)],

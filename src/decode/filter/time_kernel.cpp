@@ -9,13 +9,12 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/time_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "core/shared/vectors-inl.hpp"
 
-// Loops for automatic vectorization, compiled once per instruction set. Products are not fused with
-// additions, so that all instruction sets give the same bits.
+// Loops for automatic vectorization. Products are not fused with additions, so that all instruction
+// sets give the same bits.
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
@@ -24,7 +23,7 @@ namespace {
 constexpr int block = TimeFilter::State::block_pixels;
 using Block = std::array<float, block>;
 
-/// Computed separately, because compilers do not vectorize sqrt() in loops (errno).
+/// Compilers do not vectorize sqrt() in loops (errno).
 void take_roots(float* values) {
   for (int i = 0; i < block; i += lanes_of())
     hn::StoreU(hn::Sqrt(hn::LoadU(Floats(), values + i)), Floats(), values + i);
@@ -47,7 +46,7 @@ void find_usable(const TimeFilter::State& s, const AddedFrames& added, const Com
   }
 }
 
-/// Estimates the signal from both frames, for its noise, if light cancels in the measurements.
+/// Estimates the signal of both frames for its noise, if light cancels in the measurements.
 void find_signal(const TimeFilter::State& s, const AddedFrames& added, const ComparedPixels& c,
                  Block& signal) {
   Block squares{}, along;
@@ -104,7 +103,6 @@ void compare_pixels(const TimeFilter::State& s, const AddedFrames& added, const 
   for (int i = 0; i < c.pixels; ++i) c.chi2[i] = c.usable[i] > 0.0f ? chi2.data()[i] : c.chi2[i];
 }
 
-/// Sums over the columns of a patch around each pixel.
 void add_columns(const float* values, int pixels, float* sums) {
   static_assert(patch_reach == 2);
   for (int i = 0; i < pixels; ++i)
@@ -132,7 +130,6 @@ void weigh_pixels(const TimeFilter::State& s, const WeighedPixels& w) {
     const float beyond =
         std::max(std::max(pixel.beyond(own_chi2), patch.beyond(all_chi2) / patch_pixels),
                  common.beyond(common_chi2) / patch_pixels);
-    // Relative to the variance of one measurement.
     const float changed = (1.0f / past + 1.0f / n) / freedom * beyond;
     const float stays = share * past / (1.0f + past * changed);
     w.weight[i] = w.usable[i] > 0.0f ? std::min(stays, max_weight * n) : w.none;

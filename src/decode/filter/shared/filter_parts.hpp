@@ -9,11 +9,10 @@
 
 namespace tofsmith {
 
-/// Returns the constant data of a Filter, for implementations on other devices. Valid as long as
-/// the filter, even if it is moved.
+/// Returns the constant data of a Filter, for other devices. Valid as long as the filter, even if
+/// it is moved.
 const Filter::Plan& plan_of(const Filter& filter);
 
-/// Returns the state of a TimeFilter, for implementations on other devices.
 const TimeFilter::State& state_of(const TimeFilter& filter);
 
 /// @throws std::invalid_argument if the frame does not fit the filter, as Filter::apply()
