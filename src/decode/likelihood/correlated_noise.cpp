@@ -14,7 +14,7 @@ CorrelatedNoise::CorrelatedNoise(const RowCovariance& covariance)
       floor_(covariance.floor) {}
 
 double CorrelatedNoise::Factor::factorize(int count) {
-  // Relative lower limit for directions without noise.
+  // Directions with a smaller relative variance have no noise.
   constexpr double least_share = 1e-12;
   double log_determinant = 0.0;
   for (int j = 0; j < count; ++j) {

@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Covariance of rows at positions between bins. It is linear in light(at bin, at the next bin,
-/// ambient). Allocates nothing per pixel.
+/// Covariance of rows between bins, linear in light(at bin, at the next bin, ambient). Allocates
+/// nothing per pixel.
 class CorrelatedNoise {
  public:
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
@@ -23,17 +23,13 @@ class CorrelatedNoise {
   struct Factor {
     Matrix values;
 
-    /// Replaces the covariance by L.
-    /// @return the logarithm of its determinant
+    /// Replaces the covariance by L; returns the logarithm of its determinant.
     double factorize(int count);
     void whiten(int count, Column& column) const;
     /// Computes L^-1 matrix L^-T for a symmetric matrix.
     void whiten(int count, Matrix& matrix) const;
   };
 
-  /// Returns the covariance.
-  /// @param min_variance_e2  lower limit of the variances
-  /// @param variance_share   variance relative to that of a single measurement
   void at(std::int32_t bin, std::int32_t next, const Quadratic::Vector& light,
           double min_variance_e2, double variance_share, Factor& covariance) const;
   /// Returns the derivative with respect to light 0 or 1 (at that bin) or 2.

@@ -108,7 +108,7 @@ void LikelihoodDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
       block_pixels);
 }
 
-/// Reads electrons, whitened for rows. Returns false if a measurement is NaN or infinite.
+/// Reads electrons; returns false if a measurement is NaN or infinite.
 bool LikelihoodDecoder::Plan::read(const float* raw, PerMeasurement& electrons) const {
   bool finite = true;
   for (int k = 0; k < table.measurements(); ++k) {
@@ -125,7 +125,6 @@ bool LikelihoodDecoder::Plan::read(const float* raw, PerMeasurement& electrons) 
   return finite;
 }
 
-/// Returns NaN if a measurement is NaN or infinite.
 double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
                                                  std::vector<double>& fall) const {
   PerMeasurement electrons;

@@ -10,7 +10,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Lower limit of variances, as a fraction of the mean measurement.
+/// Minimum variance relative to the mean measurement.
 constexpr double min_share = 1e-4;
 double same_cost(double cost) { return 1e-10 * std::max(1.0, std::abs(cost)); }
 constexpr int max_steps = 30, max_halvings = 8, max_chords = 16, max_bins_apart = 3;
@@ -72,8 +72,8 @@ BoundedMinimum LikelihoodModel::least_squares(const LikelihoodPixel& pixel, std:
   return minimize_bounded(q, unknowns_);
 }
 
-/// Returns the quadratic approximation of cost / 2 that Fisher scoring uses at some light: its
-/// gradient and the expected second derivatives.
+/// Returns the quadratic approximation of cost / 2 with expected second derivatives (Fisher
+/// scoring).
 Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bin,
                                    const Quadratic::Vector& light) const {
   if (correlated_) return correlated_scoring(pixel, bin, light);
@@ -104,7 +104,7 @@ Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bi
     }
   }
   q.h[0][1] = q.h[1][0], q.h[0][2] = q.h[2][0], q.h[1][2] = q.h[2][1];
-  // Convert from steps to light, which is bounded by 0.
+  // Convert from steps to light.
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) q.g[i] += q.h[i][j] * light[j];
   return q;
@@ -121,7 +121,7 @@ double LikelihoodModel::correlated_cost(const LikelihoodPixel& pixel, std::int32
     residual[k] = pixel.electrons[k] - light[0] * x0[k] - light[1] * x1[k] - light[2] * ambient_[k];
   const double log_determinant = covariance.factorize(measurements_);
   covariance.whiten(measurements_, residual);
-  // As for independent measurements, variance_share must not change the logarithms.
+  // variance_share must not change the logarithms.
   return residual.head(measurements_).squaredNorm() + log_determinant -
          measurements_ * std::log(pixel.variance_share);
 }
@@ -132,7 +132,7 @@ Quadratic LikelihoodModel::correlated_scoring(const LikelihoodPixel& pixel, std:
   CorrelatedNoise::Factor covariance;
   correlated_->at(bin, to, light, pixel.min_variance_e2, pixel.variance_share, covariance);
   covariance.factorize(measurements_);
-  // Whitened coordinates, in which the covariance is the identity.
+  // In whitened coordinates, the covariance is the identity.
   const std::array rows{gated_.row(bin).data(), gated_.row(to).data(), ambient_.data()};
   std::array<CorrelatedNoise::Column, 3> mean;
   std::array<CorrelatedNoise::Matrix, 3> slope;

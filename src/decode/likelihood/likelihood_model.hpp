@@ -11,18 +11,17 @@
 
 namespace tofsmith {
 
-/// Measurements of one pixel for the LikelihoodModel.
 struct LikelihoodPixel {
   const double* electrons = nullptr;  ///< without dark electrons (K)
   double min_variance_e2 = 0.0;       ///< lower limit of expected variances
-  double variance_share = 1.0;        ///< relative to the variance of a single measurement
+  double variance_share = 1.0;        ///< relative to that of a single measurement
 };
 
-/// Most likely light on the chord from bin `bin` to the next one. Mean and variance of each
-/// measurement are linear in light(at bin, at the next bin, ambient), whose components are >= 0.
+/// Most likely light on the chord from `bin` to the next bin. Mean and variance of each measurement
+/// are linear in light(at bin, at the next bin, ambient) >= 0.
 struct ChordFit {
   std::int32_t bin = 0;
-  Quadratic::Vector light{};  ///< signal at both ends of the chord, ambient light [e/s]
+  Quadratic::Vector light{};  ///< at both ends of the chord, and ambient [e/s]
   double cost = 0.0;          ///< sum_i (y_i - mu_i)^2 / v_i + log v_i
 
   double signal_e_per_s() const { return light[0] + light[1]; }
@@ -34,40 +33,34 @@ struct ChordFit {
   bool is_at_next() const { return light[0] == 0.0 && light[1] > 0.0; }
 };
 
-/// Likelihood of depth, signal and ambient light on the chords between bins. Measurements with
-/// correlated noise are whitened; the cost then includes the remaining covariance C,
-///   cost = (y - mu)^T C^-1 (y - mu) + log det C.
-/// C is linear in light and has the same lower limit on its diagonal as independent variances.
+/// Likelihood of depth, signal and ambient light on the chords between bins. For whitened
+/// measurements with a remaining covariance C, linear in light, the cost is
+///   (y - mu)^T C^-1 (y - mu) + log det C.
 class LikelihoodModel {
  public:
   /// @param table  whitened() if the measurements are rows
   LikelihoodModel(const DecodingTable& table, const AmbientProjection& projection);
 
-  /// Returns a pixel with its lower limit of variances. The limit is necessary because electrons
-  /// are discrete: in a pixel with bright measurements, a dark measurement does not imply zero
-  /// light.
+  /// Returns a pixel with its lower limit of variances: electrons are discrete, so that a dark
+  /// measurement in a bright pixel does not imply zero light.
   LikelihoodPixel pixel(const double* electrons, double variance_share = 1.0) const;
 
-  /// Returns twice the negative log-likelihood of light on a chord, up to a constant.
+  /// Returns -2 log-likelihood, up to a constant.
   double cost(const LikelihoodPixel& pixel, std::int32_t bin, const Quadratic::Vector& light) const;
 
-  /// Minimizes weighted least squares on a chord: half of sum_i weight_i (y_i - mu_i)^2 - weight_i
-  /// y_i^2.
+  /// Minimizes sum_i weight_i (y_i - mu_i)^2 / 2 - weight_i y_i^2 / 2 on a chord.
   BoundedMinimum least_squares(const LikelihoodPixel& pixel, std::int32_t bin,
                                const double* weight) const;
-  /// Minimizes the cost on a chord by Fisher scoring, starting from least squares with these
-  /// weights.
+  /// Minimizes the cost on a chord by Fisher scoring, starting from least squares.
   ChordFit fit(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
-  /// Minimizes the cost near a bin: on both adjacent chords, and on further ones while the cost
-  /// decreases.
+  /// Minimizes the cost on both chords at a bin, and on further ones while it decreases.
   ChordFit fit_around(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
-  /// Minimizes the cost on the chords up to three bins from a fit, because bends between chords can
-  /// cause several minima in one lobe.
+  /// Minimizes the cost on the chords up to three bins from a fit, because one lobe can have
+  /// several minima.
   ChordFit fit_near(const LikelihoodPixel& pixel, const ChordFit& found,
                     const double* weight) const;
 
-  /// Returns light and depth of a fit, with standard deviations from the Fisher information of the
-  /// means.
+  /// Returns light and depth of a fit, with standard deviations from the Fisher information.
   PixelEstimate estimate(const LikelihoodPixel& pixel, const ChordFit& fit) const;
 
  private:

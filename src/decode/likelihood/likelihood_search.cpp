@@ -14,13 +14,13 @@ namespace tofsmith {
 namespace {
 
 constexpr int bins_per_block = 64;
-/// Squared sine of the angle below which signal and ambient light have the same direction.
+/// Squared sine of the angle between signal and ambient light that counts as 0.
 constexpr double parallel_light = 1e-13;
 
-/// Costs that differ by less (relatively, if they are large) are ties, and the lowest depth wins.
+/// Costs that differ by less are ties; the lowest depth wins.
 constexpr double cost_tie = 1e-9;
-/// Peaks are refined if their weighted squares are at most `squares_ratio` times the weighted
-/// squares of the best peak plus `squares_lead`: all have the weights of one estimate.
+/// Peaks are refined if their weighted squares are at most `squares_ratio` times the best plus
+/// `squares_lead`.
 constexpr double squares_ratio = 2.0, squares_lead = 30.0;
 
 }  // namespace
@@ -83,13 +83,12 @@ void DepthScores::weighted_fall(const double* electrons, const double* weight, d
   }
 }
 
-/// A peak over bins, and the weighted squares that remain on the better adjacent chord.
+/// A peak over bins, and the weighted squares that the better adjacent chord leaves.
 struct LikelihoodSearch::Peak {
   std::int32_t bin = 0;
   double squares = 0.0;
 };
 
-/// The most promising peaks of a pixel, best first.
 class LikelihoodSearch::Peaks {
  public:
   void add(const Peak& peak) {
@@ -119,10 +118,9 @@ double LikelihoodSearch::depth_row(const MostLikely& found) const {
   return wrap(depth_row(found.best) + found.moved, scores_.samples());
 }
 
-/// Returns the distance from the best point on the chord to the curve. The chord is part of the
-/// model: if the contrast of some measurements differs from the table's, its best point moves
-/// towards the middle or the ends, and the noise model of the table does not apply to the pixel.
-/// The weighted squares that five rows explain contain the curvature of the pixel itself.
+/// Returns the distance from the best point on the chord to the curve. If the contrast of some
+/// measurements differs from the table's, that point moves towards the middle or the ends of the
+/// chord. The weighted squares that five rows explain contain the curvature of the pixel itself.
 double LikelihoodSearch::moved_to_curve(const LikelihoodPixel& pixel, const ChordFit& best,
                                         const double* weight,
                                         const std::vector<double>& fall) const {
@@ -138,7 +136,7 @@ double LikelihoodSearch::moved_to_curve(const LikelihoodPixel& pixel, const Chor
   for (int step = 0; step < 2 && std::max(at(row - 1), at(row + 1)) > at(row); ++step)
     row = (row + (at(row + 1) > at(row - 1) ? 1 : samples - 1)) % samples;
 
-  // Derivatives of the quartic through five rows; Newton steps find its peak.
+  // Newton steps find the peak of the quartic through five rows.
   const double f0 = at(row), f1 = at(row + 1), b1 = at(row - 1), f2 = at(row + 2), b2 = at(row - 2);
   const double first = (8.0 * (f1 - b1) - (f2 - b2)) / 12.0;
   const double second = (16.0 * (f1 + b1) - (f2 + b2) - 30.0 * f0) / 12.0;
@@ -154,9 +152,8 @@ double LikelihoodSearch::moved_to_curve(const LikelihoodPixel& pixel, const Chor
   return circular_difference(row + peak, depth_row(best), samples);
 }
 
-/// Computes the inverse variances of the measurements at the estimate of zero-mean normalized
-/// cross-correlation. They are nearly the same for any depth that explains the pixel. Returns false
-/// if ambient light alone explains the pixel.
+/// Computes the inverse variances at the estimate of zero-mean normalized cross-correlation.
+/// Returns false if ambient light alone explains the pixel.
 bool LikelihoodSearch::estimate_weights(const LikelihoodPixel& pixel, MostLikely& result) const {
   std::array<double, max_measurements> plane, variance_e2;
   correlation_.project(pixel.electrons, plane.data());
@@ -195,7 +192,7 @@ LikelihoodSearch::Peaks LikelihoodSearch::peaks(const LikelihoodPixel& pixel, co
     const bool rises = n > 0 ? fall[n] > before : fall[n] >= before;
     if (!rises || fall[n] < after) continue;
     const auto bin = static_cast<std::int32_t>(n);
-    // The most likely depth of a peak is up to one row away from it.
+    // A peak is up to one row from its most likely depth.
     if (!contains(within, bin) && !contains(within, bin - 1) && !contains(within, bin + 1))
       continue;
     found.add({bin, squares_beside(pixel, bin, weight)});

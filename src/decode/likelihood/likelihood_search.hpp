@@ -11,20 +11,19 @@
 
 namespace tofsmith {
 
-/// Computes how well every bin explains a pixel, in double precision, with or without weights.
+/// Computes how well each bin explains a pixel.
 class DepthScores {
  public:
   explicit DepthScores(const AmbientProjection& projection);
 
   int samples() const { return static_cast<int>(gated_.cols()); }
 
-  /// Returns the lowest of the bins with the best zero-mean normalized cross-correlation, up to
-  /// rounding.
+  /// Returns the lowest bin with the best zero-mean normalized cross-correlation, up to rounding.
   /// @param plane  pixel without the ambient component, in the subspace (rank)
   std::int32_t best_correlation(const double* plane) const;
 
-  /// Computes by how much light from every bin, together with ambient light, reduces sum_i weight_i
-  /// y_i^2; signal and ambient light are >= 0.
+  /// Computes the decrease of sum_i weight_i y_i^2 by signal >= 0 of each bin and ambient light >=
+  /// 0.
   /// @param electrons  without dark electrons (K)
   /// @param fall       result (N)
   void weighted_fall(const double* electrons, const double* weight, double* fall) const;
@@ -35,19 +34,17 @@ class DepthScores {
   Eigen::VectorXd ambient_;    // a (K)
 };
 
-/// Maximum number of peaks over bins that are refined.
 inline constexpr std::size_t max_peaks = 16;
 
-/// The most likely light of a pixel.
 struct MostLikely {
-  std::array<double, max_measurements> weight;  ///< initial estimate of inverse variances [1/e^2]
+  std::array<double, max_measurements> weight;  ///< estimated inverse variances [1/e^2]
   ChordFit best;
   double moved = 0.0;  ///< from the best point of the chord to that of the curve [rows]
 };
 
-/// Finds the global maximum of the likelihood. It is missed if it is not a peak with the weights of
-/// the initial estimate: with ten measurements in dim light and exposures of 1 : 14, in fewer than
-/// one of a thousand pixels.
+/// Finds the global maximum of the likelihood. It is missed if it is not a peak with the initial
+/// weights: with ten measurements in dim light and exposures of 1 : 14, in fewer than 0.1 % of
+/// pixels.
 class LikelihoodSearch {
  public:
   LikelihoodSearch(const DecodingTable& table, const AmbientProjection& projection);
@@ -56,10 +53,10 @@ class LikelihoodSearch {
   double depth_row(const ChordFit& fit) const { return fit.position().in_rows(scores_.samples()); }
   double depth_row(const MostLikely& found) const;
 
-  /// Returns no signal if ambient light alone explains the pixel.
+  /// Returns no signal if ambient light alone explains the pixel, or if no peak lies within
+  /// `within`.
   /// @param fall    working memory (N); returns DepthScores::weighted_fall()
-  /// @param within  part in which the depth must lie; null: anywhere. No signal if no peak lies
-  ///   there.
+  /// @param within  part in which the depth must lie; null: anywhere
   MostLikely most_likely(const LikelihoodPixel& pixel, std::vector<double>& fall,
                          const RangePart* within = nullptr) const;
   /// Returns LobePosterior::confidence() of the most likely depth.
