@@ -13,17 +13,16 @@ namespace tofsmith {
 namespace {
 
 /// Chi^2 thresholds: two returns must be better than either surface alone by `better`, and may be
-/// worse than a single return at the decoded depth by `little_worse`, because both surfaces are
-/// likely next to an edge.
+/// worse than a single return by `little_worse`, because both surfaces are likely next to an edge.
 constexpr double better = 3.0, little_worse = 25.0;
-/// The same if the decoded depth is that of a surface: two returns must be better by this much.
+/// As `better` if the decoded depth is that of a surface.
 constexpr double far_better = 20.0;
-/// Fraction of the chi^2 of a single surface that may remain, because surfaces are not flat and the
-/// lens blur differs between averaged pixels.
+/// Fraction of the chi^2 of a single surface that may remain: surfaces are not flat, and lens blur
+/// varies.
 constexpr double may_remain = 0.25;
-/// Upper limit of averaged measurements, beyond which model errors dominate.
+/// More averaged measurements do not count: model errors dominate.
 constexpr double most_averaged = 16.0;
-/// Lower limit of the standard deviation of depths, due to interpolation [bin].
+/// Minimum standard deviation of interpolated depths [bin].
 constexpr double least_deviation_bins = 0.05;
 
 }  // namespace
@@ -95,7 +94,7 @@ MixedPixelFit::Explanation MixedPixelFit::explain(const double* electrons, doubl
   Measured weight;
   weight.fill(1.0);
   Fit two = fit<2>(electrons, weight, {&near, &far});
-  // Repeat with the noise of the estimated light and the uncertainty of the depths.
+  // Repeat with the noise of the estimated light.
   const double s1 = std::max(0.0, two.amount[0]), s2 = std::max(0.0, two.amount[1]);
   const double a = std::max(0.0, two.amount[2]);
   const double least_m = least_deviation_bins * range_m_ / samples_;

@@ -10,13 +10,13 @@
 
 namespace tofsmith {
 
-/// Depth of a neighbouring surface, extrapolated to the pixel.
+/// Depth of a surface, extrapolated to the pixel.
 struct SurfaceDepth {
   double depth_m = 0.0;
-  double deviation_m = 0.0;  ///< standard deviation
+  double deviation_m = 0.0;
 };
 
-/// Decides whether one return or two returns of known depths explain a pixel.
+/// Decides whether one or two returns of known depths explain a pixel.
 class MixedPixelFit {
  public:
   explicit MixedPixelFit(const DecodingTable& table);
@@ -27,12 +27,11 @@ class MixedPixelFit {
   struct Explanation {
     bool is_two = false;        ///< both returns are positive, and better than one surface alone
     bool is_no_single = false;  ///< is_two, and better than a single return at the decoded depth
-    double first_e_per_s = 0.0, second_e_per_s = 0.0;  ///< of the two surfaces
-    double chi2 = 0.0;                                 ///< of the fit with both
+    double first_e_per_s = 0.0, second_e_per_s = 0.0;
+    double chi2 = 0.0;  ///< of the fit with both
   };
 
   /// @param electrons  without dark electrons (K)
-  /// @param averaged   number of averaged measurements
   /// @param decoded_m  depth of a single return; NaN if unknown
   Explanation explain(const double* electrons, double averaged, double decoded_m,
                       const SurfaceDepth& first, const SurfaceDepth& second) const;

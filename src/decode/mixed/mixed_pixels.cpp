@@ -29,21 +29,21 @@ constexpr EnumWords<MixedPixels, all_mixed_pixels.size()> mixed_words("MixedPixe
 
 constexpr int reach = 4;
 constexpr int window_pixels = (2 * reach + 1) * (2 * reach + 1);
-/// A pixel belongs to a surface if this many of its 8 neighbours have the same depth. A ribbon of
-/// mixed pixels or an object one pixel wide has fewer.
+/// Number of 8 neighbours with the same depth in a surface. Ribbons of mixed pixels and objects one
+/// pixel wide have fewer.
 constexpr int least_neighbours = 6;
 constexpr int least_pixels = 2;
 constexpr int most_surfaces = 4;
-/// Depths are equal within this many standard deviations or this fraction of the range.
+/// Depths within this many standard deviations or this fraction of the range are equal.
 constexpr double same_sigma = 1.3, same_share = 0.002;
-/// Steps on both sides that differ by more do not belong to one slope.
+/// Steps on both sides that differ by more are not one slope.
 constexpr double slope_sigma = 2.0, parts_sigma = 1.7;
-/// Prior standard deviation of a surface's slope, as a fraction of the range per pixel.
+/// Prior standard deviation of slopes, as a fraction of the range per pixel.
 constexpr double slope_share = 0.0025;
 
 struct WindowPixel {
   double depth_m = 0.0, variance_m2 = 0.0;
-  double here_m = 0.0;  ///< depth extrapolated along the slope to the central pixel
+  double here_m = 0.0;  ///< extrapolated along the slope to the central pixel
   int dx = 0, dy = 0;
   std::size_t index = 0;
   int distance() const { return dx * dx + dy * dy; }
@@ -56,7 +56,7 @@ struct Slope {
 
 struct Surface {
   SurfaceDepth here;
-  std::size_t nearest = 0;  ///< nearest pixel; in case of ties the one closer to the camera
+  std::size_t nearest = 0;  ///< in case of ties the one closer to the camera
   std::size_t pixels = 0;
 };
 
@@ -97,7 +97,6 @@ class Surroundings {
   float depth_m(std::size_t i) const { return depth_[i]; }
   float deviation_m(std::size_t i) const { return deviation_[i]; }
   bool was_mixed(std::size_t i) const { return status_[i] == PixelStatus::mixed; }
-  /// Returns true if the pixel has a depth that may be mixed.
   bool is_decoded(std::size_t i) const {
     return was_mixed(i) ||
            (std::isfinite(depth_[i]) &&
@@ -105,7 +104,7 @@ class Surroundings {
              status_[i] == PixelStatus::inconsistent || status_[i] == PixelStatus::ambiguous));
   }
 
-  /// Returns the surfaces around a pixel, largest first; none if there are fewer than two.
+  /// Returns the surfaces around a pixel, largest first; none if there is only one.
   void find_surfaces(int row, int x, std::vector<Surface>& surfaces) const {
     surfaces.clear();
     std::array<WindowPixel, window_pixels> pixels;
@@ -129,9 +128,8 @@ class Surroundings {
     if (surfaces.size() > most_surfaces) surfaces.resize(most_surfaces);
   }
 
-  /// Returns true if the depth of a pixel lies on a surface. The tolerance is half of that for
-  /// joining pixels, because a little light of another surface shifts the depth by a similar
-  /// amount.
+  /// The tolerance is half of that for joining pixels, because a little light of another surface
+  /// shifts the depth by a similar amount.
   bool lies_on(std::size_t i, const Surface& surface) const {
     return std::abs(depth_[i] - surface.here.depth_m) <=
            0.5 *
@@ -140,14 +138,13 @@ class Surroundings {
 
  private:
   bool is_usable(std::size_t i) const {
-    // Errors of the camera model make pixels inconsistent, but surfaces remain.
+    // Model errors make pixels inconsistent, but surfaces remain.
     return (status_[i] == PixelStatus::ok || status_[i] == PixelStatus::inconsistent) &&
            std::isfinite(depth_[i]) && std::isfinite(deviation_[i]);
   }
 
-  /// Returns the slope of a pixel from its neighbours on both sides, reduced by its noise: the mean
-  /// of both steps, or the smaller step if they differ by more than the noise (the larger one is an
-  /// edge).
+  /// Returns the slope of a pixel from both neighbours, reduced by its noise: the mean of both
+  /// steps, or the smaller one if the larger one is an edge.
   float slope_along(std::size_t before, std::size_t i, std::size_t after) const {
     if (!is_usable(before) || !is_usable(after)) return 0.0f;
     const float down = depth_[i] - depth_[before], up = depth_[after] - depth_[i];
@@ -168,12 +165,11 @@ class Surroundings {
     return {.x = x > 0 && x + 1 < width_ ? slope_along(i - 1, i, i + 1) : 0.0f,
             .y = row > 0 && row + 1 < height_ ? slope_along(i - below, i, i + below) : 0.0f};
   }
-  /// Returns the smaller of two slopes; 0 if their signs differ.
+  /// The smaller slope; 0 if the signs differ.
   static double shared(float a, float b) {
     return a * b > 0.0f ? (std::abs(a) < std::abs(b) ? a : b) : 0.0;
   }
-  /// Returns the expected depth difference between pixels `j` and `i`, offset by (dx, dy), on a
-  /// common surface.
+  /// Expected depth difference of pixels on a common surface.
   double rise_m(std::size_t i, std::size_t j, int dx, int dy) const {
     return dx * shared(slope_[i].x, slope_[j].x) + dy * shared(slope_[i].y, slope_[j].y);
   }
@@ -213,13 +209,11 @@ class Surroundings {
     return count;
   }
 
-  /// Returns true if two consecutive depths belong to different surfaces.
   bool parts(const WindowPixel& a, const WindowPixel& b) const {
     return b.here_m - a.here_m >
            std::max(2 * same_m_, parts_sigma * std::sqrt(a.variance_m2 + b.variance_m2));
   }
 
-  /// Fits a plane to pixels and evaluates it at the central pixel.
   Surface surface_of(const WindowPixel* pixels, std::ptrdiff_t count) const {
     const auto n = static_cast<double>(count);
     double mean = 0.0, variance = 0.0;
@@ -259,7 +253,7 @@ class Surroundings {
   std::vector<std::uint8_t> is_firm_;
 };
 
-/// Reads the electrons of a pixel without dark electrons; returns false if a value is not finite.
+/// Returns false if a value is not finite.
 bool read_electrons(const RawView& raw, const RawScale& scale, int row, int x,
                     std::array<double, max_measurements>& electrons) {
   return std::visit(
@@ -286,7 +280,7 @@ void drop(const DecodedView& decoded, std::size_t i) {
 }
 
 struct MixedPixel {
-  std::optional<Surface> stronger;  ///< surface with more light; none if no surface remains
+  std::optional<Surface> stronger;  ///< none if no surface remains
 };
 
 class MixedPixelSearch {
@@ -300,11 +294,9 @@ class MixedPixelSearch {
         decoded_(raw),
         own_(unfiltered.measured) {}
 
-  /// At least 3 is required to find mixed pixels.
   int rank() const { return fit_.rank(); }
 
   /// Returns none if the pixel does not see two surfaces.
-  /// @param surfaces  working memory
   std::optional<MixedPixel> at(int row, int x, std::vector<Surface>& surfaces) const {
     const std::size_t i = around_.at(row, x);
     if (!around_.is_decoded(i)) return std::nullopt;
@@ -319,8 +311,8 @@ class MixedPixelSearch {
   }
 
  private:
-  /// Returns the surface with more light of the two that explain a pixel best; none if the pixel
-  /// does not see two surfaces.
+  /// Returns the surface with more light of the two that explain a pixel best; none if one
+  /// suffices.
   std::optional<Surface> stronger_of_two(const RawView& raw, int row, int x,
                                          const std::vector<Surface>& surfaces) const {
     std::array<double, max_measurements> electrons;
