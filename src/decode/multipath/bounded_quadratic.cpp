@@ -8,11 +8,11 @@ namespace tofsmith {
 
 namespace {
 
-/// Smaller pivots relative to their diagonal are rounding errors.
+/// Smaller relative pivots are rounding errors.
 constexpr double no_pivot = 1e-13;
 
-/// Solves h x = g for the components in `set`; the others are 0. Returns false if h is singular on
-/// them or x is not >= 0.
+/// Solves h x = g for the components in `set`. Returns false if h is singular on them or x is not
+/// >= 0.
 bool solve_within(const Quadratic& q, unsigned set, Quadratic::Vector& x) {
   std::array<int, 3> index{};
   int size = 0;

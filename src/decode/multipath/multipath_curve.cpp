@@ -36,7 +36,6 @@ RowMajorMatrix thinned(const RowMajorMatrix& table, Eigen::Index rows) {
   return kept;
 }
 
-/// Returns the number of coarse places between which the curve turns little.
 int coarse_places(const RowMajorMatrix& curve) {
   constexpr double max_turn = 0.165;  // relative to the length of the curve
   const double length = curve.norm();

@@ -22,8 +22,7 @@ namespace {
 constexpr int delays_taken = 18, ratios_taken = 8;
 constexpr double reach_m = 1.7;
 
-/// Measurements and curve in coordinates with white noise and without ambient light; rows of the
-/// curve from `first` on.
+/// Measurements and rows of the curve from `first` on, with white noise and without ambient light.
 struct WhitePixel {
   Eigen::VectorXd target;
   RowMajorMatrix direct, behind;  // (rows, span); `behind` only for a tail
@@ -58,7 +57,7 @@ struct WhitePixel {
   }
 };
 
-/// Returns half of the squares that a signal along a curve point explains.
+/// Half of the squares that a signal explains.
 double explained(double along, double own) {
   return along > 0.0 && own > 0.0 ? 0.5 * along * along / own : 0.0;
 }
@@ -105,7 +104,7 @@ DepthPosterior ReturnPosterior::around(const MultipathCurve& curve, const PixelG
   const Eigen::VectorXd later_along = behind * white.target;
   const Eigen::VectorXd later_own = behind.rowwise().squaredNorm();
 
-  const double most = 0.5 * white.target.squaredNorm();  // no fit explains more
+  const double most = 0.5 * white.target.squaredNorm();
   const double per_pair =
       (1.0 - single_probability_) / static_cast<double>(delay_.size() * ratio_.size());
   std::vector<double> density(static_cast<std::size_t>(places));
@@ -141,7 +140,6 @@ DepthPosterior ReturnPosterior::around(const MultipathCurve& curve, const PixelG
           std::sqrt(std::max(square - mean * mean, 0.0))};
 }
 
-/// Pixels that wait for a search, with their positions in the block.
 struct MultipathEngine::Queue {
   std::array<std::int64_t, pixels_per_group> pixel{};
   std::array<float, pixels_per_group> depth_m{};
@@ -174,7 +172,7 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
   const double freedom = curve_.span - 2;
   unexplained_chi2_ =
       static_cast<float>(freedom + std::sqrt(options.threshold) * std::sqrt(2 * freedom));
-  // The unknowns are depth and signal, the second signal and, for a second return, its delay.
+  // Unknowns: depth, both signals and, for a second return, its delay.
   freedom_ = curve_.span - (later == MultipathKind::tail ? 3 : 4);
   const double false_alarm_rate = options.status_thresholds.false_alarm_rate;
   if (freedom_ > 0 && false_alarm_rate > 0.0)
@@ -203,8 +201,8 @@ void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t 
   }
 }
 
-/// Loads one pixel into a lane. The measured light determines the noise or, if buckets are
-/// subtracted, the single return.
+/// Loads one pixel into a lane. Its noise follows from the measured light or, if buckets are
+/// subtracted, from the single return.
 void MultipathEngine::load(const RawBlock& raw, std::int64_t pixel, float depth_m, int lane,
                            PixelGroup& group) const {
   const int k_count = table().measurements();
@@ -304,7 +302,6 @@ void MultipathEngine::search(Queue& queue, const RawBlock& raw, const RangePart*
   queue.count = 0;
 }
 
-/// Computes the ambient light by weighted least squares, given both returns.
 double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits& fits,
                                         int lane) const {
   const double per_row = 1.0 / curve_.points_per_row;
@@ -323,8 +320,8 @@ double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits&
   return own > 0.0 ? along / own : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Replaces the residual of the single return by that of two returns, and the status inconsistent
-/// if two returns explain the pixel.
+/// Replaces the residual by that of two returns, and the status inconsistent if they explain the
+/// pixel.
 void MultipathEngine::store_residual(double chi2, float confidence, std::size_t at,
                                      const DecodedView& decoded) const {
   if (decoded.residual)
@@ -337,7 +334,6 @@ void MultipathEngine::store_residual(double chi2, float confidence, std::size_t 
                            : PixelStatus::ok;
 }
 
-/// Stores a pixel that one return does not explain, with or without a second return.
 void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits,
                             int lane, const DecodedView& decoded) const {
   const auto at = static_cast<std::size_t>(pixel);

@@ -13,14 +13,14 @@
 
 namespace tofsmith {
 
-/// Posterior of the direct depth of a pixel, averaged over all multipath returns of the prior.
+/// Posterior of the direct depth, averaged over the prior of multipath returns.
 struct DepthPosterior {
   double median = 0.0;     ///< [fine points], in [0, points)
   double deviation = 0.0;  ///< [fine points]
 };
 
-/// Posterior of direct depth around a single fit, under a prior on the second return (for a tail:
-/// on its ratio).
+/// Posterior of direct depth around a single fit, under a prior on the second return or on the
+/// ratio of the tail.
 class ReturnPosterior {
  public:
   ReturnPosterior(const MultipathCurve& curve, const ReturnPrior& prior, double range_m,
@@ -32,7 +32,7 @@ class ReturnPosterior {
 
  private:
   double single_probability_;
-  int reach_;                  // of the window on both sides [fine points]
+  int reach_;                  // [fine points]
   std::vector<int> delay_;     // with equal probabilities [fine points]; a single 0 for a tail
   std::vector<double> ratio_;  // with equal probabilities
 };
@@ -40,21 +40,19 @@ class ReturnPosterior {
 /// Light in addition to the direct return.
 enum class MultipathKind { second_return, tail };
 
-/// Decodes pixels with up to two returns: the fast decoder fits a single return, and a search finds
-/// a second return in pixels that it does not explain.
+/// Decodes up to two returns: a search finds a second return in pixels that a single fit does not
+/// explain.
 class MultipathEngine {
  public:
-  /// @throws std::invalid_argument if table or options are invalid, or the code is not sufficient
+  /// @throws std::invalid_argument if table or options are invalid or the code is not sufficient
   MultipathEngine(DecodingTable table, const MultipathOptions& options, MultipathKind later);
 
   const DecodingTable& table() const { return single_.table(); }
   const MultipathOptions& options() const { return options_; }
 
-  /// @param parts  parts of the range in which the direct returns must lie, one per pixel; null:
-  ///               anywhere
+  /// @param parts  parts of the range for the direct returns, one per pixel; null: anywhere
   void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
               const Progress& progress) const;
-  /// See Decoder::decode_depth_bins().
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
 
  private:
@@ -81,13 +79,13 @@ class MultipathEngine {
   Decoder single_;
   RawScale scale_;
   ExpectedNoise noise_;
-  bool has_own_shot_noise_;  // light that cancels in the measurements causes noise
+  bool has_own_shot_noise_;  // from light that cancels in the measurements
   Eigen::VectorXd ambient_;
   RowMajorMatrix gated_, gated_tail_;
   MultipathCurve curve_;
   DelayBounds delays_;
   float unexplained_chi2_;  // upper limit for a single return
-  int freedom_;             // degrees of freedom with both returns
+  int freedom_;
   double consistent_chi2_ = std::numeric_limits<double>::infinity();  // upper limit for both
   std::optional<ReturnPosterior> posterior_;
 };

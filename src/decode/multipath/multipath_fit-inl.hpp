@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Whitening of pixels and local search for returns, with one pixel per lane. Compiled once per
-// instruction set.
+// Local search for returns, one pixel per lane.
 #if defined(TOFSMITH_DECODE_MULTIPATH_FIT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_MULTIPATH_FIT_INL_HPP
 #undef TOFSMITH_DECODE_MULTIPATH_FIT_INL_HPP
@@ -39,13 +38,12 @@ HWY_INLINE Vector dot(const Row* a, const Row* b, int span) {
 constexpr int max_dims = max_span + 1;
 constexpr int packed(int row, int column) { return row * (row + 1) / 2 + column; }
 
-/// Pixel in whitened coordinates without ambient light. With the Cholesky factor L of B^T W B (B:
-/// ambient direction and decoding subspace), a curve point p becomes L_pp^T p, and the measurements
-/// become the subspace part of L^-1 B^T W y.
+/// Pixel in whitened coordinates without ambient light. With the Cholesky factor L of B^T W B, a
+/// curve point p becomes L_pp^T p, and y becomes the subspace part of L^-1 B^T W y.
 struct White {
   alignas(64) Row factor[packed(max_dims, 0)];
   alignas(64) Row target[max_span];
-  int span = 0, first = 0;  // number of rows of the factor before the subspace
+  int span = 0, first = 0;  // rows of the factor before the subspace
 
   HWY_INLINE void make(const MultipathCurve& curve, const PixelGroup& pixels, int lane) {
     span = curve.span;
@@ -78,7 +76,7 @@ struct White {
         left = hn::NegMulAdd(l, l, left);
         sum = hn::NegMulAdd(l, load(sums[k]), sum);
       }
-      // Treat residuals of rounding errors as zero.
+      // Rounding errors count as 0.
       const Mask is_left = hn::Gt(left, hn::Mul(all(1e-6f), whole));
       const Vector root = hn::Sqrt(hn::IfThenElseZero(is_left, left));
       const Vector inverse_root = hn::IfThenElseZero(is_left, hn::Div(all(1.0f), root));
@@ -89,7 +87,7 @@ struct White {
     for (int i = 0; i < span; ++i) store(load(sums[first + i]), target[i]);
   }
 
-  /// Computes L_pp^T p in place, for rows or for one point in all lanes.
+  /// Computes L_pp^T p in place.
   HWY_INLINE void whiten(Row* rows) const {
     for (int i = 0; i < span; ++i) {
       Vector sum = hn::Mul(load(factor[packed(first + i, first + i)]), load(rows[i]));
@@ -108,8 +106,7 @@ struct White {
   }
 };
 
-/// Returns whitened points of a closed table at positions in [0, points), and their slope per
-/// point.
+/// Returns whitened points at positions in [0, points), and their slope per point.
 HWY_INLINE void point_at(const MultipathCurve& curve, const std::vector<float>& table,
                          const White& white, Vector position, Row* value, Row* slope) {
   const hn::RebindToSigned<Floats> di;
@@ -134,7 +131,7 @@ HWY_INLINE Vector wrapped(Vector position, int points) {
   return choose(hn::Ge(within, period), hn::Zero(Floats()), hn::Max(within, hn::Zero(Floats())));
 }
 
-/// Signals of two curve points, S1 >= S2 >= 0, that fit the target best.
+/// Best signals of two curve points, S1 >= S2 >= 0.
 struct Signals {
   Vector first, second;
   Mask are_equal;  // the constraint S2 <= S1 is active
@@ -160,7 +157,7 @@ HWY_INLINE Signals best_signals(Vector b1, Vector b2, Vector g11, Vector g12, Ve
 
 enum class Fitted { single, pair, tail };
 
-/// State of the local search: chi^2, its gradient (times -1/2) and Gauss-Newton matrix.
+/// State of the search: chi^2, its gradient (times -1/2) and Gauss-Newton matrix.
 struct Place {
   Vector first, second;  // positions: of the direct return, and its delay
   Vector s1, s2;
@@ -169,8 +166,7 @@ struct Place {
   Vector h11, h12, h22;
 };
 
-/// @param free_signals  computes the matrix for unconstrained signals, from which standard
-///   deviations follow
+/// @param free_signals  computes the matrix for unconstrained signals, for standard deviations
 template <Fitted What, int Span>
 HWY_INLINE Place look(const MultipathCurve& curve, const White& white, Vector first, Vector second,
                       bool free_signals = false) {
@@ -194,7 +190,7 @@ HWY_INLINE Place look(const MultipathCurve& curve, const White& white, Vector fi
     place.s1 = s.first, place.s2 = s.second;
     if (!free_signals) are_equal = s.are_equal;
   }
-  // u and v are the directions in which signals can change.
+  // u and v: directions in which signals can change.
   Vector uj = zero, vj = zero, uk = zero, vk = zero, jj = zero, jk = zero, kk = zero;
   for (int i = 0; i < (Span > 0 ? Span : span); ++i) {
     const Vector first_i = load(g1[i]), slope1 = hn::Mul(place.s1, load(d1[i]));
@@ -206,7 +202,7 @@ HWY_INLINE Place look(const MultipathCurve& curve, const White& white, Vector fi
     } else {
       const Vector second_i = load(g2[i]), slope2 = hn::Mul(place.s2, load(d2[i]));
       left = hn::NegMulAdd(place.s2, second_i, left);
-      // Delays are relative, so moving the direct return also moves the second one.
+      // Delays are relative to the direct return.
       const Vector j = hn::Add(slope1, slope2);
       const Vector u = choose(are_equal, hn::Add(first_i, second_i), first_i);
       uj = hn::MulAdd(u, j, uj);
@@ -223,7 +219,7 @@ HWY_INLINE Place look(const MultipathCurve& curve, const White& white, Vector fi
     }
     place.chi2 = hn::MulAdd(left, left, place.chi2);
   }
-  // Subtract the part that the linear signal amplitudes can explain (variable projection).
+  // Variable projection: subtract the part that the linear amplitudes explain.
   const Vector tiny = all(1e-20f);
   Vector uu = hn::Add(g11, tiny);
   if constexpr (What != Fitted::single)
@@ -255,7 +251,7 @@ HWY_INLINE Place choose(Mask which, const Place& yes, const Place& no) {
           choose(which, yes.h12, no.h12),     choose(which, yes.h22, no.h22)};
 }
 
-/// Levenberg-Marquardt from a start. Converged lanes remain unchanged.
+/// Levenberg-Marquardt. Converged lanes remain unchanged.
 template <Fitted What, int Span>
 HWY_INLINE Place downhill(const MultipathCurve& curve, const DelayBounds& delays,
                           const White& white, Vector first, Vector second, int max_steps) {

@@ -8,7 +8,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/multipath/multipath_search.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/multipath/multipath_fit-inl.hpp"
@@ -22,7 +21,7 @@ constexpr int max_coarse = 240;
 constexpr int max_starts = 3;
 constexpr int max_single_steps = 6, max_pair_steps = 14;
 
-/// Whitened coarse points of all lanes, with <g, g> and <g, target>.
+/// Whitened coarse points, with <g, g> and <g, target>.
 struct CoarsePoints {
   alignas(64) Row point[max_coarse * max_span];
   alignas(64) Row own[max_coarse];
@@ -41,7 +40,7 @@ struct CoarsePoints {
   }
 };
 
-/// Returns the part of |target|^2 that a pair explains at best; 0 if one return alone is as good.
+/// Returns the part of |target|^2 that a pair explains; 0 if one return is as good.
 HWY_INLINE Vector pair_score(Vector b1, Vector b2, Vector g11, Vector g12, Vector g22) {
   const Vector zero = hn::Zero(Floats());
   const Vector det = hn::MulSub(g11, g22, hn::Mul(g12, g12));
@@ -51,14 +50,14 @@ HWY_INLINE Vector pair_score(Vector b1, Vector b2, Vector g11, Vector g12, Vecto
   const Mask are_equal = hn::Gt(n2, n1);
   const Vector both = hn::Add(hn::Add(g11, g22), hn::Add(g12, g12));
   const Vector top = choose(are_equal, hn::Mul(sum, sum), hn::MulAdd(n1, b1, hn::Mul(n2, b2)));
-  // Places that nearly coincide do not count as two.
+  // Nearly equal places do not count as two.
   const Vector apart = hn::Max(det, hn::Mul(all(1e-5f), hn::Mul(g11, g22)));
   const Vector below = hn::Add(choose(are_equal, both, apart), all(1e-30f));
   return hn::IfThenElseZero(hn::Gt(hn::Max(n1, n2), zero),
                             hn::IfThenElseZero(hn::Ge(n2, zero), hn::Div(top, below)));
 }
 
-/// The highest local maxima of the scores, which are added in order of place.
+/// The highest local maxima of the scores.
 struct Starts {
   alignas(64) Row score[max_starts], place[max_starts], lag[max_starts];
 
@@ -112,13 +111,12 @@ HWY_INLINE void score_coarse(const MultipathCurve& curve, const DelayBounds& del
   }
 }
 
-/// Position of a coarse place [fine points].
 HWY_INLINE Vector fine_position(const MultipathCurve& curve, Vector place) {
   return hn::Floor(hn::Div(hn::MulAdd(place, all(static_cast<float>(curve.points)), all(0.5f)),
                            all(static_cast<float>(curve.coarse))));
 }
 
-/// Returns the best single return, refined from the guess and from the best coarse place.
+/// Refines the guess and the best coarse place.
 template <int Span>
 HWY_INLINE Place best_single(const MultipathCurve& curve, const White& white,
                              const CoarsePoints& points, Vector guess) {

@@ -6,18 +6,17 @@
 
 namespace tofsmith {
 
-/// Pixels side by side, with the noise of their measurements and an initial guess of their depth.
+/// Pixels that are searched together.
 struct PixelGroup {
   alignas(64) float electrons[max_measurements][pixels_per_group];  ///< without dark electrons [e]
   alignas(64) float variance_e2[max_measurements][pixels_per_group];  ///< each > 0
   alignas(64) float guess[pixels_per_group];                          ///< [fine points]
-  /// Part of the range excluded for the direct return: beginning and length [fine points].
+  /// Beginning and length of the part excluded for the direct return [fine points].
   alignas(64) float excluded_from[pixels_per_group] = {};
   alignas(64) float excluded_length[pixels_per_group] = {};
 };
 
-/// Fits of a single return. chi^2 is restricted to the dimensions of the curve without the ambient
-/// component, i.e. to what any set of returns could explain.
+/// chi^2 is restricted to the dimensions of the curve without the ambient component.
 struct SingleFits {
   alignas(64) float position[pixels_per_group];  ///< [fine points], in [0, points)
   alignas(64) float chi2[pixels_per_group];
@@ -33,7 +32,7 @@ struct PairFits {
   alignas(64) float single_chi2[pixels_per_group];  ///< of the best single return
   alignas(
       64) float second_best_chi2[pixels_per_group];  ///< of the best fit with another direct depth
-  /// Standard deviation of the direct position [fine points], limited to that of a uniform depth.
+  /// Standard deviation of the direct position [fine points], at most that of a uniform depth.
   alignas(64) float deviation[pixels_per_group];
 };
 
@@ -50,9 +49,7 @@ void fit_single(const MultipathCurve& curve, const PixelGroup& pixels, SingleFit
 
 /// Fits two returns, S1 >= S2 >= 0, or a return and its tail if the curve has one, by
 /// noise-weighted least squares: evaluates all pairs of coarse places and refines the best ones.
-/// Searches start outside the excluded part of the range, or at most one coarse step inside, but
-/// may end inside.
-/// @note as fit_single()
+/// Searches start outside the excluded part, or at most one coarse step inside, but may end inside.
 void fit_pair(const MultipathCurve& curve, const DelayBounds& delays, const PixelGroup& pixels,
               PairFits& fits);
 

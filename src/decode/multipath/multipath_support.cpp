@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the number of harmonics with more than 1 % of the largest amplitude.
+/// Harmonics with more than 1 % of the largest amplitude.
 int harmonics_of(const AmbientProjection& projection) {
   const PeriodicTransform transform(static_cast<int>(projection.curve.rows()));
   Eigen::VectorXd power = Eigen::VectorXd::Zero(transform.coefficients());
@@ -44,7 +44,7 @@ std::optional<BrokenRule> missing_support(const AmbientProjection& projection,
             : "; the code has only two frequencies, at which pairs of returns are ambiguous";
   rule += "; decode it with zncc or ml, or ";
   const Eigen::Index measurements = projection.gated.cols();
-  if (measurements >= needed)  // enough measurements, but too few independent means
+  if (measurements >= needed)  // too few independent means
     rule += "increase the number of harmonics: its " + std::to_string(measurements) +
             " measurements suffice, but contain too few harmonics; use a higher bandwidth of light "
             "and sensor (light.impulse_response, sensor.impulse_response) or a code with more "

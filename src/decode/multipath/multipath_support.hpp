@@ -11,10 +11,8 @@ namespace tofsmith {
 
 enum class MultipathKind;
 
-/// Checks that there are enough independent means for the unknowns: depth, signal, ambient light,
-/// delay and strength of a second return (5; for a tail of known delay 4), and one more to test the
-/// fit. Returns an error with the available and required numbers and a remedy; none if they
-/// suffice.
+/// Checks that there are enough independent means for the unknowns (5; for a tail of known delay 4)
+/// and one more to test the fit. Returns an error with a remedy; none if they suffice.
 std::optional<BrokenRule> missing_support(const AmbientProjection& projection, MultipathKind later);
 
 }  // namespace tofsmith

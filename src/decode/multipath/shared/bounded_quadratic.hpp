@@ -6,8 +6,7 @@
 
 namespace tofsmith {
 
-/// Quadratic function of up to three unknowns, f(x) = x^T h x / 2 - g^T x, with h positive
-/// semidefinite.
+/// f(x) = x^T h x / 2 - g^T x of up to three unknowns, with h positive semidefinite.
 struct Quadratic {
   using Vector = std::array<double, 3>;
   std::array<Vector, 3> h{};
@@ -16,7 +15,7 @@ struct Quadratic {
   double at(const Vector& x) const;
 };
 
-/// Minimum of a quadratic subject to x >= 0.
+/// Minimum subject to x >= 0.
 struct BoundedMinimum {
   Quadratic::Vector x{};
   double value = 0.0;  ///< f(x) <= f(0) = 0
@@ -27,7 +26,7 @@ struct BoundedMinimum {
 BoundedMinimum minimize_bounded(const Quadratic& quadratic, int unknowns);
 
 /// Returns h_ii after elimination of the other components, 1 / [h^-1]_ii; 0 if only rounding errors
-/// remain. Other components that consist of rounding errors are ignored.
+/// remain. Ignores other components that are rounding errors.
 double left_of(const Quadratic& quadratic, int i);
 
 }  // namespace tofsmith
