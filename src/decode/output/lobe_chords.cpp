@@ -13,7 +13,7 @@ namespace {
 constexpr double negligible = 40.0;
 const double sqrt_two_pi = std::sqrt(2 * std::numbers::pi);
 
-/// Mills ratio of the normal distribution, with a relative error below 10 %; exact at 0.
+/// Mills ratio of the normal distribution, to 10 %.
 double mills_ratio(double x) { return 2.0 / (x + std::sqrt(x * x + 8.0 / std::numbers::pi)); }
 
 }  // namespace

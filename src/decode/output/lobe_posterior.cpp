@@ -15,7 +15,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/output/lobe_posterior.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/output/shared/output_vectors-inl.hpp"
@@ -24,12 +23,12 @@
 #define TOFSMITH_DECODE_OUTPUT_LOBE_SUM
 namespace tofsmith {
 
-/// Input of the sum over the nodes of a curve, in single precision.
+/// Inputs of the sum over the nodes of a curve.
 struct LobeSum {
   const LobePosterior::Nodes* nodes;
   int rank;
   const float* along;   ///< C^-1 q (rank)
-  const float* metric;  ///< C^-1: lower triangle row by row, twice its entries off the diagonal
+  const float* metric;  ///< C^-1: lower triangle row by row, off-diagonal entries doubled
   float samples;
   float centre, half_width;  ///< of the main lobe [place]
 };
@@ -44,11 +43,10 @@ namespace {
 
 constexpr int nodes_per_chunk = 1024;
 
-/// Returns the nearest whole number. Without vectors, hn::Round() rounds half-way cases
-/// differently.
+/// Without vectors, hn::Round() rounds half-way cases differently.
 HWY_INLINE Vector nearest(Vector x) { return hn::Floor(hn::Add(x, all(0.5f))); }
 
-/// Returns exp(x) for x <= 0, at least exp(-80), with a relative error of 2e-7.
+/// Returns exp(x) for -80 <= x <= 0 with a relative error of 2e-7.
 HWY_INLINE Vector exp_of(Vector x) {
   const Indices di;
   const Vector power = hn::Mul(hn::Max(x, all(-80.0f)), all(1.44269504f));
@@ -63,9 +61,9 @@ HWY_INLINE Vector exp_of(Vector x) {
   return hn::Mul(series, hn::BitCast(Floats(), hn::ShiftLeft<23>(exponent)));
 }
 
-/// Returns p(z) exp(-peak) for signals c in standard deviations, with an error of 0.5 %: for c >= 0
-///   ln 10 + sqrt(2 pi) h(c) exp(c^2 / 2) with h rational, h(c) -> 1 / c,
-/// and for c < 0 a rational function of -c.
+/// Returns p(z) exp(-peak) for signals c in standard deviations with an error of 0.5 %: a rational
+/// function of -c for c < 0, and for c >= 0, with h rational and h(c) -> 1 / c,
+///   ln 10 + sqrt(2 pi) h(c) exp(c^2 / 2).
 /// @param no_light  exp(-peak)
 HWY_INLINE Vector density(Vector c, Vector peak, Vector no_light) {
   const Floats d;
@@ -89,7 +87,6 @@ HWY_INLINE Vector density(Vector c, Vector peak, Vector no_light) {
   return hn::IfThenElse(hn::Lt(c, hn::Zero(d)), hn::Mul(dark, no_light), lit);
 }
 
-/// Computes the signals c of the nodes of a chunk. @return the largest
 HWY_INLINE float find_signals(const LobeSum& sum, int first, int count, float* signal) {
   const Floats d;
   const int stride = sum.nodes->stride;
@@ -115,7 +112,6 @@ HWY_INLINE float find_signals(const LobeSum& sum, int first, int count, float* s
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Computes the signals c of all nodes. @return the largest
 float node_signals(const LobeSum& sum, float* signal) {
   float largest = 0.0f;
   for (int first = 0; first < sum.nodes->stride; first += nodes_per_chunk)
@@ -125,7 +121,6 @@ float node_signals(const LobeSum& sum, float* signal) {
   return largest;
 }
 
-/// Implements leads() for one rank; 0 for any.
 template <int Rank>
 HWY_INLINE bool leads_of_rank(const LobePosterior::Nodes& nodes, int any_rank, const float* plane,
                               float samples, float centre, float half_width, float limit) {
@@ -173,7 +168,7 @@ struct LobeMass {
   }
 };
 
-/// Adds the nodes of a chunk, relative to exp(peak).
+/// Adds nodes relative to exp(peak).
 HWY_INLINE void add_nodes(const LobeSum& sum, int first, int count, const float* signal, float peak,
                           LobeMass& mass) {
   constexpr float negligible = 30.0f;
@@ -188,12 +183,11 @@ HWY_INLINE void add_nodes(const LobeSum& sum, int first, int count, const float*
     const Vector c = load(signal, i);
     const Mask counts = hn::Ge(c, least);
     if (skips && hn::AllFalse(d, counts)) continue;
-    // Skipped nodes contribute nothing, for any length of vectors.
     Vector w = load(width, i);
     if (skips) w = hn::IfThenElseZero(counts, w);
     Vector away = hn::Sub(load(centre, i), all(sum.centre));
     away = hn::Abs(hn::Sub(away, hn::Mul(samples, nearest(hn::Mul(away, per_turn)))));
-    // Fraction of the node's part of the range that lies inside the lobe.
+    // Part of the node that lies inside the lobe.
     const Vector share = hn::Div(hn::Sub(all(sum.half_width), away), hn::Max(w, all(1e-6f)));
     const Vector within = hn::Min(hn::Max(hn::Add(share, all(0.5f)), hn::Zero(d)), all(1.0f));
     const Vector whole = hn::Mul(density(c, all(peak), no_light), w);
@@ -239,11 +233,9 @@ HWY_EXPORT(node_signals);
 
 namespace {
 
-/// Maximum step, in standard deviations of the direction, for a sum over nodes to approximate the
-/// integral of a Gaussian to 1e-5.
+/// Maximum step [standard deviations] for a sum to approximate the integral of a Gaussian to 1e-5.
 constexpr double max_step_deviations = 1.25;
 
-/// NoiseMetric in the format of LobeSum.
 struct SumInput {
   SumInput(const NoiseMetric& noise, int rank) {
     for (int i = 0, at = 0; i < rank; ++i) {
@@ -267,7 +259,6 @@ double typical_variance(const Eigen::MatrixXd& noise_basis, const Eigen::VectorX
   return mean + 0.5 * std::sqrt(std::max(0.0, square - mean * mean));
 }
 
-/// Returns the largest score of the places less than a row away.
 float LobePosterior::score_beside(const float* plane, float score, std::int32_t row) const {
   for (std::int32_t after = 1 - places_per_row_; after < places_per_row_; ++after) {
     if (after == 0) continue;
@@ -291,8 +282,8 @@ bool LobePosterior::is_sure(const float* plane, float score, float least_lead_e2
         static_cast<float>(row * places_per_row_ + 0.5 * (own.right - own.left)),
         static_cast<float>(0.5 * (own.left + own.right + 1)), limit);
   };
-  // The score of a place at most half a step from a node is at most `limit` if the score of the
-  // node is at most |q| cos(arccos(limit / |q|) + step / 2).
+  // A place half a step from a node scores at most `limit` if the node scores at most
+  // |q| cos(arccos(limit / |q|) + step / 2).
   const float limit = std::sqrt(square);
   float across2 = -square;
   for (int j = 0; j < rank_; ++j) across2 += plane[j] * plane[j];
@@ -300,8 +291,7 @@ bool LobePosterior::is_sure(const float* plane, float score, float least_lead_e2
   if (leads_by(sparse_, limit * std::cos(sparse_turn) -
                             std::sqrt(std::max(across2, 0.0f)) * std::sin(sparse_turn)))
     return true;
-  // Between close nodes the score exceeds that of both nodes at most by a factor of 1 /
-  // cos(step / 2).
+  // Between close nodes the score exceeds both nodes' by at most a factor of 1 / cos(step / 2).
   constexpr auto between = static_cast<float>(1.0 - 0.125 * coarse_step_rad * coarse_step_rad);
   return leads_by(coarse_, limit * between);
 }
@@ -363,8 +353,8 @@ double LobePosterior::sum_over_nodes(const Nodes& nodes, const NoiseMetric& nois
        .half_width = static_cast<float>(0.5 * (window.length + 1))});
 }
 
-/// In bright light the density consists of a few narrow peaks, which lie on chords. Chords are
-/// skipped if the signals of nodes, at most half a step away, prove that they are negligible.
+/// In bright light the density consists of a few narrow peaks on chords. Chords are skipped if the
+/// signals of nodes prove them negligible.
 double LobePosterior::sum_over_chords(const NoiseMetric& noise, const Window& window) const {
   constexpr double negligible = 40.0;
   const SumInput input(noise, rank_);
@@ -398,7 +388,7 @@ double LobePosterior::sum_over_chords(const NoiseMetric& noise, const Window& wi
   const auto begin_of = [&](std::size_t i) {
     return static_cast<std::int32_t>(std::floor(coarse_.centre[i] - 0.5f * coarse_.width[i])) - 1;
   };
-  // The range is cyclic: stop before the first chord is added again.
+  // Stop before the first chord of the cyclic range is added again.
   std::int32_t next = begin_of(0), end_of_all = std::numeric_limits<std::int32_t>::max();
   for (std::size_t i = 0; i < static_cast<std::size_t>(coarse_.count); ++i) {
     if (signal[i] < least) continue;

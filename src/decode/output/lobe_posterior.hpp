@@ -13,17 +13,17 @@ namespace tofsmith {
 
 class NoiseMetric;
 
-/// Half width of the main lobe as a share of the range: 5 %.
+/// Maximum half width of the main lobe as a share of the range.
 inline constexpr double max_lobe_share = 0.05;
 
-/// Extent of the main lobe of a row: from `left` before it to `right` after it [rows].
+/// Extent of the main lobe before and after a row [rows].
 struct MainLobe {
   double left = 0.0;
   double right = 0.0;
 };
 
-/// Test that proves a confidence of 1 without a sum over the curve. With c = <q, u_b> for the
-/// direction u_b of the row, the score of every place outside the main lobe is at most
+/// Test that proves a confidence of 1. With c = <q, u_b> for the direction u_b of the row, other
+/// places score at most
 ///   cosine c + sine sqrt(|q|^2 - c^2)
 /// up to the margins in LobePosterior::bound().
 struct LobeBound {
@@ -31,28 +31,26 @@ struct LobeBound {
   double sine = 0.0;
 };
 
-/// Lead in chi-square that proves a confidence of 1: all other places have a posterior probability
-/// of at most about 1e-3.
+/// Lead in chi-square that proves a confidence of 1: the probability of other places is at most
+/// about 1e-3.
 inline constexpr float sure_lead = 14.0f;
 
-/// Variance of single components of q = V^T y' with covariance C = V^T diag(v) V, a little above
-/// the mean: mean + (standard deviation) / 2 of its eigenvalues.
+/// Variance of components of q = V^T y' with covariance C = V^T diag(v) V: mean plus half the
+/// standard deviation of the eigenvalues of C.
 double typical_variance(const Eigen::MatrixXd& noise_basis, const Eigen::VectorXd& variance);
 
-/// Number of nodes per block. It does not depend on the length of vectors, so that sums have the
-/// same bits on every processor.
+/// Nodes per block. Sums have the same bits for all lengths of vectors.
 inline constexpr int nodes_per_block = 16;
 
-/// Posterior probability that the depth lies in the main lobe around a row, compared with all other
-/// places of the curve. A priori, all depths are equally likely, ambient light may have any value,
-/// and the density of the signal is proportional to 1/S from a tenth of its standard deviation
-/// upwards. With Gaussian noise of covariance C and c(z) = <q, p(z)>_C / |p(z)|_C, the signal in
-/// units of its standard deviation, the integral over the signal is
+/// Posterior probability that the depth lies in the main lobe around a row. A priori, all depths
+/// are equally likely, ambient light may have any value, and the density of the signal is
+/// proportional to 1/S from a tenth of its standard deviation upwards. For Gaussian noise of
+/// covariance C and c(z) = <q, p(z)>_C / |p(z)|_C, the signal in standard deviations,
 ///   p(z) = integral from 0.1 to infinity of exp(c t - t^2 / 2) / t dt.
 ///
 /// The main lobe ends where the score of the row's own measurements stops decreasing, at most 5 %
-/// of the range away on either side. Lobes of a smooth curve may be narrow compared with the
-/// spacing of rows, so the table is interpolated; `places` are the interpolated rows.
+/// of the range away. Smooth curves are interpolated, because lobes may be narrow; `places` are the
+/// interpolated rows.
 class LobePosterior {
  public:
   LobePosterior(const DecodingTable& table, const AmbientProjection& projection);
@@ -60,8 +58,8 @@ class LobePosterior {
   MainLobe main_lobe(std::int32_t row) const;
   const LobeBound& bound(std::int32_t row) const { return bounds_[static_cast<std::size_t>(row)]; }
 
-  /// Returns true if the best score near the row exceeds the score of every place outside its main
-  /// lobe by enough to prove a confidence of 1. This test often succeeds where LobeBound does not.
+  /// Returns true if the lead of the best score near the row proves a confidence of 1, often where
+  /// LobeBound does not.
   /// @param plane          q (rank)
   /// @param score          <q, u_b> of the row
   /// @param least_lead_e2  sure_lead times the variance
@@ -70,36 +68,33 @@ class LobePosterior {
   /// @param plane        q (rank)
   /// @param variance_e2  of every measurement (K)
   /// @return in [0, 1], the same bits on every processor
-  /// @note thread-safe; allocates nothing in most cases
+  /// @note thread-safe; rarely allocates memory
   double probability(const double* plane, const double* variance_e2, std::int32_t row) const;
-  /// Returns probability(), or 1 if LobeBound or is_sure() proves it. With a part of the range,
-  /// depths outside are less likely a priori by the factor `outside_prior`; returns none if the
-  /// depth nevertheless lies outside with a probability of at least 0.9.
+  /// Returns probability(), or 1 if LobeBound or is_sure() proves it. Depths outside of `part` are
+  /// less likely a priori by the factor `outside_prior`; returns none if the depth still lies
+  /// outside with a probability of at least 0.9.
   /// @param part  of the range; null: all of it
   std::optional<double> confidence(const double* plane, const double* variance_e2, std::int32_t row,
                                    const RangePart* part) const;
   static constexpr double outside_prior = 0.01;
 
-  /// Points of the curve at most `step` radians apart, on the chords between places.
+  /// Points of the curve at most `step` radians apart.
   struct Nodes {
     double step = 0.0;
     int count = 0;
-    int stride = 0;                ///< count, rounded up to whole blocks
+    int stride = 0;                ///< count in whole blocks
     std::vector<float> direction;  ///< unit vectors (rank, stride); 0 without contrast
-    std::vector<float> centre;     ///< of the part of the range that a node represents [place]
+    std::vector<float> centre;     ///< of the part that a node represents [place]
     std::vector<float> width;      ///< of that part [place]; 0 in the padding
   };
 
  private:
-  /// Steps between nodes.
   static constexpr double sparse_step_rad = 0.24, coarse_step_rad = 0.08, fine_step_rad = 0.02;
   Nodes make_nodes(double step) const;
-  /// A MainLobe in whole places.
   struct Lobe {
     std::int32_t left = 0;
     std::int32_t right = 0;
   };
-  /// A run of places, from `begin` to `begin + length`.
   struct Window {
     std::int32_t begin = 0;
     std::int32_t length = 0;
@@ -125,7 +120,7 @@ class LobePosterior {
   RowMajorMatrix curve_;        // p (places, rank)
   RowMajorMatrix unit_;         // p / |p|; 0 without contrast
   RowMajorMatrix noise_basis_;  // V (K, rank)
-  Eigen::VectorXd turn_rad_;    // from each place to the next; infinite if there is no chord
+  Eigen::VectorXd turn_rad_;    // to the next place; infinite without chord
   std::vector<Lobe> lobes_;     // of rows
   std::vector<LobeBound> bounds_;
   Nodes sparse_, coarse_, fine_;

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The tables of LobePosterior: lobes, nodes and bounds of a curve.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,11 +15,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Far from the ends of the lobe, the bound requires a lead larger by a factor of 1.5 (1.22^2),
-/// because of the length of the curve there.
+/// Far from the lobe, the bound requires a lead larger by 1.22^2, because the curve is long there.
 constexpr double far_sine = 1.22;
 
-/// Spacing of the places of a smooth curve, so that chords deviate from it by at most 5e-5 rad.
+/// Turn between places of a smooth curve; chords deviate from it by at most 5e-5 rad.
 constexpr double place_turn_rad = 0.02;
 constexpr int max_places = 1 << 18;
 
@@ -71,7 +69,7 @@ LobePosterior::Window LobePosterior::window_of(const RangePart& part) const {
           static_cast<std::int32_t>(std::lround(part.length * places_))};
 }
 
-/// Returns the part of a row's main lobe within a window that contains the row or is next to it.
+/// The part of a main lobe within a window that contains the row or is next to it.
 LobePosterior::Window LobePosterior::lobe_within(std::int32_t row, const Window& allowed) const {
   const std::int32_t place = row * places_per_row_;
   std::int32_t after = (place - allowed.begin + places_) % places_;
@@ -81,8 +79,7 @@ LobePosterior::Window LobePosterior::lobe_within(std::int32_t row, const Window&
   return {place - left, left + right};
 }
 
-/// Finds the main lobes: on either side, the places along which the score of the row's own
-/// measurements decreases.
+/// The lobe consists of the places along which the score of the row's own measurements decreases.
 void LobePosterior::find_lobes() {
   constexpr double plateau = 1e-9;
   const auto longest =
@@ -146,8 +143,8 @@ LobePosterior::Nodes LobePosterior::make_nodes(double step) const {
   return nodes;
 }
 
-/// Returns the place at half of the turn between two others, so that one node represents a whole
-/// run of places with the same direction.
+/// Returns the place at half of the turn, so that one node represents places with the same
+/// direction.
 double LobePosterior::half_way(double from, double to) const {
   const auto part = [&](std::int32_t n) {
     const double turn = turn_rad_[((n % places_) + places_) % places_];
@@ -166,8 +163,7 @@ double LobePosterior::half_way(double from, double to) const {
   return 0.5 * (from + to);
 }
 
-/// Computes the bounds. Scores of all nodes are computed once per block of rows, to limit the time
-/// for fine tables.
+/// Computes the scores of all nodes once per block of rows, which saves time for fine tables.
 void LobePosterior::find_bounds() {
   constexpr double most_products = 5e8;
   const double products = static_cast<double>(rows_) * coarse_.stride * rank_;
@@ -181,8 +177,7 @@ void LobePosterior::find_bounds() {
 }
 
 /// Computes the sine of the smallest angle to places outside the main lobe. For far places it
-/// includes margins for the spacing of nodes and for the distance to the middle row of the block,
-/// and the factor far_sine.
+/// includes far_sine and margins for the spacing of nodes and the distance to the middle row.
 void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::RowVectorXf& score) {
   const Nodes& nodes = coarse_;
   const double reach = max_lobe_share * places_, half_range = 0.5 * places_;
@@ -195,7 +190,6 @@ void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::Row
   };
   const std::int32_t middle = (begin + end) / 2 * places_per_row_;
 
-  // Union of the lobes of all rows in the block.
   std::int32_t left = places_, right = places_;
   for (std::int32_t n = begin; n < end; ++n) {
     left = std::min(left, lobe(n).left + middle - n * places_per_row_);
@@ -217,7 +211,6 @@ void LobePosterior::find_bounds(std::int32_t begin, std::int32_t end, Eigen::Row
     if (after < -half_range) after += places_;
     const double beyond = after > 0.0 ? after - right : -after - left;
     if (beyond < 0.5 * static_cast<double>(nodes.width[at])) continue;
-    // Next to the lobe the curve moves away from the row, so the edge of the lobe is closest.
     if (beyond <= reach && score[i] <= edge) continue;
     far = std::max(far, static_cast<double>(score[i]));
   }

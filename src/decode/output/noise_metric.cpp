@@ -11,8 +11,7 @@ namespace tofsmith {
 NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
                          const double* variance_e2)
     : rank_(static_cast<int>(noise_basis.cols())) {
-  // Lower limit relative to the diagonal; smaller variances are rounding errors of noiseless
-  // directions.
+  // Smaller relative variances are rounding errors of noiseless directions.
   constexpr double least_share = 1e-12;
   std::array<double, max_pairs> factor;
   const auto at = [](int i, int j) { return static_cast<std::size_t>(i * (i + 1) / 2 + j); };
@@ -62,8 +61,7 @@ NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
   length_ = std::sqrt(square);
 }
 
-/// Each eigenvalue differs from the mean by at most sqrt(rank - 1) standard deviations of the
-/// eigenvalues.
+/// Eigenvalues differ from the mean by at most sqrt(rank - 1) standard deviations.
 double NoiseMetric::stretch() const {
   double trace = 0.0, squares = 0.0;
   for (int i = 0, at = 0; i < rank_; ++i)

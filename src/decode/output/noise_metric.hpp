@@ -8,8 +8,8 @@
 
 namespace tofsmith {
 
-/// Scalar products in the decoding subspace of a pixel, weighted by the inverse of the covariance C
-/// = V^T diag(v) V of its vector q: <u, w>_C = u^T C^-1 w. Allocates nothing.
+/// Scalar products in the decoding subspace, <u, w>_C = u^T C^-1 w, with the covariance C = V^T
+/// diag(v) V of q. Allocates nothing.
 class NoiseMetric {
  public:
   static constexpr std::size_t max_pairs =
@@ -20,14 +20,14 @@ class NoiseMetric {
   /// @param variance_e2  v (K)
   NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane, const double* variance_e2);
 
-  /// Lower triangle of C^-1, row by row.
+  /// Lower triangle, row by row.
   const double* metric() const { return metric_.data(); }
   /// C^-1 q (rank).
   const double* along() const { return along_.data(); }
   /// |q|_C.
   double length() const { return length_; }
-  /// Returns an upper bound on the factor by which small angles grow under the metric; infinite if
-  /// the noise is too uneven for the bound.
+  /// Returns an upper bound on the factor by which small angles grow; infinite if the noise is too
+  /// uneven.
   double stretch() const;
 
   double product(const double* u, const double* w) const;

@@ -10,12 +10,11 @@
 
 namespace tofsmith {
 
-/// Number of pixels whose records are processed together.
 inline constexpr int pixels_per_chunk = 128;
-/// Lower limit of variances in residuals, relative to the largest variance of the pixel.
+/// Minimum variance relative to the largest of the pixel.
 inline constexpr double least_variance_share = 1e-4;
 
-/// Positions of the fields of ResidualModel::Limit, in blocks of four.
+/// Fields of ResidualModel::Limit, in blocks of four.
 struct LimitLayout {
   static constexpr int variance = 0;  ///< per signal, per ambient light, and without light
   static constexpr int error = 3;
@@ -35,14 +34,14 @@ struct OutputConstants {
   std::vector<float> ambient_weight;  // a / |a|^2 (K)
   std::vector<float> shot_ambient;    // variance per ambient light (K)
   std::vector<float> floor_noise_e2;  // variance without light (K)
-  float typical_ambient = 0.0f;       // typical_variance() per unit of ambient light
-  float typical_floor_e2 = 0.0f;      // typical_variance() without light
-  // Lower limits of variances in residuals: per signal, per ambient light, and without light.
+  float typical_ambient = 0.0f;       // typical_variance() per ambient light
+  float typical_floor_e2 = 0.0f;      // without light
+  // Minimum variances: per signal, per ambient light, and without light.
   float least_shot = 0.0f, least_shot_ambient = 0.0f, least_floor_e2 = 0.0f;
   float low_signal_sigma2 = 0.0f;
   float min_confidence = 0.0f;
   bool finds_inconsistent = false;
-  float half_quantile = 0.0f;  // q / 2 of ResidualModel, maximum over bins
+  float half_quantile = 0.0f;  // q / 2 of ResidualModel
   int off_plane_count = 0;
   std::vector<float> off_plane;          // see ResidualModel (count, K)
   std::vector<float> residual_basis;     // V, then off_plane_noise (K, rank + count)
@@ -54,10 +53,9 @@ struct OutputSteps {
   bool noise = false;
   bool confidence = false;
   bool residual = false;
-  int fields = 0;  // number of record fields
+  int fields = 0;
 };
 
-/// Working memory of a chunk, in rows of pixels_per_chunk.
 struct OutputChunk {
   int pixels = 0;
   const float* plane = nullptr;      // as in the tile
@@ -65,16 +63,16 @@ struct OutputChunk {
   alignas(64) std::int32_t bin[pixels_per_chunk];
   alignas(64) std::uint32_t start[pixels_per_chunk];  // of the bins' records
   alignas(64) float signal[pixels_per_chunk];         // > 0 if the pixel has a depth
-  alignas(64) float offset[pixels_per_chunk];         // depth minus bin, in bins, in [-1, 1]
+  alignas(64) float offset[pixels_per_chunk];         // depth minus bin [bin], in [-1, 1]
   alignas(64) float ambient[pixels_per_chunk];
-  // Variances relative to a single measurement: 1 / averaged, also multiplied by NoiseRatios.
+  // Relative to a single measurement: 1 / averaged, also multiplied by NoiseRatios.
   alignas(64) float variance_share[pixels_per_chunk];
   alignas(64) float lobe_share[pixels_per_chunk];
   alignas(64) float residual_share[pixels_per_chunk];
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
   alignas(64) float residual[pixels_per_chunk];
-  alignas(64) float inconsistent[pixels_per_chunk];  // 1 if inconsistent, else 0
+  alignas(64) float inconsistent[pixels_per_chunk];
   alignas(64) std::uint32_t limit_start[pixels_per_chunk];
   alignas(64) float limit[LimitLayout::stride * pixels_per_chunk];
   alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];

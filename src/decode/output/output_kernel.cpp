@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/output/output_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h; this header must be the first one.
+// Must follow foreach_target.h and be the first header.
 #include <hwy/highway.h>
 
 #include "decode/output/output_noise-inl.hpp"
@@ -22,7 +22,7 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Processes one chunk. `Rank` 0 means any rank, known only at run time.
+/// `Rank` 0: known only at run time.
 template <int Rank>
 HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
                             const LobePosterior& posterior, const RecordTable& limits,
@@ -55,7 +55,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
   }
 }
 
-/// Copies the row numbers of the pixels of a chunk, followed by -1.
+/// Copies row numbers, followed by -1.
 HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t* to) {
   std::fill(std::copy_n(numbers, pixels, to), to + pixels_per_chunk, -1);
 }
@@ -106,7 +106,6 @@ void write(const BinRecords& records, const OutputConstants& c, const LobePoster
   }
 }
 
-/// Converts bins and offsets of a chunk to positions in double precision.
 HWY_INLINE void join(const std::int32_t* bin, const OutputChunk& chunk, double samples,
                      double* depth_bin) {
   const Doubles d;
@@ -166,7 +165,6 @@ HWY_EXPORT(find_positions);
 
 namespace {
 
-/// Rounds a value so that its products with integers up to `integers` are exact.
 float with_room_for(double value, int integers) {
   int exponent = 0;
   const double mantissa = std::frexp(value, &exponent);

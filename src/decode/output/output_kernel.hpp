@@ -15,9 +15,8 @@
 
 namespace tofsmith {
 
-/// A tile of pixels with their best bins. Rows have the length pixels_per_tile; entries after the
-/// first `pixels` are ignored. Rows that the requested planes do not need (see OutputKernel) may be
-/// null.
+/// A tile of pixels with their best bins, in rows of length pixels_per_tile. Rows that no requested
+/// plane needs may be null.
 struct MatchedTile {
   int pixels = 0;                           ///< at most pixels_per_tile
   const float* plane = nullptr;             ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 if the
@@ -29,33 +28,30 @@ struct MatchedTile {
   NoiseRatios noise;
 };
 
-/// Computes planes from best bins, a tile at a time: as PixelModel and store_pixel(), but
-/// vectorized and in single precision. Differences:
-///   - Depth, signal and ambient light belong to the best point on the chords up to rounding: a
-///     depth has an error of about 1e-7 / (angle between bins) bins, plus its rounding to float.
-///   - The noise of signal is that at the best bin, and the noise of depth that at the middle of
-///     the quarter of the chord. The error is below 1 % on average, and larger if the noise of
-///     bright pixels vanishes at a bin. Negative variances of single measurements, which no light
-///     causes, are replaced by 0 only in the sum.
-///   - Confidence uses the noise at the best bin. It is 1 if LobeBound proves that other places
-///     have a posterior probability of at most about 1e-3; only other pixels need LobePosterior.
-/// The values of a plane do not depend on the other planes, on neighbouring pixels or on the
-/// processor: each product and sum is rounded.
+/// Computes planes from best bins as PixelModel and store_pixel(), but vectorized and in single
+/// precision. Differences:
+///   - A depth has an error of about 1e-7 / (angle between bins) bins, plus its rounding to float.
+///   - Noise of signal is that at the best bin; noise of depth is that at the middle of the quarter
+///     of the chord. The error is below 1 % on average, and larger if the noise of bright pixels
+///     vanishes at a bin. Negative variances become 0 only in the sum.
+///   - Confidence uses the noise at the best bin. Only pixels for which LobeBound does not prove a
+///     confidence of 1 need LobePosterior.
+/// Values do not depend on other planes, on neighbouring pixels or on the processor: each product
+/// and sum is rounded.
 class OutputKernel {
  public:
-  /// @param only_positions  `write` is never called, which saves preparations
+  /// @param only_positions  `write` is never called
   OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
                const DecodeOptions& options, bool only_positions = false);
 
   const BinRecords& records() const { return records_; }
   const OutputConstants& constants() const { return constants_; }
-  /// One row of LimitLayout per bin.
   const RecordTable& limits() const { return limits_; }
-  /// Models of single pixels in double precision; not available with only_positions.
+  /// In double precision; not available with only_positions.
   const LobePosterior& posterior() const { return *posterior_; }
   const ResidualModel& residuals() const { return *residuals_; }
 
-  /// Return true if planes need these rows of a tile, in addition to `plane` and `bin`.
+  /// Return true if planes need these rows in addition to `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
   bool needs_confidence(const DecodedView& planes) const;
   bool needs_residuals(const DecodedView& planes) const {
@@ -63,11 +59,11 @@ class OutputKernel {
   }
   bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
 
-  /// Writes the pixels of the tile to the planes that are not null, beginning at their first value.
+  /// Writes the tile to the planes that are not null, from their first value.
   /// @note thread-safe; allocates nothing
   void write(const MatchedTile& tile, const DecodedView& planes) const;
-  /// Computes the best points on the chords, or the best bins of pixels whose depth write() omits,
-  /// [bin] in [0, N); NaN without a bin.
+  /// Computes the best points on the chords, or the best bins of pixels without depth [bin], in [0,
+  /// N); NaN without a bin.
   /// @param depth_bin  of length pixels_per_tile
   void find_positions(const MatchedTile& tile, double* depth_bin) const;
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Noise of pixels: standard deviations, confidence and status. Compiled once per instruction set.
+// Noise, confidence and status.
 #if defined(TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
@@ -18,12 +18,11 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
-/// Returns the ambient light that contributes shot noise.
+/// Ambient light that contributes shot noise.
 HWY_INLINE Vector noisy_ambient(const OutputChunk& chunk, int i) {
   return hn::Max(load(chunk.ambient, i), hn::Zero(Floats()));
 }
 
-/// Returns the variance from coefficients per signal, per ambient light, and without light.
 HWY_INLINE Vector variance_of(Vector signal, Vector ambient, Vector per_signal, Vector per_ambient,
                               Vector without) {
   const Vector sum = product_plus(signal, per_signal, product_plus(ambient, per_ambient, without));
@@ -56,9 +55,9 @@ HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_devi
   }
 }
 
-/// Returns the pixels whose confidence is proven to be 1. With c = <q, u_b>, the component of q
-/// across u_b of length r, and a score of other places of at most s = cosine c + sine r
-/// (LobeBound), the chi-square of other places is larger by (|q|^2 - s^2 - r^2) / v.
+/// Returns the pixels whose confidence is proven to be 1. With c = <q, u_b>, the length r of q
+/// across u_b and scores of other places <= s = cosine c + sine r (LobeBound), their chi-square is
+/// larger by (|q|^2 - s^2 - r^2) / v.
 HWY_INLINE Mask is_sure(const OutputConstants& c, const RecordLayout& layout, int rank,
                         const OutputChunk& chunk, int i) {
   const Floats d;
@@ -109,7 +108,6 @@ inline float posterior_of(const OutputConstants& c, const BinRecords& records,
   return static_cast<float>(posterior.probability(plane, variance_e2, chunk.bin[i]));
 }
 
-/// Computes the confidence of pixels with a depth. Most are proven to have confidence 1.
 HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records,
                                 const LobePosterior& posterior, int rank, OutputChunk& chunk) {
   const Floats d;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Position and light of pixels. Compiled once per instruction set.
+// Position and light of pixels.
 #if defined(TOFSMITH_DECODE_OUTPUT_POSITION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_POSITION_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_POSITION_INL_HPP
@@ -22,10 +22,9 @@ HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
   return sum;
 }
 
-/// Finds the best point on the left and right chords. With x = <q, p> / |p|^2 and v = <q, w>, which
-/// is positive on rising sides: S = x - v beta / c, t = v / (c S). If both sides rise, the steeper
-/// one is best, unless its best point lies beyond the end of the chord, which is possible if the
-/// bin is not the best one (see ChordMatcher).
+/// Finds the best point on both chords. With x = <q, p> / |p|^2 and v = <q, w>, which is positive
+/// on rising sides: S = x - v beta / c, t = v / (c S). If both sides rise, the steeper one is best,
+/// unless its best point lies beyond the chord: the bin may not be the best one (see ChordMatcher).
 HWY_INLINE void refine_on_chords(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
   const Vector zero = hn::Zero(d);
@@ -59,8 +58,8 @@ HWY_INLINE void refine_on_chords(const RecordLayout& layout, int rank, OutputChu
   }
 }
 
-/// Finds the maximum of the correlation of each pixel around its row of a smooth curve (see
-/// DepthPolynomials::maximum()), and the signal there, with x = <q, p> / |p|^2:
+/// Finds the maximum around the row of a smooth curve (see DepthPolynomials::maximum()), and the
+/// signal there, with x = <q, p> / |p|^2:
 ///   S = (x + g t + b t^2 / 2 + c t^3 / 3) / (1 + growth t + growth_change t^2).
 HWY_INLINE void refine_on_curve(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
@@ -136,7 +135,7 @@ HWY_INLINE void write_depth(const OutputConstants& c, const OutputChunk& chunk, 
   }
 }
 
-/// Copies values; pixels without a depth become NaN.
+/// Pixels without a depth become NaN.
 HWY_INLINE void write_values(const OutputChunk& chunk, const float* values, float* plane) {
   const Floats d;
   for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
@@ -145,7 +144,7 @@ HWY_INLINE void write_values(const OutputChunk& chunk, const float* values, floa
   }
 }
 
-/// Computes ambient light as the remainder after the signal; 0 if differences hide it.
+/// Ambient light is the remainder after the signal; 0 if differences hide it.
 HWY_INLINE void find_ambient(const OutputConstants& c, const RecordLayout& layout,
                              OutputChunk& chunk) {
   const Floats d;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Goodness of fit (see ResidualModel). Compiled once per instruction set.
+// Goodness of fit (see ResidualModel).
 #if defined(TOFSMITH_DECODE_OUTPUT_RESIDUAL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_RESIDUAL_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_RESIDUAL_INL_HPP
@@ -16,17 +16,16 @@ namespace HWY_NAMESPACE {
 namespace {
 struct Unexplained {
   static constexpr int lanes = widest_vector;
-  Mask is_left;   ///< the position lies before the row
-  Vector square;  ///< sum of the squared components
-  /// Components in the decoding subspace and outside it, and orthonormal directions in the subspace
-  /// in which signal and depth change the measurements.
+  Mask is_left;  ///< the position lies before the row
+  Vector square;
+  /// Components in the decoding subspace and outside it, and orthonormal directions of signal and
+  /// depth in the subspace.
   alignas(64) float component[max_measurements * lanes];
   alignas(64) float direction[max_measurements * lanes];
   alignas(64) float slope[max_measurements * lanes];
 };
 
-/// Finds the directions of the chord on the nearer side. At a bin, the side with the larger change
-/// is used.
+/// Uses the chord on the nearer side; at a bin, the one with the larger change.
 HWY_INLINE void find_chord(const RecordLayout& layout, int rank, const OutputChunk& chunk, int i,
                            Unexplained& left) {
   const Floats d;
@@ -54,7 +53,7 @@ HWY_INLINE void normalize(float* components, int rank, Vector square) {
   }
 }
 
-/// Finds the direction u(n + t) of a smooth curve and its slope with DepthPolynomials:
+/// Finds the direction u(n + t) of a smooth curve and its slope (DepthPolynomials):
 ///   u / |p_n| = p_n / |p_n|^2 + t W + t^2 B / 2 + t^3 C / 3.
 HWY_INLINE void find_tangent(const RecordLayout& layout, int rank, const OutputChunk& chunk, int i,
                              Unexplained& left) {
@@ -112,7 +111,7 @@ HWY_INLINE void find_unexplained(const OutputConstants& c, const RecordLayout& l
   }
 }
 
-/// Computes the variances of measurements at positions between rows, (K, lanes).
+/// Variances at positions between rows, (K, lanes).
 HWY_INLINE void find_variances(const OutputConstants& c, const BinRecords& records,
                                OutputChunk& chunk, int i, Mask is_left, float* variance) {
   const Floats d;
@@ -155,7 +154,7 @@ HWY_INLINE Vector less_square(Vector a, Vector b, Vector c) {
 
 HWY_INLINE Vector weighted_squares(const OutputConstants& c, const RecordLayout& layout, int rank,
                                    const Unexplained& left, const float* variance) {
-  // Weighted products of ambient light a, signal x, slope s and residual r.
+  // Weighted products: ambient light a, signal x, slope s, residual r.
   const Vector zero = hn::Zero(Floats());
   Vector aa = zero, ax = zero, as = zero, ar = zero, xx = zero, xs = zero, xr = zero, ss = zero,
          sr = zero, rr = zero;
@@ -199,10 +198,9 @@ HWY_INLINE Vector weighted_squares(const OutputConstants& c, const RecordLayout&
   return hn::Max(less_square(rr, sr, ss), zero);
 }
 
-/// Finds inconsistent pixels and, if `wants_plane`, residuals. For most pixels a bound suffices:
-/// the unweighted squares divided by the least variance.
-///
-/// This function is not inlined, because g++ 12 fails with an internal error for AVX-512.
+/// Finds inconsistent pixels and, if `wants_plane`, residuals. For most pixels the unweighted
+/// squares divided by the least variance suffice. Not inlined, because g++ 12 fails with an
+/// internal error for AVX-512.
 template <int Rank>
 HWY_NOINLINE void find_residual(const OutputConstants& c, const BinRecords& records,
                                 const RecordTable& limits, bool wants_plane, OutputChunk& chunk) {

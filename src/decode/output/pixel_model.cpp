@@ -65,7 +65,6 @@ PixelModel::Rise PixelModel::rise_at(const double* plane, std::int32_t row) cons
           dot(plane, polynomials_->asymmetry.row(row).data(), rank())};
 }
 
-/// Returns <q, p> / |p|^2 at a position, from the nearest row.
 double PixelModel::signal_on_curve(const double* plane, const Position& position) const {
   const bool is_near = position.fraction < 0.5;
   const std::int32_t row = is_near ? position.bin : next(position.bin);
@@ -87,7 +86,6 @@ Position PixelModel::refine(const double* plane, std::int32_t bin) const {
   const ChordPoint before = best_inside(left, along(plane, left), at_bin);
   const ChordPoint after = best_inside(bin, at_bin, along(plane, next(bin)));
   if (!(before.score > 0.0 || after.score > 0.0)) return {bin, 0.0};
-  // In case of ties choose the lower depth, as for bins.
   if (before.score >= (1 - tie_tolerance) * after.score) return {left, before.fraction};
   return {bin, after.fraction};
 }
@@ -97,8 +95,7 @@ double PixelModel::score_at(const double* plane, std::int32_t row) const {
                          : -std::numeric_limits<double>::infinity();
 }
 
-/// Returns the score. On a smooth curve it is the score at the nearest row plus the integral of its
-/// slope.
+/// On a smooth curve, the score is that of the nearest row plus the integral of its slope.
 double PixelModel::score_at(const double* plane, const Position& position) const {
   const std::int32_t to = next(position.bin);
   const double t = position.fraction;
@@ -115,7 +112,7 @@ double PixelModel::score_at(const double* plane, const Position& position) const
 }
 
 std::optional<Position> PixelModel::best_within(const double* plane, const RangePart& part) const {
-  // The best position of a row is up to one row away from it.
+  // A row's best position is up to one row away.
   const auto first = static_cast<std::int32_t>(std::floor(part.begin * samples_)) - 1;
   const auto count = static_cast<std::int32_t>(
       std::min<double>(samples_, std::ceil(part.length * samples_) + 3.0));
@@ -147,7 +144,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   const double t = position.fraction;
   PixelEstimate result;
 
-  // Point of the curve, and its slope per bin: at a bin, the mean of both sides.
+  // At a bin, use the mean slope of both sides.
   std::array<double, max_measurements> point, slope, weight;
   const double* p0 = projection_.curve.row(from).data();
   const double* p1 = projection_.curve.row(to).data();
@@ -162,7 +159,6 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   result.signal_e_per_s =
       polynomials_ ? signal_on_curve(plane, position) : dot(plane, point.data(), r) / length2;
 
-  // The remainder after the signal is ambient light.
   const double* x0 = projection_.gated.row(from).data();
   const double* x1 = projection_.gated.row(to).data();
   const Eigen::VectorXd& a = projection_.ambient;
@@ -183,7 +179,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
                                                        ambient * noise_.shot_ambient[k] +
                                                        noise_.floor_variance_e2[k]);
 
-  // dS = <p, noise> / |p|^2, and dz = <d, noise> / (S |d|^2) with d the slope across p.
+  // dS = <p, noise> / |p|^2, dz = <d, noise> / (S |d|^2) with the slope d across p.
   result.signal_standard_deviation_e_per_s = deviation_along(point.data(), variance_e2) / length2;
   const double turn = dot(slope.data(), point.data(), r) / length2;
   for (std::size_t j = 0; j < static_cast<std::size_t>(r); ++j)

@@ -13,24 +13,21 @@
 
 namespace tofsmith {
 
-/// A depth between bins: `fraction` of the way from bin `bin` to the next one.
+/// A depth between a bin and the next one.
 struct Position {
   std::int32_t bin = 0;
   double fraction = 0.0;
 
-  /// Returns the position of a depth in [0, samples).
   static Position at(double depth_bin) {
     const auto bin = static_cast<std::int32_t>(depth_bin);
     return {bin, depth_bin - bin};
   }
-  /// Returns the depth in [0, samples).
   double in_rows(int samples) const {
     const double position = bin + fraction;
     return position < samples ? position : position - samples;
   }
 };
 
-/// Light and standard deviations of a pixel at its decoded depth.
 struct PixelEstimate {
   double signal_e_per_s = 0.0;
   double ambient_e_per_s = 0.0;  ///< NaN if it cancels in the measurements
@@ -38,7 +35,7 @@ struct PixelEstimate {
   double depth_standard_deviation_row = 0.0;  ///< infinite if the curve has no slope
 };
 
-/// The curve P x(z) as chords between bins, and its noise.
+/// The curve P x(z), and its noise.
 class PixelModel {
  public:
   PixelModel(const DecodingTable& table, const AmbientProjection& projection);
@@ -46,38 +43,35 @@ class PixelModel {
   int measurements() const { return static_cast<int>(projection_.basis.rows()); }
   int rank() const { return projection_.rank(); }
 
-  /// Computes the residual of electrons - dark (K) without ambient light, in the subspace (rank);
-  /// exactly 0 if it is a rounding error.
+  /// Projects electrons - dark (K) into the subspace (rank); exactly 0 for rounding errors.
   void project(const double* electrons, double* plane) const;
 
-  /// Returns the best point on the chords left and right of the best bin, for a vector in the
-  /// subspace (rank).
+  /// Returns the best point on both chords at the best bin, for a vector in the subspace (rank).
   ///   beta_j = <q, p_j>, Q_jk = <p_j, p_k>; u = Q11 b0 - Q01 b1, v = Q00 b1 - Q01 b0,
   ///   t* = v / (u + v) if both are > 0; otherwise the better end of the chord is best.
   /// On a smooth curve, returns the maximum of the pixel's own correlation (DepthPolynomials).
   Position refine(const double* plane, std::int32_t bin) const;
 
-  /// Returns the highest local maximum of the score <q, p> / |p| within a part of the range; none
-  /// if there is no local maximum.
+  /// Returns the highest local maximum of <q, p> / |p| within a part of the range, if any.
   std::optional<Position> best_within(const double* plane, const RangePart& part) const;
 
   /// Fits electrons - dark (K) by x at the position and ambient light with unweighted least
-  /// squares, and computes the standard deviations from the noise expected there. Also writes the
-  /// variance of every measurement to `variance_e2` (K).
+  /// squares, and computes standard deviations. Writes the variances of the measurements to
+  /// `variance_e2` (K).
   /// @param variance_share  variance relative to a single measurement
   PixelEstimate estimate(const double* electrons, const double* plane, const Position& position,
                          double* variance_e2, double variance_share = 1.0) const;
 
-  /// Returns the standard deviation of <difference, q> for a vector in the subspace (rank).
+  /// Returns the standard deviation of <difference, q>.
   double deviation_along(const double* difference, const double* variance_e2) const;
 
  private:
-  /// Point on a chord whose score exceeds that of both ends; score <= 0 if there is none.
+  /// Point whose score exceeds that of both ends of a chord; score <= 0 if there is none.
   struct ChordPoint {
     double fraction = 0.0;
     double score = 0.0;
   };
-  /// <q, slope>, <q, bend> and <q, asymmetry> at a row of a smooth curve.
+  /// <q, slope>, <q, bend> and <q, asymmetry> at a row.
   struct Rise {
     double g, b, c;
   };
@@ -94,7 +88,7 @@ class PixelModel {
   AmbientProjection projection_;
   std::optional<DepthPolynomials> polynomials_;  // none: depths lie on chords
   RowMajorMatrix basis_;                         // for electrons, row by row
-  RowMajorMatrix noise_basis_;                   // for measurements with the noise of the table
+  RowMajorMatrix noise_basis_;                   // for measurements with noise of the table
   ExpectedNoise noise_;
   Eigen::VectorXd own_;        // <p_j, p_j>
   Eigen::VectorXd with_next_;  // <p_j, p_{j+1}>

@@ -41,7 +41,7 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
   const auto store = [&](float* plane, double value) {
     if (plane) plane[at] = has_depth ? static_cast<float>(value) : no_value<float>;
   };
-  // Rounding to float may yield the end of the range, which equals its beginning.
+  // Rounding to float may yield the end of the range, which equals 0.
   const bool at_end =
       static_cast<float>(pixel.depth_row * table.row_m()) >= static_cast<float>(table.range_m);
   if (decoded.bin) decoded.bin[at] = nearest_bin(table.in_bins(pixel.depth_row), table.bin_count());

@@ -13,34 +13,32 @@
 
 namespace tofsmith {
 
-/// Result of decoding one pixel.
 struct PixelDecoding {
-  double depth_row = 0.0;  ///< in rows of the table, [0, samples)
+  double depth_row = 0.0;  ///< in rows, [0, samples)
   PixelEstimate estimate;
   double confidence = 0.0;  ///< probability of the main lobe
   PixelResidual residual = {};
 };
 
-/// Writes the values and the status of one pixel. Used by every decoder.
+/// Writes the values and the status of one pixel.
 /// @param raw  (K) raw numbers
 /// @param at   index of the pixel in the view
 void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
                  const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded);
-/// Writes a pixel with a measurement that is NaN or infinite.
+/// Writes a pixel with a NaN or infinite measurement.
 void store_invalid(std::size_t at, const DecodedView& decoded);
 
 /// @throws InvalidArgument unless raw numbers have this number of measurements
 void require_measurements(const RawView& raw, int measurements);
 
-/// Returns the probability for given log odds.
 double probability_of(double log_odds);
 
-/// Pixels per block of fast decoders; slow ones use smaller blocks, so that they can be cancelled.
+/// For fast decoders; slow ones use smaller blocks, to be cancelled sooner.
 inline constexpr std::int64_t usual_block_pixels = 16384;
 
-/// Calls `work` for blocks of the pixels of a frame, on all threads, with progress.
+/// Calls `work` for blocks of the pixels of a frame, on all threads.
 /// @throws std::invalid_argument if the frame has another number of measurements; Interrupted if
-///         `progress` requests it
+///     `progress` requests it
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,
                     const std::function<void(IndexRange pixels)>& work,
                     std::int64_t block_pixels = usual_block_pixels);
@@ -49,22 +47,22 @@ void for_each_block(const RawView& raw, int measurements, const Progress& progre
 struct RawBlock {
   const float* values = nullptr;
   std::int64_t pixels = 0;
-  const float* averaged = nullptr;  ///< as in RawView, from the block's first pixel on
+  const float* averaged = nullptr;  ///< as in RawView, from the first pixel on
   NoiseRatios noise;
-  std::int64_t first = 0;  ///< index in the frame of the block's first pixel
+  std::int64_t first = 0;  ///< index in the frame of the first pixel
 
-  /// Returns the variance of pixel i relative to a single measurement.
+  /// Returns the variance relative to a single measurement.
   double variance_share(std::int64_t i) const { return averaged ? 1.0 / averaged[i] : 1.0; }
   NoiseRatios noise_of(std::int64_t i) const { return noise.at(averaged ? averaged[i] : 1.0f); }
 };
 
-/// As for_each_block(), with the raw numbers of a block and the planes for its results.
+/// As for_each_block(), with the raw numbers and planes of a block.
 void decode_frame(
     const RawView& raw, const DecodedView& decoded, int measurements, const Progress& progress,
     const std::function<void(const RawBlock& raw, const DecodedView& decoded)>& decode_block,
     std::int64_t block_pixels = usual_block_pixels);
 
-/// Returns a new image, filled by `decode(view, planes)` from one frame of several.
+/// Returns a new image of one frame, filled by `decode(view, planes)`.
 template <typename Decode>
 DepthImage decoded_image(const RawFrames& raw, int frame, const Decode& decode) {
   const RawView view = view_of_frame(raw, frame);

@@ -15,21 +15,20 @@ namespace tofsmith {
 
 namespace {
 
-/// Rounding errors to single precision, relative to the signal.
+/// Rounding errors of float, relative to the signal.
 constexpr double rounding_error = 2e-6;
 /// Root mean square of t (1 - t) / 2 over a chord: sqrt(1 / 120).
 constexpr double chord_error = 0.0913;
-/// For more degrees of freedom the least eigenvalue is bounded instead of computed.
+/// For more degrees of freedom, the least eigenvalue is bounded instead.
 constexpr int most_eigenvalues = 8;
-/// Minimum cosine between both chords of a bin for the curve to count as smooth.
+/// Minimum cosine between both chords of a bin of a smooth curve.
 constexpr double smooth_turn = 0.9;
 
 Eigen::VectorXd normalized_or_zero(const Eigen::VectorXd& vector) {
   return vector.isZero(0.0) ? vector : vector.normalized().eval();
 }
 
-/// Returns the least variance of measurements along any combination of the columns, or a lower
-/// bound.
+/// The least variance along any combination of the columns, or a lower bound.
 double least_variance(const Eigen::MatrixXd& columns, const Eigen::VectorXd& variance) {
   if (columns.cols() == 0) return 0.0;
   if (columns.cols() > most_eigenvalues) return std::max(variance.minCoeff(), 0.0);
@@ -106,7 +105,7 @@ ResidualModel::Course ResidualModel::course_on_chords(std::int32_t row) const {
   course.has_slope = !to_before.isZero(0.0) || !to_after.isZero(0.0);
   course.is_corner = course.has_slope &&
                      !(-to_before.dot(to_after) > smooth_turn * to_before.norm() * to_after.norm());
-  // The distance between chord and curve is t (1 - t) / 2 times the second difference.
+  // The chord deviates from the curve by t (1 - t) / 2 times the second difference.
   const Eigen::VectorXd bend = chord_error * (before - 2.0 * x + after);
   const Eigen::VectorXd across_bend = bend - bend.dot(x) / x.squaredNorm() * x;
   course.error = (across_bend - course.slope.dot(across_bend) * course.slope).norm();
@@ -150,7 +149,6 @@ ResidualModel::Limit ResidualModel::limit_at(std::int32_t row, const RowMajorMat
   const Eigen::MatrixXd left = complement_of(known);
   const double quantile =
       chi_square_quantile_of_tail(options.false_alarm_rate, freedom + (course.is_corner ? 1 : 0));
-  // Least shot noise of the adjacent rows.
   const Eigen::VectorXd shot = noise_.shot_gated.row(row)
                                    .cwiseMin(noise_.shot_gated.row(previous(row)))
                                    .cwiseMin(noise_.shot_gated.row(next(row)));
@@ -169,7 +167,6 @@ void ResidualModel::find_tangent(const Position& position, PerMeasurement& point
   const double t = position.fraction;
   const std::int32_t before = t > 0.0 ? from : previous(from);
   if (!polynomials_) {
-    // At a row, use the mean slope of both sides.
     for (int k = 0; k < measurements_; ++k) {
       const auto i = static_cast<std::size_t>(k);
       point[i] = (1 - t) * curve_(from, k) + t * curve_(to, k);
@@ -207,7 +204,7 @@ PixelResidual ResidualModel::residual(const double* electrons, const PixelEstima
       min_variance_e2, signal * least_noise_[0] + ambient * least_noise_[1] + least_noise_[2]);
   PerMeasurement point, slope;
   find_tangent(position, point, slope);
-  // Directions of ambient light, signal and depth, and the measurements, in units of noise.
+  // Ambient light, signal, depth and measurements, in units of noise.
   std::array<PerMeasurement, 4> rows;
   for (int k = 0; k < measurements_; ++k) {
     const auto i = static_cast<std::size_t>(k);

@@ -21,47 +21,43 @@ struct PixelResidual {
 /// Tests whether some light at the decoded depth explains the measurements of a pixel.
 ///
 /// Let y be the measurements, D the diagonal matrix of their variances at the estimated light, and
-/// B = [a, x(z), x'(z)] the directions in which they change with ambient light, signal and depth.
-/// The statistic is the weighted squared residual of a fit along B,
-///   chi^2 = min_b (y - B b)^T D^-1 (y - B b),
-/// which for normal noise is chi-square distributed with K - rank B degrees of freedom. To first
-/// order this holds for any depth estimate within its noise, so all decoders share it.
+/// B = [a, x(z), x'(z)] the directions of ambient light, signal and depth. For normal noise,
+///   chi^2 = min_b (y - B b)^T D^-1 (y - B b)
+/// is chi-square distributed with K - rank B degrees of freedom, to first order for any depth
+/// estimate within its noise.
 ///
-/// A model error e of the measurements increases chi by at most |D^-1/2 e| = d, and the quantile of
-/// a shifted chi by at most sqrt(q) d^2 / 2. A pixel is therefore inconsistent if
+/// A model error e increases chi by at most |D^-1/2 e| = d, and the quantile of a shifted chi by at
+/// most sqrt(q) d^2 / 2. A pixel is therefore inconsistent if
 ///   chi > sqrt(q) + min(d, sqrt(q) d^2 / 2),  d = m S / sqrt(lambda),
-/// where q is the chi-square quantile of the false-alarm rate, m S the tolerated |e|, and lambda
-/// the least variance of the measurements in any direction perpendicular to B. The interpolation
-/// error between rows counts as a model error: that of DepthPolynomials for smooth curves, that of
-/// chords for others.
+/// with the chi-square quantile q of the false-alarm rate, the tolerated |e| = m S, and the least
+/// variance lambda in any direction perpendicular to B. The interpolation error between rows counts
+/// as a model error.
 class ResidualModel {
  public:
-  /// Threshold at a bin. All members except `per_freedom` are infinite if no residual is too large.
+  /// Threshold at a bin; infinite (except `per_freedom`) if no residual is too large.
   struct Limit {
     /// Lower bounds of q lambda: per signal, per ambient light, and without light.
     double of_signal = 0.0, of_ambient = 0.0, of_floor = std::numeric_limits<double>::infinity();
-    double error = 0.0;                                     ///< m, per signal
-    double root = std::numeric_limits<double>::infinity();  ///< sqrt(q)
-    /// 1 / degrees of freedom; NaN without any.
-    double per_freedom = std::numeric_limits<double>::quiet_NaN();
+    double error = 0.0;                                             ///< m, per signal
+    double root = std::numeric_limits<double>::infinity();          ///< sqrt(q)
+    double per_freedom = std::numeric_limits<double>::quiet_NaN();  ///< 1 / degrees of freedom
   };
 
   ResidualModel(const DecodingTable& table, const AmbientProjection& projection,
                 const DecodeOptions& options);
 
-  /// Orthonormal directions W^T u (K, count) perpendicular to ambient light and to the signal from
-  /// any depth: measurements along them contain only noise. W is the whitening matrix, if any.
+  /// Orthonormal directions W^T u (K, count) that contain only noise. W is the whitening matrix, if
+  /// any.
   const Eigen::MatrixXd& off_plane() const { return off_plane_; }
-  /// u, the same directions for whitened measurements.
+  /// u, for whitened measurements.
   const Eigen::MatrixXd& off_plane_noise() const { return off_plane_noise_; }
-  /// Unit vector of ambient light for whitened measurements (K); 0 if it cancels.
+  /// Unit vector for whitened measurements (K); 0 if ambient light cancels.
   const Eigen::VectorXd& ambient_direction() const { return ambient_; }
   /// q / 2, maximum over bins; 0 if no pixel can be inconsistent.
   double half_quantile() const { return half_quantile_; }
   const std::vector<Limit>& limits() const { return limits_; }
 
   /// @param electrons  without dark electrons (K)
-  /// @param estimate   provides signal and ambient light
   /// @param variance_share  relative to the variance of a single measurement
   PixelResidual residual(const double* electrons, const PixelEstimate& estimate,
                          const Position& position, double variance_share) const;
@@ -73,32 +69,31 @@ class ResidualModel {
   /// Curve around a row, whitened and without ambient light (K).
   struct Course {
     Eigen::VectorXd point;
-    Eigen::VectorXd slope;   ///< direction of the slope; 0 without one
+    Eigen::VectorXd slope;   ///< 0 without one
     bool has_slope = false;  ///< on either side
-    /// At a corner of the curve, neither side's slope explains noise across the corner.
+    /// Neither side's slope explains noise across a corner.
     bool is_corner = false;
-    double error = 0.0;  ///< interpolation error on either side, perpendicular to point and slope
+    double error = 0.0;  ///< of interpolation, perpendicular to point and slope
   };
   Course course_on_chords(std::int32_t row) const;
-  /// @param half_way  points half a row after each row (N, rank), for smooth curves; else empty
+  /// @param half_way  points half a row after each row (N, rank)
   Course course_on_curve(std::int32_t row, const RowMajorMatrix& half_way) const;
   Limit limit_at(std::int32_t row, const RowMajorMatrix& half_way,
                  const DecodeOptions& options) const;
   using PerMeasurement = std::array<double, max_measurements>;
-  /// Computes the directions of signal and depth at a position; they may include a component along
-  /// ambient light.
+  /// The directions of signal and depth may include a component along ambient light.
   void find_tangent(const Position& position, PerMeasurement& point, PerMeasurement& slope) const;
   std::int32_t next(std::int32_t bin) const { return bin + 1 < samples_ ? bin + 1 : 0; }
   std::int32_t previous(std::int32_t bin) const { return bin > 0 ? bin - 1 : samples_ - 1; }
 
   int samples_, measurements_;
-  int free_measurements_;      // number of measurements with noise
+  int free_measurements_;      // with noise
   Eigen::MatrixXd whitening_;  // (K, K), or empty
-  Eigen::MatrixXd noiseless_;  // directions without noise, for whitened measurements
+  Eigen::MatrixXd noiseless_;  // without noise, for whitened measurements
   RowMajorMatrix curve_;       // x, whitened (N, K)
   Eigen::VectorXd ambient_;
   std::optional<DepthPolynomials> polynomials_;  // none: positions lie on chords
-  RowMajorMatrix plane_curve_;                   // p (N, rank), only for smooth curves
+  RowMajorMatrix plane_curve_;                   // p (N, rank) of smooth curves
   RowMajorMatrix noise_basis_;
   Eigen::MatrixXd off_plane_, off_plane_noise_;
   ExpectedNoise noise_;

@@ -18,8 +18,7 @@ PlaneMap plane_map_of(const DecodingTable& table, const AmbientProjection& proje
   return {projection.basis.transpose() * gain.asDiagonal(), projection.basis.transpose() * at_zero};
 }
 
-/// Number of trials above which a table of cells saves time (measured; proportional to the
-/// samples).
+/// Number of trials above which a table of cells saves time (measured).
 std::int64_t trials_worth_cells(int rank, int samples) {
   return std::int64_t{rank <= 3 ? 1000 : 4000} * samples;
 }
@@ -70,7 +69,7 @@ void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
       zncc_->matcher.match_bins(view, 0, count, tile);
     return positions_of(sub_bin, tile, depth_bin);
   }
-  // The other methods require interleaved measurements.
+  // Other methods require interleaved measurements.
   copy_pixels(view, 0, count, tile.raw);
   if (sub_bin) return other_->decode_depth_bins(tile.raw, count, depth_bin);
   other_->decode_bins(tile.raw, count, tile.bin);

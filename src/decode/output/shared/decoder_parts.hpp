@@ -8,8 +8,7 @@
 
 namespace tofsmith {
 
-/// Parts of a Decoder for implementations on other devices. Valid as long as the decoder, even if
-/// it is moved.
+/// Parts of a Decoder for other devices. Valid as long as the decoder, even if it is moved.
 struct DecoderParts {
   const ChordMatcher& matcher;
   const OutputKernel& outputs;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of pixels, and conversion of their records to vectors. Compiled once per instruction set.
+// Vectors of pixels, and conversion of their records to vectors.
 #if defined(TOFSMITH_DECODE_OUTPUT_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_OUTPUT_VECTORS_INL_HPP
 #undef TOFSMITH_DECODE_OUTPUT_VECTORS_INL_HPP
@@ -24,14 +24,14 @@ namespace HWY_NAMESPACE {
 namespace {
 using Bytes = hn::Rebind<std::uint8_t, Indices>;
 
-/// Returns a b + c with two roundings, which is the same with and without FMA instructions.
+/// a b + c with two roundings, with and without FMA instructions.
 HWY_INLINE Vector product_plus(Vector a, Vector b, Vector c) { return hn::Add(hn::Mul(a, b), c); }
 HWY_INLINE Vector load(const float* row, int i) { return hn::LoadU(Floats(), row + i); }
 HWY_INLINE Vector unless(Mask is_so, Vector value) {
   return hn::IfThenElse(is_so, value, all(std::numeric_limits<float>::quiet_NaN()));
 }
 
-/// Stores the first `room` values of a vector, or all if it has fewer.
+/// Stores the first `room` values.
 template <typename Tag, typename Values, typename T>
 HWY_INLINE void store_some(Tag tag, Values values, T* to, int room) {
   if (room >= lanes_of(tag)) return hn::StoreU(values, tag, to);
@@ -49,7 +49,7 @@ HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin
     for (int f = begin; f < end; ++f) rows[f * pixels_per_chunk + i] = table[start[i] + f];
 }
 #else
-/// Returns four fields of every fourth record, in consecutive 128-bit blocks.
+/// Returns four fields of every fourth record.
 template <typename Tag>
 HWY_INLINE hn::Vec<Tag> load_blocks(Tag d, const float* table, const std::uint32_t* start) {
   constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
@@ -68,9 +68,8 @@ HWY_INLINE hn::Vec<Tag> load_blocks(Tag d, const float* table, const std::uint32
   }
 }
 
-/// Transposes the fields [begin, end) of the records at `start` to rows of fields. `begin` must be
-/// a multiple of four; up to three more fields are written. Pixel 4 b + v is loaded to block b of
-/// vector v, so that the transposition does not cross blocks.
+/// As above. Pixel 4 b + v is loaded to block b of vector v, so that the transposition does not
+/// cross blocks.
 HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin, int end,
                        float* rows) {
   const Floats d;
@@ -94,7 +93,7 @@ HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin
 }
 #endif
 
-/// Returns the offsets of the rows with these numbers. Unused entries of a chunk refer to row -1.
+/// Unused entries of a chunk refer to row -1.
 HWY_INLINE void find_rows(const RecordTable& table, const std::int32_t* numbers, int pixels,
                           std::uint32_t* start) {
   const auto stride = static_cast<std::uint32_t>(table.stride());

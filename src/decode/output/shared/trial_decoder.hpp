@@ -11,16 +11,15 @@
 
 namespace tofsmith {
 
-/// Linear map of ZNCC from raw values to the subspace without ambient light: q = weight raw +
+/// Linear map of ZNCC from raw values to the subspace without ambient light, q = weight raw +
 /// offset [e].
 struct PlaneMap {
   Eigen::MatrixXd weight;  ///< (rank, K)
   Eigen::VectorXd offset;  ///< (rank)
 };
 
-/// Decoder for Monte Carlo loops, for any method. It computes positions only, no status or other
-/// planes. ZNCC can also decode projected measurements. Positions equal the results of the
-/// method's decoder, except for rounding to single precision between bins.
+/// Decoder for Monte Carlo loops. Computes positions only, equal to the results of the method's
+/// decoder except for rounding to single precision between bins.
 class TrialDecoder {
  public:
   /// @param trials  approximate number of decoded trials
@@ -30,7 +29,7 @@ class TrialDecoder {
 
   int measurements() const { return measurements_; }
   int samples() const { return samples_; }
-  /// Returns the projection that ZNCC decodes; null for other methods.
+  /// The projection that ZNCC decodes; null for other methods.
   const PlaneMap* plane_map() const { return zncc_ ? &zncc_->plane_map : nullptr; }
 
   /// Decodes tile.plane to positions in [0, N).
