@@ -10,7 +10,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/arc_search.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/search/arc_walk-inl.hpp"
@@ -20,9 +19,9 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int group_pixels = 16;  // pixels processed together to hide latencies
+constexpr int group_pixels = 16;  // to hide latencies
 
-/// Best and second best score in every lane, and the row of the best.
+/// Best and second best score of every lane.
 struct Leaders {
   float best[block_lanes];
   float second[block_lanes];
@@ -56,7 +55,7 @@ HWY_INLINE void meet_near_rows(const ArcTable& table, const Query& q, const Walk
   hn::StoreU(hn::Add(meet.row, hn::Iota(Indices(), 0)), Indices(), leaders.row);
 }
 
-/// Returns the row of a window that leads by more than `margin`, or -1.
+/// Returns the row that leads by more than `margin`, or -1.
 template <int Rank>
 HWY_INLINE std::int32_t leader_of_window(const float* window, const Query& q, float margin) {
   HWY_ALIGN float score[block_lanes];
@@ -74,7 +73,7 @@ HWY_INLINE std::int32_t leader_of_window(const float* window, const Query& q, fl
 }
 
 /// Proves the best row. Rows close to the best score are compared by differences of directions,
-/// which are short and therefore accurate. All other rows must be behind by a larger margin.
+/// which are short and therefore accurate; others must be behind by a larger margin.
 template <int Rank>
 HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leaders& leaders,
                               const Margins& margins, float error) {
@@ -98,7 +97,6 @@ HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leade
   return leads && found >= 0 ? w * step + found : -1;
 }
 
-/// Range without overflow or underflow of floats.
 HWY_INLINE bool can_be_proven(float length, float error) {
   return length > 1e-12f && length < 1e12f && error < length;
 }
@@ -211,7 +209,7 @@ std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions,
 struct MeetScores {
   const ArcTable& table;
   const Query& q;
-  float* score;  // of all rows
+  float* score;
   float best = no_score;
   HWY_INLINE void operator()(std::int32_t block) {
     Vector most = all(no_score);

@@ -8,11 +8,10 @@
 
 namespace tofsmith {
 
-/// Finds the direction closest to a vector by branch and bound: bounds exclude whole arcs of the
-/// curve. Supports any rank.
+/// Finds the direction closest to a vector by branch and bound over arcs of the curve, for any
+/// rank.
 class ArcSearch {
  public:
-  /// Lower limit of the distance of rows in the error bounds.
   static constexpr double min_distance = 2 * ArcTable::min_window_radius;
 
   explicit ArcSearch(const DirectionTable& directions, std::int32_t blocks_per_arc = 1)
@@ -20,20 +19,18 @@ class ArcSearch {
 
   const ArcTable& table() const { return table_; }
 
-  /// Finds the rows with the highest scores for vectors q of any length.
+  /// Finds the rows with the highest scores.
   /// @param plane   [rank][stride]: q of pixel i is plane[i], plane[stride + i], ...
-  /// @param error   (pixels): bound on |q - q_exact|; infinite if nothing can be proven. The margin
-  ///   for ties must be included (see TileProjection).
-  /// @param row     (pixels): row whose score for q_exact exceeds, in exact arithmetic, that of
-  ///   every other direction by more than tie_tolerance |q| (the lowest row with that direction),
-  ///   or -1 if single precision cannot prove it
+  /// @param error   (pixels): bound on |q - q_exact| including the margin for ties (see
+  ///     TileProjection); infinite if nothing can be proven
+  /// @param row     (pixels): row whose exact score exceeds that of every other direction by more
+  ///     than tie_tolerance |q| (the lowest row with that direction), or -1 if single precision
+  ///     cannot prove it
   void search(const float* plane, int stride, const float* error, int pixels,
               std::int32_t* row) const;
 
-  /// Finds local maxima along the rows whose score is within `slack` of the best. If there are more
-  /// than `room`, the best ones are kept.
+  /// Finds local maxima whose score is within `slack` of the best; at most `room`, the best ones.
   /// @param unit   a unit vector (rank)
-  /// @param found  receives the rows
   /// @return number of rows found
   int near_peaks(const float* unit, float slack, int room, std::int32_t* found) const;
 

@@ -33,8 +33,7 @@ struct Bound {
   }
 };
 
-/// Bounds u from u = alpha u_a + beta u_b + e with alpha, beta >= 0. Any such numbers are valid;
-/// these leave a small e.
+/// Bounds u = alpha u_a + beta u_b + e with alpha, beta >= 0 that leave a small e.
 Bound bound_of(const Eigen::VectorXd& u, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const auto with = [&](double alpha, double beta) {
     return Bound{std::max(alpha + beta, 1.0), (u - alpha * a - beta * b).norm()};
@@ -53,12 +52,11 @@ Bound bound_of(const Eigen::VectorXd& u, const Eigen::VectorXd& a, const Eigen::
   return best;
 }
 
-/// Returns the offset of every row: 0, or -infinity if a lower row has the same direction up to
-/// rounding, which is much less than tie_tolerance.
+/// Returns the offset of every row: 0, or -infinity if a lower row has the same direction.
 std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   constexpr double same = 0.1 * tie_tolerance;
   const std::int32_t samples = directions.samples();
-  // Close rows are close along any line, so compare only those.
+  // Close rows are close along any line.
   Eigen::VectorXd line(directions.rank());
   RandomStream random(1, 0);
   for (double& component : line) component = random.normal();
@@ -96,7 +94,6 @@ std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   return offset;
 }
 
-/// Limits the number of bundles to max_bundle_blocks blocks.
 std::int32_t min_blocks_per_arc(std::int32_t samples) {
   constexpr std::int32_t most = max_bundle_blocks * arcs_per_block * arcs_per_block * block_lanes;
   return (samples + most - 1) / most;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Branch and bound over arcs. Compiled once per instruction set.
+// Branch and bound over arcs.
 #if defined(TOFSMITH_DECODE_ARC_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_ARC_WALK_INL_HPP
 #undef TOFSMITH_DECODE_ARC_WALK_INL_HPP
@@ -26,7 +26,7 @@ namespace {
 
 static_assert(block_lanes == widest_vector);
 constexpr float no_score = -std::numeric_limits<float>::infinity();
-constexpr int max_flat_blocks = 16;  // of arcs that are examined one by one
+constexpr int max_flat_blocks = 16;
 
 HWY_INLINE float largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
 
@@ -46,7 +46,6 @@ struct Query {
   HWY_INLINE float operator[](int j) const { return first[j * stride]; }
 };
 
-/// Returns the scores of a vector of directions of a block, plus their offsets.
 template <int Rank>
 HWY_INLINE Vector scores(const Query& q, const float* block) {
   const Floats d;
@@ -57,18 +56,18 @@ HWY_INLINE Vector scores(const Query& q, const float* block) {
   return sum;
 }
 
-/// Arcs that may contain the best row of a query: of all arcs, or of candidate bundles.
+/// Arcs that may contain the best row.
 struct Walk {
   std::uint64_t near[max_bundle_blocks / 4];  // bits of arcs (flat) or bundles, 16 per block
   float threshold;                            // lower bounds are excluded
 };
 
-/// Thresholds <= 0 would require bounds on negative scores, so nothing is excluded.
+/// Thresholds <= 0 exclude nothing: they would require bounds on negative scores.
 HWY_INLINE float threshold_of(float best, float slack) {
   return best > slack ? best - slack : no_score;
 }
 
-/// Returns the bits of the knots whose score reaches the requirement of their arcs' bounds.
+/// Returns the bits of the knots that reach the requirement of their arcs' bounds.
 HWY_INLINE std::uint32_t reaching(Vector score, const float* bounds, const Query& q,
                                   float threshold) {
   const Floats d;
@@ -77,7 +76,7 @@ HWY_INLINE std::uint32_t reaching(Vector score, const float* bounds, const Query
   return bits_of(hn::Ge(score, needed));
 }
 
-/// Returns the bits of the arcs of a block whose bound reaches the threshold.
+/// Returns the bits of the arcs whose bound reaches the threshold.
 template <int Rank>
 HWY_INLINE std::uint32_t near_in_block(const float* block, const float* score, const Query& q,
                                        float threshold) {
@@ -124,7 +123,6 @@ HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, W
   }
 }
 
-/// Calls visit(15 block + bit) for all bits of the first level.
 template <typename Visit>
 HWY_INLINE void for_each_near(const ArcTable& table, const Walk& walk, Visit& visit) {
   for (int b = 0; b < first_level(table).blocks(); b += 4)
@@ -146,7 +144,7 @@ struct BestKnot {
   }
 };
 
-/// Raises the threshold with the knots of all arcs in candidate bundles.
+/// Raises the threshold with the knots of candidate bundles.
 template <int Rank>
 HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, Walk& walk) {
   if (is_flat(table)) return;
@@ -186,7 +184,6 @@ struct OfBundle {
   }
 };
 
-/// Calls visit(block of rows) for all arcs that may contain the best row.
 template <int Rank, typename Visit>
 HWY_INLINE void for_each_near_rows(const ArcTable& table, const Query& q, const Walk& walk,
                                    Visit& visit) {

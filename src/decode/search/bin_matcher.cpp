@@ -13,8 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Computes the unit vector of a pixel in the decoding subspace, and returns its squared length.
-/// Zero vectors remain zero.
+/// Computes a unit vector and returns its squared length. Zero vectors remain zero.
 template <typename Value>
 Value normalized(const PixelTile& tile, int pixel, int rank,
                  std::array<Value, max_measurements>& unit) {
@@ -47,7 +46,6 @@ BinMatcher::Search BinMatcher::make_search(bool for_few) const {
   return {};
 }
 
-/// Returns the least distance of directions that the search distinguishes by differences of scores.
 double BinMatcher::min_distance() const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->min_gap();
   return std::holds_alternative<CellSearch>(search_) ? distinct_.shortest_step
@@ -111,7 +109,7 @@ void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, Pixe
     for (int j = 0; j < exact_.rank(); ++j)
       tile.plane[j * pixels_per_tile + pixel] =
           static_cast<float>(vector.unit[static_cast<std::size_t>(j)] * vector.length);
-  if (!std::isfinite(vector.length)) return;  // bin is -1
+  if (!std::isfinite(vector.length)) return;
   tile.bin[pixel] = vector.length > 0.0
                         ? choose(vector.unit.data(), tie_tolerance * vector.residual)
                         : distinct_.bin.front();

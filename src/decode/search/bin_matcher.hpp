@@ -13,12 +13,11 @@
 
 namespace tofsmith {
 
-/// Finds the bins whose directions match pixels best, with the result of double precision: single
-/// precision proves most bins, double precision decides the others.
+/// Finds the bins whose directions match pixels best. Single precision proves most bins; double
+/// precision decides the others.
 class BinMatcher {
  public:
-  /// @param for_few  true if there are too few pixels to amortize the construction of a table of
-  ///   cells
+  /// @param for_few  true if there are too few pixels to amortize a table of cells
   BinMatcher(const DecodingTable& table, const AmbientProjection& projection, bool for_few = false);
   BinMatcher(const BinMatcher&) = delete;
   BinMatcher& operator=(const BinMatcher&) = delete;
@@ -26,19 +25,16 @@ class BinMatcher {
   const ExactProjection& exact() const { return exact_; }
   const TileProjection& projection() const { return projection_; }
   const DirectionTable& directions() const { return directions_; }
-  /// Search for the best bins; monostate: arcs().
   using Search = std::variant<std::monostate, CircleSearch, CellSearch>;
   const Search& search() const { return search_; }
   const ArcSearch& arcs() const { return arcs_; }
 
-  /// Fills a tile with the pixels of a view from pixel `first` on. Bins are -1 if a raw value is
-  /// NaN or infinite.
+  /// Fills a tile with the pixels of a view. Bins are -1 if a raw value is NaN or infinite.
   /// @param pixels       1 ... pixels_per_tile
   /// @param for_outputs  see TileProjection::project()
   void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
              PixelTile& tile) const;
-  /// Matches vectors in tile.plane, which are considered exact. Bins are -1 if a component is not
-  /// finite.
+  /// Matches vectors in tile.plane, which are considered exact; -1 if one is not finite.
   void match_plane(PixelTile& tile) const;
 
  private:

@@ -33,7 +33,6 @@ class RecordBuilder {
 
   const RecordLayout& layout() const { return layout_; }
 
-  /// @param record  record of the bin
   /// @param chords  table of all chords; null: skipped
   void fill(std::int32_t n, float* record, RecordTable* chords) const {
     const Eigen::VectorXd p = point(n);
@@ -88,7 +87,6 @@ class RecordBuilder {
     turn[2] = static_cast<float>(1.0 / c);
   }
 
-  /// Uses the depth noise at the middle of the quarter.
   void fill_chord(std::int32_t n, std::int32_t neighbour, int quarter, float* fields) const {
     const double t = (quarter + 0.5) / ChordLayout::quarters;
     const Eigen::VectorXd p = point(n), chord = point(neighbour) - p;
@@ -99,7 +97,6 @@ class RecordBuilder {
       fields[ChordLayout::ambient] = static_cast<float>(ambient_part(neighbour) - ambient_part(n));
   }
 
-  /// dz = <d, noise> / (S |d|^2), where d is the slope across p.
   Eigen::Vector3d depth_noise_at(const Eigen::VectorXd& p, const Eigen::VectorXd& slope,
                                  const Eigen::VectorXd& shot) const {
     const Eigen::VectorXd across = slope - slope.dot(p) / p.squaredNorm() * p;
@@ -109,7 +106,7 @@ class RecordBuilder {
     return noise_along(across * (table_.row_m() / across2), shot);
   }
 
-  /// Returns the variance of <weight, q>: per signal, per ambient light, and without light.
+  /// Variance of <weight, q>: per signal, per ambient light, and without light.
   Eigen::Vector3d noise_along(const Eigen::VectorXd& weight, const Eigen::VectorXd& shot) const {
     const Eigen::VectorXd squares = (projection_.noise_basis * weight).cwiseAbs2();
     Eigen::Vector3d noise;

@@ -9,17 +9,15 @@
 namespace tofsmith {
 
 namespace {
-// In units of |q|, which is 1 to 2 on the cube; much larger than tie_tolerance and rounding errors.
+// In units of |q|, 1 to 2 on the cube; much larger than tie_tolerance and rounding errors.
 constexpr double certain_loss = 1e-9;
-// Total rounding error of a straight run; smaller than any lead that proves a result.
+// Rounding error of a straight run; smaller than any lead that proves a result.
 constexpr double flat = 2e-12;
 // Longer runs are too curved for a linear fit with proof.
 constexpr std::int32_t longest_proven_run = 40;
 // Leads above this exclude ties.
 constexpr double clear_lead = 5 * tie_tolerance;
 
-/// Calls use(from, to) for every edge of a box with `sides` dimensions, with the numbers of its
-/// corners.
 template <typename Use>
 void for_each_edge(int sides, const Use& use) {
   for (std::size_t from = 0; from < std::size_t{1} << sides; ++from)
@@ -129,7 +127,7 @@ double CellBuilder::closeness(const CellBox& box,
 
 void CellBuilder::runs(const CellBox& box, const std::vector<std::int32_t>& winners,
                        std::vector<CellRecord>& found) {
-  constexpr std::int32_t bridged = 2;  // gaps of one direction do not end a run
+  constexpr std::int32_t bridged = 2;  // such gaps do not end a run
   const Corners corners = corners_of(box);
   found.clear();
   const auto end_of_group = [&](std::size_t k) {
@@ -148,8 +146,7 @@ void CellBuilder::runs(const CellBox& box, const std::vector<std::int32_t>& winn
   }
 }
 
-/// Splits the directions first ... last (indices up to 2 M) where the score may have a local
-/// minimum.
+/// Splits directions (indices up to 2 M) where the score may have a local minimum.
 void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t last,
                         std::vector<CellRecord>& found) {
   const auto corner_count = static_cast<std::size_t>(corner_count_);
@@ -171,7 +168,7 @@ void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t
     found.push_back(run);
   };
   std::int32_t begin = first;
-  double dips = 0.0;  // total over the run
+  double dips = 0.0;
   for (std::int32_t n = first + 1; n < last; ++n) {
     if (n == begin) continue;
     const Scores& after = leads_[static_cast<std::size_t>(n - first)];
@@ -187,14 +184,14 @@ void CellBuilder::split(const Corners& corners, std::int32_t first, std::int32_t
   keep(begin, last);
 }
 
-/// Fits x to the borders of neighbours, where they intersect the edges of the box: x = n + 1/2.
+/// Fits x = n + 1/2 to the borders of neighbours on the edges of the box.
 void CellBuilder::fit(const Corners& corners, std::span<const Scores> leads,
                       CellRecord& run) const {
   if (run.length == 0) {
     run.slack = 0;
     return;
   }
-  constexpr double weight_of_corner = 1e-4;  // corners only determine the sign of the slope
+  constexpr double weight_of_corner = 1e-4;  // to determine the sign of the slope
   Eigen::Matrix<double, max_cell_rank, max_cell_rank> normal;
   normal.setIdentity();
   normal *= 1e-9;
@@ -229,9 +226,9 @@ void CellBuilder::fit(const Corners& corners, std::span<const Scores> leads,
   if (units < CellRecord::no_proof) run.slack = static_cast<std::int16_t>(units);
 }
 
-/// Returns the maximum distance of x from n + 1/2 on the wrong side: x must be below where
-/// direction n + 1 does not clearly beat n, and above where n does not clearly beat n + 1. Both
-/// regions are convex, and their corners are corners of the box or lie on its edges.
+/// Returns the maximum distance of x from n + 1/2 on the wrong side: x must be below where n + 1
+/// does not clearly beat n, and above where n does not clearly beat n + 1. Both regions are convex,
+/// with corners on the edges of the box.
 double CellBuilder::slack(const Corners& corners, std::span<const Scores> leads,
                           const CellRecord& run) const {
   Place fit;

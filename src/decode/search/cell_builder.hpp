@@ -13,31 +13,30 @@
 namespace tofsmith {
 
 struct CellBox {
-  int axis = 0;                                ///< axis of the face
+  int axis = 0;                                ///< of the face
   std::array<double, max_cell_rank> centre{};  ///< +-1 along the axis
   double half = 1.0;                           ///< half of the side
 
-  /// Returns a whole face; number = 2 axis + (1 if negative).
+  /// Whole face; number = 2 axis + (1 if negative).
   static CellBox face(int number);
-  /// Returns number `part` of the 2^(rank - 1) boxes with half the side.
+  /// One of the 2^(rank - 1) boxes with half the side.
   CellBox child(int part, int rank) const;
 };
 
-/// Determines which directions can be best in a box, with proof: a score difference q.u_n - q.u_m
-/// is linear in q, so its maximum over a box is at a corner. Boxes include their overlap. Use one
-/// builder per thread, since it holds working memory.
+/// Determines with proof which directions can be best in a box: a score difference q.u_n - q.u_m is
+/// linear in q, so its maximum is at a corner. Boxes include their overlap. Use one builder per
+/// thread.
 class CellBuilder {
  public:
-  /// @param fit_unit  unit of the records' fits
   CellBuilder(const DistinctDirections& directions, double fit_unit);
 
-  /// Selects the `candidates` that can be best somewhere in a box, in ascending order.
+  /// Selects the `candidates` that can be best in a box, in ascending order.
   void winners(const CellBox& box, const std::vector<std::int32_t>& candidates,
                std::vector<std::int32_t>& kept);
   /// Divides the winners of a box into runs with one peak each.
   void runs(const CellBox& box, const std::vector<std::int32_t>& winners,
             std::vector<CellRecord>& found);
-  /// Returns the best score of `candidates` at the centre of a box, for unit vectors.
+  /// Returns the best score at the centre of a box, for unit vectors.
   double closeness(const CellBox& box, const std::vector<std::int32_t>& candidates) const;
 
  private:
@@ -47,7 +46,7 @@ class CellBuilder {
   struct Corners {
     int axis = 0;
     double side = 0.0;
-    std::array<double, max_cell_rank> lowest{};  // corner with the least coordinates
+    std::array<double, max_cell_rank> lowest{};
     std::array<Place, max_corners> place;
   };
 
@@ -65,7 +64,7 @@ class CellBuilder {
   std::int32_t count_;
   double fit_unit_;
   std::vector<Scores> scores_;  // of the candidates
-  std::vector<Scores> leads_;   // of n + 1 over n at the corners, along a run
+  std::vector<Scores> leads_;   // of n + 1 over n at the corners
 };
 
 }  // namespace tofsmith

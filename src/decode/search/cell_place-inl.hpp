@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Looks up the cells of the vectors of a tile. Compiled once per instruction set.
+// Lookup of cells.
 #if defined(TOFSMITH_DECODE_CELL_PLACE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_CELL_PLACE_INL_HPP
 #undef TOFSMITH_DECODE_CELL_PLACE_INL_HPP
@@ -25,7 +25,7 @@ namespace {
 using Words = hn::RebindToUnsigned<Floats>;
 
 constexpr int tile = pixels_per_tile;
-constexpr int row_floats = 4;  // of a step or a direction
+constexpr int row_floats = 4;
 
 struct Scratch {
   alignas(64) float place[3][tile];     // t_s in the cell
@@ -42,11 +42,10 @@ struct Scratch {
   bool all_proven;
 };
 
-/// Adding this to a number of up to 22 bits leaves the nearest integer in the lowest bits.
+/// Leaves the nearest integer in the lowest bits, up to 22 bits.
 constexpr float to_whole = 0x1.8p23f;
 
-/// Returns 1 / v with a relative error of 2^-22. Approximations on other architectures than x86 may
-/// be less accurate.
+/// Returns 1 / v with a relative error of 2^-22 (larger on architectures other than x86).
 HWY_INLINE Vector reciprocal_of(Vector v) {
   const Floats d;
 #if HWY_ARCH_X86
@@ -57,9 +56,9 @@ HWY_INLINE Vector reciprocal_of(Vector v) {
 #endif
 }
 
-/// Computes the cell of every pixel and the position in it (rank 4: the root, the cell if the root
-/// is cut, and the position in that), and a bound on the error of the position; infinite if the
-/// pixel is too uncertain for its cell.
+/// Computes the cell of every pixel, the position in it, and a bound on the error of the position,
+/// infinite if the pixel is too uncertain. For rank 4, computes the root, the cell if the root is
+/// cut, and the position in that.
 template <int Rank>
 HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int padded,
                        Scratch& scratch) {
@@ -108,7 +107,7 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
       const auto index = hn::Min(hn::Max(hn::Add(shifted, middle), first_cell), last_cell);
       const auto within = hn::Sub(shifted, hn::Sub(index, middle));
       hn::Store(hn::Add(within, within), d, scratch.place[s] + i);
-      // NaN inputs also map to a valid cell index.
+      // NaN also maps to a valid cell.
       const auto fine = hn::And(hn::BitCast(di, index), fine_bits);
       if (Rank == 4) {
         cut = hn::Add(hn::ShiftLeftSame(cut, view.cut_bits), hn::And(fine, cut_mask));
@@ -123,8 +122,7 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   }
 }
 
-/// Converts the roots of pixels to their cells, and prefetches these. Scalar code is faster than
-/// gathers here.
+/// Converts roots to cells and prefetches these. Scalar code is faster than gathers here.
 HWY_INLINE void enter_roots(const CellSearchView& view, int padded, Scratch& scratch) {
   for (int i = 0; i < padded; ++i) {
     const std::int32_t root = view.roots[scratch.cell[i]], is_cut = root & 1;
@@ -135,8 +133,7 @@ HWY_INLINE void enter_roots(const CellSearchView& view, int padded, Scratch& scr
   }
 }
 
-/// For pixels whose root is not cut: converts the position in a cut cell to the position in the
-/// root.
+/// Converts the position in a cut cell to that in a root that is not cut.
 HWY_INLINE void place_in_roots(const CellSearchView& view, int padded, Scratch& scratch) {
   constexpr int sides = 3;
   const Floats d;
@@ -160,7 +157,7 @@ HWY_INLINE void place_in_roots(const CellSearchView& view, int padded, Scratch& 
 
 HWY_INLINE IndexVector low_half(IndexVector v) { return hn::And(v, hn::Set(Indices(), 0xffff)); }
 
-/// Convert low and high halves of words to floats.
+/// Low and high halves of words as floats.
 HWY_INLINE Vector low_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(hn::ShiftLeft<16>(words)));
 }
@@ -168,15 +165,14 @@ HWY_INLINE Vector high_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(words));
 }
 
-/// Writes the pixels of a mask consecutively (up to one vector more); returns their number.
-/// Compressing stores take about a hundred cycles on some processors.
+/// Writes the pixels of a mask (up to one vector more); returns their number. Compressing stores
+/// are slow on some processors.
 HWY_INLINE int list(IndexVector pixel, hn::Mask<Indices> mask, std::int32_t* listed) {
   hn::StoreU(hn::Compress(pixel, mask), Indices(), listed);
   return static_cast<int>(hn::CountTrue(Indices(), mask));
 }
 
-/// Computes the bins of pixels whose cell proves them, and the start in the run for the others,
-/// which are listed together with pixels that have several runs.
+/// Computes the bins that cells prove. Lists other pixels, with the start in the run.
 template <int Rank>
 HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixels,
                         Scratch& scratch) {
@@ -198,7 +194,7 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixel
         words);
     const auto run = hn::BitCast(di, words[0]), fit01 = hn::BitCast(di, words[1]),
                fit23 = hn::BitCast(di, words[2]), beside = hn::BitCast(di, words[3]);
-    // For rank 3, the slack replaces the fourth fit.
+    // For rank 3, the last fit is the slack.
     auto slack = high_number(fit23);
     if (Rank == 4) slack = high_number(beside);
     auto x = hn::MulAdd(high_number(fit01), hn::Load(d, scratch.place[0] + i), low_number(fit01));
@@ -209,14 +205,14 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixel
     const auto length = hn::ShiftRight<16>(run), first = low_half(run);
     const auto last_after = hn::ConvertTo(d, length);
     const auto after = hn::Min(hn::Max(hn::Sub(hn::Add(x, whole), whole), hn::Zero(d)), last_after);
-    // NaN inputs also stay in the run.
+    // NaN also stays in the run.
     const auto steps =
         hn::Min(hn::And(hn::BitCast(di, hn::Add(after, whole)), hn::Set(di, 0x7fff)), length);
     const auto at = hn::Add(first, steps);
     const auto once = hn::IfThenElse(hn::Lt(at, count), at, hn::Sub(at, count));
     hn::Store(once, di, pixels.bin + i);
 
-    // The distance of x from the borders of its direction must exceed the error bound.
+    // The distance of x from the borders must exceed the error bound.
     const auto rounding =
         hn::MulAdd(slack, slack_unit, hn::Mul(steepest, hn::Load(d, scratch.slip + i)));
     const auto place = hn::Sub(x, after);

@@ -9,7 +9,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/cell_search.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "decode/search/cell_place-inl.hpp"
@@ -19,7 +18,6 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Vector of one pixel, and the uncertainty of signs of its products with unit vectors.
 template <int Rank>
 struct PixelVector {
   float q[Rank];
@@ -40,8 +38,8 @@ struct PixelVector {
   }
 };
 
-/// Returns the best direction of a run (indices up to 2 M avoid wrap-around), decided by the signs
-/// of neighbouring score differences; -1 if a sign is not certain.
+/// Returns the best direction of a run (index up to 2 M) from the signs of neighbouring score
+/// differences; -1 if one is not certain.
 template <int Rank>
 HWY_INLINE std::int32_t settle(const CellSearchView& view, const PixelVector<Rank>& pixel,
                                std::int32_t first, std::int32_t last, std::int32_t at) {
@@ -69,7 +67,6 @@ HWY_INLINE std::int32_t settle(const CellSearchView& view, const PixelVector<Ran
   }
 }
 
-/// Stores the bin of direction n (index up to 2 M), or -1.
 HWY_INLINE void keep(const CellSearchView& view, std::int32_t pixel, std::int32_t n,
                      PixelTile& pixels, Scratch& scratch) {
   pixels.bin[pixel] = n < view.count ? n : n - view.count;
@@ -80,7 +77,6 @@ HWY_INLINE bool is_sharp(const Scratch& scratch, std::int32_t pixel) {
   return scratch.slip[pixel] < std::numeric_limits<float>::infinity();
 }
 
-/// Searches the runs of pixels that their cells do not prove.
 template <int Rank>
 HWY_INLINE void search_runs(const CellSearchView& view, PixelTile& pixels, Scratch& scratch) {
   for (int k = 0; k < scratch.unproven_count; ++k) {
@@ -172,7 +168,6 @@ namespace {
 
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<float>::epsilon();
 
-/// Returns rows of 4, for indices `begin` to 2 M (wrapped around).
 std::vector<float> twice_around(const RowMajorMatrix& rows, std::int32_t begin) {
   const auto count = static_cast<std::int32_t>(rows.rows());
   std::vector<float> laid;
@@ -193,8 +188,8 @@ CellSearch::CellSearch(const DistinctDirections& directions)
   steps_ = twice_around(step, -1);
   units_ = twice_around(directions.unit, 0);
 
-  // Rounding errors of a step, r products and r - 1 sums to first order, with a margin for higher
-  // orders; and ties, whose neighbours differ by at least one step.
+  // Rounding errors of a step, r products and r - 1 sums; and ties, whose neighbours differ by at
+  // least one step.
   constexpr double safety = 1.02;
   const double tie = 10 * tie_tolerance / directions.shortest_step;
   view_ = {.rank = directions.rank(),

@@ -15,8 +15,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Number of roots along a side of a face is 2^this. More roots contain fewer directions each, but
-/// must fit into the cache.
+/// log2 of the roots along a side of a face. More roots contain fewer directions but must fit into
+/// the cache.
 int root_bits_for(int rank, std::int32_t directions) {
   if (rank == 3) return directions <= 500 ? 6 : directions <= 4000 ? 7 : 8;
   return 4;
@@ -25,16 +25,15 @@ int cut_bits_for(int rank, std::int32_t directions) {
   if (rank == 3) return 0;
   return directions <= 500 ? 1 : 2;
 }
-/// Fraction of the roots that are cut; smaller for long curves, whose cells take longer to prove.
+/// Cells of long curves take longer to prove.
 double cut_share_for(std::int32_t directions) { return directions <= 4000 ? 0.125 : 0.04; }
 
 struct Root {
   CellBox box;
   std::vector<std::int32_t> winners;
-  double closeness = 0.0;  // to the curve
+  double closeness = 0.0;
 };
 
-/// Returns the index of a half along each side, given that of the whole box.
 std::array<std::size_t, max_cell_rank> child_index(std::array<std::size_t, max_cell_rank> index,
                                                    int part, int rank) {
   for (int s = 0; s + 1 < rank; ++s) {
@@ -44,7 +43,7 @@ std::array<std::size_t, max_cell_rank> child_index(std::array<std::size_t, max_c
   return index;
 }
 
-/// Splits a box into roots; `index` counts boxes of this size along each side.
+/// `index` counts boxes of this size along each side.
 void split(CellBuilder& builder, int rank, int face, const CellBox& box, int levels,
            std::array<std::size_t, max_cell_rank> index,
            const std::vector<std::int32_t>& candidates, int root_bits, std::vector<Root>& roots) {
@@ -65,7 +64,7 @@ void split(CellBuilder& builder, int rank, int face, const CellBox& box, int lev
   }
 }
 
-/// Cuts a box into cells; `at` counts cells, with the first coordinate slowest.
+/// `at` counts cells, with the first coordinate slowest.
 void cut(CellBuilder& builder, int rank, const CellBox& box, int levels,
          std::array<std::size_t, max_cell_rank> index, int cut_bits,
          const std::vector<std::int32_t>& winners, std::vector<CellRecord>* cells) {
@@ -123,7 +122,6 @@ CellTable::CellTable(const DistinctDirections& directions)
           root_bits_, roots);
   });
 
-  // Cut the roots closest to the curve.
   std::vector<double> closeness;
   for (const Root& root : roots) closeness.push_back(root.closeness);
   const auto cuts = static_cast<std::size_t>(cut_share_for(directions.count()) *
@@ -152,7 +150,7 @@ CellTable::CellTable(const DistinctDirections& directions)
 }
 
 void CellTable::store(const std::vector<Runs>& runs) {
-  // Few cells have very steep fits; without them, one bound suffices for all.
+  // Without the few very steep fits, one bound suffices for all.
   std::vector<double> steep;
   for (const Runs& of_cell : runs)
     if (of_cell.size() == 1 && of_cell.front().slack != CellRecord::no_proof)

@@ -12,65 +12,63 @@
 namespace tofsmith {
 
 inline constexpr int max_cell_rank = 4;
-/// Limit of the construction time; records support up to 32767.
+/// Limits construction time; records support up to 32767.
 inline constexpr std::int32_t max_cell_directions = 16384;
 
-/// Run of neighbouring directions that can be best in a cell, with one peak of the score; or, for a
-/// cell with several runs or without a useful fit, the location of its records.
+/// Run of neighbouring directions that can be best in a cell, with one peak of the score, or the
+/// location of several runs.
 struct CellRecord {
   static constexpr std::int16_t no_proof = 0x7fff;
   static constexpr std::uint16_t several = 0x8000;
   static constexpr double slack_unit = 1.0 / 16384;
-  /// Overlap of cells with their neighbours, in units of c (see CellTable).
+  /// Overlap of neighbouring cells, in c (see CellTable).
   static constexpr double overlap = 2e-5;
 
-  std::uint16_t first = 0;   ///< lowest direction of the run, in [0, M)
-  std::uint16_t length = 0;  ///< directions after it, possibly wrapping around; or `several`
-  /// Best direction relative to first, as a real number: x = [0] + sum_s [s] t_s, in units of the
-  /// table. Cells of rank 3 store the slack in the last entry.
+  std::uint16_t first = 0;   ///< lowest direction, in [0, M)
+  std::uint16_t length = 0;  ///< directions after it (cyclic), or `several`
+  /// Best direction relative to first: x = [0] + sum_s [s] t_s, in units of the table. For rank 3,
+  /// the last entry is the slack.
   std::array<std::int16_t, max_cell_rank> fit{};
   std::uint16_t unused = 0;  ///< padding
-  /// In units of slack_unit: x is correct if it is further than this from the midpoint between two
+  /// In units of slack_unit: x is correct if it is further than this from midpoints between
   /// directions; no_proof (only in lists): never.
   std::int16_t slack = no_proof;
 
   bool is_list() const { return (length & several) != 0; }
-  /// For lists: index of the first record, and number of records.
+  /// First record and number of records.
   std::uint32_t list_begin() const;
   std::uint32_t list_length() const { return length & (several - 1u); }
   static CellRecord list(std::uint32_t begin, std::uint32_t count);
 };
 static_assert(sizeof(CellRecord) == 16);
 
-/// For every cell of a cube map on the sphere of unit vectors of rank 3 or 4: a proven list of
-/// directions that can be closest. Face 2 j + (q_j < 0) contains the vectors whose largest
-/// component is j. Its coordinates c_s = q_s / |q_j| for the other s, in order, are divided into G
-/// roots each. Roots next to the curve, which contain most pixels, are divided further into 2^b
-/// cells per side, with the first coordinate slowest. t_s in [-1, 1] is the position in a cell.
+/// Cube map on the sphere of unit vectors of rank 3 or 4. Each cell has a proven list of directions
+/// that can be closest. Face 2 j + (q_j < 0) contains the vectors whose largest component is j. Its
+/// coordinates c_s = q_s / |q_j| are divided into G roots each. Roots next to the curve, which
+/// contain most pixels, are cut into 2^b cells per side, with the first coordinate slowest. t_s in
+/// [-1, 1] is the position in a cell.
 class CellTable {
  public:
   static bool serves(const DistinctDirections& directions);
-  /// @param directions  with serves(directions)
   explicit CellTable(const DistinctDirections& directions);
 
   int rank() const { return rank_; }
-  /// A face has 2^root_bits roots per side; a cut root has 2^cut_bits cells per side.
+  /// log2 of the roots per side of a face, and of the cells per side of a cut root.
   int root_bits() const { return root_bits_; }
   int cut_bits() const { return cut_bits_; }
-  /// Twice the index of a root's first cell, plus 1 if the root is cut.
+  /// Twice the index of the first cell, plus 1 if the root is cut.
   std::span<const std::uint32_t> roots() const { return roots_; }
   std::span<const CellRecord> cells() const { return cells_; }
   std::span<const CellRecord> lists() const { return lists_; }
   /// Unit of CellRecord::fit [directions].
   double fit_unit() const { return fit_unit_; }
-  /// Upper limit of the sum of absolute coefficients of fits of cells with one run [directions].
+  /// Maximum sum of absolute coefficients of fits of cells with one run [directions].
   double steepest_fit() const { return steepest_fit_; }
   std::size_t bytes() const {
     return (cells_.size() + lists_.size()) * sizeof(CellRecord) +
            roots_.size() * sizeof(std::uint32_t);
   }
 
-  /// Returns the runs of the cell that contains a unit vector.
   std::span<const CellRecord> runs(const double* unit) const;
 
  private:

@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Chords that turn by more than coarse_turn_rad are divided into pieces of at most this.
+/// Maximum turn of a piece of a long chord.
 constexpr double piece_turn_rad = 2.5 * std::numbers::pi / 180.0;
 
 double furthest_of(const Eigen::VectorXd& turn_rad) {
@@ -40,7 +40,7 @@ ChordMatcher::Pieces::Pieces(const DecodingTable& table, const AmbientProjection
     const double from = curve.row(n).norm(), to = curve.row(next).norm();
     const int pieces = static_cast<int>(std::ceil(turn / piece_turn_rad));
     for (int i = 1; i < pieces; ++i) {
-      // Equal angles: the chord is one side of the triangle formed by its ends and 0.
+      // Equal angles, by the law of sines.
       const double angle = turn * i / pieces;
       const double across = from * std::sin(angle), beyond = to * std::sin(turn - angle);
       const double t = across / (across + beyond);

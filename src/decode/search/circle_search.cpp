@@ -13,7 +13,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/circle_search.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "core/shared/vectors-inl.hpp"
@@ -40,7 +39,7 @@ bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& 
     const auto is_steep = hn::Gt(hn::Abs(y), hn::Abs(x));
     const auto larger = hn::IfThenElse(is_steep, y, x);
     const auto c = hn::Div(hn::IfThenElse(is_steep, x, y), hn::Abs(larger));
-    // NaN inputs also map to a valid piece.
+    // NaN also maps to a valid piece.
     const auto within = hn::Min(hn::Max(hn::ConvertTo(di, hn::MulAdd(c, half, half)), zero), last);
     const auto is_negative = hn::BitCast(di, hn::ShiftRight<31>(hn::BitCast(dw, larger)));
     const auto side =
@@ -50,7 +49,7 @@ bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& 
     const auto bins = hn::GatherIndex(di, words + 1, hn::Add(at, at));
 
     const auto excess = hn::Sub(c, border);
-    // An error of q changes c by at most twice the error divided by |larger|.
+    // An error of q changes c by at most twice the error / |larger|.
     const auto least = hn::Add(hn::Set(d, margin), hn::Div(hn::Add(error, error), hn::Abs(larger)));
     const auto is_near = hn::And(hn::Lt(least, hn::Set(d, CirclePiece::overlap)),
                                  hn::Lt(hn::Abs(larger), hn::Set(d, farthest)));
@@ -77,8 +76,7 @@ HWY_EXPORT(search);
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// In addition to the error of the pixel: rounding of c and of the border, and the overlap of
-// pieces.
+// Rounding of c and of the border, and the overlap of pieces.
 constexpr double rounding = 4 * 0.5 * std::numeric_limits<float>::epsilon();
 
 double angle_at(int side, double c) {
@@ -116,13 +114,13 @@ CircleSearch::CircleSearch(const DistinctDirections& directions) {
     border_.push_back(0.5 * (angle_[i] + next));
     min_gap_ = std::min(min_gap_, next - angle_[i]);
   }
-  // Ties are closer to a border than this; c changes by at most twice the angle.
+  // Ties are closer to a border; c changes by at most twice the angle.
   margin_ = static_cast<float>(rounding + 20 * tie_tolerance / min_gap_);
   cut_into_pieces();
 }
 
 void CircleSearch::cut_into_pieces() {
-  constexpr double tolerated = 0.002;  // fraction of pieces with several borders
+  constexpr double tolerated = 0.002;  // share of pieces with several borders
   const auto count = static_cast<unsigned>(angle_.size());
   const auto most = static_cast<int>(std::min(16 * std::bit_ceil(count), 1u << 16));
   for (resolution_ = static_cast<int>(std::max(16u, std::bit_ceil(count / 2)));; resolution_ *= 2) {
@@ -138,12 +136,10 @@ void CircleSearch::cut_into_pieces() {
   }
 }
 
-/// @param begin, end  range of c, without the overlap
 CirclePiece CircleSearch::piece(int side, double begin, double end) const {
   constexpr double reach = 3e-5;  // exceeds the error of the search
   const double at_begin = angle_at(side, begin - reach), at_end = angle_at(side, end + reach);
-  // Angles increase with c on sides 0 and 3 and decrease on the others; side 1 contains the jump at
-  // pi.
+  // Angles increase with c on sides 0 and 3; side 1 contains the jump at pi.
   const bool grows = side == 0 || side == 3;
   const std::size_t low = owner(grows ? at_begin : at_end), high = owner(grows ? at_end : at_begin);
   const std::size_t between = (high + angle_.size() - low) % angle_.size();
@@ -152,7 +148,7 @@ CirclePiece CircleSearch::piece(int side, double begin, double end) const {
   result.below = static_cast<std::uint16_t>(bin_[below]);
   result.above = static_cast<std::uint16_t>(bin_[above]);
   if (between == 0)
-    result.border = -2.0f;  // below all c: both bins are the same
+    result.border = -2.0f;  // below all c
   else if (between == 1)
     result.border = static_cast<float>(c_at(side, border_[low]));
   else
@@ -160,9 +156,8 @@ CirclePiece CircleSearch::piece(int side, double begin, double end) const {
   return result;
 }
 
-/// Returns the direction closest to an angle in [-pi, pi].
 std::size_t CircleSearch::owner(double angle) const {
-  // Borders are ascending; the last one may exceed pi.
+  // The last border may exceed pi.
   if (angle < border_.back() - 2 * pi) return angle_.size() - 1;
   const auto first = std::lower_bound(border_.begin(), border_.end(), angle);
   return first == border_.end() ? 0 : static_cast<std::size_t>(first - border_.begin());
@@ -175,7 +170,7 @@ double CircleSearch::score(const double* unit, std::size_t i) const {
 
 std::int32_t CircleSearch::choose(const double* unit, double tie) const {
   const std::size_t count = angle_.size(), nearest = owner(std::atan2(unit[1], unit[0]));
-  // Rounding may shift a border by one direction. Scores decrease on both sides of the best.
+  // Rounding may shift a border by one direction.
   const std::size_t before = (nearest + count - 1) % count, after = (nearest + 1) % count;
   const double best = std::max({score(unit, nearest), score(unit, before), score(unit, after)});
   std::int32_t lowest = bin_[nearest];

@@ -13,14 +13,13 @@ namespace tofsmith {
 namespace {
 
 constexpr int max_lobes = 64;
-/// Rows decide if the distance of the curve from itself is at least this many times the spacing of
-/// rows. The squared offsets of two rows from the best points of their lobes then differ by less
-/// than 1 / 25 of the squared distance of the lobes.
+/// Rows decide if the curve stays this many row spacings away from itself. The squared offsets of
+/// rows from the best points then differ by less than 1 / 25 of the squared distance of the lobes.
 constexpr double far_apart = 2.5;
 constexpr Eigen::Index max_examined = 4096;
 
-/// Returns true if the curve of unit directions comes closer to itself than `distance`, except in
-/// the run of rows around each row along which scores decrease.
+/// Returns true if the curve comes closer to itself than `distance`, except along the run of
+/// decreasing scores around each row.
 /// @param spacing  largest distance between neighbouring rows
 bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) {
   const Eigen::Index rows = units.rows();
@@ -30,8 +29,7 @@ bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) 
     const auto score = [&](Eigen::Index i) {
       return units.row(n).dot(units.row(i < rows ? i : i - rows));
     };
-    // Follows the run in one direction to the first row at the distance. Returns true if the curve
-    // turns back before that.
+    // Follows the run to the first row at the distance. Returns true if the curve turns back first.
     Eigen::Index first = n + 1, last = n + rows - 1;
     const auto turns_back = [&](Eigen::Index& row, int direction) {
       double before = score(n);
@@ -40,7 +38,7 @@ bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) 
       return false;
     };
     if (turns_back(first, 1) || turns_back(last, -1)) return true;
-    // Between the ends of the run, skip rows within which the curve cannot come close.
+    // Skip rows within which the curve cannot come close.
     while (first < last) {
       const double now = score(first);
       if (now > limit) return true;
@@ -51,8 +49,7 @@ bool comes_closer(const RowMajorMatrix& units, double distance, double spacing) 
   return false;
 }
 
-/// Returns the maximum difference, relative to |q|, between the score of a best point and of
-/// adjacent rows.
+/// Maximum difference between the scores of a best point and of adjacent rows, relative to |q|.
 double slack_of(const RowMajorMatrix& units) {
   const Eigen::Index rows = units.rows();
   double second_difference = 0.0;
@@ -60,15 +57,14 @@ double slack_of(const RowMajorMatrix& units) {
     second_difference = std::max(
         second_difference,
         (units.row((n + 1) % rows) - 2.0 * units.row(n) + units.row((n + rows - 1) % rows)).norm());
-  constexpr double margin = 1.1;  // for the approximation of the second derivative by differences
+  constexpr double margin = 1.1;  // for the second derivative by differences
   return margin * second_difference / 8.0;
 }
 
 }  // namespace
 
 std::optional<CloseLobes> CloseLobes::of(const AmbientProjection& projection) {
-  // On a circle, intersecting lobes have the same shape. Rows decide, which favours slowly passed
-  // lobes.
+  // On a circle, intersecting lobes have the same shape; rows favour slowly passed lobes.
   if (projection.rank() < 3 || !depth_polynomials(projection.curve)) return std::nullopt;
   const RowMajorMatrix units = projection.curve.rowwise().normalized();
   const double spacing = turns_of(projection.curve).maxCoeff();
@@ -82,8 +78,7 @@ CloseLobes::CloseLobes(const SmoothCurve& curve, double slack)
       points_(curve.points(0.0)),
       slopes_(curve.slopes(0.0)) {}
 
-/// Returns the score of the best point around a row, on the cubic defined by points and slopes of
-/// the rows on both sides.
+/// Score of the best point around a row, on the cubic through points and slopes of both rows.
 double CloseLobes::best_score(const double* unit, std::int32_t row) const {
   using Vector = Eigen::Map<const Eigen::RowVectorXd>;
   const Vector q(unit, points_.cols());
@@ -141,7 +136,7 @@ void CloseLobes::choose(const DirectionTable& directions, const ArcSearch& arcs,
         chosen = row;
       }
     }
-    // Single precision may shift a peak by one row; the best row is exact.
+    // Single precision may shift a peak by one row.
     if (std::abs(circular_difference(chosen, tile.bin[i], directions.samples())) > 1)
       tile.bin[i] = chosen;
   }

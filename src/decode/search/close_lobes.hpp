@@ -11,17 +11,16 @@
 namespace tofsmith {
 
 /// Chooses between lobes whose best rows have similar scores. The score of a lobe's best point
-/// exceeds that of its best row by at most `slack` |q|. Therefore all lobes whose best rows are
-/// that close to the best row are refined, and the one with the best point is chosen (in case of
-/// ties the lowest).
+/// exceeds that of its best row by at most `slack` |q|. Lobes within this of the best row are
+/// refined, and the one with the best point is chosen (the lowest in case of ties).
 class CloseLobes {
  public:
   /// Returns none if rows decide: the curve is not smooth, lies on a circle, or never comes closer
   /// to itself than 2.5 times the spacing of rows.
   static std::optional<CloseLobes> of(const AmbientProjection& projection);
 
-  /// Replaces the best row of every pixel in the tile by the best row of the lobe with the best
-  /// point. Pixels without a row (-1) remain unchanged.
+  /// Moves the best row of every pixel to the lobe with the best point, except for pixels without a
+  /// row (-1).
   void choose(const DirectionTable& directions, const ArcSearch& arcs, PixelTile& tile) const;
 
  private:

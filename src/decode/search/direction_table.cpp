@@ -8,8 +8,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the bin whose direction row n contains: n itself or, if bin n has no contrast, the
-/// nearest earlier bin with contrast (for the first bins: the nearest later one).
+/// Returns the bin whose direction row n contains: the nearest earlier bin with contrast, or the
+/// nearest later one for the first bins.
 std::vector<std::int32_t> bins_of_rows(const RowMajorMatrix& curve) {
   const auto has_contrast = [&](Eigen::Index n) { return !curve.row(n).isZero(0.0); };
   std::int32_t current = 0;

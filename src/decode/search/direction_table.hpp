@@ -10,23 +10,23 @@
 
 namespace tofsmith {
 
-/// Squared sine below which the ends of a chord have the same direction.
+/// Squared sine of the angle of parallel chords.
 inline constexpr double parallel_chords = 1e-14;
 
-/// Number of rows with interleaved components.
+/// Rows with interleaved components.
 inline constexpr int rows_per_block = 8;
 
-/// Scores within this distance tie, in units of |P y'|, the part of a pixel that ambient light does
-/// not explain. Its vector in the decoding subspace may be a small part of that.
+/// Scores within this distance tie, in units of |P y'|. The vector of a pixel in the decoding
+/// subspace may be a small part of P y'.
 inline constexpr double tie_tolerance = 1e-11;
 
-/// Cells do not prove pixels whose error exceeds this fraction of their vector q in the subspace,
+/// Cells do not prove pixels whose error exceeds this fraction of their vector q,
 inline constexpr double max_proven_error = 8e-6;
 /// or whose |P y'| / |q| exceeds this.
 inline constexpr double max_proven_residual = 32.0;
 
-/// Unit directions of the curve of a code, arranged for searches: one row per bin, padded to whole
-/// blocks. Bins without contrast have no direction; their rows repeat that of another bin.
+/// Unit directions of the curve of a code, padded to whole blocks. Rows of bins without contrast
+/// repeat the direction of another bin.
 class DirectionTable {
  public:
   explicit DirectionTable(const AmbientProjection& projection);
@@ -38,19 +38,19 @@ class DirectionTable {
   std::int32_t bin_of_row(std::int32_t row) const {
     return bin_of_row_[static_cast<std::size_t>(row)];
   }
-  /// Directions of a block, [rank][rows_per_block].
+  /// [rank][rows_per_block].
   const double* block(int b) const { return &directions_[static_cast<std::size_t>(b) * stride_]; }
   double direction(std::int32_t row, int j) const {
     return block(row / rows_per_block)[j * rows_per_block + row % rows_per_block];
   }
 
-  /// One entry per row, including padding.
+  /// Includes padding.
   std::span<const std::int32_t> bins_by_row() const { return bin_of_row_; }
 
  private:
   int samples_ = 0;
   int rank_ = 0;
-  std::size_t stride_ = 0;  // of a block
+  std::size_t stride_ = 0;
   std::vector<std::int32_t> bin_of_row_;
   std::vector<double> directions_;
 };

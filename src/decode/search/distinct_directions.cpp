@@ -16,7 +16,7 @@ std::vector<std::int32_t> lowest_alike(const RowMajorMatrix& unit, double tolera
   for (std::int32_t n = 0; n < rows; ++n)
     if (!unit.row(n).isZero(0.0)) order.push_back(n);
 
-  // Equal directions have equal keys, so they are adjacent after sorting.
+  // Equal directions are adjacent after sorting.
   Eigen::VectorXd weights(unit.cols());
   for (Eigen::Index j = 0; j < weights.size(); ++j) weights[j] = std::cos(1.0 + double(j));
   const Eigen::VectorXd key = unit * weights.normalized();

@@ -9,12 +9,10 @@
 
 namespace tofsmith {
 
-/// Returns, for every row, the lowest row whose direction is within `tolerance`, or the row itself.
-/// Zero rows have no direction and return themselves.
+/// Returns the lowest row within `tolerance` of each row; zero rows return themselves.
 std::vector<std::int32_t> lowest_alike(const RowMajorMatrix& unit, double tolerance);
 
-/// Directions of the curve of a code that can be best: among directions that always tie, only that
-/// of the lowest bin.
+/// Directions that can be best: of directions that always tie, only the lowest bin's.
 struct DistinctDirections {
   explicit DistinctDirections(const DirectionTable& table);
 
@@ -24,7 +22,7 @@ struct DistinctDirections {
 
   RowMajorMatrix unit;            ///< (M, rank), by ascending bin
   std::vector<std::int32_t> bin;  ///< (M)
-  double shortest_step = 0.0;     ///< least distance between neighbours, including last and first
+  double shortest_step = 0.0;     ///< between neighbours (cyclic)
 };
 
 }  // namespace tofsmith

@@ -8,7 +8,7 @@
 namespace tofsmith {
 
 void ExactProjection::project(const double* raw, PlaneVector& vector) const {
-  double size = 0.0;   // sum of |y'|: finite unless a measurement is not finite
+  double size = 0.0;   // sum of |y'|
   double along = 0.0;  // ambient light
   std::fill_n(vector.unit.begin(), rank(), 0.0);
   for (int k = 0; k < measurements(); ++k) {

@@ -10,10 +10,10 @@
 
 namespace tofsmith {
 
-/// Vector of a pixel without ambient light, q = V^T y', as length and unit vector.
+/// Vector of a pixel without ambient light, q = V^T y'.
 struct PlaneVector {
-  double length = 0.0;  ///< |q| [e]; 0 if it is a rounding error, NaN if a raw value is not finite
-  double residual = 0.0;                      ///< |P y'| / |q|, >= 1
+  double length = 0.0;    ///< |q| [e]; 0 if a rounding error, NaN if a raw value is not finite
+  double residual = 0.0;  ///< |P y'| / |q|, >= 1
   std::array<double, max_measurements> unit;  ///< (rank)
 };
 
@@ -27,7 +27,6 @@ class ExactProjection {
   int rank() const { return static_cast<int>(basis_.cols()); }
 
   double electrons(double raw, int measurement) const { return scale_.electrons(raw, measurement); }
-  /// @param raw  (K)
   void project(const double* raw, PlaneVector& vector) const;
 
  private:

@@ -12,12 +12,12 @@ inline std::int32_t nearest_bin(double depth_bin, int samples) {
   return static_cast<std::int32_t>(std::lround(depth_bin)) % samples;
 }
 
-/// Returns the bins nearest to the depths of a decoder; -1 if there is no depth.
+/// Bins nearest to the depths of a decoder; -1 without depth.
 template <typename AnyDecoder>
 void nearest_bins(const AnyDecoder& decoder, const float* measurements, std::int64_t pixels,
                   std::int32_t* bin) {
   constexpr std::int64_t block = 512;
-  double position[block];  // on the stack, to avoid allocations
+  double position[block];
   for (std::int64_t done = 0; done < pixels; done += block) {
     const std::int64_t count = std::min(pixels - done, block);
     decoder.decode_depth_bins(measurements + done * decoder.measurements(), count, position);

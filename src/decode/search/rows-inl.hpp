@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Loads rows of four numbers per lane as four vectors. Compiled once per instruction set.
+// Loads rows of four numbers.
 #if defined(TOFSMITH_DECODE_ROWS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_DECODE_ROWS_INL_HPP
 #undef TOFSMITH_DECODE_ROWS_INL_HPP
@@ -22,7 +22,6 @@ inline constexpr int row_length = 4;
 #if HWY_HAVE_SCALABLE || HWY_TARGET == HWY_SCALAR
 
 /// Loads number j of the row of every lane to columns[j].
-/// @param row_of  (lane): pointer to four numbers
 template <typename RowOf>
 HWY_INLINE void load_rows(const RowOf& row_of, Vector* columns) {
   HWY_ALIGN float column[row_length][widest_vector];
@@ -44,9 +43,7 @@ HWY_INLINE hn::Vec<hn::CappedTag<float, Lanes> > every_fourth_row(const RowOf& r
                        every_fourth_row<Lanes / 2>(row_of, first));
 }
 
-/// Loads number j of the row of every lane to columns[j]. Loading and transposing whole rows is
-/// much faster than gathers, even on processors with fast gathers.
-/// @param row_of  (lane): pointer to four numbers
+/// As above. Loading and transposing whole rows is much faster than gathers.
 template <typename RowOf>
 HWY_INLINE void load_rows(const RowOf& row_of, Vector* columns) {
   const Floats d;

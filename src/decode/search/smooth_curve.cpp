@@ -14,9 +14,8 @@ namespace tofsmith {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/// Relative amplitude in the upper quarter of a spectrum from which aliasing is possible.
+/// Relative amplitude in the upper quarter of a spectrum that indicates aliasing.
 constexpr double hidden_share = 1e-6;
-/// Intervals that turn by less are not considered fast.
 constexpr double fast_turn_rad = 10.0 * pi / 180.0;
 constexpr double same_direction_rad = 1.0 * pi / 180.0;
 
@@ -31,7 +30,6 @@ Eigen::MatrixXcd spectrum_of(const Eigen::MatrixXd& columns) {
   return spectrum;
 }
 
-/// Returns the columns (rows, K) of a spectrum (rows / 2 + 1, K).
 Eigen::MatrixXd columns_of(const Eigen::MatrixXcd& spectrum, int rows) {
   const PeriodicTransform transform(rows);
   Eigen::MatrixXd columns(rows, spectrum.cols());
@@ -50,7 +48,6 @@ bool falls_off(const Eigen::MatrixXcd& spectrum) {
   return spectrum.bottomRows(upper).norm() <= hidden_share * whole;
 }
 
-/// Returns the harmonic H described at without_noise_above_band_limit().
 Eigen::Index band_limit_of(const Eigen::VectorXd& power) {
   const Eigen::Index top = power.size() / 4;
   const double floor = power.tail(top).mean();
@@ -77,7 +74,6 @@ bool falls_back(const RowMajorMatrix& curve) {
   return false;
 }
 
-/// Returns the slope of the direction p / |p|, given the slope of p.
 RowMajorMatrix direction_slopes(const RowMajorMatrix& points, const RowMajorMatrix& slopes) {
   const Eigen::VectorXd length2 = points.rowwise().squaredNorm();
   const Eigen::VectorXd along = points.cwiseProduct(slopes).rowwise().sum().cwiseQuotient(length2);
@@ -203,11 +199,10 @@ std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve) {
 double interpolation_error(const SmoothCurve& curve) {
   const DepthPolynomials polynomials(curve);
   const Eigen::ArrayXd turn2 = turns_of(curve.points(0.0)).array().square();
-  // Lower limit, because the curve may almost stop.
+  // Limited, because the curve may almost stop.
   const Eigen::ArrayXd curvature = turn2.max(0.25 * turn2.mean());
   double largest = 0.0;
-  for (const double offset :
-       {-0.5, -0.25, 0.25, 0.5}) {  // where the quadratic has its largest error
+  for (const double offset : {-0.5, -0.25, 0.25, 0.5}) {
     const RowMajorMatrix points = curve.points(offset);
     const RowMajorMatrix derivative =
         polynomials.slope + offset * polynomials.bend + offset * offset * polynomials.asymmetry;

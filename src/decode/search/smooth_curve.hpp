@@ -8,28 +8,26 @@
 
 namespace tofsmith {
 
-/// Returns the turn of a curve from each row to the next [rad], (N); 0 if one of them has no
-/// contrast.
+/// Returns the turn from each row to the next [rad], (N); 0 without contrast.
 Eigen::VectorXd turns_of(const RowMajorMatrix& curve);
 
-/// Returns true if the curve passes the direction `unit` elsewhere at most half as fast as `turn`
-/// per row. The faster part (e.g. the falling edge of a ramp) is then a much less likely depth.
+/// Returns true if the curve passes `unit` elsewhere at most half as fast as `turn` per row. The
+/// faster part (e.g. the falling edge of a ramp) is then an unlikely depth.
 bool is_passed_slowly(const Eigen::RowVectorXd& unit, double turn, const RowMajorMatrix& units,
                       const Eigen::VectorXd& turn_rad);
 
-/// Closed band-limited curve, defined by its rows. Trigonometric interpolation gives its points and
-/// slopes everywhere.
+/// Closed band-limited curve, interpolated trigonometrically from its rows.
 class SmoothCurve {
  public:
-  /// Returns none if the rows may not determine the curve: the spectrum in its upper quarter
+  /// Returns none if the rows may not determine the curve: the upper quarter of the spectrum
   /// exceeds 1e-6 of the total, a row has no contrast, or the curve quickly retraces directions
   /// that it also passes slowly.
   static std::optional<SmoothCurve> of(const RowMajorMatrix& curve);
 
   int rows() const { return rows_; }
-  /// Points at row n + offset, (N, columns).
+  /// At row n + offset, (N, columns).
   RowMajorMatrix points(double offset) const { return at(offset, false); }
-  /// Derivatives per row at row n + offset, (N, columns).
+  /// Derivatives per row.
   RowMajorMatrix slopes(double offset) const { return at(offset, true); }
 
  private:
@@ -43,20 +41,18 @@ class SmoothCurve {
 Eigen::MatrixXd interpolated(const Eigen::MatrixXd& columns, int factor);
 
 /// Returns measured columns (N, K) without the harmonics above their band limit, which are noise.
-///   - The noise floor is the mean power P_h of harmonics above 3/8 N.
-///   - The band limit is the H that minimizes the expected square error of the remaining columns
-///     (Mallows' C_p): it maximizes the sum over h <= H of P_h - 2 floor.
-/// Returns the columns unchanged
-///   - if their upper harmonics are already negligible, see SmoothCurve::of(),
-///   - if the functions may have corners: H is at least N / 4, or a removed value exceeds 6 times
-///     the root mean square of all removed values,
-///   - if N is below 32, because the floor is then uncertain.
+/// The noise floor is the mean power P_h of harmonics above 3/8 N. The band limit H minimizes the
+/// expected square error (Mallows' C_p): it maximizes the sum over h <= H of P_h - 2 floor. Columns
+/// are unchanged
+///   - if their upper harmonics are negligible, see SmoothCurve::of(),
+///   - if the functions may have corners: H >= N / 4, or a removed value exceeds 6 times the root
+///     mean square of all removed values,
+///   - if N < 32, because the floor is then uncertain.
 Eigen::MatrixXd without_noise_above_band_limit(const Eigen::MatrixXd& columns);
 
 /// Derivative of the correlation of a pixel around each row of a smooth curve,
 ///   d/dt <q, u(n + t)> / |p_n| = <q, W_n + t B_n + t^2 C_n>,  u = p / |p|, |t| <= 1/2,
-/// for any vector q, on the curve or not. The quadratic interpolates at the Chebyshev nodes of
-/// [-1/2, 1/2], so its error is below |u''''| / 192.
+/// for any q. The quadratic interpolates at the Chebyshev nodes; its error is below |u''''| / 192.
 struct DepthPolynomials {
   explicit DepthPolynomials(const SmoothCurve& curve);
 
@@ -66,15 +62,14 @@ struct DepthPolynomials {
   Eigen::VectorXd growth;    ///< |p(n + t)| / |p_n| = 1 + t growth + t^2 growth_change, (N)
   Eigen::VectorXd growth_change;
 
-  /// Returns the root of g + b t + c t^2 that is a maximum, in [-1, 1]; 0 if there is none.
+  /// Returns the root of g + b t + c t^2 that is a maximum, in [-1, 1], or 0.
   static double maximum(double g, double b, double c);
 };
 
-/// Returns the polynomials of a smooth curve whose rows are at most 16 degrees apart; none for
-/// other curves, where depths lie on the chords between rows.
+/// Returns none unless the curve is smooth with rows at most 16 degrees apart.
 std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve);
 
-/// Returns the largest error of DepthPolynomials::maximum() for pixels on the curve [rows].
+/// Returns the largest error of maximum() for pixels on the curve [rows].
 double interpolation_error(const SmoothCurve& curve);
 
 }  // namespace tofsmith

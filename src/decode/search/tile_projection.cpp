@@ -13,7 +13,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/tile_projection.cpp"
 #include <hwy/foreach_target.h>
-// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include "core/shared/vectors-inl.hpp"
@@ -26,8 +25,8 @@ namespace {
 
 constexpr int tile_pixels = pixels_per_tile;
 
-/// Returns a b + c. For outputs it is rounded twice, with and without FMA instructions, so that
-/// they are the same on every processor. Bins are proven in either case.
+/// Returns a b + c. For outputs it is rounded twice, with and without FMA instructions, for the
+/// same result on every processor.
 template <bool ForOutputs>
 HWY_INLINE Vector product_plus(Vector a, Vector b, Vector c) {
   if constexpr (ForOutputs) return hn::Add(hn::Mul(a, b), c);
@@ -39,7 +38,6 @@ HWY_INLINE Vector minus_product(Vector a, Vector b, Vector c) {
   return hn::NegMulAdd(a, b, c);
 }
 
-/// Projects one vector of pixels. `load(k)` loads measurement k; `Count` 0 means any K.
 template <int Rank, bool ForOutputs, int Count, typename Load>
 HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, Vector reference,
                                int pixel, PixelTile& tile) {
@@ -61,7 +59,6 @@ HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, Vec
   hn::Store(error, d, tile.error + pixel);
 }
 
-/// Projects one vector of pixels for any rank, component by component.
 template <bool ForOutputs>
 HWY_INLINE void project_any_rank(const ProjectionView& view, PixelTile& tile, int pixel) {
   const Floats d;
@@ -113,8 +110,8 @@ HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw
   }
 }
 
-/// Projects interleaved pixels with K > 4, four measurements at a time; the last ones may be loaded
-/// twice.
+/// Projects interleaved pixels with K > 4 by four measurements at a time; the last ones may be
+/// loaded twice.
 template <int Rank, bool ForOutputs, int Count>
 HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, int vectors,
                                 PixelTile& tile) {
@@ -150,7 +147,7 @@ HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std
   }
 }
 
-/// Copies raw values from pixel `from` on to planes of the tile, followed by zeros up to `padded`.
+/// Copies raw values to the tile, followed by zeros.
 HWY_INLINE void fill_planes(const TileSource& source, int k_count, int from, int pixels, int padded,
                             PixelTile& tile) {
   for (int k = 0; k < k_count; ++k) {
@@ -169,7 +166,6 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
   const int k_count = view.measurements;
   int done = 0;
   if (source.data && source.pixel_stride == k_count && (k_count == 3 || k_count == 4)) {
-    // Whole vectors are read in place; the remaining pixels are copied to the tile.
     const int vectors = pixels / lanes;
     if (k_count == 3)
       project_interleaved<Rank, ForOutputs, 3>(view, source.data, vectors, tile);
@@ -213,7 +209,7 @@ void project(const ProjectionView& view, const TileSource& source, int pixels, P
   for (int i = 0; i < padded; i += lanes) project_any_rank<ForOutputs>(view, tile, i);
 }
 
-/// @param source  without data if the raw values are already in the tile
+/// @param source  without data if the raw values are in the tile
 void project_tile(const ProjectionView& view, const TileSource& source, int pixels,
                   bool for_outputs, PixelTile& tile) {
   if (for_outputs) return project<true>(view, source, pixels, tile);
@@ -233,9 +229,9 @@ HWY_EXPORT(project_tile);
 namespace {
 
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<float>::epsilon();
-constexpr double safety = 1.02;  // for terms of higher order
+constexpr double safety = 1.02;  // terms of higher order
 
-/// Returns the source if vector code can read it; otherwise without data.
+/// Returns a source without data if vector code cannot read it.
 TileSource source_of(const RawView& view, std::int64_t first, int pixels) {
   const auto* data = std::get_if<const float*>(&view.data);
   if (!data || view.width == 0) return {};
@@ -250,7 +246,6 @@ TileSource source_of(const RawView& view, std::int64_t first, int pixels) {
           view.measurement_stride};
 }
 
-/// Calls use(value, k, i) for value k of every pixel i of a tile, for any layout and type.
 template <typename Use>
 void for_each_number(const RawView& view, std::int64_t first, int pixels, const Use& use) {
   for_each_run(view, first, pixels, [&](const auto* from, std::int64_t length, std::int64_t done) {
@@ -273,7 +268,7 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
                                double min_distance) {
   const int k_count = table.measurements(), rank = projection.rank();
   const RawScale scale(table);
-  // In raw units: electrons = gain (raw - zero), ambient light a / gain.
+  // In raw units: electrons = gain (raw - zero).
   Eigen::VectorXd gain(k_count), zero(k_count);
   for (int k = 0; k < k_count; ++k) {
     gain[k] = scale.electrons(1.0, k) - scale.electrons(0.0, k);
@@ -285,10 +280,9 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
   Eigen::Index reference = 0;
   const bool has_ambient = ambient.cwiseAbs().maxCoeff(&reference) > 0.0;
   const Eigen::RowVectorXd error_per_raw = safety * weight.colwise().norm();
-  // The difference of the reference to itself is 0.
   if (has_ambient) weight.col(reference).setZero();
 
-  // |P y'| is at most the sum of gain |difference| plus the part of unequal offsets.
+  // The norm |P y'| is at most the sum of gain |difference| plus the part of unequal offsets.
   const double tie = 2 * tie_tolerance / min_distance;
   constexpr double least = max_proven_error / max_proven_residual;
   Eigen::VectorXd left = gain.cwiseProduct(zero);
@@ -306,7 +300,6 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
     const bool is_one = std::abs(ratio - 1.0) < 1e-13;
     const double length = weight.col(k).norm();
     ratio_.push_back(is_one ? 1.0f : static_cast<float>(ratio));
-    // Rounding of weights, K products and sums, and the difference.
     error_of_difference_.push_back(with_ties((k_count + 3) * unit_roundoff * length, gain[k]));
     error_per_rounding_.push_back(error_per_raw[k]);
     error_of_reference +=
@@ -316,7 +309,7 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
     offset_.push_back(static_cast<float>(offset[j]));
     for (int k = 0; k < k_count; ++k) weight_.push_back(static_cast<float>(weight(j, k)));
   }
-  // Small enough to matter only if products underflow.
+  // Only matters if products underflow.
   constexpr double smallest = 1e-35;
   view_ = {.measurements = k_count,
            .rank = rank,

@@ -10,13 +10,13 @@
 
 namespace tofsmith {
 
-/// Rows of floats, aligned to blocks of four. Row -1 contains zeros and represents "no bin".
+/// Rows of floats, aligned to blocks of four. Row -1 contains zeros ("no bin").
 class RecordTable {
  public:
   RecordTable(std::int32_t rows, int fields);
 
   int stride() const { return stride_; }
-  /// Number of floats of all rows, including row -1.
+  /// Number of floats, including row -1.
   std::size_t size() const { return size_; }
   /// Row n starts at (n + 1) stride.
   const float* data() const { return values_.get(); }
@@ -32,14 +32,15 @@ class RecordTable {
   struct Free {
     void operator()(float* values) const { ::operator delete[](values, alignment); }
   };
-  int stride_;  // [floats]
+  int stride_;
   std::size_t size_;
   std::unique_ptr<float[], Free> values_;
 };
 
-/// Offsets of the fields of a bin's record. Frequently used fields come first. With p the curve at
-/// the bin, e the chord to a neighbour, and w the unit vector across p in the direction of e: e =
-/// beta p + c w. Records of smooth curves contain DepthPolynomials instead of chords.
+/// Offsets of the fields of a bin's record, frequently used ones first. With the curve p at the
+/// bin, the chord e to a neighbour, and the unit vector w across p in its direction,
+///   e = beta p + c w.
+/// Records of smooth curves contain DepthPolynomials instead of chords.
 struct RecordLayout {
   int rank = 0;
   int measurements = 0;
@@ -61,48 +62,46 @@ struct RecordLayout {
   constexpr int ambient() const { return end_of_depth(); }  ///< <x, a> / |a|^2
   constexpr int end_of_light() const { return ambient() + 1; }
 
-  /// Variance of the signal estimate: per signal, per ambient light, and without light.
+  /// Variance of the signal: per signal, per ambient light, and without light.
   constexpr int signal_noise() const { return end_of_light(); }
   constexpr int end_of_noise() const { return signal_noise() + 3; }
 
-  /// |p|, then cosine and sine of LobeBound and typical_variance() per signal. OutputKernel fills
-  /// them if confidence is requested.
+  /// |p|, cosine and sine of LobeBound, and typical_variance() per signal; filled by OutputKernel.
   constexpr int bound() const { return end_of_noise(); }
   constexpr int end_of_bound() const { return bound() + 4; }
 
-  /// Variance of the measurements per signal (K); starts a block.
+  /// Variance per signal (K); starts a block.
   constexpr int shot() const { return (end_of_bound() + 3) / 4 * 4; }
   constexpr int end() const { return shot() + measurements; }
 };
 
-/// Chords of a bin: blocks of four fields, from the last quarter of the left chord over the bin
-/// itself to the last quarter of the right chord.
+/// Chords of a bin: blocks of four fields, from the last quarter of the left chord to the last
+/// quarter of the right chord.
 struct ChordLayout {
   static constexpr int quarters = 4;
   static constexpr int at_bin = quarters;
   static constexpr int blocks = 2 * quarters + 1;
-  /// Row of a table of chords where the blocks of a bin start. The blocks of bin -1 are 0.
+  /// First row of a bin in a table of chords. The blocks of bin -1 are 0.
   static constexpr std::int32_t first_row(std::int32_t bin) { return blocks * (bin + 1) - 1; }
 
   /// S^2 times the variance of depth [m^2]: per signal, per ambient light, and without light;
-  /// infinite if depth has no slope.
+  /// infinite without slope.
   static constexpr int depth_noise = 0;
   static constexpr int ambient = 3;  ///< change of <x, a> / |a|^2 along the chord
   static constexpr int fields = 4;
 };
 
-/// Maximum number of fields of a record, a multiple of four.
+/// Maximum number of fields, a multiple of four.
 inline constexpr int max_record_fields =
     (RecordLayout{max_measurements, max_measurements, true}.end() + 3) / 4 * 4;
 
-/// All data that depend on the bin only, computed in double precision and stored in single
-/// precision.
+/// All data that depend on the bin only, in single precision.
 struct BinRecords {
-  /// @param with_chords  false: chords are 0, since positions do not require them
+  /// @param with_chords  false: positions only, chords are 0
   BinRecords(const DecodingTable& table, const AmbientProjection& projection, bool with_chords);
 
   RecordLayout layout;
-  RecordTable records;  ///< of every bin
+  RecordTable records;
   RecordTable chords;
 
  private:

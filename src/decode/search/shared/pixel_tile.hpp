@@ -8,14 +8,14 @@
 
 namespace tofsmith {
 
-/// Number of pixels that are decoded together; a multiple of any vector length.
+/// A multiple of any vector length.
 inline constexpr int pixels_per_tile = 256;
 
 struct PixelTile {
   int pixels = 0;
-  /// Raw values, [K][pixels_per_tile].
+  /// [K][pixels_per_tile].
   alignas(64) float raw[max_measurements * pixels_per_tile];
-  /// Vector without ambient light, q = V^T y' [e], [rank][pixels_per_tile].
+  /// q = V^T y' [e], [rank][pixels_per_tile].
   alignas(64) float plane[max_measurements * pixels_per_tile];
   /// Bound on the error of `plane` [e]; NaN or infinite if a raw value is.
   alignas(64) float error[pixels_per_tile];
