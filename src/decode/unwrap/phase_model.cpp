@@ -21,8 +21,7 @@ namespace {
 constexpr double no_variation = 1e-10;
 constexpr double no_offset = 1e-9;
 constexpr double no_second_phase = 1e-6;
-/// Relative distance of c from a multiple of kappa that small asymmetries of gates and light
-/// explain, without another unknown.
+/// Relative distance of c from a multiple of kappa due to small asymmetries.
 constexpr double same_offset = 1e-3;
 
 struct Harmonic {
@@ -39,8 +38,7 @@ Harmonic harmonic_of(const Eigen::VectorXd& correlation, int measurement,
   Harmonic found{.mean = spectrum[0].real()};
   if (spectrum.size() < 2) return found;
   Eigen::VectorXd energy = spectrum.tail(spectrum.size() - 1).cwiseAbs2();
-  if (correlation.size() % 2 == 0)
-    energy[energy.size() - 1] /= 2;  // the Nyquist coefficient counts once
+  if (correlation.size() % 2 == 0) energy[energy.size() - 1] /= 2;  // Nyquist
   const double whole = energy.sum();
   if (whole <= no_variation * no_variation * correlation.squaredNorm()) return found;
   Eigen::Index strongest = 0;
@@ -54,7 +52,7 @@ Harmonic harmonic_of(const Eigen::VectorXd& correlation, int measurement,
   return found;
 }
 
-/// Returns true if the measurements of a frequency differ in more than amplitude and sign.
+/// Returns true if the measurements differ in more than amplitude and sign.
 bool sees_two_phases(const std::vector<Harmonic>& harmonics, int frequency) {
   std::vector<std::complex<double>> seen;
   for (const Harmonic& h : harmonics)
@@ -66,7 +64,7 @@ bool sees_two_phases(const std::vector<Harmonic>& harmonics, int frequency) {
   return values.size() == 2 && values[1] > no_second_phase * values[0];
 }
 
-/// Returns possible offsets as columns: none if ambient light cancels, one for most codes.
+/// Possible offsets as columns: none if ambient light cancels, one for most codes.
 Eigen::MatrixXd offset_columns(const DecodingTable& table, const Eigen::VectorXd& means) {
   const Eigen::VectorXd of_ambient = table.exposure_s.cwiseProduct(table.ambient_gain);
   const Eigen::VectorXd of_signal = table.exposure_s.cwiseProduct(means);
@@ -104,7 +102,7 @@ PhaseModel::PhaseModel(const DecodingTable& table, double largest_other_energy) 
                       table.range_m / std::max(common, 1), table.range_m));
 
   // Columns: the offset, then 2 T Re C and -2 T Im C for each frequency, normalized because the
-  // camera may strongly attenuate high frequencies.
+  // camera may attenuate high frequencies.
   const Eigen::MatrixXd offsets = offset_columns(table, means);
   Eigen::MatrixXd system =
       Eigen::MatrixXd::Zero(table.measurements(), offsets.cols() + 2 * count());

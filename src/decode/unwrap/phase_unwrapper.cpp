@@ -18,10 +18,9 @@ PhaseUnwrapper::PhaseUnwrapper(std::vector<int> frequencies, std::vector<double>
   TOFSMITH_ASSERT_LE(count(), max_frequencies);
 }
 
-/// For a depth z, the nearest candidate of frequency f changes where z is half way between two
-/// candidates. Between these places (the sum of all f on the range), the choice is constant. The
-/// minimum of the distance over all z is therefore that of one of these choices at its weighted
-/// mean.
+/// The nearest candidate of frequency f changes where z is half way between two candidates. Between
+/// these places the choice is constant, so the minimum over all z is that of one choice at its
+/// weighted mean.
 template <typename Use>
 void PhaseUnwrapper::for_each_choice(const double* phase, const Use& use) const {
   constexpr double just_after = 1e-9;  // [periods]; exceeds the rounding error of places

@@ -9,31 +9,29 @@
 
 namespace tofsmith {
 
-/// Maximum number of frequencies of a code: two measurements each.
+/// Maximum number of frequencies of a code.
 inline constexpr int max_frequencies = 32;
 
-/// One choice of wraps: a candidate depth for each frequency.
+/// A candidate depth for each frequency.
 struct Wraps {
   double distance = 0.0;                          ///< sum of w_f (z_f - z)^2
-  double depth = 0.0;                             ///< z, the weighted mean [periods], any real
+  double depth = 0.0;                             ///< weighted mean [periods], any real
   std::array<double, max_frequencies> candidate;  ///< z_f = (phase_f + wraps_f) / f [periods]
 };
 
-/// Computes depth from wrapped phases: chooses the candidates, one per frequency, that are closest
-/// to each other.
+/// Computes depth from wrapped phases: chooses the candidates that are closest to each other.
 class PhaseUnwrapper {
  public:
   /// @param frequencies  in multiples of f0
-  /// @param weights      w_f > 0, one per frequency; only their ratios matter
+  /// @param weights      w_f > 0; only their ratios matter
   PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights);
 
   int count() const { return static_cast<int>(frequencies_.size()); }
   double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
 
-  /// Returns the choice with the least weighted distance.
+  /// Returns the choice with the least weighted distance; an infinite distance if there is none.
   /// @param phase   (count) [periods of the frequency]
   /// @param within  part in which the depth must lie; null: anywhere
-  /// @return an infinite distance if no choice has its depth there
   Wraps nearest(const double* phase, const RangePart* within = nullptr) const;
 
  private:

@@ -25,8 +25,8 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 
-/// All phasors have the same length S, so the variance of a depth is proportional to the noise of
-/// its phasor divided by f^2. Noise is assumed to be equal in all measurements.
+/// The variance of a depth is proportional to the noise of its phasor divided by f^2. Assumes equal
+/// noise in all measurements.
 std::vector<double> weights_of(const PhaseModel& phases, int measurements, UnwrapWeights kind) {
   std::vector<double> weights;
   double sum = 0.0;
@@ -152,7 +152,6 @@ void UnwrapDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
                });
 }
 
-/// Reads electrons. Returns false if a measurement is NaN or infinite.
 bool UnwrapDecoder::Plan::read(const float* raw, PerMeasurement& electrons) const {
   bool finite = true;
   for (int k = 0; k < table.measurements(); ++k) {
@@ -207,9 +206,8 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
   store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
 }
 
-/// Returns the standard deviation of sum_f factor_f z_f, where z_f is the depth of one frequency
-/// [periods]: an electron in measurement k turns the phasor S e^(2 pi i f z) by
-/// Im(gain_fk e^(-2 pi i f z)) / S.
+/// Returns the standard deviation of sum_f factor_f z_f. An electron in measurement k turns the
+/// phasor S e^(2 pi i f z) by Im(gain_fk e^(-2 pi i f z)) / S.
 double UnwrapDecoder::Plan::deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                                       const PerMeasurement& variance_e2) const {
   PerMeasurement effect{};
