@@ -11,12 +11,12 @@ namespace {
 constexpr double no_ambient = 1e-9;
 constexpr double no_dimension = 1e-12;
 constexpr double no_contrast = 1e-9;
-// Relative distance of singular values that count as equal. Rounding determines their directions.
+// Relative distance below which singular values count as equal.
 constexpr double tied_values = 1e-6;
 
-/// Returns an orthonormal basis of the column space that does not depend on the given basis: its
-/// first vector is the projection of the unit vector closest to the space (the first one in case of
-/// ties); the others follow in the same way from the remaining space.
+/// Returns an orthonormal basis of the column space that does not depend on the given basis. Each
+/// vector is the projection of the unit vector that is closest to the remaining space (the first
+/// one in case of ties).
 Eigen::MatrixXd settled_basis(const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd left = columns * columns.transpose();  // column i: projection of unit vector i
   Eigen::MatrixXd basis(columns.rows(), columns.cols());
@@ -30,8 +30,8 @@ Eigen::MatrixXd settled_basis(const Eigen::MatrixXd& columns) {
   return basis;
 }
 
-/// Replaces directions of equal singular values by settled_basis(), so that they are the same on
-/// every processor: the noise of a random seed is drawn along them.
+/// Makes the directions of equal singular values the same on every processor: the noise of a random
+/// seed is drawn along them.
 void settle(Eigen::MatrixXd& directions, const Eigen::VectorXd& values) {
   for (Eigen::Index begin = 0, end = 0; begin < directions.cols(); begin = end) {
     while (end < directions.cols() && values[end] >= (1.0 - tied_values) * values[begin]) ++end;
@@ -64,7 +64,7 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
   while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole) ++kept;
   noise_basis = svd.v.leftCols(kept);
   settle(noise_basis, svd.values);
-  // Remove the rounding error of the SVD along `direction`; strong ambient light would amplify it.
+  // Strong ambient light would amplify the rounding error of the SVD along `direction`.
   if (!ambient.isZero(0.0)) noise_basis -= direction * (direction.transpose() * noise_basis).eval();
   basis = noise_basis;
   if (table.has_rows()) basis = table.whitening.transpose() * noise_basis;

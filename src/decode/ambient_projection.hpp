@@ -8,16 +8,15 @@
 
 namespace tofsmith {
 
-/// Maximum number of measurements per pixel; limits the stack memory of decoders.
+/// Maximum number of measurements per pixel.
 inline constexpr int max_measurements = 64;
 
-/// Residuals below this fraction of the measurements (without ambient light) are rounding errors.
+/// Residuals below this fraction of the measurements are rounding errors.
 inline constexpr double nothing_left = 1e-12;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Decoding table with ambient light projected out, in coordinates of the remaining subspace
-/// (dimension: rank).
+/// Decoding table with ambient light projected out.
 struct AmbientProjection {
   explicit AmbientProjection(const DecodingTable& table);
 
@@ -27,9 +26,8 @@ struct AmbientProjection {
   RowMajorMatrix gated;     ///< x = T o chi (N, K)
   Eigen::MatrixXd basis;    ///< V (K, rank): orthonormal columns that span the rows of P x
   RowMajorMatrix curve;     ///< p = V^T P x (N, rank); exactly 0 where there is no contrast
-  /// V for independent noise. For rows, the subspace is that of whitened electrons W y' with the
-  /// noise of the table: P removes W a, noise_basis is V and basis is W^T V, so that q = basis^T y'
-  /// in all cases.
+  /// V for independent noise. For rows, the basis of whitened electrons W y'; then basis = W^T V,
+  /// so that q = basis^T y' in all cases.
   Eigen::MatrixXd noise_basis;
 };
 

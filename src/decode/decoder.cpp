@@ -22,8 +22,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Calls use(tile, first pixel) for pixels [begin, end) of a view, tile by tile: matched for output
-/// planes, or for bins alone.
 template <typename Use>
 void for_each_tile(const ChordMatcher& matcher, const RawView& raw, IndexRange pixels,
                    bool for_outputs, const Use& use) {
@@ -39,7 +37,7 @@ void for_each_tile(const ChordMatcher& matcher, const RawView& raw, IndexRange p
   }
 }
 
-/// Returns a view of many consecutive pixels as a column, one pixel per row.
+/// Returns a view of consecutive pixels, one pixel per row.
 RawView column_of(const float* measurements, std::int64_t pixels, int count) {
   constexpr std::int64_t longest = std::numeric_limits<int>::max();
   require(pixels >= 0 && pixels <= longest, "pixels", pixels, "must be in [0, 2^31)");
@@ -73,7 +71,6 @@ struct Decoder::Plan {
              const DecodedView& planes) const;
   void decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
                      const RangePart& part, std::size_t at, const DecodedView& planes) const;
-  /// Writes the bins of the tile's rows.
   void write_bins(const PixelTile& tile, std::int32_t* bin) const {
     if (bin_of_row.empty()) {
       std::copy_n(tile.bin, tile.pixels, bin);
@@ -146,8 +143,7 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
         plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr, raw.noise,
                      decoded.from(static_cast<std::size_t>(first)));
       });
-    // The planes belong to the best chords, whose rows may differ from the best bins. In that case
-    // the bins are computed separately.
+    // The best chords determine the planes; their rows may differ from the best bins.
     if (is_bin_enough || (decoded.bin && plan_->matcher.is_coarse()))
       for_each_tile(plan_->matcher, raw, block, false, write_bins);
   });
@@ -170,7 +166,6 @@ DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& prog
   });
 }
 
-/// All wanted planes of a matched tile, whose raw numbers become electrons.
 void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRatios& noise,
                           const DecodedView& planes) const {
   std::array<std::uint8_t, pixels_per_tile> saturated{};
@@ -196,7 +191,6 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRat
   if (planes.bin && !bin_of_row.empty()) write_bins(tile, planes.bin);
 }
 
-/// Decodes one pixel in double arithmetic.
 void Decoder::Plan::decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
                                   const RangePart& part, std::size_t at,
                                   const DecodedView& planes) const {

@@ -121,8 +121,6 @@ void mix_pairs(const Eigen::MatrixXd& mix, Row&& packed) {
     for (Eigen::Index j = 0; j <= i; ++j, ++pair) packed[pair] = mixed(i, j);
 }
 
-/// Sets the noise of rows: whitening at the nominal light, and variances and covariance of the
-/// whitened measurements.
 void whiten_rows(const ForwardModel& model, const Camera& camera, DecodingTable& table) {
   RowCovariance noise = row_covariance(model, model.samples());
   const OperatingPoint nominal = camera.operating.middle();
@@ -134,8 +132,7 @@ void whiten_rows(const ForwardModel& model, const Camera& camera, DecodingTable&
   mix_pairs(table.whitening, ambient);
   mix_pairs(table.whitening, floor);
   noise.ambient = ambient, noise.floor = floor;
-  // Ambient light cancels in differences and is visible only through its noise; assume the
-  // nominal level.
+  // Ambient light that cancels is visible only through its noise; assume the nominal level.
   if (table.ambient_gain.isZero(0.0)) {
     noise.floor += nominal.ambient_e_per_s * noise.ambient;
     noise.ambient.setZero();
@@ -232,8 +229,7 @@ void require_exposures(const DecodingTable& table, std::string_view what) {
 
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {
   table.validate();
-  constexpr double equal = 1e-9;  // distance of unit vectors that differ only by rounding
-  // Each bin has the direction of the nearest row.
+  constexpr double equal = 1e-9;
   const RowMajorMatrix curve = AmbientProjection(table).curve;
   const Eigen::Index rows = curve.rows(), bins = table.bin_count();
   RowMajorMatrix unit(bins, curve.cols());

@@ -138,7 +138,7 @@ void apply(const DepthCorrection& correction, double range_m, const DecodedView&
       double corrected_m = depth_m - error_m;
       corrected_m -= range_m * std::floor(corrected_m / range_m);
       const auto rounded = static_cast<float>(corrected_m);
-      // Rounding to float can yield range_m, which is equivalent to 0.
+      // Rounding to float can yield range_m, which equals 0.
       decoded.depth_m[at] = rounded >= static_cast<float>(range_m) ? 0.0f : rounded;
     }
   });

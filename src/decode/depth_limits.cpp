@@ -21,7 +21,6 @@ namespace {
 /// Errors of decoded depths that corrections and maps will subtract.
 class DepthErrors {
  public:
-  /// @param maps  of the frame; a map of its size or none
   DepthErrors(const DecodingTable& table, const PixelMaps& maps, int width)
       : table_(table), maps_(maps), width_(static_cast<std::size_t>(width)) {}
 
@@ -44,8 +43,7 @@ class DepthErrors {
   std::size_t width_;
 };
 
-/// Removes the depth of a pixel if its corrected depth is outside the limits. A status that already
-/// makes the depth doubtful is kept.
+/// Removes a depth outside the limits, except where a status already makes it doubtful.
 void remove_if_outside(const DepthLimits& limits, double depth_m, std::size_t at,
                        const DecodedView& decoded) {
   if (limits.contains(depth_m)) return;
@@ -60,7 +58,6 @@ void remove_if_outside(const DepthLimits& limits, double depth_m, std::size_t at
     status = limits.status_of(depth_m);
 }
 
-/// Restricts the pixels of one block.
 class BlockRestriction {
  public:
   BlockRestriction(const DepthLimits& limits, const DepthDecoder& decoder, const RawView& raw,
@@ -91,8 +88,8 @@ class BlockRestriction {
     double depth_m = 0.0;  ///< corrected
   };
 
-  /// Removes the depth of a pixel with confidence 1 if it is outside the limits. Selects other
-  /// pixels for decoding again.
+  /// Removes a depth with confidence 1 that is outside the limits. Selects other pixels for
+  /// decoding again.
   void choose(std::size_t at) {
     if (std::isnan(decoded_.depth_m[at])) return;
     const double range_m = decoder_.table().range_m;
@@ -111,7 +108,7 @@ class BlockRestriction {
     if (raw_.averaged) averaged_.push_back(raw_.averaged[at]);
   }
 
-  /// The part of the range in which a pixel decodes if its corrected depth is within the limits.
+  /// The part of the range whose corrected depths are within the limits.
   RangePart part_of(std::size_t pixel, const float* signal_e_per_s) const {
     const double range_m = decoder_.table().range_m;
     const auto decoded_m = [&](double depth_m) {

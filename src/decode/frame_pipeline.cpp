@@ -82,7 +82,6 @@ class CpuBackend final : public FrameBackend {
   std::unique_ptr<const DepthDecoder> decoder_;
 };
 
-/// Writes the number of measurements that each decoded pixel averages.
 void keep_averaged(const RawView& raw, float* averaged) {
   if (raw.averaged)
     std::copy_n(raw.averaged, raw.pixels(), averaged);
@@ -107,7 +106,6 @@ DepthImage planes_for_limits(std::size_t pixels, DecodedView& decoded) {
   return image;
 }
 
-/// Filters and decodes once, and corrects the planes.
 void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, std::size_t first,
                  std::size_t pixels, const DecodedView& wanted, const UnfilteredPixels& unfiltered,
                  const Progress& progress) {

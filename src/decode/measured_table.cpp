@@ -44,8 +44,7 @@ Eigen::MatrixXd light_of(const Eigen::MatrixXd& correlation) {
   return light.cwiseMax(0.0);
 }
 
-/// Raises columns along ambient light until all values of columns that depend on it are >= 0. This
-/// is necessary for zero-mean columns.
+/// Raises zero-mean columns along ambient light until all values that depend on it are >= 0.
 Eigen::MatrixXd raised(const Eigen::MatrixXd& correlation, const Eigen::VectorXd& ambient_gain) {
   if (ambient_gain.minCoeff() < 0.0) return correlation;
   double rise = 0.0;
@@ -59,7 +58,6 @@ Eigen::MatrixXd raised(const Eigen::MatrixXd& correlation, const Eigen::VectorXd
   return light;
 }
 
-/// Returns the common values of both taps of each pair.
 Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
   Eigen::VectorXd shared(values.size() / 2);
   for (Eigen::Index i = 0; i < shared.size(); ++i) {
@@ -114,8 +112,8 @@ void MeasuredTable::validate() const {
 
 namespace {
 
-/// Converts a table from the reference temperature to the camera's: shifts it by the depth offset
-/// along the chords between rows, and scales it by the change of the signal.
+/// Converts a table to the camera's temperature: shifts it by the depth offset along the chords
+/// between rows, and scales it by the change of the signal.
 void warm(const Temperature& temperature, double bin_m, Eigen::MatrixXd& table) {
   const Eigen::MatrixXd cold = table;
   const Eigen::Index samples = cold.rows();
@@ -149,7 +147,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Eigen::MatrixXd readout =
       readout_matrix(columns, subtracts ? Readout::difference : Readout::separate);
   const Eigen::MatrixXd sums = readout.cwiseAbs();
-  // A difference contains the dark electrons and the read noise of two taps.
+  // Read noise and dark electrons of both taps.
   const double taps_read = measured.differences && !sensor.is_signed() ? 2.0 : 1.0;
 
   const Eigen::VectorXd exposure_s = exposure_s_of(measured, camera.exposure_s);

@@ -76,7 +76,6 @@ class Bracket {
     double all_exposure = 0.0;
     for (std::size_t f = 0; f < exposures_.size(); ++f)
       if (usable_[f]) all_exposure += exposures_[f];
-    // Shot noise at the shortest exposure, estimated from all exposures.
     double shot_e2 = 0.0;
     for (std::size_t k = 0; k < measurements_; ++k) {
       double sum_e = 0.0;

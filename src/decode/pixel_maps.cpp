@@ -42,10 +42,9 @@ void require_within(const Image<float>& map, const char* field, std::size_t firs
           "must cover pixels " + std::to_string(first) + " to " + std::to_string(first + count));
 }
 
-/// Wraps a depth to [0, range); NaN remains NaN.
 float wrapped(double depth_m, double range_m) {
   const double turn_m = depth_m - range_m * std::floor(depth_m / range_m);
-  // Rounding to float can yield range_m, which is equivalent to 0.
+  // Rounding to float can yield range_m, which equals 0.
   const auto rounded = static_cast<float>(turn_m);
   return rounded >= static_cast<float>(range_m) ? 0.0f : rounded;
 }

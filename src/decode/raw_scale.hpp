@@ -36,7 +36,7 @@ class RawScale {
 
  private:
   struct Line {
-    double dark_raw;  // raw value without light
+    double dark_raw;
     double gain_e_per_raw;
   };
   std::vector<Line> lines_;

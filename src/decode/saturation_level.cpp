@@ -14,12 +14,11 @@ namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-/// Raw values from which measurements are clipped; infinite if they never are.
+/// Raw values from which measurements are clipped.
 struct Rails {
   double lowest = -no_limit, highest = no_limit;
 };
 
-/// The well or the converter clips both signs of a mixer.
 Rails rails_of_mixer(const Sensor& sensor) {
   Rails rails;
   const double black = sensor.black_level_dn.value_or(0.0);
@@ -46,7 +45,7 @@ Rails rails_of(const Sensor& sensor) {
   return {-largest, largest};
 }
 
-/// As rails_of(sensor), with limits for sensors whose saturation is known from markers only.
+/// Adds limits for sensors whose saturation is known from markers only.
 Rails rails_of(const Camera& camera) {
   Rails rails = rails_of(camera.sensor);
   if (camera.raw.saturated.empty() || std::isfinite(rails.highest)) return rails;

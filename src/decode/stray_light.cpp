@@ -113,8 +113,7 @@ void StrayLight::remove(const RawView& stored, const DecodingTable& table, RawFr
   parallel_for(raw.measurements, [&](std::int64_t measurement) {
     const auto k = static_cast<std::size_t>(measurement);
     const auto black = static_cast<float>(table.black_level[measurement]);
-    // Unknown light is assumed to scatter none; saturated pixels scatter at least their measured
-    // light.
+    // Unknown light scatters none; saturated pixels scatter at least their measured light.
     Image<float> seen(raw.height, raw.width);
     for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
       const float number = clean.values[i * measurements + k];

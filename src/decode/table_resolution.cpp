@@ -14,7 +14,7 @@ namespace tofsmith {
 namespace {
 
 constexpr int max_rows = 1 << 18;
-/// Permitted error between rows: 20 um minus the rounding error to single precision.
+/// Permitted error between rows: 20 um minus the rounding error of float.
 double depth_accuracy_m(double range_m) {
   constexpr double in_all_m = 2e-5, least_m = 5e-6, margin = 0.8;
   return margin *
@@ -23,7 +23,6 @@ double depth_accuracy_m(double range_m) {
 
 constexpr double widest_turn_rad = 15.0 * std::numbers::pi / 180.0;
 
-/// Returns the factor by which a smooth table needs more rows.
 int resolving_factor(const DecodingTable& table) {
   const RowMajorMatrix curve = AmbientProjection(table).curve;
   if (curve.cols() < 2) return 1;
@@ -41,7 +40,7 @@ int resolving_factor(const DecodingTable& table) {
   };
   const double factor = factor_of(*smooth, 1.0);
   if (factor <= 1.0) return 1;
-  // With few rows the estimate of the error is unreliable, so repeat it with more rows.
+  // With few rows the estimate is unreliable.
   constexpr int finer = 4;
   const std::optional<SmoothCurve> fine = SmoothCurve::of(interpolated(curve, finer));
   return limited(fine ? factor_of(*fine, finer) : factor);

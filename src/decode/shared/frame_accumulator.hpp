@@ -12,14 +12,12 @@ namespace tofsmith {
 
 class MeanOfRows {
  public:
-  /// @param levels  values clipped in one frame are clipped in the mean; values not finite in one
-  ///   frame become NaN
+  /// @param levels  values clipped in one frame are clipped in the mean
   explicit MeanOfRows(const SaturationLevels& levels) : levels_(levels) {}
 
   bool is_empty() const { return frames_ == 0; }
   void add(const RawView& raw);
   /// Returns the mean of the frames since the last call, valid until the next add().
-  /// @param averaged  number of measurements averaged in each frame
   RawView finish(double averaged);
 
  private:
@@ -27,7 +25,7 @@ class MeanOfRows {
 
   SaturationLevels levels_;
   int height_ = 0, width_ = 0, measurements_ = 0, frames_ = 0;
-  std::vector<double> sums_;  // interleaved; infinite if clipped
+  std::vector<double> sums_;  // infinite if clipped
   std::vector<float> averaged_;
 };
 
@@ -36,8 +34,6 @@ class FrameAccumulator {
   FrameAccumulator(const DecodingTable& table, const FrameSteps& steps);
 
   FrameMemory memory(int recorded, int height, int width) const;
-  /// As FramePipeline::submit() and submit_end().
-  /// @return the finished frame, if any
   std::optional<RawView> submit(const RawView& raw, bool completes_mean);
   std::optional<RawView> submit_end();
 

@@ -14,7 +14,7 @@ namespace tofsmith {
 /// @param buffer  memory of the result; unused if the marking replaces nothing
 RawView mark_raw(const RawView& raw, const RawMarking& marking, std::vector<std::byte>& buffer);
 
-/// View of a marked frame and its buffer. The first step of every decoder and filter.
+/// A marked frame and its buffer. The first step of every decoder and filter.
 class MarkedRaw {
  public:
   MarkedRaw(const RawView& raw, const RawMarking& marking)

@@ -14,11 +14,9 @@ namespace tofsmith {
 /// Returns the raw value at which the well or the converter clips a tap; none if neither does.
 std::optional<float> saturation_level_of(const Sensor& sensor);
 
-/// Sets both saturation levels and the marking of a camera's table.
 void set_saturation(const Camera& camera, DecodingTable& table);
 
-/// Raw values at which measurements are clipped: <= lowest or >= highest; infinite if they never
-/// are.
+/// Raw values at which measurements are clipped: <= lowest or >= highest.
 struct SaturationLevels {
   float lowest = -std::numeric_limits<float>::infinity();
   float highest = std::numeric_limits<float>::infinity();
@@ -34,15 +32,14 @@ struct SaturationLevels {
     return number <= static_cast<Number>(lowest) || number >= static_cast<Number>(highest);
   }
 
-  /// Adds a value to a sum. The sum becomes infinite if a value is clipped and NaN if a value is
-  /// not finite.
+  /// Adds a value to a sum; infinite if a value is clipped, NaN if one is not finite.
   double added(double sum, double number) const {
     if (!std::isfinite(number) || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
     if (std::isinf(sum) || !clip(number)) return sum + number;
     return number > static_cast<double>(lowest) ? std::numeric_limits<double>::infinity()
                                                 : -std::numeric_limits<double>::infinity();
   }
-  /// Returns the mean of `count` values with this sum; a saturation level if one was clipped.
+  /// Returns the mean; a saturation level if a value was clipped.
   double mean(double sum, double count) const {
     if (std::isinf(sum)) return static_cast<double>(sum > 0.0 ? highest : lowest);
     return sum / count;
