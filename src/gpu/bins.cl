@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Finds the bins of pixels as src/decode/search, one work item each. Compiled after
-// decode_parameters.h and numbers.cl, before planes.cl. Pixels that single precision does not prove
-// are appended to a list and decoded on the host.
-#define NO_VALUE as_float(0x7fc00000)  // NaN with the same bits as on the host
+// Finds the bins of pixels as src/decode/search, one work item each. Compiled after numbers.cl,
+// before planes.cl. Pixels that single precision does not prove are listed and decoded on the host.
+#define NO_VALUE as_float(0x7fc00000)  // the same bits as on the host
 #define UNPROVEN (-2)
 #define BLOCK 16       // lanes of ArcTable
-#define HALF_BLOCK 8   // rows between the starts of consecutive windows
+#define HALF_BLOCK 8   // rows between windows
 #define TO_WHOLE 12582912.0f  // 1.5 * 2^23, as cell_place-inl.hpp
 
 // ---- Projection of a pixel, as tile_projection.cpp.
@@ -28,7 +27,6 @@ float project(const struct ProjectionParameters* p, int number, Floats tables, c
   return error;
 }
 
-/// Reads and projects the numbers of a pixel.
 /// @return bound on the error of the projection
 float vector_of(const struct ProjectionParameters* p, const struct TileParameters* tile,
                 Floats tables, global const uchar* raw_numbers, int pixel, float* raw, float* q) {
@@ -56,7 +54,7 @@ int search_arcs(const struct MatchParameters* p, Floats tables, const float* q, 
   const float length = sqrt(square);
   if (!(error < 1e-5f * largest_of(q))) return UNPROVEN;
 
-  // Track the best three half blocks: a window consists of two, and the third bounds all others.
+  // Best three half blocks: a window consists of two, and the third bounds all others.
   float best[3] = {-INFINITY, -INFINITY, -INFINITY};
   int half_of[3] = {-1, -1, -1};
   int row = 0;
@@ -125,7 +123,7 @@ int search_circle(const struct MatchParameters* p, Floats tables, const float* q
 
 #if RANK == 3 || RANK == 4
 #define SIDES (RANK - 1)
-#define ROW 4  // floats per step or direction
+#define ROW 4
 
 float low_number(int word) { return (float)(word << 16 >> 16); }
 float high_number(int word) { return (float)(word >> 16); }
@@ -136,8 +134,7 @@ float along(const float* q, Floats row) {
   return sum;
 }
 
-/// Returns the index of the best bin of a run, decided by the signs of neighbouring score
-/// differences; UNPROVEN if a sign is not certain. Indices run to 2 N to avoid wrap-around.
+/// As settle() in cell_search.cpp; UNPROVEN if a sign is not certain.
 int settle(const struct MatchParameters* p, Floats tables, const float* q, float margin, int first,
            int last, int at) {
   for (bool is_guess = true;; is_guess = false) {
@@ -164,7 +161,6 @@ int settle(const struct MatchParameters* p, Floats tables, const float* q, float
   }
 }
 
-/// Returns the best bin of all runs of a list.
 int search_list(const struct MatchParameters* p, Floats tables, const float* q, float margin,
                 Ints cell, const float* place) {
   Ints run = ints_at(tables, p->lists) + 4 * cell[1];
@@ -245,13 +241,12 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
     x = high_number(record[2]) * place[2] + x;
     const float slack = high_number(record[3]);
 #else
-    const float slack = high_number(record[2]);  // replaces the fourth fit
+    const float slack = high_number(record[2]);  // the fourth fit
 #endif
     x *= p->fit_unit;
     const int length = record[0] >> 16, first = record[0] & 0xffff;
     const float after = clamp(rint(x), 0.0f, (float)length);
     at = first + (int)after;
-    // The distance of x from the borders of its direction must exceed its error bound.
     const float rounding = slack * p->slack_unit + p->steepest_fit * slip;
     const float beside = x - after;
     const float above = (int)after == length ? 1e30f : 0.5f - beside;
@@ -267,7 +262,7 @@ int search_cells(const struct MatchParameters* p, Floats tables, const float* q,
 
 // ---- From pixels to bins, as BinMatcher and ChordMatcher.
 
-/// @param open    list of the `opened` pixels that the host decodes
+/// @param open    list of pixels that the host decodes
 kernel void match(const struct MatchParameters p, const struct TileParameters tile, Floats tables,
                   global const uchar* raw_numbers, global int* bins, global int* opened,
                   global int* open) {

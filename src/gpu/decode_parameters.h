@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Parameters of kernels, shared by C++ and OpenCL C. All members have 4 bytes. An `int` with a
-// plural name is the offset of a table in the table memory, in words of 4 bytes; -1: no table.
+// plural name is an offset in the table memory, in words of 4 bytes; -1: no table.
 #ifdef __cplusplus
 #pragma once
 namespace tofsmith {
@@ -12,10 +12,10 @@ enum RawNumber {
   raw_uint16,
   raw_uint8,
   raw_rounded,  ///< doubles rounded to floats
-  raw_double    ///< used only to compute means
+  raw_double    ///< only for means
 };
 
-/// Pixels of a tile. Number k of pixel i is at i pixel_stride + k measurement_stride.
+/// Number k of pixel i is at i pixel_stride + k measurement_stride.
 struct TileParameters {
   int pixels;
   int pixel_stride;
@@ -51,7 +51,7 @@ struct MatchParameters {
   int bins_of_points;  ///< see ChordMatcher
 };
 
-/// See OutputConstants; also contains the offsets of its tables.
+/// See OutputConstants.
 struct OutputParameters {
   struct ProjectionParameters projection;
   int samples;

@@ -20,7 +20,7 @@ class Words : public TableWords {
   using TableWords::TableWords;
 
   int add(const RecordTable& table) { return add(std::span(table.data(), table.size())); }
-  /// Adds doubles; without doubles on the device, pairs of floats (value and rounding error).
+  /// Without doubles on the device, adds pairs of floats (value and rounding error).
   int add_doubles(const std::vector<double>& table, bool has_doubles) {
     if (has_doubles) return add(table);
     std::vector<float> pairs;
@@ -36,7 +36,7 @@ ProjectionParameters parameters_of(const TileProjection& projection, Words& word
   const ProjectionView& view = projection.view();
   const auto count = static_cast<std::size_t>(view.measurements),
              rank = static_cast<std::size_t>(view.rank);
-  // Rounding a double to a float has an error of at most half a unit in the last place.
+  // Half a unit in the last place of floats.
   std::vector<float> of_rounding;
   for (const double error : projection.error_per_rounding())
     of_rounding.push_back(static_cast<float>(0.51 * std::numeric_limits<float>::epsilon() * error));
@@ -201,7 +201,7 @@ DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles) {
   is_coarse = matcher.is_coarse();
   points = parameters_of(matcher.points(), words_at);
   if (matcher.has_close_lobes()) {
-    // An infinite lead leaves all pixels open, so that the CPU decoder chooses between the lobes.
+    // Leaves all pixels open: the CPU decoder chooses between the lobes.
     points.way = by_arcs;
     points.lead = std::numeric_limits<float>::infinity();
   }

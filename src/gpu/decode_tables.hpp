@@ -12,19 +12,18 @@
 
 namespace tofsmith {
 
-/// Concatenation of decode_parameters.h, numbers.cl, bins.cl and planes.cl.
+/// Source of the kernels.
 extern const std::string_view decode_kernels;
 
-/// Tables and parameters of a decoder for kernels.
 struct DecodeTables {
   DecodeTables(const Decoder& decoder, bool has_doubles);
 
-  MatchParameters points;  ///< finds the bins next to the best points on the chords
-  MatchParameters bins;    ///< finds the best bins of a coarse table, else same as `points`
+  MatchParameters points;  ///< find the bins next to the best points on the chords
+  MatchParameters bins;    ///< find the best bins of a coarse table, else as `points`
   bool is_coarse = false;
   OutputParameters outputs;
   std::vector<std::uint32_t> words;  ///< contents of all tables
-  std::string options;               ///< compiler options of the kernels
+  std::string options;               ///< of the compiler
 };
 
 }  // namespace tofsmith

@@ -19,7 +19,6 @@ std::string in_small_letters(std::string_view text) {
   return small;
 }
 
-/// Lists devices as "0 NAME (cpu), 1 ...", or explains why there are none.
 std::string list_of(const std::vector<Device>& devices) {
   if (devices.empty()) return std::string(Device::none_found());
   std::string list = "expected one of";

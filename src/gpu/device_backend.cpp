@@ -14,8 +14,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Averages and filters in time on the device if possible, else on the CPU. The spatial filter and
-/// the decoder run on the device.
+/// Averages and filters in time on the device if possible, else on the CPU. Other steps run on the
+/// device.
 class DevicePipeline final : public FramePipeline {
  public:
   DevicePipeline(const DeviceDecoder& decoder, const DeviceOptions& options,
@@ -98,8 +98,8 @@ class DevicePipeline final : public FramePipeline {
 
   const DeviceDecoder& decoder_;
   std::optional<DeviceFilter> filter_;
-  std::optional<TimeFilter> time_filter_;  // provides the options
-  std::optional<DeviceFrames> on_device_;  // averages and filters in time, unless on_cpu_ does
+  std::optional<TimeFilter> time_filter_;
+  std::optional<DeviceFrames> on_device_;  // unless on_cpu_ does
   std::optional<FrameAccumulator> on_cpu_;
   std::optional<RawView> ready_;  // from on_cpu_
   FilteredFrame filtered_;
@@ -164,7 +164,7 @@ class AutomaticBackend final : public FrameBackend {
   DeviceOptions options_;
   mutable std::mutex mutex_;
   mutable bool has_looked_ = false;
-  mutable std::optional<DeviceDecoder> on_device_;  // never changes once set
+  mutable std::optional<DeviceDecoder> on_device_;  // set once
 };
 
 }  // namespace

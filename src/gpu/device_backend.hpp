@@ -14,8 +14,7 @@ namespace tofsmith {
 using DeviceFinder = std::function<std::optional<Device>()>;
 
 /// Returns the backend for `auto`: the CPU for frames without a spatial filter or below
-/// auto_min_pixels_to_filter, else the device, which is looked up when the first such frame
-/// arrives.
+/// auto_min_pixels_to_filter, else the device, which is looked up when first needed.
 /// @param decoder  must use DecodeMethod::zncc
 std::unique_ptr<FrameBackend> automatic_backend(DeviceFinder find_device,
                                                 std::unique_ptr<const DepthDecoder> decoder,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t max_tile_pixels = std::int64_t{1} << 24;
 
-/// Calls `use` with the original numbers of the open pixels, as a frame of one row.
+/// Calls `use` with the numbers of the open pixels, as one row.
 template <typename Number, typename Use>
 void with_open_numbers(const RawView& raw, std::int64_t first,
                        const std::vector<std::int32_t>& open, const Use& use) {
@@ -56,7 +56,7 @@ DeviceDecoder::Plan::Plan(const Device& device_, const Decoder& decoder_,
 }
 
 std::int64_t DeviceDecoder::Plan::pixels_of_part(std::int64_t pixels) const {
-  constexpr std::int64_t parts = 4;  // the first and the last copy overlap no kernel
+  constexpr std::int64_t parts = 4;  // the first and last copy overlap no kernel
   const std::int64_t part = pixels <= 2 * min_overlapped_pixels
                                 ? pixels
                                 : std::max((pixels + parts - 1) / parts, min_overlapped_pixels);
@@ -79,7 +79,7 @@ std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const FrameSource& fram
   return std::ssize(open);
 }
 
-/// Reads the numbers from their original source, because the device holds doubles as floats.
+/// Reads the original numbers, because the device holds doubles as floats.
 void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSource& frame,
                                                 const FramePart& part,
                                                 const std::vector<std::int32_t>& open,

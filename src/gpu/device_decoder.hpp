@@ -11,9 +11,8 @@ namespace tofsmith {
 struct FrameSource;
 
 /// A Decoder on a device. Pixels that single precision does not prove are decoded on the CPU, so
-/// bins and statuses always equal the CPU's; for float planes see frame_backend().
-///
-/// Thread-safe; concurrent calls are serialized.
+/// bins and statuses equal the CPU's; for float planes see frame_backend(). Thread-safe; calls are
+/// serialized.
 class DeviceDecoder {
  public:
   /// Compiles the kernels and uploads the tables.
@@ -28,13 +27,13 @@ class DeviceDecoder {
 
   const Device& device() const;
 
-  /// Decodes one frame into the caller's planes, as Decoder::decode.
+  /// Decodes one frame, as Decoder::decode.
   /// @return number of pixels that the CPU decoded
   /// @throws std::invalid_argument if the shape does not fit; IoError if the device fails;
-  ///         Interrupted if `progress` cancels. The last two may leave planes partly written.
+  ///     Interrupted if `progress` cancels. The last two may leave planes partly written.
   std::int64_t decode(const RawView& raw, const DecodedView& decoded,
                       const Progress& progress = {}) const;
-  /// As above for frame `frame` of `raw` (F, H, W, K), into a new image.
+  /// As above for a frame of `raw` (F, H, W, K).
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   struct Plan;

@@ -12,15 +12,14 @@
 
 namespace tofsmith {
 
-/// Smallest part of a frame [pixels], and smallest part when a frame that fits into memory is split
-/// only to overlap copies with kernels.
+/// Smallest part of a frame [pixels], and smallest part if splitting only overlaps copies with
+/// kernels.
 inline constexpr std::int64_t min_tile_pixels = 1024, min_overlapped_pixels = 65536;
 
 struct FramePart {
   std::int64_t first = 0, count = 0;
 };
 
-/// Number of decoded pixels, and how many of them the CPU decoded.
 struct FrameDone {
   std::int64_t pixels = 0, by_decoder = 0;
 };
@@ -28,27 +27,24 @@ struct FrameDone {
 struct DeviceDecoder::Plan {
   Plan(const Device& device_, const Decoder& decoder_, const DeviceOptions& options_);
 
-  /// Decodes the remaining pixels of a frame in parts; the upload of one part overlaps the kernels
-  /// of the previous one.
-  /// @param done  steps already done; valid even if this throws
+  /// Decodes the remaining pixels of a frame in parts; uploads overlap the kernels of the previous
+  /// part.
+  /// @param done  valid even if this throws
   void decode_from(FrameDone& done, const FrameSource& frame, const DecodedView& planes,
                    const Progress& progress);
-  /// Decodes a frame, in smaller parts if the device lacks memory.
-  /// @return number of pixels that the CPU decoded
+  /// Decodes a frame, in smaller parts if the device lacks memory; returns the number of pixels
+  /// that the CPU decoded.
   std::int64_t decode_all(const FrameSource& frame, const DecodedView& planes,
                           const Progress& progress);
-  /// Decodes the pixels that are in the tile.
+  /// Decodes the pixels in the tile; returns the number that the CPU decoded.
   /// @param planes  start at the tile's first pixel
-  /// @return number of pixels that the CPU decoded
   std::int64_t decode_what_is_there(const DecodedView& planes);
-  /// Uploads a part to a tile and starts its kernels.
   static void start(DeviceTile& in, const FrameSource& frame, const FramePart& part,
                     const DecodedView& planes);
-  /// Waits for the kernels of a part and downloads its planes.
-  /// @return number of pixels that the CPU decoded
+  /// Downloads the planes of a part; returns the number of pixels that the CPU decoded.
   std::int64_t finish(DeviceTile& in, const FrameSource& frame, const FramePart& part,
                       const DecodedView& planes) const;
-  /// Decodes open pixels on the CPU and writes them into the planes.
+  /// Decodes open pixels on the CPU.
   /// @param numbers  of the open pixels, as a frame of one row
   void decode_open_pixels(const RawView& numbers, const std::vector<std::int32_t>& open,
                           const DecodedView& planes) const;
@@ -56,10 +52,10 @@ struct DeviceDecoder::Plan {
   Device device;
   const Decoder& decoder;
   DeviceOptions options;
-  std::mutex mutex;  // guards the members below
+  std::mutex mutex;  // for the members below
   DeviceTile tile;
   std::unique_ptr<DeviceTile> other_tile;  // set once a frame is split
-  std::int64_t tile_pixels;                // maximum per part
+  std::int64_t tile_pixels;                // per part
 
  private:
   std::int64_t pixels_of_part(std::int64_t pixels) const;

@@ -13,10 +13,9 @@ namespace tofsmith {
 
 namespace {
 
-/// Smallest number of output rows per band.
+/// Output rows per band.
 constexpr int min_band_rows = 16;
 
-/// Copies rows from the device into a filtered frame.
 class FilteredRows {
  public:
   FilteredRows(const Filter::Plan& plan, const RawView& raw, FilteredFrame& frame)
@@ -53,7 +52,7 @@ struct DeviceFilter::Plan {
         options(options_),
         frame(device, plan_of(filter), options.use_doubles) {}
 
-  /// Returns the number of output rows per band that fits into the memory budget.
+  /// Returns the output rows per band that fit into memory.
   int rows_at_a_time(const RawView& raw) const;
   std::int64_t run(const FrameSource& source, DeviceDecoder::Plan* after,
                    const DecodedView& decoded, FilteredFrame* filtered, const Progress& progress,
@@ -65,7 +64,7 @@ struct DeviceFilter::Plan {
   Device device;
   const Filter& filter;
   DeviceOptions options;
-  std::mutex mutex;  // guards the members below
+  std::mutex mutex;  // for the members below
   DeviceFrame frame;
   DeviceRaw result;
   double memory_share = 1.0;
@@ -80,7 +79,6 @@ int DeviceFilter::Plan::rows_at_a_time(const RawView& raw) const {
   return static_cast<int>(std::clamp(rows, double{min_band_rows}, double(raw.height)));
 }
 
-/// Filters rows together with the rows that they depend on.
 std::int64_t DeviceFilter::Plan::run_band(const FrameSource& source, IndexRange rows,
                                           DeviceDecoder::Plan* after, const DecodedView& decoded,
                                           FilteredRows* filtered, const Progress& progress,

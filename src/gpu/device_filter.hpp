@@ -8,11 +8,9 @@
 
 namespace tofsmith {
 
-/// A Filter on a device, optionally followed by a decoder on the same device without a copy in
-/// between. For the equality of results see frame_backend(). Where rounding differs, values near a
-/// threshold may change by more than the last bits.
-///
-/// Thread-safe; concurrent calls are serialized.
+/// A Filter on a device, optionally followed by a decoder on the same device. For the equality of
+/// results see frame_backend(); where rounding differs, values near a threshold may change by more
+/// than the last bits. Thread-safe; calls are serialized.
 class DeviceFilter {
  public:
   /// Compiles the kernels and uploads the tables.
@@ -26,19 +24,19 @@ class DeviceFilter {
 
   const Device& device() const;
 
-  /// Filters one frame, as Filter::apply.
+  /// Filters a frame, as Filter::apply.
   /// @throws std::invalid_argument if the measurements or sizes differ; IoError if the device
   ///         fails; Interrupted if `progress` cancels
   void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
              const Image<std::uint8_t>& left_out = {}) const;
-  /// As above for frame `frame` of `raw` (F, H, W, K).
+  /// As above for a frame of `raw` (F, H, W, K).
   FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  /// Filters one frame and decodes it on the device, into the caller's planes.
+  /// Filters and decodes a frame.
   /// @param decoder   on the same device
   /// @param filtered  receives the filtered frame unless null
   /// @return number of pixels that the CPU decoded
-  /// @throws as apply() and DeviceDecoder::decode; parts of the planes may have been written
+  /// @throws as apply() and DeviceDecoder::decode; planes may be partly written
   std::int64_t decode(const RawView& raw, const DeviceDecoder& decoder, const DecodedView& decoded,
                       FilteredFrame* filtered = nullptr, const Progress& progress = {},
                       const Image<std::uint8_t>& left_out = {}) const;

@@ -60,15 +60,14 @@ std::int64_t DeviceFrame::bytes(int rows, int width) const {
   const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
   const auto of_planes = static_cast<std::int64_t>(
       4 * (grid.floats(planes_of_frame(plan_)) + grid.floats(weight_planes)));
-  // Raw numbers with the mask of excluded pixels, and two tiles of a decoder: for depths and for
-  // the output.
+  // Raw numbers, mask of excluded pixels, and two tiles of a decoder.
   return of_planes + std::int64_t{rows} * width * (4 * (k + 1) + 1 + 2 * tile_.bytes_per_pixel());
 }
 
 void DeviceFrame::resize(int rows, int width) {
   FilterParameters& p = parameters_;
   if (has_margins_ && p.height == rows && p.width == width) return;
-  has_margins_ = false;  // until everything below has succeeded
+  has_margins_ = false;  // until this has succeeded
   const FilterGrid grid =
       FilterPlanes::grid_of(rows, width, window_step(plan_.options.windows - 1));
   p.height = rows;
@@ -79,7 +78,6 @@ void DeviceFrame::resize(int rows, int width) {
   const auto bytes = [&](int planes) {
     return static_cast<std::int64_t>(sizeof(float) * grid.floats(planes));
   };
-  // Margins stay 0.
   queue().clear(*reserve(queue(), planes_, bytes(planes_of_frame(plan_))));
   queue().clear(*reserve(queue(), weights_, bytes(weight_planes)));
   has_margins_ = true;
@@ -182,14 +180,13 @@ void DeviceFrame::find_depth(int from) {
   const DeviceRaw& raw = tile_.reserve_planes(std::int64_t{parameters_.height} * parameters_.width);
   run(write_raw_, parameters_, result(from, from), &words_, raw_.averaged(), &planes_,
       raw.numbers(), raw.averaged());
-  float wanted = 0.0f;  // non-null only to select the planes; nothing is fetched
+  float wanted = 0.0f;  // selects planes; nothing is fetched
   tile_.decode({.depth_m = &wanted, .deviation_m = &wanted});
   decide_open_pixels();
   run(take_depth_, parameters_, tile_.plane(DecodedPlane::depth),
       tile_.plane(DecodedPlane::deviation), &planes_);
 }
 
-/// Decodes pixels on the CPU that single precision does not prove.
 void DeviceFrame::decide_open_pixels() {
   const std::vector<std::int32_t> open = tile_.open_pixels();
   if (open.empty()) return;

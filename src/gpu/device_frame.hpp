@@ -14,23 +14,22 @@ namespace tofsmith {
 /// Rows of a frame on a device, and the steps of Filter::Plan for them.
 class DeviceFrame {
  public:
-  /// Called after each of the steps of a Filter.
   using StepDone = std::function<void()>;
 
   /// @param plan  must outlive this object
   DeviceFrame(const Device& device, const Filter::Plan& plan, bool use_doubles);
 
-  /// Upper limit on the rows above and below that a result depends on.
+  /// Upper limit on the rows above and below that results depend on.
   static int reach(const FilterOptions& options);
-  /// Upper limit on the device memory for some rows, including the following decoder.
+  /// Upper limit on the device memory, including the following decoder.
   std::int64_t bytes(int rows, int width) const;
 
-  /// Filters rows of a frame as if they were the whole frame. Waits for the device only where
-  /// depths need double precision.
+  /// Filters rows as if they were the whole frame. Waits for the device only where depths need
+  /// double precision.
   /// @param left_out  mask of excluded pixels (H, W) of the whole frame, or null
   void filter(const FrameSource& frame, int first_row, int rows, const std::uint8_t* left_out,
               const StepDone& step_done);
-  /// Writes the filtered numbers of some rows, counted from the first filtered row.
+  /// Writes some rows, counted from the first filtered row.
   void write(int first_row, int rows, const DeviceRaw& to) const;
   void release();
 
@@ -57,7 +56,7 @@ class DeviceFrame {
 
   const Filter::Plan& plan_;
   FilterTables tables_;
-  DeviceTile tile_;  // decodes the depths that guide slopes
+  DeviceTile tile_;  // decodes depths for slopes
   DeviceKernel read_light_, find_hidden_noise_, find_energy_, weigh_similar_, add_similar_,
       write_raw_, take_depth_, find_slopes_, split_, add_along_slopes_, compare_sums_, keep_near_,
       keep_bright_, find_own_light_, leave_dark_, find_own_amplitude_, add_slope_noise_,
@@ -65,9 +64,9 @@ class DeviceFrame {
   FilterParameters parameters_;
   DeviceMemory words_, planes_, weights_, left_out_;
   bool has_left_out_ = false;
-  bool has_margins_ = false;  // planes have the size in parameters_, with margins of 0
+  bool has_margins_ = false;
   DeviceRaw raw_;
-  int result_ = 0;  // index of the filtered light set; the other set holds the measured light
+  int result_ = 0;  // filtered light set; the other one is measured
 };
 
 }  // namespace tofsmith

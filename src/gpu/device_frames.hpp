@@ -8,9 +8,8 @@
 
 namespace tofsmith {
 
-/// Averages frames and filters them in time (as TimeFilter) on a device, where they stay for the
-/// spatial filter and the decoder. For the equality of results see DeviceFilter.
-///
+/// Averages frames and filters them in time (as TimeFilter) on a device, where they stay for
+/// spatial filters and decoders on the same device. For the equality of results see DeviceFilter.
 /// The accumulated frame stays on the device in full, regardless of DeviceOptions::memory_mb. Not
 /// thread-safe.
 class DeviceFrames {
@@ -18,43 +17,39 @@ class DeviceFrames {
   /// Compiles the kernels.
   /// @param table        provides the saturation levels; must outlive this object
   /// @param time_filter  without look_ahead; must outlive this object; null: means only
-  /// @throws std::invalid_argument for invalid options, or a filter that has look_ahead or a
-  ///         different number of measurements; IoError if the device fails
+  /// @throws std::invalid_argument for invalid options or filters; IoError if the device fails
   DeviceFrames(const Device& device, const DecodingTable& table, const TimeFilter* time_filter,
                const DeviceOptions& options = {});
   ~DeviceFrames();
   DeviceFrames(DeviceFrames&&) noexcept;
   DeviceFrames& operator=(DeviceFrames&&) noexcept;
 
-  /// Adds a frame to the next mean. A number that is invalid or saturated in one frame is so in the
-  /// mean.
-  /// @throws std::invalid_argument if the measurements or sizes differ, or the device has no
-  ///         doubles; IoError if the device fails, which also drops the accumulated frames
+  /// Adds a frame to the next mean. Numbers that are invalid or saturated in one frame are so in
+  /// the mean.
+  /// @throws std::invalid_argument if measurements or sizes differ, or the device has no doubles;
+  ///     IoError if the device fails, which also drops the accumulated frames
   void add(const RawView& raw);
   int frames_of_mean() const;
   /// Makes the mean of the added frames the current frame.
-  /// @param averaged  number of measurements already averaged in each added frame
+  /// @param averaged  measurements already averaged in each added frame
   /// @throws as add(); std::invalid_argument if no frame was added
   void take_mean(double averaged = 1.0);
-  /// Filters a frame in time and makes the result the current frame, without a mean.
+  /// Filters a frame in time and makes the result the current frame.
   /// @throws as add()
   void take(const RawView& raw);
-  /// Starts a new sequence; the next frame may have any size.
+  /// Starts a new sequence, of any size.
   void forget();
 
   bool has_frame() const;
-  /// Downloads the current frame: the result of TimeFilter::add(), or the mean in doubles. Valid
-  /// until the next frame.
+  /// Downloads the current frame, valid until the next one: the result of TimeFilter::add(), or the
+  /// mean in doubles.
   /// @throws std::invalid_argument if there is no frame; IoError if the device fails
   RawView numbers();
   /// Decodes the current frame, as DeviceDecoder::decode.
-  /// @param decoder  on the same device
   /// @return number of pixels that the CPU decoded
   std::int64_t decode(const DeviceDecoder& decoder, const DecodedView& decoded,
                       const Progress& progress = {});
-  /// Filters the current frame as DeviceFilter::decode, and decodes it.
-  /// @param filter   on the same device
-  /// @param decoder  on the same device
+  /// Filters and decodes the current frame, as DeviceFilter::decode.
   /// @return number of pixels that the CPU decoded
   std::int64_t decode(const DeviceFilter& filter, const DeviceDecoder& decoder,
                       const DecodedView& decoded, FilteredFrame* filtered = nullptr,

@@ -16,9 +16,9 @@ struct DeviceFrames::Plan {
   Plan(const Device& device_, const DecodingTable& table_, const TimeFilter* time_filter,
        const DeviceOptions& options_);
 
-  /// Checks the size of a new frame and drops the current one.
+  /// Checks a new frame and drops the current one.
   void begin_frame(const RawView& raw, bool is_first);
-  /// Runs steps on the device; drops all accumulated frames if they fail half-way.
+  /// Drops all accumulated frames if steps fail half-way.
   template <typename Steps>
   auto on_device(const Steps& steps);
   void forget();
@@ -30,7 +30,7 @@ struct DeviceFrames::Plan {
   DeviceOptions options;
   std::optional<DeviceMeans> means;  // created with the first mean
   std::optional<DeviceTimeFilter> filter;
-  RawView size;          // only the shape of the frames
+  RawView size;          // only the shape
   int frames_added = 0;  // to the next mean
   bool has_frame = false;
   std::vector<float> numbers, averaged;  // downloaded

@@ -10,28 +10,27 @@
 
 namespace tofsmith {
 
-/// Concatenation of decode_parameters.h, numbers.cl and means.cl.
+/// Source of the kernels.
 extern const std::string_view mean_kernels;
 
 /// Means of frames on a device with doubles, with the same bits as on the CPU.
 class DeviceMeans {
  public:
-  /// @param levels  numbers that are clipped in one frame are clipped in the mean
+  /// @param levels  numbers clipped in one frame are clipped in the mean
   DeviceMeans(const Device& device, const SaturationLevels& levels);
 
-  /// Adds a frame of the same size as the others; `raw` is not accessed after the call.
+  /// Adds a frame; `raw` is not accessed after the call.
   void add(const RawView& raw);
-  /// Starts to compute the mean of the frames added since the last one.
-  /// @param averaged  number of measurements already averaged in each added frame
+  /// Computes the mean of the frames added since the last one.
+  /// @param averaged  measurements already averaged in each added frame
   void finish(double averaged);
-  /// Drops the added frames.
   void forget() { frames_ = 0; }
 
-  /// Mean, rounded to floats.
+  /// Rounded to floats.
   const DeviceRaw& result() const { return result_; }
-  /// Mean at some pixels of the frame (K numbers each), not rounded.
+  /// Unrounded mean at some pixels (K numbers each).
   std::vector<double> open_numbers(const std::vector<std::int32_t>& pixels);
-  /// Mean at all pixels, measurement by measurement, not rounded.
+  /// Unrounded mean, measurement by measurement.
   std::vector<double> numbers() const;
   const DeviceQueue& queue() const { return queue_; }
 

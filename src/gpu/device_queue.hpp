@@ -15,19 +15,19 @@
 
 namespace tofsmith {
 
-/// The device has less memory than requested; smaller parts may fit.
+/// Too little device memory; smaller parts may fit.
 class OutOfDeviceMemory : public IoError {
  public:
   using IoError::IoError;
 };
 
-/// An object of the OpenCL implementation, released by the destructor.
+/// An OpenCL object, released by the destructor.
 using DeviceHandle = std::unique_ptr<void, void (*)(void*)>;
 inline DeviceHandle no_handle() {
   return {nullptr, [](void*) {}};
 }
 
-/// Device memory, freed by the destructor; initially none.
+/// Device memory, freed by the destructor.
 struct DeviceMemory {
   DeviceHandle handle = no_handle();
   std::size_t bytes = 0;
@@ -41,36 +41,33 @@ struct DeviceMark {
   DeviceHandle handle = no_handle();
 };
 
-/// An in-order queue of work for a device. Every call throws IoError if the device fails,
-/// OutOfDeviceMemory if memory is the cause.
+/// In-order queue of work for a device. Calls throw IoError if the device fails, OutOfDeviceMemory
+/// if memory is the cause.
 class DeviceQueue {
  public:
-  /// Columns and rows of work items.
   using Extent = std::array<std::size_t, 2>;
-  /// Work items per group; the number of items is rounded up to whole groups.
+  /// Work items per group.
   static constexpr std::size_t group_items = 64;
 
   explicit DeviceQueue(const Device& device);
 
   DeviceMemory allocate(std::size_t bytes) const;
   void upload(const void* from, std::size_t bytes, const DeviceMemory& to) const;
-  /// @param bytes  number of bytes to copy from the start of `from`
   void download(const DeviceMemory& from, std::size_t bytes, void* to) const;
   /// @param first  offset in `from` [bytes]; `first_there`: offset in `to`
   void copy(const DeviceMemory& from, std::size_t first, const DeviceMemory& to,
             std::size_t first_there, std::size_t bytes) const;
   void clear(const DeviceMemory& memory) const;
-  /// Returns a kernel; a program is compiled once per device and options.
+  /// Returns a kernel, compiled once per device and options.
   DeviceKernel kernel(std::string_view source, const std::string& options, const char* name) const;
   /// Runs a kernel for `items` work items, rounded up to whole groups.
-  /// @param arguments  numbers and structs by value; memory by pointer, null if the kernel allows
-  ///                   it
+  /// @param arguments  numbers and structs by value; memory by pointer, may be null
   template <typename... Arguments>
   void run(const DeviceKernel& kernel, std::int64_t items, const Arguments&... arguments) const {
     set_all(kernel, arguments...);
     start(kernel, {static_cast<std::size_t>(items), 1}, {group_items, 1});
   }
-  /// As above for the columns and rows of an image, rounded up to whole tiles of `group`.
+  /// As above for an image, rounded up to whole tiles of `group`.
   template <typename... Arguments>
   void run(const DeviceKernel& kernel, const Extent& pixels, const Extent& group,
            const Arguments&... arguments) const {
@@ -79,9 +76,8 @@ class DeviceQueue {
   }
   /// Submits the enqueued work and returns a mark after it.
   DeviceMark mark() const;
-  /// Makes later work wait for a mark of another queue. Does not block the host.
+  /// Makes later work wait for a mark of another queue, without blocking the host.
   void follow(const DeviceMark& mark) const;
-  /// Submits the enqueued work to the device.
   void flush() const;
   void finish() const;
 

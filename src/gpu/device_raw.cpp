@@ -11,8 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the numbers of pixels [first, first + count) without gaps; doubles become floats unless
-/// `exactly`.
+/// Returns pixels without gaps; doubles become floats unless `exactly`.
 template <bool exactly, typename Number>
 auto packed(const RawView& raw, std::int64_t first, std::int64_t count) {
   using Packed = std::conditional_t<std::is_same_v<Number, double> && !exactly, float, Number>;
@@ -43,7 +42,7 @@ constexpr RawNumber raw_number_of() {
 
 DeviceMemory* reserve(const DeviceQueue& queue, DeviceMemory& memory, std::int64_t bytes) {
   if (memory.bytes < static_cast<std::size_t>(bytes)) {
-    memory = DeviceMemory();  // free the old memory first
+    memory = DeviceMemory();
     memory = queue.allocate(static_cast<std::size_t>(bytes));
   }
   return &memory;

@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns true if the kernel write_planes fills the plane; bins come from the kernel match.
+/// Returns true for planes of the kernel write_planes; bins come from the kernel match.
 constexpr bool is_written(const PlaneDescription& described) {
   return described.is_of_every_decoder() && described.plane != DecodedPlane::bin;
 }
@@ -60,7 +60,7 @@ DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_do
 }
 
 std::int64_t DeviceTile::bytes_per_pixel() const {
-  constexpr std::int64_t words = 4;  // averaged, bins, and two entries of the list of open pixels
+  constexpr std::int64_t words = 4;  // averaged, bin, and two entries of the open list
   return 4 * (outputs_.records().layout.measurements + words + std::ssize(written_planes));
 }
 

@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Raw numbers of the pixels that a device leaves open: K each, with the number averaged.
+/// Raw numbers of open pixels, K each, with the number averaged.
 class OpenNumbers {
  public:
   OpenNumbers(std::vector<float> numbers, int measurements, const NoiseRatios& noise);
@@ -34,25 +34,21 @@ class DeviceTile {
   /// Upper limit, with all planes.
   std::int64_t bytes_per_pixel() const;
 
-  /// Copies pixels [first, first + count) of a frame to the tile, row by row.
   void bring(const FrameSource& frame, std::int64_t first, std::int64_t count) {
     frame.bring(queue_, raw_, first, count);
   }
-  /// Reserves memory for pixels that a kernel writes, see DeviceRaw::reserve_planes().
+  /// Reserves memory for pixels that a kernel writes.
   const DeviceRaw& reserve_planes(std::int64_t pixels, const NoiseRatios& noise = {});
-  /// Starts to decode the pixels into planes on the device.
   /// @param wanted  planes that are null are not computed
   void decode(const DecodedView& wanted);
-  /// Downloads the decoded planes.
   /// @param to  starts at the tile's first pixel
   void fetch(const DecodedView& to) const;
-  /// Frees device memory except for the decoder's tables.
+  /// Keeps the decoder's tables.
   void release();
-  /// Pixels of the tile that the CPU must decode; may contain duplicates.
+  /// Pixels that the CPU must decode; may contain duplicates.
   std::vector<std::int32_t> open_pixels() const;
-  /// Raw numbers of open pixels, for OpenNumbers.
   std::vector<float> open_numbers(const std::vector<std::int32_t>& open);
-  /// Writes depths and deviations decoded by the CPU into the planes on the device.
+  /// Writes depths and deviations decoded by the CPU.
   void put_depth(const std::vector<std::int32_t>& open, const std::vector<float>& depth_m,
                  const std::vector<float>& deviation_m);
 
@@ -79,10 +75,10 @@ class DeviceTile {
   DecodeTables tables_;
   DeviceQueue queue_;
   DeviceKernel match_, write_, gather_, scatter_;
-  DeviceMemory words_;  // contents of the tables
+  DeviceMemory words_;  // of the tables
   DeviceRaw raw_;
   DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
-  std::array<DeviceMemory, plane_descriptions.size()> planes_;  // those in written_planes
+  std::array<DeviceMemory, plane_descriptions.size()> planes_;  // written_planes
 };
 
 }  // namespace tofsmith

@@ -12,7 +12,7 @@ namespace {
 
 TimeTest test_of(const ChangeTest& test) { return {.certain = test.certain, .most = test.most}; }
 
-/// Fills everything except the frame size. @param words  receives the contents of the tables
+/// Fills everything except the frame size. @param words  receives the tables
 TimeParameters parameters_of(const TimeFilter::State& s, std::vector<std::uint32_t>& words) {
   TableWords tables(words);
   std::vector<float> to_plane = s.to_plane;
@@ -100,7 +100,6 @@ void DeviceTimeFilter::add_frame(const DeviceRaw& raw) {
   is_empty_ = false;
 }
 
-/// Computes the weight of each pixel's past; 0 if there is none.
 void DeviceTimeFilter::weigh(const DeviceRaw& raw) {
   if (is_empty_) return queue_.clear(weights_);
   const int height = parameters_.height, width = parameters_.width,

@@ -12,24 +12,23 @@
 
 namespace tofsmith {
 
-/// Concatenation of decode_parameters.h, numbers.cl, time_parameters.h and time.cl.
+/// Source of the kernels.
 extern const std::string_view time_kernels;
 
-/// A TimeFilter without look_ahead on a device, where the running means stay.
+/// A TimeFilter without look_ahead on a device.
 class DeviceTimeFilter {
  public:
-  /// @param state  state of the filter; must outlive this object
   DeviceTimeFilter(const Device& device, const TimeFilter::State& state);
 
-  /// Uploads and adds the next frame, which must have the size of the others.
+  /// Adds the next frame, of the same size as the others.
   void add(const RawView& raw);
-  /// As above for a frame on the device, which must not change until the work is finished.
+  /// As above for a frame on the device, which must not change until the work is done.
   void add(const DeviceRaw& raw, int height, int width);
   /// Starts a new sequence.
   void forget() { is_empty_ = true; }
   bool is_empty() const { return is_empty_; }
 
-  /// Returns the filtered frame; complete once the queue's work is done.
+  /// Returns the filtered frame, complete once the queue's work is done.
   const DeviceRaw& result() const { return means_; }
   const DeviceQueue& queue() const { return queue_; }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Parameters of filter kernels, shared by C++ and OpenCL C as in decode_parameters.h.
+// Parameters of filter kernels, see decode_parameters.h.
 #ifdef __cplusplus
 #pragma once
 namespace tofsmith {
@@ -9,7 +9,6 @@ namespace tofsmith {
 /// Work group of two-dimensional kernels [pixels].
 enum FilterTile { tile_columns = 32, tile_rows = 8 };
 
-/// Layout of FilterPlanes and constants of the filter.
 struct FilterParameters {
   int height, width;
   int stride;        ///< between rows [floats]
@@ -30,8 +29,8 @@ struct FilterParameters {
 
 /// One window of the parallelism test.
 struct SimilarParameters {
-  int light;  ///< first plane of the light set that is compared and averaged
-  int to;     ///< first plane of the light set that receives the result
+  int light;  ///< first plane of the compared light set
+  int to;     ///< first plane of the resulting light set
   int variance_in, variance_out;
   int step, patch_reach;
   float by, expected, noise_limit;  ///< see PatchScale
@@ -46,17 +45,16 @@ struct SlopeParameters {
   int is_last, is_balanced;
 };
 
-/// Variance added by the noise of slopes, see SlopeNoise, and whether near sums were kept.
+/// Variance added by the noise of slopes, see SlopeNoise.
 struct SlopeNoiseParameters {
   int variance, near_variance;
   float sum, sum_offset, before, before_offset;
   int is_last, has_near_share;
 };
 
-/// Output pixels: rows of a frame in the layout of a decoder, measurement by measurement.
 struct ResultParameters {
-  int light;     ///< first plane of the light set with the result
-  int measured;  ///< first plane of the light set as measured
+  int light;     ///< first plane of the resulting light set
+  int measured;  ///< first plane of the measured light set
   int last_variance;
   int first_row, rows;
 };

@@ -14,11 +14,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Definitions placed before the kernels.
 class Constants {
  public:
   void add(const char* name, int value) { text_ += fmt::format("#define {} {}\n", name, value); }
-  /// Prints enough digits to restore the float exactly; independent of the locale.
+  /// Enough digits to restore the float; independent of the locale.
   void add(const char* name, float value) {
     text_ += fmt::format("#define {} {:.9e}f\n", name, value);
   }
@@ -32,7 +31,6 @@ class Constants {
         fmt::format("constant int {0}_rows[] = {{{1}}};\nconstant int {0}_columns[] = {{{2}}};\n",
                     name, rows, columns);
   }
-  /// Bars and limits of find_lit_share().
   void add_bars() {
     std::string lengths, depths, most, enough, scales;
     for (const LitBar& bar : lit_bars) {

@@ -13,21 +13,18 @@
 
 namespace tofsmith {
 
-/// Concatenation of decode_parameters.h, numbers.cl, filter_parameters.h, windows.cl and slopes.cl.
+/// Source of the kernels without their constants.
 extern const std::string_view filter_kernels;
 
-/// Tables and parameters of a filter for kernels.
 struct FilterTables {
-  /// @param fuses  use fused multiply-add instructions
   FilterTables(const Filter::Plan& plan, bool fuses);
 
   FilterParameters parameters{};     ///< without the size of the frame
-  std::vector<std::uint32_t> words;  ///< contents of the tables
+  std::vector<std::uint32_t> words;  ///< of all tables
   std::string source;                ///< of the kernels, with their constants
 };
 
-/// Return the first plane of a light set, and the plane of the variance that depths were decoded
-/// from, which FilterPlanes lacks.
+/// First plane of a light set, and plane of the variance that depths were decoded from.
 int light_plane(int set, int measurements);
 int before_plane(int measurements);
 

@@ -6,16 +6,16 @@
 
 namespace tofsmith {
 
-/// A frame to filter or decode, in host or device memory.
+/// A frame in host or device memory.
 struct FrameSource {
   RawView raw;                           ///< only the shape if the frame is on the device
-  const DeviceRaw* on_device = nullptr;  ///< the frame if it is on the device
-  const DeviceQueue* queue = nullptr;    ///< queue that writes it
-  DeviceMeans* means = nullptr;          ///< unrounded source of on_device, if it is a mean
+  const DeviceRaw* on_device = nullptr;  ///< null if the frame is on the host
+  const DeviceQueue* queue = nullptr;    ///< queue that writes the frame
+  DeviceMeans* means = nullptr;          ///< unrounded source of on_device, if a mean
 
   std::int64_t pixels() const { return raw.pixels(); }
-  /// Copies pixels [first, first + count) to `to`. A frame on the device is copied once its work is
-  /// done, and is not overwritten before the copy is complete.
+  /// Copies pixels [first, first + count) to `to`, once work on the frame is done. The frame is not
+  /// overwritten before the copy is complete.
   void bring(const DeviceQueue& to_queue, DeviceRaw& to, std::int64_t first,
              std::int64_t count) const {
     if (!on_device) return to.upload(to_queue, raw, first, count);

@@ -22,7 +22,6 @@ double added(double sum, double value, float lowest, float highest) {
                                    : sum + value;
 }
 
-/// Adds a frame to the sums, or initializes them.
 kernel void add_to_sums(const struct TileParameters tile, global const uchar* raw_numbers,
                         const int measurements, const float lowest, const float highest,
                         const int is_first, global double* sums) {

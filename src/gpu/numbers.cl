@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Common start of all kernel sources. Compiled after decode_parameters.h, with MEASUREMENTS (K) and
-// RANK defined. Products and sums are rounded separately, as on the CPU. With FUSES_PRODUCTS,
-// defined if the CPU has FMA, product_plus() rounds once.
+// Compiled after decode_parameters.h, with MEASUREMENTS (K) and RANK defined. Products and sums are
+// rounded separately, as on the CPU. With FUSES_PRODUCTS, if the CPU has FMA, product_plus() rounds
+// once.
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef HAS_DOUBLES
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable

@@ -16,7 +16,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Wraps an OpenCL object that `release` frees.
 template <auto release, typename Object>
 DeviceHandle handle_of(Object object) {
   return {object, [](void* made) { release(static_cast<Object>(made)); }};
@@ -166,7 +165,7 @@ std::vector<Device> Device::all() {
   check(clGetPlatformIDs(count, platforms.data(), nullptr), place, "querying platforms");
   std::vector<Device> devices;
   for (const cl_platform_id platform : platforms) {
-    // Skip a driver that has lost its devices, so that other drivers remain usable.
+    // Skip drivers that have lost their devices.
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) continue;
     std::vector<cl_device_id> ids(count);
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, ids.data(), nullptr) != CL_SUCCESS)
@@ -189,7 +188,7 @@ DeviceQueue::DeviceQueue(const Device& device) : device_(device) {
 
 DeviceMemory DeviceQueue::allocate(std::size_t bytes) const {
   Device::State& state = device_.state();
-  // Some drivers detect this only when the memory is used, and abort the program.
+  // Some drivers detect this when the memory is used, and abort.
   if (bytes > number_of<cl_ulong>(state.id, CL_DEVICE_MAX_MEM_ALLOC_SIZE))
     check(CL_INVALID_BUFFER_SIZE, place_of(state.info), "allocating memory");
   cl_int error = CL_SUCCESS;
@@ -265,7 +264,7 @@ DeviceMark DeviceQueue::mark() const {
   const cl_int error = clEnqueueMarkerWithWaitList(queue_of(handle_), 0, nullptr, &event);
   DeviceMark mark{handle_of<clReleaseEvent>(event)};
   check(error, place_of(device_.info()), "inserting a marker");
-  flush();  // otherwise a queue that follows the mark may wait forever
+  flush();  // otherwise followers may wait forever
   return mark;
 }
 

@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Computes planes from bins, as src/decode/output/output_position-inl.hpp, output_noise-inl.hpp and
-// output_residual-inl.hpp.
+// Computes planes from bins, as src/decode/output/output_*-inl.hpp.
 
-/// Returns <q, vector> for a vector of the record.
 float along_record(const float* q, Floats vector) {
   float sum = q[0] * vector[0];
   for (int j = 1; j < RANK; ++j) sum = q[j] * vector[j] + sum;
@@ -27,7 +25,7 @@ float variance_of(float signal, float ambient, Floats noise) {
   return fmax(signal * noise[0] + (ambient * noise[1] + noise[2]), 0.0f);
 }
 
-/// Returns true if the confidence is proven to be 1, as is_sure() in output_noise-inl.hpp.
+/// As is_sure() in output_noise-inl.hpp.
 bool is_sure(const struct OutputParameters* p, const float* q, Floats record, float signal,
              float ambient, float share) {
   Floats bound = record + RECORD_BOUND;
@@ -42,15 +40,14 @@ bool is_sure(const struct OutputParameters* p, const float* q, Floats record, fl
   return other < score && lead >= p->sure_lead * (variance * share);
 }
 
-/// Best point on the chords to the left and right of a bin.
 struct ChordPoint {
   bool has_depth, is_left;
-  float t;       ///< position on the chord, 0 at the bin
-  float inside;  ///< signal, if has_depth
+  float t;       ///< 0 at the bin
+  float inside;  ///< signal
 };
 
 #ifdef RECORD_SLOPE
-/// As refine_on_curve(), for a smooth curve.
+/// As refine_on_curve().
 struct ChordPoint best_point(const float* q, Floats record, int bin) {
   const float at_row = along_record(q, record + RECORD_POINT);
   const float g = along_record(q, record + RECORD_SLOPE);
@@ -107,8 +104,7 @@ void normalize_in_plane(float* vector, float square) {
   for (int j = 0; j < RANK; ++j) vector[j] *= scale;
 }
 
-/// As find_tangent(), for a smooth curve. @return true if the pixel is on the side of the previous
-/// row
+/// As find_tangent(). @return true if the pixel is on the side of the previous row
 bool find_tangent(const float* q, Floats record, float t, float* direction, float* slope) {
   float own = 0.0f, own_slope = 0.0f;
   for (int j = 0; j < RANK; ++j) {
@@ -137,8 +133,7 @@ bool find_tangent(const float* q, Floats record, float t, float* direction, floa
 }
 #endif
 
-/// Computes the components of a pixel's vector, in the subspace of the code and outside it, that
-/// the fitted light does not explain.
+/// Computes the components that the fitted light does not explain, in the subspace and outside it.
 /// @return sum of their squares
 float unexplained(const struct OutputParameters* p, Floats tables, const float* raw, const float* q,
                   const float* direction, const float* slope, float* component) {
@@ -164,7 +159,7 @@ float unexplained(const struct OutputParameters* p, Floats tables, const float* 
   return square;
 }
 
-/// Returns chi-square of the weighted fit of ambient light, signal and depth.
+/// Chi-square of the weighted fit of ambient light, signal and depth.
 float weighted_squares(const struct OutputParameters* p, Floats tables, Floats record,
                        Floats beside, float t, float signal, float ambient, const float* component,
                        const float* direction, const float* slope) {
@@ -216,8 +211,8 @@ float weighted_squares(const struct OutputParameters* p, Floats tables, Floats r
   return fmax(less_square(rr, sr, ss), 0.0f);
 }
 
-/// Returns true for an inconsistent pixel. Writes chi-square per degree of freedom unless
-/// `residual` is null.
+/// Returns true for an inconsistent pixel. Writes chi-square per degree of freedom to `residual`,
+/// if any.
 bool find_residual(const struct OutputParameters* p, Floats tables, const float* raw,
                    const float* q, Floats record, int bin, float offset, float signal,
                    float ambient, float share, float* residual) {
@@ -241,8 +236,8 @@ bool find_residual(const struct OutputParameters* p, Floats tables, const float*
   return is_open && sqrt(chi2 * bound) > limit[LIMIT_ROOT] * longest;
 }
 
-/// Planes that are null are not computed. Pixels without a proven bin are left to the host, as are
-/// pixels whose confidence is not proven to be 1.
+/// Planes that are null are not computed. Pixels without a proven bin or confidence are left to the
+/// host.
 kernel void write_planes(const struct OutputParameters p, const struct TileParameters tile,
                          Floats tables, global const uchar* raw_numbers, Floats averaged,
                          global const int* bins, global int* opened, global int* open,
@@ -302,7 +297,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     is_inconsistent =
         find_residual(&p, tables, raw, q, record, bin, offset, signal, noisy_ambient,
                       residual_share, residuals ? &residual : 0);
-    // Without degrees of freedom this is a NaN whose bits depend on the device.
+    // The bits of NaN depend on the device.
     if (residuals) residuals[pixel] = has_depth && !isnan(residual) ? residual : NO_VALUE;
   }
   if (status) {
@@ -317,8 +312,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   }
 }
 
-/// Gathers K + 1 numbers for each listed pixel: its raw numbers and the number of measurements
-/// averaged.
+/// Gathers K + 1 numbers per listed pixel: raw numbers and averaged count.
 kernel void gather_numbers(const struct TileParameters tile, global const uchar* raw_numbers,
                            Floats averaged, Ints pixels, const int count, global float* numbers) {
   const int i = (int)get_global_id(0);

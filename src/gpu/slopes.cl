@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Rounds of a Filter along slopes, as slope_rounds.cpp and slope_kernel.cpp. Compiled after
-// windows.cl.
+// Rounds of a Filter along slopes, as slope_rounds.cpp and slope_kernel.cpp, which explain the
+// steps. Compiled after windows.cl.
 
-/// Converts decoded depths and deviations to bins. Pixels without depth become unusable.
+/// Pixels without depth become unusable.
 kernel void take_depth(const struct FilterParameters p, Floats depth_m, Floats deviation_m,
                        global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -17,14 +17,12 @@ kernel void take_depth(const struct FilterParameters p, Floats depth_m, Floats d
   plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at] = is_known ? deviation * deviation : 1.0f;
 }
 
-/// Wraps a difference of depths [bins] to the nearest equivalent within the period.
 float nearest(float difference, float samples, float per_sample) {
   return product_plus(-rint(difference * per_sample), samples, difference);
 }
 
 // ---- Slopes.
 
-/// Weighted sums of x^2, x y, y^2, x d and y d for fitting a plane.
 struct SlopeSums {
   float xx, xy, yy, xd, yd;
 };
@@ -38,8 +36,6 @@ void add_slope(struct SlopeSums* s, float weight, float x, float y, float differ
   s->yd = product_plus(d, y, s->yd);
 }
 
-/// Solves for the slopes. The regularization is needed because neighbours along one direction do
-/// not determine the slope in the other.
 float2 slopes_of(const struct SlopeSums* s) {
   const float little = product_plus(s->xx + s->yy, 1e-4f, 1e-20f);
   const float a = s->xx + little, b = s->yy + little;
@@ -48,7 +44,6 @@ float2 slopes_of(const struct SlopeSums* s) {
                   product_plus(-s->xy, s->xd, a * s->yd) * inverse);
 }
 
-/// Depth difference to a neighbour, variance of its depth, and whether it is usable.
 struct Neighbour {
   float difference, noise, usable;
 };
@@ -72,7 +67,6 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
   const float variance = plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at];
   const float inverse_max = 1.0f / (4.0f * p.same_depth_sigma2);
   const float inverse_max_pair = 1.0f / (2.0f * p.same_depth_sigma2);
-  // First fit pairs of opposite neighbours whose depth differences nearly cancel,
   struct SlopeSums pairs = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int i = 0; i < HALF_RINGS; ++i) {
     const int away = half_ring_rows[i] * p.stride + half_ring_columns[i];
@@ -86,7 +80,6 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
               (ahead.difference - behind.difference) * 0.5f);
   }
   float2 slopes = slopes_of(&pairs);
-  // then all neighbours consistent with this plane.
   struct SlopeSums singles = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   float chi2 = 0.0f, count = 0.0f;
   for (int i = 0; i < 2 * HALF_RINGS; ++i) {
@@ -105,7 +98,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
     count += robust_weight;
   }
   slopes = slopes_of(&singles);
-  // Ratio of the scatter of the far neighbours about the plane to its predicted variance.
+  // Scatter of far neighbours relative to its predicted variance.
   const float excess = chi2 / LARGER(count, 1e-6f);
   plane_of(&p, planes, PLANE_BEFORE)[at] *= LARGER(excess, 1.0f);
   const bool usable = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f;
@@ -115,8 +108,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
 
 // ---- Light along the curve.
 
-/// Position between two bins: offsets of their curve points in the tables, and the weight of the
-/// second.
+/// Position between two bins: offsets of their points, and weight of the second.
 struct CurvePlace {
   int from, to;
   float share;
@@ -144,8 +136,6 @@ float per_bin(const struct CurvePlace* place, Floats tables, int k) {
   return tables[place->to + k] - tables[place->from + k];
 }
 
-/// Splits light into the signal at the pixel's depth and the remainder. Without a depth, everything
-/// is remainder.
 kernel void split(const struct FilterParameters p, const struct SlopeParameters w, Floats tables,
                   global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -168,8 +158,7 @@ kernel void split(const struct FilterParameters p, const struct SlopeParameters 
   }
 }
 
-/// Weight of a pair of pixels, and that weight times the neighbour's depth deviation from the
-/// slope.
+/// Weight of a pair, and its product with the depth deviation from the slope.
 struct SlopePair {
   float weight, shifted;
 };
@@ -197,10 +186,9 @@ struct SlopePair pair_of(const struct FilterParameters* p, global float* planes,
   return pair;
 }
 
-/// Adds a pixel's signal back to its remaining light, at its depth plus shift / signal.
+/// Adds the signal to the remaining light, at the depth plus shift / signal.
 void join(const struct FilterParameters* p, Floats tables, global float* planes, int light, int at,
           float signal, float shift) {
-  // Do not shift a signal that is close to 0; the quotient would be noise.
   const float beyond = signal > fabs(shift) * 0.25f ? shift / signal : 0.0f;
   const struct CurvePlace place = place_of(p, plane_of(p, planes, PLANE_DEPTH)[at] + beyond);
   const float added = plane_of(p, planes, PLANE_USABLE)[at] > 0.0f ? signal : 0.0f;
@@ -216,7 +204,7 @@ float share_of_light(float light, float opposite) {
   return SMALLER(share, 1.0f);
 }
 
-/// Fractions of a pair's weights that remain when the light on both sides is balanced.
+/// Fractions of a pair's weights that remain after balancing.
 struct BalancedPair {
   float ahead, behind;
 };
@@ -229,7 +217,7 @@ struct BalancedPair balanced_pair(float light_ahead, float light_behind) {
   return shares;
 }
 
-/// Returns the fraction of the balanced sum to use, as balance_row().
+/// As balance_row().
 float balanced_part(const struct FilterParameters* p, const struct SlopeParameters* w,
                     Floats tables, global float* planes, int at) {
   const Plane variances = plane_of(p, planes, w->variance_in);
@@ -269,7 +257,6 @@ float balanced_part(const struct FilterParameters* p, const struct SlopeParamete
   const float step = (float)w->step;
   const float by = SLOPE_ERROR_SHARE * SLOPE_ERROR_SHARE * step * step;
   const float error2 = by * offset2 * slope2 * tables[p->squares + 2 * bin];
-  // Balance only if the signal is well above noise.
   const bool is_seen = light2 * tables[p->squares + 2 * bin + 1] > BALANCED_ENERGY * noise;
   const float any_more = noise_balanced / balanced2 - noise / light2;
   const float either = error2 + LARGER(any_more, 0.0f);
@@ -280,9 +267,8 @@ float balanced_part(const struct FilterParameters* p, const struct SlopeParamete
   return is_lit ? of_balanced / LARGER(of_both, 1e-30f) : 0.0f;
 }
 
-/// Averages one window along slopes; each pixel computes the weights of all 24 neighbours. After
-/// the last window, PLANE_SIGNAL_NEXT contains the squared distance from the pixel to the centroid
-/// of the added light.
+/// Averages one window along slopes. After the last window, PLANE_SIGNAL_NEXT contains the squared
+/// distance of the centroid of the added light.
 kernel void add_along_slopes(const struct FilterParameters p, const struct SlopeParameters w,
                              Floats tables, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -317,7 +303,6 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
     const float signal_ahead = signals[at + away], signal_behind = signals[at - away];
     signal = product_plus(ahead.weight, signal_ahead, signal);
     signal = product_plus(behind.weight, signal_behind, signal);
-    // As seen from the neighbour behind, the deviation has the opposite sign.
     shift = product_plus(ahead.shifted, signal_ahead, shift);
     shift = product_plus(-behind.shifted, signal_behind, shift);
     const float of_ahead = ahead.weight * signal_ahead, of_behind = behind.weight * signal_behind;
@@ -344,8 +329,8 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
 
 // ---- Near sums that are kept.
 
-/// Computes the difference of depth between the sums before and after a window, in standard
-/// deviations. First restores the light of the sum before the window, which `split` has divided.
+/// Computes the difference of depth between the sums before and after a window in standard
+/// deviations. First restores the light before the window.
 kernel void compare_sums(const struct FilterParameters p, const struct SlopeParameters w,
                          Floats tables, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -359,7 +344,6 @@ kernel void compare_sums(const struct FilterParameters p, const struct SlopePara
     far2 = product_plus(far, far, far2);
     dot_product = product_plus(per_bin(&place, tables, j), far, dot_product);
   }
-  // Project the near sum onto the direction in which the far sum moves when its depth changes.
   const float along = dot_product / LARGER(far2, 1e-30f);
   float moved = 0.0f, move2 = 1e-30f;
   for (int j = 0; j < RANK; ++j) {
@@ -368,8 +352,6 @@ kernel void compare_sums(const struct FilterParameters p, const struct SlopePara
     moved = product_plus(move, plane_of(&p, planes, w.rest + j)[at], moved);
     move2 = product_plus(move, move, move2);
   }
-  // The far sum contains the near sum, so the variance of their difference is the difference of
-  // their variances.
   const float variance = plane_of(&p, planes, w.variance_in)[at];
   const float near_variance = LARGER(variance, 1e-12f);
   const float less = near_variance - plane_of(&p, planes, w.variance_out)[at];
@@ -396,10 +378,8 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
       count += usable[pixel];
     }
   const float around = squares / LARGER(count, 1.0f) - EXPLAINED_BY_NOISE;
-  // On a surface of constant curvature all differences are small but have the same sign.
   const float per_pixel = 1.0f / LARGER(count, 1.0f), mean_around = sum_around * per_pixel;
   const float bent = product_plus(-per_pixel, EXPLAINED_IN_PATCH, mean_around * mean_around);
-  // At a silhouette or a crease only the pixels of a thin line differ, with the same sign.
   float best = 0.0f;
   for (int i = 0; i < LINE_DIRECTIONS; ++i) {
     const int away = LINE_STEP * (line_direction_rows[i] * p.stride + line_direction_columns[i]);
@@ -421,13 +401,11 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
   const float by_all = excess / (excess + HALF_KEPT), by_line = best / (best + HALF_KEPT_ALONG_LINES);
   const float kept = LARGER(by_all, by_line);
   plane_of(&p, planes, PLANE_SIGNAL)[at] = kept;
-  // A near sum that was kept because of noise has above-average noise, hence KEPT_NOISE.
   if (kept > 0.0f)
     keep_share(&p, planes, w.rest, w.to, w.variance_out, at, kept, kept * kept * KEPT_NOISE,
                near_variance);
 }
 
-/// Adds the noise of the estimated slopes to the variance of a round's sums.
 kernel void add_slope_noise(const struct FilterParameters p, const struct SlopeNoiseParameters n,
                             global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -440,7 +418,6 @@ kernel void add_slope_noise(const struct FilterParameters p, const struct SlopeN
   const float of_sum = n.sum + n.sum_offset * d2;
   const Plane variance = plane_of(&p, planes, n.variance);
   const float before = plane_of(&p, planes, PLANE_BEFORE)[at];
-  // Depths of near sums share less noise with the depths that the slopes were fitted to.
   const float any_of_near = before / plane_of(&p, planes, n.near_variance)[at];
   const float of_near = SLOPE_NOISE_OF_NEAR * (any_of_near < 1.0f ? any_of_near : 1.0f);
   const float of_before = n.is_last ? n.before * (1.0f - of_near) + n.before_offset * d2 : 0.0f;

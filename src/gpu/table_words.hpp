@@ -12,7 +12,6 @@
 
 namespace tofsmith {
 
-/// Concatenates tables in the layout that kernels read.
 class TableWords {
  public:
   explicit TableWords(std::vector<std::uint32_t>& words) : words_(words) {}

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a TimeFilter without look_ahead, as time_kernel.cpp and time_filter_state.cpp; one work
-// item per pixel or cell. Compiled after numbers.cl and time_parameters.h. Products are not fused,
-// as on the CPU.
+// Steps of a TimeFilter without look_ahead, as time_kernel.cpp and time_filter_state.cpp. Compiled
+// after numbers.cl and time_parameters.h. Products are not fused, as on the CPU.
 
 // As std::max and std::min, also for NaN.
 #define LARGER(a, b) ((a) < (b) ? (b) : (a))
@@ -23,8 +22,7 @@ float averaged_of(Floats averaged, int pixel) { return averaged ? averaged[pixel
 
 // ---- Comparison of a frame with the running mean.
 
-/// Returns the signal estimated from both frames, which determines the shot noise of measurements
-/// in which light cancels.
+/// Estimates the signal for the noise of measurements in which light cancels.
 float signal_in_both(const struct TimeParameters* p, Floats tables, const float* both, float n) {
   float squares = 0.0f;
   for (int j = 0; j < RANK; ++j) {
@@ -76,7 +74,7 @@ kernel void compare_frames(const struct TimeParameters p, const struct TileParam
 
 // ---- Weight of the past.
 
-/// Returns the sum over the patch around a pixel, columns first.
+/// Sum over the patch around a pixel, columns first.
 float patch_sum(const struct TimeParameters* p, Plane plane, int x, int y, float outside) {
   float sum = 0.0f;
   for (int dx = -PATCH_REACH; dx <= PATCH_REACH; ++dx) {
@@ -125,7 +123,6 @@ kernel void weigh_side(const struct TimeParameters p, Floats averaged, Floats av
   const float of_patch = beyond_by(&p.patch, patch_chi2) / (float)PATCH_PIXELS;
   const float of_shared = beyond_by(&p.shared, shared_chi2) / (float)PATCH_PIXELS;
   const float of_both = LARGER(of_pixel, of_patch), beyond = LARGER(of_both, of_shared);
-  // Change of one measurement, relative to its variance.
   const float changed = (1.0f / past + 1.0f / n) / (float)MEASUREMENTS * beyond;
   const float stays = share * past / (1.0f + past * changed), most = p.max_weight * n;
   const float usable = time_plane(&p, planes, time_usable)[pixel];
@@ -135,8 +132,7 @@ kernel void weigh_side(const struct TimeParameters p, Floats averaged, Floats av
 
 // ---- Changes that many pixels share.
 
-/// Sums the differences of the unchanged pixels of each cell, and counts these pixels: K + 1
-/// numbers per cell.
+/// Sums the differences of the unchanged pixels of each cell, and counts them: K + 1 numbers.
 kernel void add_to_cells(const struct TimeParameters p, global float* planes, global float* cells) {
   const int column = (int)get_global_id(0), row = (int)get_global_id(1);
   if (column >= p.cell_columns || row >= p.cell_rows) return;
@@ -179,8 +175,6 @@ kernel void weigh_by_cells(const struct TimeParameters p, Floats averaged, Float
   if (x >= p.width || y >= p.height) return;
   const int pixel = y * p.width + x;
   const float n = averaged_of(averaged, pixel);
-  // Averaging neighbouring pixels does not reduce a change that they share, so it is compared with
-  // the noise of their sum.
   const float changed = changes[y / CELL_SIDE * p.cell_columns + x / CELL_SIDE] *
                         (1.0f / averaged_before[pixel] + 1.0f / n);
   const float weight = weights[pixel];
@@ -194,7 +188,7 @@ float most_weight(const struct TimeParameters* p, Floats averaged, Floats averag
   return SMALLER(past, most);
 }
 
-/// Finds the smallest remaining share of the past along the row around each pixel.
+/// Finds the smallest remaining share of the past along the row.
 kernel void find_shares(const struct TimeParameters p, Floats averaged, Floats averaged_before,
                         Floats weights, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -211,8 +205,8 @@ kernel void find_shares(const struct TimeParameters p, Floats averaged, Floats a
   time_plane(&p, planes, time_share)[y * p.width + x] = share;
 }
 
-/// Extends this minimum to the rows around each pixel and limits the weights by it, so that no
-/// pixel keeps much more of its past than its neighbours.
+/// Extends this minimum to the rows around and limits the weights, so that no pixel keeps much more
+/// of its past than its neighbours.
 kernel void weigh_by_shares(const struct TimeParameters p, Floats averaged, Floats averaged_before,
                             global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);

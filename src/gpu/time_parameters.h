@@ -1,18 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Parameters of the temporal filter's kernels, shared by C++ and OpenCL C as in
-// decode_parameters.h.
+// Parameters of the temporal filter's kernels, see decode_parameters.h.
 #ifdef __cplusplus
 #pragma once
 namespace tofsmith {
 #endif
 
-/// Planes (H, W) that compare a frame with the running mean.
 enum TimePlane {
-  time_usable,      ///< 1 if frame and mean are both usable, else 0
-  time_chi2,        ///< of the pixel itself
-  time_unchanged,   ///< 1 if no test detects a change, else 0
-  time_share,       ///< smallest remaining share of the past along the row around a pixel
+  time_usable,      ///< 1 if both are usable, else 0
+  time_chi2,        ///< of a pixel
+  time_unchanged,   ///< 1 if no test detects a change
+  time_share,       ///< smallest remaining share of the past in the row
   time_difference,  ///< in standard deviations, one plane per measurement
 };
 

@@ -1,22 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Windows of a Filter over pixels with parallel vectors, with input and output, as filter_plan.cpp
-// and filter_kernel.cpp; one work item per pixel. Compiled after numbers.cl and
-// filter_parameters.h, before slopes.cl. Planes have a margin of unusable pixels, so that kernels
-// need no bounds checks.
+// Windows of a Filter over pixels with parallel vectors, as filter_plan.cpp and filter_kernel.cpp.
+// Compiled after numbers.cl and filter_parameters.h, before slopes.cl. Planes have a margin of
+// unusable pixels, so that kernels need no bounds checks.
 
-// As the CPU's vector instructions: the second operand if both are equal or one is NaN.
+// As the CPU's vector instructions: the second operand for equal values or NaN.
 #define LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
 typedef global float* Plane;
 
-/// Returns the first pixel of a plane.
 Plane plane_of(const struct FilterParameters* p, global float* planes, int index) {
   return planes + (size_t)index * (size_t)p->plane_floats + (size_t)p->origin;
 }
 
-/// Returns 1 for no difference, falling smoothly to 0 at the largest.
 float weight_of(float difference, float inverse_max) {
   const float left =
       LARGER(product_plus(-(LARGER(difference, 0.0f)), inverse_max, 1.0f), 0.0f);
@@ -26,7 +23,7 @@ float weight_of(float difference, float inverse_max) {
 
 // ---- Input.
 
-/// Computes out_j = sum_k matrix[j, k] in_k.
+/// out_j = sum_k matrix[j, k] in_k.
 void mix(Floats matrix, const float* in, float* out) {
   for (int j = 0; j < MEASUREMENTS; ++j) {
     out[j] = 0.0f;
@@ -42,8 +39,7 @@ float variance_of_coordinate(const struct FilterParameters* p, Floats tables,
   return variance;
 }
 
-/// Converts raw numbers to a light set, with a plane of usable pixels and, optionally, their
-/// variances.
+/// Converts raw numbers to light, with usable flags and, optionally, variances.
 kernel void read_light(const struct FilterParameters p, const struct TileParameters tile,
                        Floats tables, global const uchar* raw_numbers, Floats averaged,
                        global const uchar* left_out, global float* planes, const int light,
@@ -80,7 +76,7 @@ float hidden_signal(const struct FilterParameters* p, float squares, float avera
   return (sqrt(m * m + 4.0f * p->mean_curve_square * beyond) - m) / (2.0f * p->mean_curve_square);
 }
 
-/// Computes the variance from the signal around a pixel, for measurements in which light cancels.
+/// Computes the noise of measurements in which light cancels.
 kernel void find_hidden_noise(const struct FilterParameters p, Floats averaged,
                               global float* planes, const int light) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -104,7 +100,7 @@ kernel void find_hidden_noise(const struct FilterParameters p, Floats averaged,
 
 // ---- Windows.
 
-/// Computes |u|^2 / v and 1 / sqrt(v) of a window's light.
+/// Computes |u|^2 / v and 1 / sqrt(v).
 kernel void find_energy(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -123,7 +119,7 @@ kernel void find_energy(const struct FilterParameters p, const struct SimilarPar
   plane_of(&p, planes, PLANE_INVERSE_SIGMA)[at] = sqrt(inverse);
 }
 
-/// Returns lambda of two pixels; rank - 1 if either is not usable.
+/// Lambda of two pixels; rank - 1 if one is not usable.
 float lambda_of(const struct FilterParameters* p, global float* planes, int light, int at,
                 int other) {
   const Plane usable = plane_of(p, planes, PLANE_USABLE);
@@ -144,9 +140,8 @@ float lambda_of(const struct FilterParameters* p, global float* planes, int ligh
   return (product + product) / LARGER(both, 1e-30f);
 }
 
-/// Computes the weights of all pairs of a pixel and its neighbours ahead, one plane per neighbour.
-/// Each work group stores lambda of a tile and its surrounding patches in local memory and sums it
-/// along rows, then along columns.
+/// Work groups sum lambda of a tile and its patches in local memory, along rows, then along
+/// columns.
 kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void weigh_similar(
     const struct FilterParameters p, const struct SimilarParameters w, global float* planes,
     global float* weights) {
@@ -179,8 +174,6 @@ kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void we
     if (is_pixel) {
       float sum = sums[row * tile_columns + column];
       for (int k = 1; k < side; ++k) sum += sums[(row + k) * tile_columns + column];
-      // Remove the pair's own value up to noise_limit, so that its noise does not select the pair.
-      // The part above the limit cannot be noise.
       const float own = lambda[(row + reach) * columns + column + reach];
       sum -= SMALLER(own, w.noise_limit);
       const Plane usable = plane_of(&p, planes, PLANE_USABLE);
@@ -192,7 +185,6 @@ kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void we
   }
 }
 
-/// Computes the weighted means of a window's light and their variance.
 kernel void add_similar(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -221,7 +213,7 @@ kernel void add_similar(const struct FilterParameters p, const struct SimilarPar
 
 // ---- Output.
 
-/// Converts a pixel of a light set to K raw numbers. @return number of measurements averaged
+/// @return number of measurements averaged
 float raw_of_light(const struct FilterParameters* p, const struct ResultParameters* r,
                    Floats tables, float averaged_before, global float* planes, int at,
                    float* numbers) {
@@ -239,7 +231,7 @@ float raw_of_light(const struct FilterParameters* p, const struct ResultParamete
   return n < 1e-3f ? 1e-3f : n;
 }
 
-/// Returns the squared light of a near sum, as near_square().
+/// As near_square().
 float near_square(const struct FilterParameters* p, global float* planes, int near, int at) {
   float square = 0.0f;
   for (int j = 0; j < RANK; ++j) {
@@ -263,7 +255,7 @@ void keep_share(const struct FilterParameters* p, global float* planes, int near
   variance[at] = product_plus(share2, beyond, far);
 }
 
-/// Keeps the near sum where it is bright enough to estimate slopes, as keep_bright().
+/// As keep_bright().
 kernel void keep_bright(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -278,7 +270,7 @@ kernel void keep_bright(const struct FilterParameters p, const struct SimilarPar
     keep_share(&p, planes, w.light, w.to, w.variance_out, at, kept, kept * kept, near_variance);
 }
 
-/// Writes a light set as raw numbers and saves its variance for later steps.
+/// Writes raw numbers and saves the variance for later steps.
 kernel void write_raw(const struct FilterParameters p, const struct ResultParameters r,
                       Floats tables, Floats averaged_before, global float* planes,
                       global float* raw, global float* averaged) {
@@ -292,8 +284,7 @@ kernel void write_raw(const struct FilterParameters p, const struct ResultParame
   plane_of(&p, planes, PLANE_BEFORE)[at] = plane_of(&p, planes, r.last_variance)[at];
 }
 
-/// Returns <u, v> for the filtered light u of pixel `added` and the measured light v of pixel
-/// `measured`.
+/// <u, v> of the filtered light u of `added` and the measured light v of `measured`.
 float along_added(const struct FilterParameters* p, const struct ResultParameters* r,
                   global float* planes, int added, int measured) {
   float sum = 0.0f;
@@ -303,7 +294,6 @@ float along_added(const struct FilterParameters* p, const struct ResultParameter
   return sum;
 }
 
-/// Returns the square of the light added to a pixel.
 float added_square(const struct FilterParameters* p, const struct ResultParameters* r,
                    global float* planes, int at) {
   float square = 0.0f;
@@ -314,8 +304,7 @@ float added_square(const struct FilterParameters* p, const struct ResultParamete
   return square;
 }
 
-/// Returns true if the light added to a pixel can come from the pixel, as find_own_light() on the
-/// CPU.
+/// As find_own_light() on the CPU.
 bool is_own_light(const struct FilterParameters* p, const struct ResultParameters* r,
                   global float* planes, int at) {
   const float mean_noise = OWN_LIGHT_NOISE / (float)(2 * OWN_LIGHT_REACH + 1);
@@ -341,7 +330,6 @@ bool is_own_light(const struct FilterParameters* p, const struct ResultParameter
   return below <= OWN_LIGHT_SHARE * count;
 }
 
-/// Writes the result of is_own_light() into a plane.
 kernel void find_own_light(const struct FilterParameters p, const struct ResultParameters r,
                            global float* planes, const int to) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -350,7 +338,6 @@ kernel void find_own_light(const struct FilterParameters p, const struct ResultP
   plane_of(&p, planes, to)[at] = is_own_light(&p, &r, planes, at) ? 1.0f : 0.0f;
 }
 
-/// Marks pixels that fail is_own_light() as unusable.
 kernel void leave_dark(const struct FilterParameters p, global float* planes, const int is_own) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
@@ -358,7 +345,7 @@ kernel void leave_dark(const struct FilterParameters p, global float* planes, co
   plane_of(&p, planes, PLANE_USABLE)[at] = plane_of(&p, planes, is_own)[at];
 }
 
-/// Writes the amplitude of the measured light of each pixel, as find_own_amplitude() on the CPU.
+/// As find_own_amplitude() on the CPU.
 kernel void find_own_amplitude(const struct FilterParameters p, const struct ResultParameters r,
                                global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -371,8 +358,8 @@ kernel void find_own_amplitude(const struct FilterParameters p, const struct Res
       is_known ? along_added(&p, &r, planes, at, at) / length : 0.0f;
 }
 
-/// Returns the light of the darkest bar over all directions, as least_of_bars() on the CPU.
-/// @param point, scale  index of the first point and of the first scale of the bar
+/// As least_of_bars() on the CPU.
+/// @param point, scale  first point and first scale of the bar
 float least_of_bars(const struct FilterParameters* p, Plane amplitude, int at, int bar, int point,
                     int scale, float most) {
   float least = 1e30f;
@@ -392,7 +379,7 @@ float least_of_bars(const struct FilterParameters* p, Plane amplitude, int at, i
   return least;
 }
 
-/// Returns 1 for lit pixels, else v / (v + |u|^2), as find_lit_share().
+/// As find_lit_share().
 float lit_share(const struct FilterParameters* p, const struct ResultParameters* r,
                 global float* planes, int at) {
   const Plane amplitude = plane_of(p, planes, PLANE_AMPLITUDE);
@@ -422,7 +409,7 @@ float lit_share(const struct FilterParameters* p, const struct ResultParameters*
   return variance / (variance + square);
 }
 
-/// Writes filtered raw numbers of some rows; pixels without additions keep their measured numbers.
+/// Pixels without additions keep their measured numbers.
 kernel void write_filtered(const struct FilterParameters p, const struct ResultParameters r,
                            const struct TileParameters tile, Floats tables,
                            global const uchar* raw_numbers, Floats averaged_before,
