@@ -94,6 +94,9 @@ std::optional<Member> member_named(std::string_view name) {
     if (const auto q = number_after(name, pulsed + "-q")) return pulsed_multi_frequency(k - 2, *q);
     if (name == pulsed) return pulsed_multi_frequency(k - 2, 3);
   }
+  if (const auto q = number_after(name, "burst-k5-q"))
+    return Member{[q](const FamilyOptions& o) { return pulsed_multi_frequency_misfit(3, *q, o); },
+                  [q](const FamilyOptions& o) { return burst_code(*q, o); }};
   if (name == "multifrequency-k5") {
     Member member = multi_frequency({{1, 3}, {7, 2}});
     member.build = [build = member.build](const FamilyOptions& o) {
@@ -198,6 +201,8 @@ std::vector<FamilyDescription> list_families() {
        "pulses and squares: 3 steps at f0, a quadrature pair at Q f0"},
       {"pulsed-multifrequency-k4", "pulsed-multifrequency-k4",
        "quadrature pairs at f0 and 3 f0 (or Q f0 with -qQ), for two buckets"},
+      {"burst-k5-qQ", "burst-k5-q5",
+       "the same burst of pulses at Q f0 in every exposure: 3 steps at f0, a pair at Q f0"},
       {"gray-kK", "gray-k4", "binary-reflected Gray code of 2^K cells, K = 3 to 10"},
       {"single-ramp-k3", "single-ramp-k3", "rising ramp, open gate, background"},
       {"double-ramp-k3", "double-ramp-k3", "rising ramp, falling ramp, background"},

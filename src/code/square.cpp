@@ -50,6 +50,34 @@ CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
                          std::move(modulation), std::move(demodulation));
 }
 
+namespace {
+
+/// Returns pulses at `frequency` in the first half of the period, or one pulse if the peak factor
+/// requires light for the whole half or longer.
+Waveform burst(int frequency, double peak_factor) {
+  const int pulses = (frequency + 1) / 2;
+  const double share = static_cast<double>(pulses) / frequency;  // of the period
+  const double duty = std::max(1.0 / (peak_factor * share), 0.25);
+  if (duty >= 1.0) return rectangular_pulse(std::max(share, 1.0 / peak_factor));
+  std::vector<OnInterval> on;
+  for (int m = 0; m < pulses; ++m)
+    on.push_back({static_cast<double>(m) / frequency, (m + duty) / frequency});
+  return Waveform::binary(std::move(on), 1.0 / (share * duty));
+}
+
+}  // namespace
+
+CodeSet burst_code(int high_frequency, const FamilyOptions& options) {
+  require(pulsed_multi_frequency_misfit(3, high_frequency, options));
+  std::vector<Waveform> demodulation;
+  for (int step = 0; step < 3; ++step) demodulation.push_back(square_wave(1, step / 3.0));
+  for (int step = 0; step < 2; ++step)
+    demodulation.push_back(square_wave(high_frequency, 0.25 * step / high_frequency));
+  return CodeSet::create(fmt::format("burst-k5-q{}", high_frequency), options.samples, 1,
+                         std::vector<Waveform>(5, burst(high_frequency, options.peak_factor)),
+                         std::move(demodulation));
+}
+
 CodeSet gray_code(int bits, const FamilyOptions& options) {
   require(gray_misfit(bits, options));
   const int cells = 1 << bits;

@@ -91,8 +91,9 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, Family,
                                          "hamiltonian-k6", "multifrequency-k5",
                                          "multifrequency-1x4-5x4", "pulsed-multifrequency-k5",
                                          "pulsed-multifrequency-k5-q5", "pulsed-multifrequency-k4",
-                                         "pulsed-multifrequency-k4-q5", "gray-k3", "gray-k4",
-                                         "single-ramp-k3", "double-ramp-k3"));
+                                         "pulsed-multifrequency-k4-q5", "burst-k5-q4",
+                                         "burst-k5-q5", "gray-k3", "gray-k4", "single-ramp-k3",
+                                         "double-ramp-k3"));
 
 TEST(Families, EveryListedExampleCanBeBuilt) {
   for (const FamilyDescription& family : list_families()) {
