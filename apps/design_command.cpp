@@ -199,6 +199,8 @@ void add_design_command(CLI::App& app, Session& session) {
   options.add("seed", "--seed");
   options.add("trials", "--trials");
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
+  add_field_option(*command, arguments->options.search, "metric", "--search-metric")
+      ->group(for_experts);
   command->add_option("-o,--output", arguments->output,
                       "output directory for codes and report; repeating the command resumes an "
                       "interrupted run (tofsmith-design, or the next free tofsmith-design-N)");

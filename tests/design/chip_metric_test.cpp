@@ -108,6 +108,30 @@ TEST(ChipMetric, EqualsTheCramerRaoBoundOfTheCode) {
   }
 }
 
+TEST(ChipMetric, IsTheErrorOfDepthAloneIfLightIsKnown) {
+  const ChipCode code = three_phase();
+  const Camera camera = nine_chips();
+  const ForwardModel model(to_code_set(code, camera, "code"), camera);
+  const double range_m = camera.range_m();
+  double mean_variance = 0.0;
+  constexpr int depths = 9 * 64;
+  for (int n = 0; n < depths; ++n) {
+    const auto mean_at = [&](double place) {
+      const Return returned{low_ambient.signal_e_per_s, place * camera.samples / depths};
+      return model.expected_electrons({&returned, 1}, low_ambient.ambient_e_per_s);
+    };
+    const Return here{low_ambient.signal_e_per_s, (n + 0.5) * camera.samples / depths};
+    const Eigen::ArrayXd slope =
+        (mean_at(n + 0.75) - mean_at(n + 0.25)).array() / (0.5 * range_m / depths);
+    const Eigen::ArrayXd variance =
+        model.variance_e2({&here, 1}, low_ambient.ambient_e_per_s).array();
+    mean_variance += 1.0 / (slope.square() / variance).sum() / depths;
+  }
+  const double known_m = chip_metric_rms_m(code, camera, low_ambient, ChipMetric::known_light);
+  EXPECT_NEAR(known_m, std::sqrt(mean_variance), 1e-3 * known_m);
+  EXPECT_LT(known_m, chip_metric_rms_m(code, camera, low_ambient));
+}
+
 TEST(ChipMetric, IsInfiniteIfDepthAndLightAreInseparable) {
   const ChipCode same_taps = code_of({{"1100", "1000", "0010"}, {"1100", "1000", "0010"}});
   Camera camera = camera_for(same_taps, nine_chips());

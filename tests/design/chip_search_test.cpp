@@ -61,7 +61,7 @@ double raw_optimum_m(const Camera& camera, const ChipSearchOptions& options, dou
     for (ChipWord light = 1; light < all_chips(chips); ++light) {
       ++*codes;
       const ChipCode code{chips, taps, {light}, words};
-      const double rms_m = chip_metric_rms_m(code, camera, point);
+      const double rms_m = chip_metric_rms_m(code, camera, point, options.metric);
       if (!(rms_m < best * (1 - 1e-12)) || is_ambiguous(code)) continue;
       if (ambiguity_margin_sigma(code, camera, point, options.separation_periods) >=
           options.margin_sigma)
@@ -113,14 +113,18 @@ TEST(Search, FindsTheOptimumOfAnExhaustiveEnumeration) {
     int chips, taps;
     bool equal_duty;
     OperatingPoint point;
+    ChipMetric metric = ChipMetric::unknown_light;
   };
   for (const Case& c :
        {Case{6, 3, true, high}, Case{7, 3, true, low_signal}, Case{6, 3, false, low_ambient},
-        Case{6, 4, true, high}, Case{5, 4, false, low_ambient}}) {
+        Case{6, 4, true, high}, Case{5, 4, false, low_ambient},
+        Case{7, 3, true, high, ChipMetric::known_light},
+        Case{6, 4, true, low_signal, ChipMetric::known_light}}) {
     const Camera camera = chip_camera(c.chips, c.taps, c.point);
     ChipSearchOptions options;
     options.equal_duty = c.equal_duty;
     options.margin_sigma = 4.0;
+    options.metric = c.metric;
     double codes = 0;
     const double optimum_m = raw_optimum_m(camera, options, &codes);
     const ChipSearchResult result = search_chip_codes(camera, options);
@@ -134,10 +138,11 @@ TEST(Search, FindsTheOptimumOfAnExhaustiveEnumeration) {
   }
 }
 
-TEST(Search, FindsTheOptimumOfAnExhaustiveEnumerationOfPairs) {
+void expect_optimum_of_all_pairs(ChipMetric metric) {
   const Camera camera = chip_camera(4, 2, low_ambient);
   ChipSearchOptions options;
   options.exposures = 2;
+  options.metric = metric;
   options.margin_sigma = 4.0;
   options.finalists = 1;
   double best = std::numeric_limits<double>::infinity();
@@ -147,7 +152,7 @@ TEST(Search, FindsTheOptimumOfAnExhaustiveEnumerationOfPairs) {
       code.demodulation.insert(code.demodulation.end(), second.begin(), second.end());
       for (code.modulation[0] = 1; code.modulation[0] < 15; ++code.modulation[0])
         for (code.modulation[1] = 1; code.modulation[1] < 15; ++code.modulation[1]) {
-          const double rms_m = chip_metric_rms_m(code, camera, low_ambient);
+          const double rms_m = chip_metric_rms_m(code, camera, low_ambient, metric);
           if (rms_m < best * (1 - 1e-12) && !is_ambiguous(code) &&
               ambiguity_margin_sigma(code, camera, low_ambient) >= options.margin_sigma)
             best = rms_m;
@@ -159,6 +164,11 @@ TEST(Search, FindsTheOptimumOfAnExhaustiveEnumerationOfPairs) {
   ASSERT_TRUE(std::isfinite(best));
   ASSERT_FALSE(result.finalists.empty());
   EXPECT_NEAR(result.finalists.front().rms_m, best, 1e-9 * best);
+}
+
+TEST(Search, FindsTheOptimumOfAnExhaustiveEnumerationOfPairs) {
+  expect_optimum_of_all_pairs(ChipMetric::unknown_light);
+  expect_optimum_of_all_pairs(ChipMetric::known_light);
 }
 
 TEST(Search, ProvesTheResultsForNineChips) {

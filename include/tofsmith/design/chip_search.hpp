@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -71,12 +72,25 @@ double chip_level(int on_chips, int chips, double peak_factor);
 /// Converts the code to waveforms with the levels and samples of the camera.
 CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::string& name);
 
+/// Variance of depth that the search minimizes.
+enum class ChipMetric {
+  unknown_light,  ///< of depth estimated together with signal and ambient light
+  /// Of depth estimated with known signal and ambient light, as in the depth variance metric of
+  /// "Revisiting Optimal Coding for I-ToF under Practical Sensor Constraints" (CVPR 2026). Smaller
+  /// than what a camera can reach; for comparison.
+  known_light,
+};
+constexpr std::array<std::string_view, 2> words_of(ChipMetric /*any*/) {
+  return {"unknown-light", "known-light"};
+}
+
 /// Options of the search for codes on a chip clock.
 struct ChipSearchOptions {
   int exposures = 1;  ///< E; 3 to 16 measurements with the camera's taps
   double margin_sigma = 8.0;
   double separation_periods = 1.0 / 36.0;  ///< a quarter of a chip at 9 chips per period
   bool equal_duty = true;
+  ChipMetric metric = ChipMetric::unknown_light;
   /// Size of the largest exhaustive search. Codes count as 1 with one exposure and three taps of
   /// equal duty, and otherwise as 20 because they take 20 times as long.
   double max_exhaustive = 3e11;
@@ -96,6 +110,9 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
       Field("separation_periods", o.separation_periods, open(0, 0.5),
             Help{"distance from which on depths must keep the margin"}),
       Field("equal_duty", o.equal_duty, Help{"open all taps of an exposure equally long"}),
+      Field("metric", o.metric,
+            Help{"variance to minimize: of depth alone (known-light), as in CVPR 2026, or of depth "
+                 "with unknown signal and ambient light"}),
       Field("max_exhaustive", o.max_exhaustive, at_least(0).or_infinity(),
             Help{"maximum size of an exhaustive search, up to symmetry; larger ones use annealing, "
                  "without proof"}),
@@ -132,7 +149,8 @@ struct ChipImprovement {
 /// A resulting code.
 struct ChipFinalist {
   ChipCode code;
-  double rms_m = 0.0;  ///< geometric mean of chip_metric_rms_m() over the operating points
+  /// Geometric mean over the operating points of the root of the minimized variance.
+  double rms_m = 0.0;
   double margin_sigma =
       0.0;  ///< proven, at the point where it is smallest relative to the requirement
 };

@@ -48,6 +48,7 @@ FisherMatrix& FisherMatrix::operator+=(const FisherMatrix& other) {
 }
 
 double FisherMatrix::depth_variance() const {
+  if (zs == 0.0 && za == 0.0) return zz > 0.0 ? 1.0 / zz : infinity;  // such as for known light
   // Schur complements: eliminate ambient light, then signal.
   const double per_ambient = 1.0 / aa;
   const double signal = ss - sa * sa * per_ambient;
@@ -74,9 +75,11 @@ void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, cons
             electrons * (here + (next - here) * node_position[static_cast<std::size_t>(q)]);
         const double weight = 1.0 / (signal + dark_e2);
         node->zz += weight * slope * slope;
-        node->zs += weight * slope * signal;
         node->ss += weight * signal * signal;
-        node->za += weight * slope * open;
+        if (!light.is_known) {
+          node->zs += weight * slope * signal;
+          node->za += weight * slope * open;
+        }
         node->sa += weight * signal * open;
         node->aa += weight * open * open;
       }
@@ -112,16 +115,17 @@ FisherMatrix largest_tap_fisher(int correlation, int next, int open_chips,
   const double weight = 1.0 / (electrons_per_chip * std::min(correlation, next) +
                                light.ambient_e * open + light.constant_e2);
   return {.zz = weight * slope * slope,
-          .zs = weight * slope * signal,
+          .zs = light.is_known ? 0.0 : weight * slope * signal,
           .ss = weight * signal * signal,
-          .za = weight * slope * open,
+          .za = light.is_known ? 0.0 : weight * slope * open,
           .sa = weight * signal * open,
           .aa = weight * open * open};
 }
 
-double chip_metric_rms_m(const ChipCode& code, const Camera& camera, const OperatingPoint& point) {
+double chip_metric_rms_m(const ChipCode& code, const Camera& camera, const OperatingPoint& point,
+                         ChipMetric metric) {
   code.validate();
-  const ChipLight light(camera, point, code.chips, code.exposures());
+  const ChipLight light(camera, point, code.chips, code.exposures(), metric);
   return light.chip_m * std::sqrt(chip_gamma(code, light));
 }
 
@@ -130,9 +134,10 @@ ChipJudge::ChipJudge(const Camera& camera, const ChipSearchOptions& options)
       taps_(camera.sensor.taps),
       equal_duty_(options.equal_duty),
       drain_(camera.sensor.drain),
+      metric_(options.metric),
       separation_periods_(options.separation_periods) {
   for (const OperatingPoint& point : camera.operating.points())
-    lights_.emplace_back(camera, point, chips_, options.exposures);
+    lights_.emplace_back(camera, point, chips_, options.exposures, options.metric);
   asked_sigma_.assign(lights_.size(), options.margin_sigma);
 }
 

@@ -47,6 +47,7 @@ class ChipJudge {
 
   int chips() const { return chips_; }
   int taps() const { return taps_; }
+  ChipMetric metric() const { return metric_; }
   const std::vector<ChipLight>& lights() const { return lights_; }
 
   /// Returns the geometric mean of gamma over the operating points [chips^2].
@@ -75,6 +76,7 @@ class ChipJudge {
  private:
   int chips_, taps_;
   bool equal_duty_, drain_;
+  ChipMetric metric_;
   double separation_periods_;
   std::vector<ChipLight> lights_;
   std::vector<double> asked_sigma_;

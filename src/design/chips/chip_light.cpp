@@ -41,10 +41,11 @@ void require_plain(const Camera& camera) {
 }
 
 ChipLight::ChipLight(const Camera& camera, const OperatingPoint& point, int code_chips,
-                     int exposures)
+                     int exposures, ChipMetric metric)
     : peak_factor(camera.light.peak_factor),
       chips(code_chips),
-      chip_m(camera.range_m() / code_chips) {
+      chip_m(camera.range_m() / code_chips),
+      is_known(metric == ChipMetric::known_light) {
   require_plain(camera);
   require(camera.exposure_s.each_s.empty() ||
               camera.exposure_s.each_s.size() == static_cast<std::size_t>(exposures),

@@ -17,9 +17,11 @@ struct ChipLight {
   double peak_factor = 1.0;
   int chips = 0;
   double chip_m = 0.0;  ///< depth per chip
+  bool is_known = false;
 
   /// @throws std::invalid_argument as require_plain()
-  ChipLight(const Camera& camera, const OperatingPoint& point, int chips, int exposures);
+  ChipLight(const Camera& camera, const OperatingPoint& point, int chips, int exposures,
+            ChipMetric metric = ChipMetric::unknown_light);
 
   /// Returns the signal electrons per chip.
   double electrons_of(int on_chips) const {

@@ -6,16 +6,17 @@
 
 namespace tofsmith {
 
-/// Computes the RMS over depth of the standard deviation of the best unbiased depth estimate [m],
-/// with unknown signal and ambient light:
+/// Computes the RMS over depth of the standard deviation of the best unbiased depth estimate [m]:
 ///   sqrt(gamma), gamma = mean over z of [inverse Fisher matrix over (z, S, A)]_zz,
+/// or, with known light, the mean of 1 / [Fisher matrix]_zz,
 /// with variances v_i = T_e (S chi_i + A kappa_i + dark) + constant. chi is linear within a chip;
 /// the mean over a chip is a Gauss-Legendre quadrature with four nodes. Infinite if depth cannot be
 /// separated from signal and ambient light.
 /// @throws std::invalid_argument for an invalid code or camera, or for properties that are not
 ///   modelled: impulse responses, generators, contrast below 1, differences of taps, unequal
 ///   exposures
-double chip_metric_rms_m(const ChipCode& code, const Camera& camera, const OperatingPoint& point);
+double chip_metric_rms_m(const ChipCode& code, const Camera& camera, const OperatingPoint& point,
+                         ChipMetric metric = ChipMetric::unknown_light);
 
 /// Returns true if two real depths can have equal measurements at suitable light levels: the
 /// directions of chi(z), without the ambient component, coincide or vanish. Exact (integers).

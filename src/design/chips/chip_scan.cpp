@@ -128,6 +128,7 @@ HWY_INLINE std::uint32_t within_limit(D d, const InformationRows& rows, int chip
     known = hn::Mul(known, hn::Mul(scale, known_light_bound(d, chips, entries(p))));
   auto kept = hn::Not(hn::Gt(known, limit));
   if (hn::AllFalse(d, kept)) return 0;
+  if (rows.metric == ChipMetric::known_light) return bits_of(d, kept, lane);
   for (std::size_t p = 0; p < rows.point.size(); ++p)
     unknown = hn::Mul(unknown, hn::Mul(scale, unknown_light_bound(d, chips, entries(p))));
   kept = hn::AndNot(hn::Gt(unknown, limit), kept);

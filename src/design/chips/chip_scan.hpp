@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "tofsmith/design/chip_search.hpp"
+
 namespace tofsmith {
 
 /// Modulations that are processed in parallel.
@@ -34,11 +36,12 @@ struct InformationRows {
   std::vector<const float*> point;  ///< first row per operating point
   /// Limit of the geometric mean of gamma [chips^2]; infinite: none.
   double limit = 0.0;
+  ChipMetric metric = ChipMetric::unknown_light;
 };
 
 /// Finds the modulations that may be better than the limit. With Fisher matrix F at the start of a
-/// chip and unknown signal and ambient light, the mean depth variance on the chip is at least 1 /
-/// zz and at least
+/// chip, the mean depth variance on the chip is at least 1 / zz and, with unknown signal and
+/// ambient light, at least
 ///   (m0 + m1 + m2 / 3) / det F,
 ///   m0 = ss aa - sa^2, m1 = zs aa - za sa, m2 = zz aa - za^2.
 /// Includes tolerances for rounding, so that no code within the limit is excluded.

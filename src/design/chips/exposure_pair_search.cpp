@@ -172,7 +172,7 @@ class ExposurePairSearch {
   }
 
   InformationRows rows_from(std::size_t block, double limit) const {
-    InformationRows rows{.point = {}, .limit = limit};
+    InformationRows rows{.point = {}, .limit = limit, .metric = task_.judge->metric()};
     for (const auto& information : information_)
       rows.point.push_back(information.data() +
                            block * static_cast<std::size_t>(n_) * fisher_entries * scan_lanes);

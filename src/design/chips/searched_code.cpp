@@ -17,7 +17,7 @@ SearchRecord record_of(const ChipSearchResult& found) {
   const ChipSearchCounts& c = found.log.counts;
   SearchRecord record{
       .work_unit = "% of the search",
-      .error_name = "smallest rms error found, by the Cramer-Rao bound",
+      .error_name = "smallest rms error found, by the minimized variance",
       .proved = found.proved,
       .account = fmt::format(
           "{} Of {:.4g} codes, {:.4g} after symmetry, {} were examined (a few symmetric ones "
@@ -74,6 +74,8 @@ std::vector<Candidate> searched_candidates(const Camera& camera, int exposures,
          .search = record_of(found),
          .message = fmt::format("{}: {} mm rms, {}", its.code.text(),
                                 plain_number(1e3 * its.rms_m, 4), proof_of(found, place))});
+    if (search.metric == ChipMetric::known_light)
+      candidates.back().message += ", for known signal and ambient light";
     candidates.back().per_measurement = reports_of(candidates.back().code, "search");
   }
   return candidates;

@@ -165,7 +165,7 @@ class SingleExposureSearch {
   void search_informed(std::span<const ChipWord> lights, double share, BestCodes& best,
                        ChipSearchCounts& counts) const {
     std::vector<std::vector<float>> tables;
-    InformationRows rows;
+    InformationRows rows{.metric = task_.judge->metric()};
     for (const ChipLight& light : task_.judge->lights())
       rows_.fill(lights, fisher_entries, tables.emplace_back(),
                  [&](float* first, ChipWord word, ChipWord on, int s) {
