@@ -12,30 +12,29 @@
 
 namespace tofsmith {
 
-/// Returns the options for a sweep recorded by the camera: taps, readout, range, black level,
-/// clipping and exposures.
+/// Returns the options for a sweep that follow from its camera.
 CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySweep& sweep);
 
-/// Returns the additional distance of a flat target, perpendicular to the axis at the given
-/// distance [m], in each pixel relative to the axis [m] (H, W).
-/// @throws std::invalid_argument unless the camera has a lens, which determines the rays
+/// Returns the distance of each pixel to a flat target perpendicular to the axis, minus
+/// `distance_m` [m] (H, W).
+/// @throws std::invalid_argument unless the camera has a lens
 Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int height, int width);
 
-/// Returns the options for the noise of frames recorded by the camera: bits, and the black level
-/// unless there are dark frames.
+/// Returns the options for frames of the camera: bits, and the black level unless there are dark
+/// frames.
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames);
 
 /// Arm of a recorded response.
 enum class ResponseArm {
   light,
   sensor,
-  system,  ///< both arms together: stored as the light's, the sensor has none
+  system,  ///< both arms together, stored as the response of the light
 };
 
-/// Parses "light", "sensor" or "system". @throws std::invalid_argument for any other word
+/// Parses "light", "sensor" or "system". @throws InvalidArgument for other words
 ResponseArm parse_response_arm(std::string_view word);
 /// Parses "file" (the measured response), "hann", "gaussian" or "lowpass" (a fit).
-/// @throws std::invalid_argument for any other word
+/// @throws InvalidArgument for other words
 ImpulseResponse::Kind parse_response_kind(std::string_view word);
 
 /// Returns the measured response (kind file) or the fit of a kind.
@@ -43,10 +42,11 @@ ImpulseResponse response_of(const CalibratedResponse& found, ImpulseResponse::Ki
 /// Returns the camera with an arm's response replaced.
 Camera with_response(Camera camera, const ImpulseResponse& response, ResponseArm arm);
 
-/// Returns the path for the measured response of a camera: NAME-response.csv next to NAME.toml.
+/// Returns NAME-response.csv next to the camera file NAME.toml.
 std::filesystem::path response_path(const std::filesystem::path& camera_path);
-/// Writes a measured response to that path and returns it with the file name. A fit is returned
-/// unchanged. @throws IoError as AtomicFile
+/// Writes a measured response to response_path() and returns it with the file name. Returns a fit
+/// unchanged.
+/// @throws IoError as AtomicFile
 ImpulseResponse write_response_beside(const std::filesystem::path& camera_path,
                                       ImpulseResponse response, OutputPolicy policy);
 

@@ -12,22 +12,20 @@
 
 namespace tofsmith {
 
-/// Return the rows of a table, headings first, for the fits of a record, the terms of a depth
-/// error, and the noise of a sensor. Parameters that are not determined are only listed in a last
-/// row.
+/// Return the rows of a table, headings first. A last row lists the parameters that are not
+/// determined.
 std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found);
 std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& found);
-/// Returns offset, contrast and harmonics of each frequency, as rows with a header; empty for a
-/// single frequency.
+/// Returns offset, contrast and harmonics of each frequency; empty for a single frequency.
 std::vector<std::vector<std::string>> frequency_rows(const CalibratedDepth& found);
 std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
 
 /// Returns mean and spread of the nominal depth error, and the remaining error, as a phrase.
 std::string depth_error_text(const CalibratedDepth& found);
 
-/// Return pages with the results of calibrations as tables and figures, and with notes.
-/// @param source        name of the data, e.g. the file of a record
-/// @param command_line  the user's command, shown on the page; may be empty
+/// Return pages with the results of calibrations.
+/// @param source        name of the data, e.g. a file
+/// @param command_line  shown on the page; may be empty
 Page response_report(const CalibratedResponse& found, const std::string& source,
                      const std::string& command_line);
 Page correlation_report(const CalibratedCorrelation& found, const std::vector<IdealCodeFit>& fits,

@@ -20,7 +20,7 @@ struct PhotonTransferOptions {
   std::optional<int> adc_bits;
   double averaged = 1.0;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws InvalidArgument
   void validate() const { check_fields(*this); }
 };
 auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
@@ -33,59 +33,51 @@ auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
             Help{"number of frames averaged in each recorded frame"}));
 }
 
-/// Mean and variance of one measurement in a pair of frames; for differences, of numbers with about
-/// the same light.
+/// Mean and variance of one measurement in a pair of frames.
 struct PhotonTransferPoint {
-  double mean_dn = 0.0;    ///< over both frames and all pixels; for differences the light [DN]
-  Estimate variance_dn2;   ///< temporal, of one frame [DN^2]
-  bool dark = false;       ///< of the dark frames
-  bool saturated = false;  ///< too close to the limit to be used in the fit
+  double mean_dn = 0.0;   ///< over both frames and all pixels; for differences the light [DN]
+  Estimate variance_dn2;  ///< temporal, of one frame [DN^2]
+  bool dark = false;
+  bool saturated = false;  ///< too close to the limit for the fit
 };
 
 /// Noise of a sensor from pairs of frames with the same light:
 ///   variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12
 struct PhotonTransfer {
-  Estimate gain_e_per_dn;               ///< [e/DN]
-  Estimate read_noise_e;                ///< [e]
-  Estimate black_level_dn;              ///< [DN]
-  std::optional<Estimate> full_well_e;  ///< [e], if reached below the converter's maximum
-  double saturation_dn = 0.0;  ///< highest number, or the number at which numbers are clipped
+  Estimate gain_e_per_dn;
+  Estimate read_noise_e;
+  Estimate black_level_dn;
+  std::optional<Estimate> full_well_e;  ///< if reached below the converter's maximum
+  double saturation_dn = 0.0;           ///< number at which values are clipped, or the highest one
   int adc_bits = 0;
-  int buckets = 1;            ///< buckets per raw number: 2 if differences are read
-  double reduced_chi2 = 0.0;  ///< of the fit: near 1 if the model is valid
+  int buckets = 1;            ///< per raw number: 2 if differences are read
+  double reduced_chi2 = 0.0;  ///< of the fit; near 1 if the model is valid
   std::vector<PhotonTransferPoint> points;
   std::vector<std::string> notes;
 };
 
-/// Computes gain and read noise by the photon transfer method (EMVA 1288). Two consecutive frames
-/// of a recording must have the same light. Their difference does not contain the fixed pattern,
-/// and half its variance is the temporal variance of one frame. The variance of dark frames
-/// determines the read noise, its increase with the mean the gain.
-///   1. Black level: mean of the dark frames, or given.
-///   2. Mean and variance of every pair and measurement, corrected for a change of light between
-///      the two frames.
-///   3. Full well: a number below the converter's maximum at which pixels accumulate.
-///   4. Straight line by weighted least squares, with weights from the expected variance. Its
-///      value at black, minus 1/12 for rounding, is the variance of the read noise.
-/// @param levels  one recording per light level, or one of all levels: raw numbers of single taps
-///         (not differences), an even number of frames
+/// Computes gain and read noise by the photon transfer method (EMVA 1288) from pairs of consecutive
+/// frames, which must have the same light. The black level is the mean of the dark frames, or
+/// given. The full well is a number below the converter's maximum at which pixels accumulate.
+/// @param levels  one recording per light level, or one of all levels: raw numbers of single taps,
+///         an even number of frames
 /// @param dark    frames without light; may be empty if the black level is given
-/// @throws std::invalid_argument if frames are not paired, sizes differ, the black level is
-///         unknown, or the levels do not differ
+/// @throws InvalidArgument if frames are not paired, sizes differ, the black level is unknown, or
+///         the levels do not differ
+/// @see docs/calibration.md
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
                                const PhotonTransferOptions& options = {});
 
 /// Computes the noise of a camera that reads the differences of two buckets. Their mean does not
-/// determine the shot noise, so the light of both buckets is computed from the code at the decoded
+/// determine the shot noise, so the light of both buckets follows from the code at the decoded
 /// depth:
 ///   light_k       = T_k S shot_chi_k(z) [DN]
 ///   variance_k    = 2 read_noise^2 / gain^2 + light_k / gain + 2/12 [DN^2]
 /// Pixels are used if the difference exceeds its noise by a factor of 8 and, if `adc_bits` is
-/// given, their buckets (with `black_level_dn`) stay 5 % below the converter's maximum. A change of
-/// light between the frames of a pair is corrected. Ambient light is unknown, so there should be
-/// none.
+/// given, their buckets (with `black_level_dn`) stay 5 % below the converter's maximum. There
+/// should be no ambient light.
 /// @param table  of the code on the camera
-/// @throws std::invalid_argument also if the number of measurements differs from the code's
+/// @throws InvalidArgument also if the number of measurements differs from the code's
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
                                const DecodingTable& table,
                                const PhotonTransferOptions& options = {});
