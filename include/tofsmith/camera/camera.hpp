@@ -31,28 +31,27 @@ inline constexpr std::array<std::string_view, 2> noise_models = {"poisson", "gau
 /// Values that the sensor reads out of one exposure.
 enum class Readout {
   separate,    ///< each tap
-  difference,  ///< the difference A - B of two taps, with the shot and read noise of both
-  /// Rows: weighted sums of the light in N time bins of one exposure, with weights of any sign. All
-  /// rows measure the same light, so that their noise is correlated. Dead time is ignored.
+  difference,  ///< A - B of two taps, with the noise of both
+  /// Weighted sums of the light in N time bins of one exposure, with weights of any sign. All rows
+  /// measure the same light, so that their noise is correlated. Dead time is ignored.
   rows,
 };
 inline constexpr std::array<std::string_view, 3> readouts = {"separate", "difference", "rows"};
 
 /// Factor by which the sensor multiplies the light.
 enum class Demodulation {
-  gain,    ///< in [0, 1]: taps collect charge while their gates are open
+  gain,    ///< in [0, 1], of taps that collect charge
   weight,  ///< in [-1, 1]: a mixer; shot noise grows with the square of the weight
 };
 inline constexpr std::array<std::string_view, 2> demodulations = {"gain", "signed"};
 
-/// The modulated light source.
 struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave
-  bool binary = true;         ///< designed waveforms only switch on and off
+  bool binary = true;
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
-  std::optional<Generator> generator;  ///< generates the modulation; none: any waveform, exactly
-  std::optional<SquareLight> square;   ///< square waves for DesignMethod::frequencies
+  std::optional<Generator> generator;  ///< none: any waveform, exactly
+  std::optional<SquareLight> square;   ///< for DesignMethod::frequencies
 
   friend bool operator==(const LightSource&, const LightSource&) = default;
 };
@@ -74,40 +73,39 @@ inline void describe(FieldVisitor& fields, LightSource& light) {
               light.square);
 }
 
-/// The demodulating pixel.
 struct Sensor {
-  int taps = 1;        ///< values per exposure; 2: two buckets; more: exclusive taps
-  bool binary = true;  ///< designed waveforms only switch on and off
+  int taps = 1;  ///< 2: two buckets; more: exclusive taps
+  bool binary = true;
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;
-  std::optional<Generator> generator;  ///< generates the demodulation; none: any waveform, exactly
+  std::optional<Generator> generator;  ///< none: any waveform, exactly
   double read_noise_e = 20.0;
   NoiseModel noise = NoiseModel::poisson;
   double dark_current_e_per_s = 0.0;
   double modulation_contrast = 1.0;               ///< C; below 1 the taps mix
   std::vector<double> modulation_contrasts = {};  ///< per exposure or frequency; empty: the above
-  /// m: the first, third, ... tap has the sensitivity 1 + m / 2, the others have 1 - m / 2. With
-  /// one tap, the same applies to exposures.
+  /// m: the first, third, ... tap has the sensitivity 1 + m / 2, the others 1 - m / 2. With one
+  /// tap, the same applies to exposures.
   double tap_mismatch = 0.0;
   std::optional<double> full_well_e;
   std::optional<int> adc_bits;
-  std::optional<double> gain_e_per_dn;   ///< with adc_bits
-  std::optional<double> black_level_dn;  ///< with adc_bits
+  std::optional<double> gain_e_per_dn;
+  std::optional<double> black_level_dn;
   std::optional<double> shortest_pulse_s;
-  bool drain = true;  ///< false: the gains of all taps add up to 1
+  bool drain = true;
   Readout readout = Readout::separate;
   Demodulation demodulation = Demodulation::gain;
-  std::optional<double> readout_gap_s;   ///< none: 0
-  std::optional<double> frame_period_s;  ///< none: duration of the exposures
-  std::optional<int> max_exposures;      ///< for DesignMethod::frequencies; none: 8
-  std::optional<std::vector<double>> integration_times_s;  ///< of one exposure; none: any
+  std::optional<double> readout_gap_s;                     ///< none: 0
+  std::optional<double> frame_period_s;                    ///< none: duration of the exposures
+  std::optional<int> max_exposures;                        ///< none: 8
+  std::optional<std::vector<double>> integration_times_s;  ///< none: any
 
   std::vector<double> contrasts_of(const CodeSet& code) const;  ///< per exposure, if the code fits
   bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
-  /// Returns true if an exposure has several taps, which a contrast below 1 mixes.
+  /// Returns true if a contrast below 1 mixes several taps.
   bool mixes_taps() const { return taps >= 2 || is_signed(); }
-  /// Returns true if measurements are differences of light, in which ambient light may cancel, but
-  /// not its noise.
+  /// Returns true if measurements are differences of light, in which ambient light, but not its
+  /// noise, may cancel.
   bool subtracts() const { return is_signed() || readout == Readout::difference; }
 
   friend bool operator==(const Sensor&, const Sensor&) = default;
@@ -185,36 +183,36 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                sensor.integration_times_s);
 }
 
-/// Integration time: a total that is split between the exposures, or one time per exposure.
+/// Total integration time that is split between the exposures, or one time per exposure.
 struct ExposureTime {
-  double total_s = 0.3;        ///< [s]; used if `each_s` is empty
-  std::vector<double> each_s;  ///< [s]; must match the number of exposures of the code
+  double total_s = 0.3;        ///< used if `each_s` is empty
+  std::vector<double> each_s;  ///< one per exposure of the code
   double of(int exposure, int exposures) const;
 
   friend bool operator==(const ExposureTime&, const ExposureTime&) = default;
 };
 
-/// Differences between the exposures of a camera and of the code, as found by a calibration.
-/// Measured tables already contain them.
+/// Differences between the exposures of a camera and of the code. Measured tables already contain
+/// them.
 struct Playback {
-  /// Exposure of the code that the camera records first, second, ...: a permutation of 0, 1, ...
-  /// Empty: the order of the code.
+  /// Exposures of the code in the order of the camera: a permutation of 0, 1, ... Empty: the same
+  /// order.
   std::vector<int> order;
-  bool reversed = false;  ///< chi(-z) is measured instead of chi(z)
+  bool reversed = false;  ///< chi(-z) is measured
   bool inverted = false;  ///< taps are swapped; a single tap is open where the code closes it
-  double offset_m = 0.0;  ///< constant that the camera adds to depth
-  /// Constant per exposure or frequency of the code; empty: offset_m.
+  double offset_m = 0.0;
+  /// Per exposure or frequency of the code; empty: offset_m.
   std::vector<double> offsets_m;
-  /// Constant per exposure or frequency, as phase of its frequency [rad]; replaces offset_m.
+  /// As offsets_m, as phase of the exposure's frequency; replaces offset_m.
   std::vector<double> offset_rad;
-  /// As offset_rad, but in counts; one period has counts_per_period. Replaces offset_m.
+  /// As offset_rad, in counts.
   std::vector<double> offset_counts;
   double counts_per_period = 4096.0;
 
   bool has_list() const {
     return !offsets_m.empty() || !offset_rad.empty() || !offset_counts.empty();
   }
-  /// Replaces all offsets. @param list  as offsets_m
+  /// Replaces all offsets.
   void set_offsets_m(std::vector<double> list) {
     offset_m = 0.0;
     offsets_m = std::move(list);
@@ -222,11 +220,10 @@ struct Playback {
     offset_counts.clear();
   }
   /// Returns the constant that the camera adds to the depth of each exposure of a code [m].
-  /// @param range_m  depth of a period of the fundamental frequency
   /// @throws InvalidArgument if a list does not have one value per exposure or frequency
   std::vector<double> offsets_of(const CodeSet& code, double range_m) const;
 
-  /// @throws std::invalid_argument naming the field as playback.*, value and rule
+  /// @throws InvalidArgument
   void validate(int taps) const;
 
   friend bool operator==(const Playback&, const Playback&) = default;
@@ -256,7 +253,7 @@ inline void describe(FieldVisitor& fields, Playback& playback) {
       playback.counts_per_period);
 }
 
-/// Dependence of depth and signal on the temperature of the sensor, as in Temperature.
+/// Dependence on the temperature of the sensor, as in Temperature.
 struct SensorTemperature {
   double reference_c = 25.0;
   double offset_m_per_c = 0.0;
@@ -268,31 +265,29 @@ struct SensorTemperature {
   friend bool operator==(const SensorTemperature&, const SensorTemperature&) = default;
 };
 
-/// Dependence of depth and signal on the temperature of the camera, as a calibration finds it.
-/// Measured tables are valid at the reference temperature. With `sensor`, there are two
-/// temperatures, whose changes add up: that of the light source, and that of the sensor.
+/// Dependence of depth and signal on the temperature of the camera, found by a calibration.
+/// Measured tables are valid at the reference temperature. With `sensor`, the effects of the
+/// temperatures of light source and sensor add up.
 struct Temperature {
   double reference_c = 25.0;
   double offset_m_per_c = 0.0;
-  double signal_per_c = 0.0;    ///< d log(signal) per degree: 0.01 is about 1 % more
+  double signal_per_c = 0.0;    ///< d log(signal) per degree
   std::optional<double> now_c;  ///< none: the reference
-  /// Absent if a single temperature is known.
+  /// Absent: a single temperature.
   std::optional<SensorTemperature> sensor;
 
-  /// Degrees above the reference.
   double above_reference_c() const { return now_c.value_or(reference_c) - reference_c; }
   /// Change of the measured depth by all temperatures [m].
   double offset_m() const;
-  /// Signal divided by the signal at the reference temperatures.
+  /// Signal relative to the reference temperatures.
   double signal_gain() const;
 
-  /// @throws std::invalid_argument naming the field as temperature.*, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 
   friend bool operator==(const Temperature&, const Temperature&) = default;
 };
 
-/// Keys of the dependence on one temperature.
 void describe_one_temperature(FieldVisitor& fields, auto& temperature) {
   fields.value(Key("reference_c", "Temperature at which the camera was calibrated", finite()),
                temperature.reference_c);
@@ -329,48 +324,44 @@ struct Camera {
   RawMarkers raw;
   std::optional<Lens> lens;      ///< none: no point clouds
   std::optional<LensBlur> blur;  ///< none: sharp
-  std::optional<Optics> optics;  ///< none: light levels are known in electrons only
+  std::optional<Optics> optics;  ///< none: light levels in electrons only
   OperatingRange operating;
   std::optional<Playback> playback;        ///< none: exposures are as in the code
   std::optional<Temperature> temperature;  ///< none: no dependence
 
-  /// Returns the time between the beginnings of consecutive frames [s]: sensor.frame_period_s, or
-  /// the duration of the exposures with their gaps.
-  /// @throws std::invalid_argument if frame_period_s is shorter than the exposures
+  /// Returns the time between the beginnings of consecutive frames [s].
+  /// @throws InvalidArgument if frame_period_s is too short
   double frame_period_s(int exposures) const;
-  /// Returns the time from the beginning of frame 0 to the middle of an exposure [s]. Each exposure
-  /// is followed by a gap.
+  /// Returns the time from the beginning of frame 0 to the middle of an exposure [s].
   double exposure_middle_s(int frame, int exposure, int exposures) const;
-  /// Returns the time from the beginning of frame 0 to the middle of a frame [s], which is half-way
-  /// between the beginning of its first exposure and the end of its last one.
+  /// Returns the time from the beginning of frame 0 to half-way between the beginning of the first
+  /// and the end of the last exposure of a frame [s].
   double frame_middle_s(int frame, int exposures) const;
 
   /// Unambiguous range [m]: c / (2 f0).
   double range_m() const;
-  /// Depth of one bin [m]: range / N.
+  /// Depth of one bin [m].
   double bin_m() const;
-  /// Returns H_d(n f0) conj(H_m(n f0)) for n = 0 to `highest`: the transfer function of both arms
-  /// together, the light source (H_m) and the sensor (H_d). For rows it is conj(H_d H_m), because
-  /// the responses of both arms delay the detected light.
+  /// Returns H_d(n f0) conj(H_m(n f0)) for n = 0 to `highest`, with the transfer functions H_d of
+  /// the sensor and H_m of the light source. For rows: conj(H_d H_m), because both arms delay the
+  /// light.
   Eigen::VectorXcd transfer(int highest) const;
-  /// Returns H_m(n f0) of the light alone. With edge jitter (independent normal displacements of
-  /// rms s in every period), the mean waveform is blurred by the normal density, so that the
-  /// transfer function has the additional factor exp(-(2 pi n f0 s)^2 / 2).
+  /// Returns H_m(n f0). Edge jitter of rms s blurs the mean waveform, with the factor
+  ///   exp(-(2 pi n f0 s)^2 / 2).
   Eigen::VectorXcd light_transfer(int highest) const;
-  /// Returns H_d(n f0) of the sensor alone, with its jitter.
+  /// Returns H_d(n f0), with jitter.
   Eigen::VectorXcd sensor_transfer(int highest) const;
   /// Returns true if either arm has an impulse response or jitter.
   bool band_limited() const;
-  /// Returns true if the light source has an impulse response or jitter.
+  /// The same for the light source alone.
   bool light_is_band_limited() const;
 
-  /// @throws std::invalid_argument naming the field, its value and the broken rule
+  /// @throws InvalidArgument
   void validate() const;
 
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// Keys of a camera file.
 inline void describe(FieldVisitor& fields, Camera& camera) {
   fields.value(Key("name", "Name of the camera in reports; the name of the file by default"),
                camera.name);
@@ -414,83 +405,76 @@ inline void describe(FieldVisitor& fields, Camera& camera) {
                camera.temperature);
 }
 
-/// Returns the camera with operating points for surfaces of the given albedo at each of these
-/// distances, computed by its optics, brightest first.
-/// @param klux  sunlight on the surfaces, overrides that of the optics
-/// @throws std::invalid_argument naming field, value and rule; also for a camera without optics
+/// Returns the camera with operating points for surfaces of the given albedo at these distances,
+/// computed by its optics, brightest first.
+/// @param klux  overrides the sunlight of the optics
+/// @throws InvalidArgument for invalid arguments, or a camera without optics
 Camera at_distances(Camera camera, std::vector<double> distances_m, double albedo = 1.0,
                     std::optional<double> klux = {});
 
-/// Returns the default light of captures: the signal that the camera's optics receive from white
-/// surfaces at the given distance, and the ambient light from their sunlight. Without optics, both
-/// are taken from the middle operating point. If the optics have no sunlight, only the ambient
-/// light is taken from there.
+/// Returns the default light of captures: signal of white surfaces at the given distance and
+/// ambient light, from the camera's optics. The middle operating point replaces missing optics or
+/// sunlight.
 OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 
-/// Returns the camera on which codes are evaluated: one whose single pixels measure the sum of
-/// `operating.neighbours` = n pixels. Exposures, gaps, frame period, full well and saturation of
-/// the converter are n times as large. The read noise, including quantization, is sqrt(n) times as
-/// large. The black level is assumed to be so high that the converter clips no small values.
-/// Returns the camera itself for n = 1.
-/// @throws std::invalid_argument if the camera is invalid
+/// Returns the camera on which codes are evaluated: its pixels measure the sum of n =
+/// `operating.neighbours` pixels. Exposures, gaps, frame period, full well and converter saturation
+/// are n times as large, read noise and quantization sqrt(n) times. The black level is assumed to
+/// be so high that the converter clips no small values.
+/// @throws InvalidArgument if the camera is invalid
 Camera judged_camera(const Camera& camera);
 
 /// Returns the integration times of the exposures in the order of the camera [s]: its list, or its
-/// total, split by the shares of the code.
+/// total split by the shares of the code.
 /// @throws InvalidArgument if the camera lists times for another number of exposures
 std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera);
 /// Returns the camera with a list of the integration times of a code; unchanged for equal shares.
 Camera timed_by(const CodeSet& code, Camera camera);
 
-/// Returns why a valid `camera` does not support `code`: taps, samples, peak, exposures, light that
-/// no tap collects although there is no drain, or pulses that are too short. None: it is supported.
+/// Returns why a valid `camera` does not support `code`; none if it does.
 std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera);
 
-/// @throws InvalidArgument with the text of why_not_playable() if the camera does not support the
-///         code
+/// @throws InvalidArgument with the text of why_not_playable()
 void require_fits(const CodeSet& code, const Camera& camera);
 
-/// Returns the camera with two buckets that is equivalent to a mixer: the buckets are open where a
-/// binary weight is 1 and -1, respectively, and their difference is the mixer's measurement. Each
-/// bucket has half of the mixer's noise variance without light. Full well, converter and mismatch
-/// are removed. Returns other cameras unchanged.
+/// Returns the camera with two buckets that is equivalent to a mixer: the buckets are open at
+/// weights of 1 and -1, and their difference is the measurement. Each bucket has half of the noise
+/// variance without light. Full well, converter and mismatch are removed. Returns other cameras
+/// unchanged.
 Camera in_buckets(Camera camera);
 
-/// Returns why the family `name` cannot be built for the camera. None: build_family() succeeds.
+/// Returns why build_family() fails; none if it succeeds.
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera);
 
-/// Builds the family `name` for the camera: with its number of samples, and without exceeding its
-/// peak. For a sensor with two taps, every demodulation gets its complement as second bucket. For a
-/// mixer, demodulations become weights from -1 to 1.
+/// Builds a family with the camera's number of samples, within its peak. For two taps, every
+/// demodulation gets its complement as second bucket; for a mixer, demodulations become weights
+/// from -1 to 1.
 /// @throws InvalidArgument with the text of why_no_family()
 CodeSet build_family(std::string_view name, const Camera& camera);
 
-/// Source of a number in the description of a camera.
+/// Source of a number in a camera.
 struct NumberSource {
   std::string key;     ///< "sensor.taps", or a table or value with several keys
-  std::string source;  ///< data sheet or paper, by name
+  std::string source;  ///< data sheet or paper
 };
 
-/// Entry in the list of built-in cameras: cameras of the paper and some commercial ones.
+/// Built-in camera: of the paper, or commercial.
 struct BuiltInCamera {
   std::string name;
-  std::string description;  ///< one line
-  /// Family of its raw frames, or one that suits it (list_families()); "": none.
+  std::string description;
+  /// Family of its raw frames, or one that suits it; "": none.
   std::string code;
   std::vector<NumberSource> sources;
 
-  /// Returns the source of a key such as "light.peak_factor"; "assumed" if it is unknown.
+  /// Returns the source of a key such as "light.peak_factor"; "assumed" if unknown.
   std::string source_of(std::string_view key) const;
 };
 
-/// Built-in camera that commands use by default.
 inline constexpr std::string_view default_camera_name = "indoor";
 
-/// Returns all built-in cameras. See built_in_camera() and built_in_camera_toml().
 std::vector<BuiltInCamera> list_built_in_cameras();
-/// Returns the names of all built-in cameras.
 std::vector<std::string> built_in_camera_names();
-/// @throws std::invalid_argument for an unknown name, with the most similar known name
+/// @throws InvalidArgument for an unknown name
 Camera built_in_camera(const std::string& name);
 
 }  // namespace tofsmith

@@ -14,35 +14,34 @@ namespace tofsmith {
 
 /// Correlation function of one demodulation and one modulation function, for real depths:
 ///   chi(u) = integral over the period of (h_d * d)(t) (h_m * m)(t - u) dt,  u in periods.
-/// Without impulse responses it is piecewise linear and stored exactly as a list of corners. With
-/// impulse responses it is smooth and stored as harmonics D_n Hd_n conj(M_n Hm_n).
+/// Without impulse responses it is piecewise linear and stored as corners; otherwise it is stored
+/// as harmonics D_n Hd_n conj(M_n Hm_n).
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (3)
 class CorrelationFunction {
  public:
   /// Without impulse responses.
   CorrelationFunction(const Waveform& demodulation, const Waveform& modulation);
-  /// With impulse responses. @param transfer  Hd_n conj(Hm_n) for all harmonics to be stored
+  /// With impulse responses. @param transfer  Hd_n conj(Hm_n) for all stored harmonics
   CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
                       const Eigen::VectorXcd& transfer);
 
-  /// Returns f(u - delay), the function delayed by `delay` [periods]. If `reversed`, returns
-  /// f(-(u - delay)), the mirrored and delayed function.
+  /// Returns f(u - delay), or f(-(u - delay)) if `reversed`; delay in periods.
   CorrelationFunction moved(double delay, bool reversed) const;
 
-  /// Returns the value at depth `u` [periods], any real number; the period is 1.
+  /// Returns the value at any real `u` [periods].
   double operator()(double u) const;
   /// Returns the values at u = j / points, j = 0 to points - 1.
   Eigen::VectorXd table(int points) const;
 
   /// Fourier coefficients; empty if corners are stored.
   const Eigen::VectorXcd& harmonics() const { return harmonics_; }
-  /// Returns true if the function is piecewise linear with all corners at multiples of 1 / points.
+  /// Returns true if the function is piecewise linear with corners at multiples of 1 / points.
   bool has_corners_at(int points) const;
 
  private:
   CorrelationFunction() = default;
 
-  std::vector<double> corners_;  // positions in [0, 1), sorted; empty if harmonics are stored
+  std::vector<double> corners_;  // in [0, 1), sorted; empty if harmonics are stored
   std::vector<double> values_;   // at the corners
   Eigen::VectorXcd harmonics_;
 };
@@ -50,72 +49,66 @@ class CorrelationFunction {
 /// Return of light from one depth.
 struct Return {
   double signal_e_per_s = 0.0;  ///< S at a gate that is always open
-  double depth_bin = 0.0;       ///< position in [0, N), any real
+  double depth_bin = 0.0;       ///< in [0, N), any real
 };
 
 /// Expected electrons and variances of the measurements of a code on a camera.
 ///   mu_i(z) = T_i (S chi_i(z) + A kappa_i + dark),  variance mu_i + sigma_r^2 (+ step^2 / 12)
-/// chi and kappa are computed from the actual waveforms, filtered by both arms. Several returns
-/// add.
+/// chi and kappa follow from the actual waveforms, filtered by both arms. Several returns add.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4)
 ///
-/// A *tap value* is the charge of one tap (E x taps values); a *measurement* is a value that the
-/// sensor reads out: a tap value, or the difference A - B of a two-bucket pair. A mixer with weight
-/// w is modelled by two taps per exposure, A = (w^2 + w) / 2 and B = (w^2 - w) / 2, so that A - B
-/// is its measurement, and A + B is the square of the weight, which determines its shot noise. For
-/// weights of -1 and 1 these are two buckets; for others A and B may be negative. If rows are read
-/// out, the taps are the N time bins h of the single exposure, and the measurements are their sums
-/// with the weights of the rows: y = C^T h, with covariance C^T diag(E h) C plus read noise.
+/// A *tap value* is the charge of one tap; there are E x taps. A *measurement* is a value that the
+/// sensor reads out: a tap value, or the difference A - B of two buckets. A mixer with weight w is
+/// modelled by two taps, A = (w^2 + w) / 2 and B = (w^2 - w) / 2: A - B is its measurement, and w^2
+/// = A + B determines its shot noise. Unless w is -1 or 1, A or B may be negative. For rows, the
+/// taps are the N time bins h of the single exposure, and the measurements are y = C^T h, with
+/// covariance C^T diag(E h) C plus read noise.
 class ForwardModel {
  public:
-  /// @throws std::invalid_argument if the camera is invalid or the code does not fit it
+  /// @throws InvalidArgument for an invalid camera or an unsupported code
   ForwardModel(const CodeSet& code, const Camera& camera);
 
   int measurements() const { return static_cast<int>(readout_.rows()); }
   int tap_values() const { return static_cast<int>(readout_.cols()); }
   int samples() const { return samples_; }
   int exposures() const { return has_rows() ? 1 : tap_values() / taps_; }
-  /// Mean over exposures of the constant that [playback] adds to depth [m].
+  /// Mean over exposures of the offset of [playback] [m].
   double playback_offset_m() const { return playback_offset_m_; }
-  /// Returns true if measurements are rows of one exposure, whose noise is correlated.
   bool has_rows() const { return time_bin_.has_value(); }
 
-  /// Returns chi_i(z) of every measurement (K) at a real depth.
+  /// Returns chi_i(z) (K).
   Eigen::VectorXd correlation(double depth_bin) const;
-  /// Returns chi at depth_bin = j N / points, (points, K). points = N gives one row per bin.
+  /// Returns chi at depth_bin = j N / points, (points, K).
   Eigen::MatrixXd correlation_table(int points) const;
-  /// As correlation_table() for the tap values, (points, E x taps).
+  /// As correlation_table() for tap values, (points, E x taps).
   Eigen::MatrixXd tap_correlation_table(int points) const;
-  /// Highest significant harmonic: all higher ones together have less than 3e-7 of the amplitude of
-  /// all harmonics except the mean. None if a correlation function is piecewise linear.
+  /// Highest significant harmonic: higher ones together have less than 3e-7 of the amplitude
+  /// without the mean. None for piecewise linear functions.
   std::optional<int> highest_harmonic() const;
-  /// Returns the number of points per bin of a table whose chords approximate the correlation
-  /// functions: `least` times a power of two, with an error of at most 5e-4 of the amplitude unless
-  /// this requires more than 2^20 points.
+  /// Returns the points per bin of a table whose chords approximate the correlation functions:
+  /// `least` times a power of two, with an error of at most 5e-4 of the amplitude unless this
+  /// requires more than 2^20 points.
   int straight_points_per_bin(int least) const;
-  /// Returns true if all correlation functions are piecewise linear with corners at the rows of a
-  /// table.
+  /// Returns true if all functions are piecewise linear with corners at the rows of a table.
   bool has_corners_at_rows(int rows) const;
-  /// Returns the light in time bin 0 for rows, (points). The light in bin n for depth z equals the
-  /// light in bin 0 for depth z - n.
+  /// Returns the light in time bin 0 for rows, (points). Bin n at depth z receives the light of bin
+  /// 0 at depth z - n.
   Eigen::VectorXd time_bin_table(int points) const;
 
   /// kappa_i (K): mean gain seen by ambient light.
   const Eigen::VectorXd& ambient_gain() const { return ambient_gain_; }
-  /// kappa of the tap values (E x taps).
+  /// kappa of the tap values.
   const Eigen::VectorXd& tap_ambient_gain() const { return tap_ambient_gain_; }
-  /// T_i [s] of every measurement (K).
+  /// T_i [s] (K).
   const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
   /// T of the tap values [s].
   const Eigen::VectorXd& tap_exposure_s() const { return tap_exposure_s_; }
-  /// Dark current of every tap value [e/s].
   double tap_dark_e_per_s() const { return tap_dark_e_per_s_; }
-  /// Measurements = readout (K, E x taps) times tap values; entries are +1, -1 and 0, or the rows'
-  /// weights.
+  /// Matrix (K, E x taps) from tap values to measurements: +1, -1 and 0, or the weights of rows.
   const Eigen::MatrixXd& readout() const { return readout_; }
-  /// Dark electrons of every measurement (K).
+  /// Per measurement (K).
   Eigen::VectorXd dark_electrons() const;
-  /// Variance of every measurement without light [e^2] (K): read noise and quantization.
+  /// Variance without light [e^2] (K): read noise and quantization.
   Eigen::VectorXd constant_variance_e2() const;
 
   /// Expected tap values [e].
@@ -123,42 +116,41 @@ class ForwardModel {
                                          double ambient_e_per_s) const;
   /// Expected measurements [e] (K).
   Eigen::VectorXd expected_electrons(std::span<const Return> returns, double ambient_e_per_s) const;
-  /// Variance of the measurements [e^2] (K), before clipping.
+  /// Variance before clipping [e^2] (K).
   Eigen::VectorXd variance_e2(std::span<const Return> returns, double ambient_e_per_s) const;
-  /// Covariance of the measurements [e^2] (K, K); diagonal unless rows are read out.
+  /// Covariance [e^2] (K, K); diagonal unless rows are read out.
   Eigen::MatrixXd covariance_e2(std::span<const Return> returns, double ambient_e_per_s) const;
 
  private:
   Eigen::VectorXd tap_correlation(double depth_bin) const;
-  /// Sums over all functions of |c_n|^2, n = 0, 1, ...; empty if one is piecewise linear.
+  /// Sums of |c_n|^2 over all functions; empty if one is piecewise linear.
   Eigen::VectorXd harmonic_energies() const;
   void read_rows(const CodeSet& code, const Waveform& light, const Eigen::VectorXcd& transfer,
                  double moved);
 
   int samples_ = 0;
   int taps_ = 1;
-  std::vector<double> contrasts_;  // of the exposures
-  Eigen::VectorXd sensitivity_;    // of the tap values; 1 without tap_mismatch
-  double signal_gain_ = 1.0;       // by the camera's temperature
+  std::vector<double> contrasts_;
+  Eigen::VectorXd sensitivity_;  // 1 without tap_mismatch
+  double signal_gain_ = 1.0;     // by the camera's temperature
   double playback_offset_m_ = 0.0;
   double tap_dark_e_per_s_ = 0.0;
-  double readout_variance_e2_ = 0.0;             // constant, of a tap value or a row
-  std::vector<CorrelationFunction> functions_;   // of the tap values, before taps mix; of the rows
-  std::optional<CorrelationFunction> time_bin_;  // of light in time bin 0, for rows
+  double readout_variance_e2_ = 0.0;             // of a tap value or a row
+  std::vector<CorrelationFunction> functions_;   // of the tap values before mixing, or of the rows
+  std::optional<CorrelationFunction> time_bin_;  // for rows
   Eigen::VectorXd tap_ambient_gain_, ambient_gain_;
   Eigen::VectorXd tap_exposure_s_, exposure_s_;
   Eigen::MatrixXd readout_;
 };
 
-/// Number of harmonics of a correlation function stored for `samples` per period and a
-/// bandwidth-limited arm.
+/// Number of harmonics stored for a bandwidth-limited arm with `samples` per period.
 int harmonics_kept(int samples);
 
-/// Returns the matrix from tap values to measurements, (K, tap values): each tap value, or A - B of
-/// every two adjacent ones. For rows see ForwardModel::readout().
+/// Returns the matrix (K, tap values) from tap values to measurements: each tap value, or A - B of
+/// adjacent ones. For rows see ForwardModel::readout().
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout);
 
-/// Number of pairs of K measurements, including equal ones: (0, 0), (1, 0), (1, 1), (2, 0), ...
+/// Number of pairs of K measurements: (0, 0), (1, 0), (1, 1), (2, 0), ...
 constexpr int pairs_of(int measurements) { return measurements * (measurements + 1) / 2; }
 
 /// Dependence of the covariance of rows on light, packed by pairs_of(K) [e^2]:
@@ -174,55 +166,51 @@ struct RowCovariance {
 };
 /// Computes the covariance of rows.
 /// @param points  a multiple of N
-/// @throws std::invalid_argument unless model.has_rows()
+/// @throws InvalidArgument unless model.has_rows()
 RowCovariance row_covariance(const ForwardModel& model, int points);
 
-/// Variance of one tap value without light [e^2]: read noise and quantization.
+/// Variance of a tap value without light [e^2].
 double constant_variance_e2_of(const Sensor& sensor);
 
-/// Returns kappa (K) for an estimator on this camera: ambient_gain(), or 0 for all measurements if
-/// ambient light nearly cancels. The latter applies to rows, and to measurements that are
-/// differences of light, if the brightest operating ambient light changes none of them by more than
-/// 5 % of its noise (e.g. if a generator rounds duties of 1/2). Estimating such a small
-/// contribution would cost a whole measurement, and ignoring it has almost no effect.
+/// Returns kappa (K) for an estimator on this camera: ambient_gain(), or 0 if ambient light nearly
+/// cancels. This applies to rows, and to differences if the brightest operating ambient light
+/// changes none of them by more than 5 % of its noise. Estimating so little light would cost a
+/// whole measurement.
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera);
 
-/// Exponential tail behind the direct return, as in haze or translucent materials: the light with
-/// an additional delay u is ratio / mean exp(-u / mean) times the direct signal, per unit of u.
+/// Exponential tail behind the direct return, as in haze: the light with an additional delay u is
+/// ratio / mean exp(-u / mean) times the direct signal, per unit of u.
 struct ExponentialTail {
-  double mean_delay_m = 0.5;  ///< [m], > 0 and at most the range of the period
-  double ratio = 0.3;         ///< signal of the whole tail / signal of the direct return, >= 0
+  double mean_delay_m = 0.5;  ///< > 0 and at most the range
+  double ratio = 0.3;         ///< signal of the tail / signal of the direct return, >= 0
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws InvalidArgument
   void validate(double range_m) const;
 };
 
-/// Measured response of a scene to one short pulse: histogram of light over distance.
+/// Measured response of a scene to a short pulse: histogram of light over distance.
 struct Transient {
-  std::vector<double> light;  ///< light per bin, >= 0, any unit; distributes the pixel's signal
-  double bin_m = 0.0;         ///< depth per bin, c / 2 times its duration [m], > 0
-  double first_m = 0.0;       ///< beginning of bin 0 behind the pixel's depth [m]
+  std::vector<double> light;  ///< >= 0, any unit; distributes the pixel's signal
+  double bin_m = 0.0;         ///< depth per bin, c / 2 times its duration, > 0
+  double first_m = 0.0;       ///< beginning of bin 0 behind the pixel's depth
 
-  /// Sum of all bins.
   double total() const;
   /// Returns each non-empty bin as a return at its middle, with its share of `signal_e_per_s`.
-  /// @param depth_bin  depth of the pixel
   std::vector<Return> returns(double depth_bin, double signal_e_per_s, double camera_bin_m) const;
 
-  /// @throws std::invalid_argument naming bin, value and rule, unless bins are finite and >= 0 with
-  ///         a sum > 0, and cover at most the range
+  /// @throws InvalidArgument unless bins are finite and >= 0 with a sum > 0, and cover at most the
+  ///          range
   void validate(double range_m) const;
 };
 
-/// Returns the tap values for an exponential tail of unit light, (points, E x taps): chi averaged
-/// over exponential delays. Row j is for a direct return at depth j N / points (see
-/// ForwardModel::tap_correlation_table()). Exact for chords between rows.
+/// Returns the tap values for an exponential tail of unit light, (points, E x taps), row j for a
+/// direct return at depth j N / points. Exact for chords between rows.
 Eigen::MatrixXd tap_tail_table(const ForwardModel& model, const ExponentialTail& tail,
                                double range_m, int points);
 
 /// Returns the tap values for unit light with the distribution of a transient, (points, E x taps),
-/// row j for a pixel at depth j N / points. The histogram, constant within its bins, is resampled
-/// to the rows; exact for chords between rows. It wraps at the period, as the light does.
+/// row j for a pixel at depth j N / points. Exact for chords between rows and constant light within
+/// a bin.
 Eigen::MatrixXd tap_transient_table(const ForwardModel& model, const Transient& transient,
                                     double range_m, int points);
 

@@ -10,25 +10,22 @@
 
 namespace tofsmith {
 
-/// Arbitrary waveform generator or pattern memory that drives one arm of a camera from a table of
-/// points. Its analog bandwidth is part of the impulse response of the arm.
+/// Waveform generator or pattern memory that drives one arm of a camera from a table of points. Its
+/// bandwidth is part of the impulse response of the arm.
 struct Generator {
   double sample_rate_hz = 500e6;
   int amplitude_bits = 14;
-  /// Number of points in the table of one period; none: points_per_period(). If the sample rate
-  /// allows fewer points, some points of the table are skipped.
+  /// Default: points_per_period(). Points are skipped if the sample rate allows fewer.
   std::optional<int> table_points = {};
-  /// Time grid [s] of the edges of binary waveforms; must divide the period. None: edges may occur
-  /// at any point.
+  /// Default: edges may occur at any point.
   std::optional<double> edge_grid_s = {};
 
-  /// Number of points output per period, n: the largest integer with n f0 <= sample_rate_hz, but at
-  /// most table_points. The clock is n f0.
+  /// Number of points output per period: the largest n with n f0 <= sample_rate_hz, at most
+  /// table_points. The clock is n f0.
   int points_per_period(double fundamental_frequency_hz) const;
-  /// Number of points in the table of one period.
   int points_in_table(double fundamental_frequency_hz) const;
 
-  /// @throws std::invalid_argument naming `field`.member, value and rule
+  /// @throws InvalidArgument with a field `field`.*
   void validate(std::string_view field, double fundamental_frequency_hz) const;
 
   friend bool operator==(const Generator&, const Generator&) = default;
@@ -51,28 +48,25 @@ inline void describe(FieldVisitor& fields, Generator& generator) {
 }
 
 /// Returns the table of one period of a nominal waveform. Each point is held for 1/n of the period.
-///   - If there is an edge grid, switching times of a binary waveform are first moved to it.
-///   - Each point has the value of the waveform at its middle. A switching time therefore moves to
-///     the nearest point, by at most half a point (ties: the earlier point). Pulses shorter than a
-///     point may vanish.
-///   - Amplitudes are rounded to 2^bits levels from 0 to the peak of the waveform. Binary waveforms
-///     stay binary; they are unchanged if their switching times coincide with points.
-/// @throws std::invalid_argument if the generator does not support the frequency, or for negative
-///   values
+///   - Switching times of binary waveforms are first moved to the edge grid, if any.
+///   - Each point has the value of the waveform at its middle. A switching time moves to the
+///     nearest point (ties: the earlier one), and pulses shorter than a point may vanish.
+///   - Amplitudes are rounded to 2^bits levels from 0 to the peak. Binary waveforms stay binary.
+/// @throws InvalidArgument if the generator does not support the frequency, or for negative values
 Waveform generator_table(const Waveform& waveform, const Generator& generator,
                          double fundamental_frequency_hz);
 
-/// Returns the waveform that a generator outputs for a nominal one: its table, resampled at the
-/// middles of the output points if the table has more points than points_per_period().
-/// @throws std::invalid_argument as generator_table()
+/// Returns the output of a generator for a nominal waveform: its table, resampled at the middles of
+/// the output points if it has more points than points_per_period().
+/// @throws InvalidArgument as generator_table()
 Waveform generated(const Waveform& waveform, const Generator& generator,
                    double fundamental_frequency_hz);
 
-/// Returns the switching time after generated() has rounded it [periods].
+/// Returns a switching time as rounded by generated() [periods].
 double generated_switching_time(double switching_time_periods, const Generator& generator,
                                 double fundamental_frequency_hz);
 
-/// Returns the point to which generator_table() moves a switching time without edge grid [points].
+/// Returns the point to which generator_table() moves a switching time without edge grid.
 double nearest_point(double switching_time_periods, double points_per_period);
 
 }  // namespace tofsmith

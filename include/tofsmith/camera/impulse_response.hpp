@@ -18,30 +18,28 @@ struct ImpulseResponse {
   enum class Kind { none, hann, gaussian, lowpass, file };
 
   Kind kind = Kind::none;
-  /// hann: frequency [Hz] at which the window attenuates by a factor of 5. The window has a width
-  /// of 1.444 / f_max_hz and the transfer function sinc(x) / (1 - x^2), x = f * width.
+  /// hann: frequency at which the window attenuates by 5. The window has a width of 1.444 /
+  /// f_max_hz and the transfer function sinc(x) / (1 - x^2), x = f * width.
   /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4.2 and Fig. 5
   double f_max_hz = 0.0;
-  double cutoff_hz = 0.0;  ///< gaussian, lowpass: -3 dB frequency [Hz]
-  /// file: measured response, linear between samples, normalized to sum 1 when used. The transfer
-  /// function is 0 above half the sampling rate.
+  double cutoff_hz = 0.0;  ///< gaussian, lowpass: -3 dB frequency
+  /// file: linear between samples, normalized to sum 1 when used. The transfer function is 0 above
+  /// half the sampling rate.
   std::vector<double> samples;
-  double time_step_s = 0.0;  ///< file: time between samples [s]
-  std::string file;          ///< file: path of the samples; may be empty
+  double time_step_s = 0.0;  ///< file
+  std::string file;          ///< file: path; may be empty
 
   /// Returns the transfer function at a frequency [Hz].
   std::complex<double> transfer(double frequency_hz) const;
 
-  /// @throws std::invalid_argument naming `field`.member, value and rule
+  /// @throws InvalidArgument with a field `field`.*
   void validate(std::string_view field) const;
 
   friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
 };
 
-/// Names of the kinds, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 5> impulse_response_kinds = {
     "none", "hann", "gaussian", "lowpass", "file"};
-/// "none", "hann", "gaussian", "lowpass", "file".
 std::string_view name_of(ImpulseResponse::Kind kind);
 
 /// Keys of [light.impulse_response] and [sensor.impulse_response].

@@ -12,35 +12,32 @@
 
 namespace tofsmith {
 
-/// Sensors with several frame modes that crop or bin the image; the frame size identifies the mode.
+/// Sensors with frame modes that crop or bin the image. The frame size identifies the mode.
 enum class FrameModes {
   azure_kinect,  ///< 640 x 576, 320 x 288, 512 x 512 or 1024 x 1024 of 1024 x 1024 pixels
 };
 
-/// Names of the enumerators, in their order.
 inline constexpr std::array<std::string_view, 1> frame_modes_words = {"azure-kinect"};
 
-/// Pinhole model of the sensor and distortion of its lens. Required for point clouds and for
-/// conversions between z-depth and radial distance.
+/// Pinhole model of the sensor with lens distortion, for point clouds and conversions between
+/// z-depth and radial distance.
 struct Lens {
-  double fx_px = 0.0;                                ///< focal length in columns [px]
-  double fy_px = 0.0;                                ///< focal length in rows [px]
-  double cx_px = 0.0;                                ///< column of the optical axis [px]
-  double cy_px = 0.0;                                ///< row of the optical axis [px]
+  double fx_px = 0.0;
+  double fy_px = 0.0;
+  double cx_px = 0.0;
+  double cy_px = 0.0;
   std::optional<LensDistortion> distortion = {};     ///< none: ideal pinhole
-  std::optional<int> width_px = {}, height_px = {};  ///< image size [px]; none: any
+  std::optional<int> width_px = {}, height_px = {};  ///< none: any
   std::optional<FrameModes> frame_modes = {};        ///< none: frames are whole images
-  /// Path of a NumPy array (.npy) with the ray of each pixel, which replaces all other members:
-  /// shape (H, W, 2) with x/z and y/z, or (H, W, 3) with directions. NaN marks pixels without a
-  /// ray. Empty: pinhole.
+  /// Path of a .npy array with the ray of each pixel, which replaces all other members: (H, W, 2)
+  /// with x/z and y/z, or (H, W, 3) with directions. NaN: no ray. Empty: pinhole.
   std::string rays = {};
 
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
-/// Keys of [lens] that describe the pinhole. `calibration` names a file that replaces most of them,
-/// `calibration_camera` selects one of its cameras. load_camera() and similar functions read the
-/// file.
+/// Keys of [lens] that describe the pinhole. load_camera() and similar functions read the file
+/// `calibration`, which replaces most of them.
 inline void describe(FieldVisitor& fields, Lens& lens) {
   fields.value(Key("rays", "File with the ray of each pixel (.npy), instead of a pinhole"),
                InputPath{lens.rays});
@@ -93,38 +90,35 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
   });
 }
 
-/// Optical blur of the image in simulations, and its sampling. The blur applies to light, not to
-/// depth: the expected electrons of a pixel are a weighted sum over many rays.
+/// Blur of simulated images and its sampling. It applies to light, not to depth: the expected
+/// electrons of a pixel are a weighted sum over many rays.
 struct LensBlur {
   enum class Kind {
-    none,      ///< no blur
+    none,
     gaussian,  ///< Gaussian point spread function
-    disc,      ///< disc of confusion of a thin lens, which depends on distance
+    disc,      ///< disc of confusion of a thin lens
   };
   Kind kind = Kind::none;
-  double blur_sigma_px = 0.0;     ///< gaussian: standard deviation in each direction [px]
-  double focal_length_m = 0.0;    ///< disc: f [m]
-  double f_number = 0.0;          ///< disc: focal length over aperture
-  double focus_distance_m = 0.0;  ///< disc: distance in focus [m], > focal length
-  double pixel_pitch_m = 0.0;     ///< disc: distance between pixel centres [m]
-  /// n: scenes made of shapes are sampled with n x n rays, evenly spaced over each pixel; 1: one
-  /// ray through the pixel centre. Depth images always have one value per pixel.
+  double blur_sigma_px = 0.0;     ///< gaussian: standard deviation in each direction
+  double focal_length_m = 0.0;    ///< disc
+  double f_number = 0.0;          ///< disc
+  double focus_distance_m = 0.0;  ///< disc: distance in focus, > focal length
+  double pixel_pitch_m = 0.0;     ///< disc: distance between pixel centres
+  /// n: shapes are sampled with n x n rays per pixel; 1: one ray through the centre.
   int pixel_samples = 1;
 
-  /// Returns true if every pixel samples only the ray through its centre.
   bool is_sharp() const { return kind == Kind::none && pixel_samples == 1; }
 
-  /// Returns the radius of the disc of confusion at a distance [px]; NaN means infinitely far.
+  /// Returns the radius of the disc of confusion [px]; a NaN distance is infinite.
   ///   r = f^2 / (2 k (z_f - f)) |1 - z_f / z| / pitch,  k: f-number, z_f: focus distance
   double disc_radius_px(double distance_m) const;
 
-  /// @throws std::invalid_argument naming the field as lens.*, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 
   friend bool operator==(const LensBlur&, const LensBlur&) = default;
 };
 
-/// Names of the kinds of blur, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 3> lens_blur_kinds = {"none", "gaussian", "disc"};
 
 /// Keys of [lens] that describe the blur.

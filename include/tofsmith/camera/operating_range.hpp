@@ -24,24 +24,19 @@ auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
                     Field("ambient_e_per_s", p.ambient_e_per_s, at_least(0)));
 }
 
-/// Definition of the depth error.
 enum class DepthErrorKind {
   linear,    ///< |decoded - true|, as in the paper: a wrap costs the whole range
   circular,  ///< the shorter way around the range
 };
-/// Words for the kinds, in their order.
 inline constexpr std::array<std::string_view, 2> depth_error_kinds = {"linear", "circular"};
-/// The enumerator's name.
 constexpr std::string_view name_of(DepthErrorKind kind) {
   return depth_error_kinds[static_cast<std::size_t>(kind)];
 }
 
-/// Statistic of the depth errors of trials.
 enum class ErrorStatistic {
   mae,   ///< mean absolute error
-  rmse,  ///< root mean square error: wrong lobes, which are far away, have more weight
+  rmse,  ///< root mean square error; wrong lobes have more weight
 };
-/// Words for the statistics, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 2> error_statistics = {"mae", "rmse"};
 
 /// Depth error that designs minimize.
@@ -52,23 +47,22 @@ struct DepthErrorMeasure {
   constexpr DepthErrorMeasure(DepthErrorKind kind_, ErrorStatistic statistic_ = ErrorStatistic::mae)
       : kind(kind_), statistic(statistic_) {}
 };
-/// "linear", "circular", "linear root mean square" or "circular root mean square".
 constexpr std::string_view name_of(DepthErrorMeasure measure) {
   if (measure.statistic == ErrorStatistic::mae) return name_of(measure.kind);
   return measure.kind == DepthErrorKind::linear ? "linear root mean square"
                                                 : "circular root mean square";
 }
 
-/// Multipath light in the scenes of a camera: one second return, whose ratio and delay are uniform
-/// between their limits.
+/// Multipath in the scenes of a camera: one second return with uniformly distributed ratio and
+/// delay.
 struct OperatingMultipath {
-  std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, smallest and largest
-  std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, below the range [m]
-  /// Designs minimize E1^(1 - weight) E2^weight, where E1 is the error of single returns and E2 the
-  /// error with such a second return, decoded as a single one.
+  std::array<double, 2> ratio{0.1, 0.5};    ///< S2 / S1, smallest and largest
+  std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, below the range
+  /// Designs minimize E1^(1 - weight) E2^weight, with the errors E1 of single returns and E2 with
+  /// such a second return, decoded as a single one.
   double weight = 0.2;
 
-  /// Ratio and delay for numbers that are uniform on [0, 1).
+  /// For numbers that are uniform on [0, 1).
   double ratio_at(double uniform) const { return ratio[0] + uniform * (ratio[1] - ratio[0]); }
   double delay_at_m(double uniform) const {
     return delay_m[0] + uniform * (delay_m[1] - delay_m[0]);
@@ -77,7 +71,7 @@ struct OperatingMultipath {
   /// E1^(1 - weight) E2^weight.
   double weighed(double single_return_error, double operating_multipath_error) const;
 
-  /// @throws std::invalid_argument naming the field as operating.multipath.*, value and rule
+  /// @throws InvalidArgument
   void validate(double range_m) const;
 
   friend bool operator==(const OperatingMultipath&, const OperatingMultipath&) = default;
@@ -97,21 +91,17 @@ inline void describe(FieldVisitor& fields, OperatingMultipath& multipath) {
 
 /// Conditions under which codes are evaluated: every pair of signal and ambient light.
 struct OperatingRange {
-  std::vector<double> signal_e_per_s;   ///< S [e/s]
-  std::vector<double> ambient_e_per_s;  ///< A [e/s]
+  std::vector<double> signal_e_per_s;   ///< S
+  std::vector<double> ambient_e_per_s;  ///< A
   DepthErrorKind error = DepthErrorKind::circular;
   ErrorStatistic statistic = ErrorStatistic::mae;
-  double albedo = 1.0;          ///< scales the signal
-  bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
-  /// Number of pixels of one depth that a filter adds before decoding: codes are evaluated on such
-  /// sums (judged_camera()).
+  double albedo = 1.0;
+  bool uniform_albedo = false;  ///< instead: drawn from (0, 1) for every trial
+  /// See judged_camera().
   int neighbours = 1;
-  /// Multipath that designs take into account; none: single returns.
+  /// Absent: single returns.
   std::optional<OperatingMultipath> multipath = {};
-  /// Nearest and farthest depth [m]; none: anywhere in the unambiguous range.
   std::optional<std::array<double, 2>> working_distance_m = {};
-  /// Histogram of depths: weights of equal parts of the working distance, or of the range; none:
-  /// all depths are equally frequent.
   std::optional<std::vector<double>> depths = {};
 
   /// All pairs, in the order of the signals.
@@ -168,12 +158,11 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
   fields.table(Key("multipath", "Multipath that designs take into account"), range.multipath);
 }
 
-/// Conditions of the paper: the linear error at 25 pairs, S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5} and
-/// A in {1e2, 1e3, 1e4, 10^4.5, 1e5}.
+/// Conditions of the paper: linear error, S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5} and A in {1e2, 1e3,
+/// 1e4, 10^4.5, 1e5}.
 OperatingRange paper_operating_range();
 
-/// Conditions of a camera file without [operating]: the light levels of the paper and the circular
-/// error.
+/// Default conditions: the light levels of the paper and the circular error.
 OperatingRange default_operating_range();
 
 }  // namespace tofsmith

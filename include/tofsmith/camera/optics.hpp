@@ -12,9 +12,9 @@
 
 namespace tofsmith {
 
-/// Optics of a camera, which relate watts and lux to electrons. Assumptions: Lambertian surfaces
-/// that face the camera, uniform illumination of the field of view, objects far from the lens.
-/// @see docs/optics.md for formulas and their sources
+/// Optics of a camera, which relate watts and lux to electrons. Assumes Lambertian surfaces that
+/// face the camera, uniform illumination of the field of view, and objects far from the lens.
+/// @see docs/optics.md
 struct Optics {
   double source_power_w = 0.0;
   double wavelength_m = 0.0;
@@ -25,8 +25,7 @@ struct Optics {
   double transmission = 1.0;
   double fill_factor = 1.0;
   std::optional<double> filter_width_m = {};
-  /// Illuminance of surfaces. The global spectrum of ASTM G173-03 has 109.9 klx. Requires a filter
-  /// within 800 to 1000 nm.
+  /// The global spectrum of ASTM G173-03 has 109.9 klx.
   std::optional<double> sunlight_klux = {};
   std::optional<double> sunlight_w_per_m2_nm = {};  ///< replaces sunlight_klux
 
@@ -34,22 +33,22 @@ struct Optics {
   ///   S = albedo E tau / (4 k^2) pitch^2 fill QE lambda / (h c),
   ///   E = P / (4 d^2 tan(h / 2) tan(v / 2)).
   ///
-  /// A has the irradiance by sunlight within the band of the filter for E.
-  /// @throws std::invalid_argument naming field, value and rule
+  /// For A, E is the irradiance by sunlight within the band of the filter.
+  /// @throws InvalidArgument
   OperatingPoint light_at(double distance_m, double albedo = 1.0) const;
-  /// Returns the distance at which a surface returns the signal [m].
+  /// Returns the distance of a surface with this signal [m].
   double distance_m(double signal_e_per_s, double albedo = 1.0) const;
-  /// Returns the mean optical power that yields the signal at the distance [W].
+  /// Returns the mean optical power for this signal at the distance [W].
   double source_power_for_w(double signal_e_per_s, double distance_m, double albedo = 1.0) const;
 
-  /// Returns the irradiance by the light source on a surface that faces it [W / m2].
+  /// Returns the irradiance of a facing surface by the light source.
   double source_w_per_m2(double distance_m) const;
-  /// Returns the irradiance by sunlight within the band of the filter [W / m2].
+  /// Returns the irradiance by sunlight within the band of the filter.
   double sunlight_w_per_m2() const;
   /// Returns the electrons per pixel for 1 J/m2 on a white surface.
   double electrons_per_j_per_m2() const;
 
-  /// @throws std::invalid_argument naming the field as optics.*, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 
   friend bool operator==(const Optics&, const Optics&) = default;
@@ -96,10 +95,8 @@ inline void describe(FieldVisitor& fields, Optics& optics) {
                optics.sunlight_w_per_m2_nm);
 }
 
-/// Typical bandwidth of an optical filter, as a line of a camera file.
 inline constexpr std::string_view typical_filter_line = "filter_width_m = 30e-9";
-/// Returns typical values of all required keys and of the filter, as one line of a camera file:
-/// "optics = { source_power_w = 0.5, ... }".
+/// Returns typical values of all required keys and of the filter as a line of a camera file.
 std::string typical_optics_line();
 
 }  // namespace tofsmith

@@ -11,27 +11,25 @@
 
 namespace tofsmith {
 
-/// Waveform that a light source can generate.
 enum class LightWaveform { square };
 inline constexpr std::array<std::string_view, 1> light_waveforms = {"square"};
 
-/// Square waves that a sensor chip can generate for its light and its gates. Gates are open for
-/// half of the period. Used by `design --method frequencies` only.
+/// Square waves that a sensor chip can generate for its light and its gates, which are open for
+/// half of the period. Only for `design --method frequencies`.
 struct SquareLight {
   LightWaveform waveform = LightWaveform::square;
   double duty = 0.5;
-  std::vector<double> duties;                       ///< available duties; empty: only `duty`
-  std::optional<std::array<double, 2>> duty_range;  ///< smallest and largest; replaces a list
+  std::vector<double> duties;                       ///< empty: only `duty`
+  std::optional<std::array<double, 2>> duty_range;  ///< replaces a list
   std::optional<std::vector<double>> frequencies_hz;
-  std::optional<double> clock_hz;            ///< upper limit of the frequencies
-  std::optional<std::vector<int>> dividers;  ///< of clock_hz; replace frequencies_hz
-  int phase_steps = 4;                       ///< phases are multiples of 1 / phase_steps periods
+  std::optional<double> clock_hz;
+  std::optional<std::vector<int>> dividers;
+  int phase_steps = 4;
 
-  /// Returns the modulation frequencies in ascending order: frequencies_hz, or clock_hz divided by
-  /// each divider.
+  /// Returns frequencies_hz, or clock_hz divided by each divider, in ascending order.
   std::vector<double> modulation_frequencies_hz() const;
 
-  /// @throws std::invalid_argument naming the field as light.*, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 
   friend bool operator==(const SquareLight&, const SquareLight&) = default;
