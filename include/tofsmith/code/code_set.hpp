@@ -10,83 +10,78 @@
 
 namespace tofsmith {
 
-/// Interval [rise, fall) in which a binary waveform is on, in periods. 0 <= rise < 1 and rise <
-/// fall <= rise + 1; it may extend past the end of the period.
+/// Interval [rise, fall) in which a binary waveform is on, in periods: 0 <= rise < 1 and rise <
+/// fall <= rise + 1. It may extend past the end of the period.
 struct OnInterval {
   double rise = 0.0;
   double fall = 0.0;
   friend bool operator==(const OnInterval&, const OnInterval&) = default;
 };
 
-/// A periodic piecewise constant signal: values[i] on [breakpoints[i], breakpoints[i + 1]), in
-/// periods; the last value extends to the first breakpoint.
+/// Periodic piecewise constant signal: values[i] on [breakpoints[i], breakpoints[i + 1]), in
+/// periods. The last value extends to the first breakpoint.
 struct StepFunction {
   std::vector<double> breakpoints;
   std::vector<double> values;
 };
 
 /// One period of a modulation or demodulation function. Binary waveforms are stored as switching
-/// times and sums of cosines as Fourier coefficients, both independent of a grid; other waveforms
-/// as N samples, each constant over its cell [n, n + 1)/N.
+/// times and sums of cosines as Fourier coefficients; other waveforms as N samples, each constant
+/// over its cell [n, n + 1)/N.
 class Waveform {
  public:
   /// `level` inside the intervals, 0 elsewhere.
-  /// @throws std::invalid_argument unless intervals are sorted, disjoint and within the period, and
-  ///         level is finite and > 0
+  /// @throws InvalidArgument unless intervals are sorted, disjoint and within the period, and level
+  ///         is finite and > 0
   static Waveform binary(std::vector<OnInterval> on, double level = 1.0);
-  /// @throws std::invalid_argument if empty or not finite
+  /// @throws InvalidArgument if empty or not finite
   static Waveform sampled(Eigen::VectorXd samples);
-  /// x(t) = c_0 + 2 Re sum_n c_n exp(2 pi i n t), a finite sum of cosines.
+  /// x(t) = c_0 + 2 Re sum_n c_n exp(2 pi i n t).
   /// @param coefficients  c_0 (real), c_1, ...
-  /// @throws std::invalid_argument if empty, not finite or with more than 2^16 harmonics
+  /// @throws InvalidArgument if empty, not finite or with more than 2^16 harmonics
   static Waveform cosines(Eigen::VectorXcd coefficients);
   /// mean + amplitude cos(2 pi frequency t - phase_rad).
   static Waveform cosine(int frequency, double mean, double amplitude, double phase_rad);
-  /// Always on, or never on (level 0).
   static Waveform constant(double level);
-  /// Converts samples to switching times: on where above `threshold` (a fraction of the maximum).
+  /// On where samples exceed `threshold`, a fraction of the maximum.
   static Waveform binary_from_samples(const Eigen::VectorXd& samples, double level,
                                       double threshold = 0.5);
 
   bool is_binary() const { return samples_.size() == 0 && coefficients_.size() == 0; }
   bool is_sampled() const { return samples_.size() > 0; }
-  /// Switching times; empty unless is_binary().
+  /// Empty unless is_binary().
   const std::vector<OnInterval>& on_intervals() const { return on_; }
   /// Value of a binary waveform while on.
   double level() const { return level_; }
   /// Samples (N); empty unless is_sampled().
   const Eigen::VectorXd& samples() const { return samples_; }
-  /// Fourier coefficients c_0, c_1, ... of a sum of cosines; else empty.
+  /// c_0, c_1, ... of a sum of cosines; else empty.
   const Eigen::VectorXcd& coefficients() const { return coefficients_; }
 
   double mean() const;
   double minimum() const;
   double peak() const;
-  /// Share of the period in which the waveform exceeds half its peak; exact if binary.
+  /// Share of the period above half the peak; exact if binary.
   double duty() const;
   /// Number of jumps in one period; 0 for a sum of cosines.
   int edges() const;
-  /// Number of repetitions per period: the greatest common divisor of the harmonics, at least 1.
+  /// Repetitions per period: the greatest common divisor of the harmonics, at least 1.
   int repetitions() const;
 
-  /// Means over N cells of the period, as output by a generator with N samples. Preserves the mean.
+  /// Means over N cells, as output by a generator with N samples.
   Eigen::VectorXd cell_averages(int samples) const;
-  /// Fourier coefficients 0 to `highest` of the continuous waveform over the unit period:
-  /// c_n = integral of x(t) exp(-2 pi i n t) dt.
+  /// c_n = integral of x(t) exp(-2 pi i n t) dt, n = 0 to `highest`.
   Eigen::VectorXcd harmonics(int highest) const;
-  /// The waveform as a step function. A sum of cosines is averaged over at least 64 cells per
-  /// period of its highest harmonic.
+  /// Averages a sum of cosines over at least 64 cells per period of its highest harmonic.
   StepFunction steps() const;
   /// a + b x(t), for waveforms that are not binary.
   Waveform scaled(double a, double b) const;
   /// Values at the centres of N equal cells.
   Eigen::VectorXd values_at_middles(int points) const;
 
-  /// The waveform delayed by `periods`.
-  /// @throws std::invalid_argument if a sampled waveform would be delayed by a fraction of a sample
+  /// @throws InvalidArgument if a sampled waveform would be delayed by a fraction of a sample
   Waveform delayed(double periods) const;
-  /// 1 - x, the gain of the other bucket of a two-bucket sensor. x must be in [0, 1], with level 1
-  /// if binary.
+  /// 1 - x, the gain of the other bucket. x must be in [0, 1], with level 1 if binary.
   Waveform complement() const;
 
   friend bool operator==(const Waveform& a, const Waveform& b);
@@ -98,65 +93,60 @@ class Waveform {
   Eigen::VectorXcd coefficients_;
 };
 
-/// A single pulse [begin, begin + duty) of unit mean power: level 1/duty.
+/// Pulse [begin, begin + duty) of unit mean power: level 1/duty.
 Waveform rectangular_pulse(double duty, double begin = 0.0);
 
-/// `count` equal pulses per period with total duty `duty` and unit mean power.
+/// Equal pulses of total duty `duty` and unit mean power.
 Waveform pulse_train(int count, double duty);
 
-/// `frequency` cycles per period, each on for its first half; the first begins at `begin`
-/// [periods].
+/// `frequency` cycles per period, each on for its first half, from `begin` [periods].
 Waveform square_wave(int frequency, double begin);
 
-/// Maximum number of rows of one exposure.
 inline constexpr int max_exposure_rows = 16;
 
 /// Origin of a code; stored in its file, without effect on the code.
 struct Provenance {
   std::string method;             ///< family, factorize, ...
-  std::string camera;             ///< name of the camera that it was designed for
-  std::uint64_t seed = 0;         ///< seed of the search that found it
-  std::string version;            ///< version of tofsmith
+  std::string camera;             ///< name
+  std::uint64_t seed = 0;         ///< of the search
+  std::string version;            ///< of tofsmith
   std::vector<double> residuals;  ///< rms distance from the target, per measurement; may be empty
-  double depth_error_m = 0.0;     ///< depth error that it was selected by; 0: not evaluated
+  double depth_error_m = 0.0;     ///< by which it was selected; 0: not evaluated
 };
 
 /// A set of coding functions: E modulation functions, one per exposure, and K = E x taps
 /// demodulation functions. Measurement i belongs to exposure i / taps and tap i % taps.
 ///
-/// Modulation is emitted power over average power: values >= 0, mean at most 1. Demodulation is one
-/// of
+/// Modulation is emitted power over average power, >= 0, with a mean of at most 1. Demodulation is
+/// one of
 /// - sensor gain: in [0, 1]; the taps of an exposure add up to at most 1
 /// - mixer weight of a signed code: in [-1, 1], one per exposure; stored as the drive x in [0, 1],
 ///   with weight 2 x - 1
-/// - rows of one exposure: K weighted sums of the light in N time bins; any values, constant over a
-///   bin
+/// - rows of one exposure: K weighted sums of the light in N time bins; any values
 class CodeSet {
  public:
-  /// @param samples  N, number of time samples per period
-  /// @throws std::invalid_argument naming the waveform and the violated rule
+  /// @throws InvalidArgument naming the waveform and the rule
   static CodeSet create(std::string name, int samples, int taps, std::vector<Waveform> modulation,
                         std::vector<Waveform> demodulation);
 
-  /// Creates rows of one exposure: all K measurements are weighted sums of the same light.
-  /// @param rows  (N, K): weights of the time bins, of any sign and scale, none all zero
-  /// @throws std::invalid_argument naming light or row and the violated rule
+  /// Creates rows of one exposure: weighted sums of the same light.
+  /// @param rows  (N, K): weights of any sign and scale, none all zero
+  /// @throws InvalidArgument naming light or row and the rule
   static CodeSet create_rows(std::string name, Waveform light, const Eigen::MatrixXd& rows);
-  /// As above from arrays: N samples of light, normalized to mean 1, and rows (N, K) or (K, N).
+  /// As above from N samples of light, normalized to mean 1, and rows (N, K) or (K, N).
   static CodeSet create_rows(std::string name, const Eigen::VectorXd& light, Eigen::MatrixXd rows);
 
-  /// Creates a signed code from weights of a mixer (N, E). Weights that are only -1 or 1 become
-  /// switching times.
-  /// @throws std::invalid_argument naming the waveform and the violated rule
+  /// Creates a signed code from weights of a mixer (N, E); weights of only -1 or 1 become switching
+  /// times.
+  /// @throws InvalidArgument naming the waveform and the rule
   static CodeSet create_signed(std::string name, std::vector<Waveform> modulation,
                                const Eigen::MatrixXd& weights);
 
   const std::string& name() const { return name_; }
   int samples() const { return samples_; }
   int taps() const { return taps_; }  ///< taps per exposure, or number of rows
-  /// Returns true if the measurements are rows of one exposure.
   bool is_rows() const { return is_rows_; }
-  /// Returns true if the demodulation is that of a mixer.
+  /// Returns true for a mixer.
   bool is_signed() const { return is_signed_; }
   int exposures() const { return static_cast<int>(modulation_.size()); }
   int measurements() const { return static_cast<int>(demodulation_.size()); }
@@ -165,48 +155,44 @@ class CodeSet {
   const Waveform& modulation(int exposure) const {
     return modulation_[static_cast<std::size_t>(exposure)];
   }
-  /// Demodulation function of one measurement; for a signed code its drive in [0, 1].
+  /// For a signed code, the drive in [0, 1].
   const Waveform& demodulation(int measurement) const {
     return demodulation_[static_cast<std::size_t>(measurement)];
   }
-  /// First exposure of each frequency, i.e. of each run of exposures with the same modulation.
+  /// First exposure of each run of exposures with the same modulation, i.e. of each frequency.
   std::vector<int> frequency_starts() const;
-  /// Modulation of the exposure that the measurement belongs to.
   const Waveform& modulation_of(int measurement) const {
     return modulation(exposure_of(measurement));
   }
 
-  /// Returns true if all waveforms are binary.
   bool is_binary() const;
-  /// Largest modulation value of all exposures, i.e. the peak factor that the code requires.
+  /// Peak factor that the code requires.
   double peak() const;
-  /// Cell averages of the modulation functions, (N, E).
+  /// Cell averages, (N, E).
   Eigen::MatrixXd modulation_samples() const;
-  /// Cell averages of the demodulation functions, (N, K): gains, weights in [-1, 1], or rows.
+  /// Cell averages, (N, K): gains, weights in [-1, 1], or rows.
   Eigen::MatrixXd demodulation_samples() const;
 
   CodeSet renamed(std::string name) const;
-  /// The same code with a different number of samples; waveforms do not change.
+  /// Changes only the number of samples, not the waveforms.
   CodeSet resampled(int samples) const;
-  /// Moves the origin of depth: correlation'(z) = correlation(z + rotation_bin), by delaying every
-  /// modulation by rotation_bin samples.
+  /// Moves the origin of depth: correlation'(z) = correlation(z + rotation_bin).
   CodeSet rotated(int rotation_bin) const;
-  /// Returns the same code with the share of the total integration time of each exposure.
-  /// @param shares  one per exposure, > 0, of sum 1; empty: equal shares
-  /// @throws InvalidArgument naming the share and the violated rule
+  /// Sets the share of the total integration time of each exposure.
+  /// @param shares  > 0, of sum 1; empty: equal shares
+  /// @throws InvalidArgument naming the share and the rule
   CodeSet with_exposure_shares(std::vector<double> shares) const;
-  /// Share of the total integration time of each exposure; empty: equal shares.
+  /// Empty: equal shares.
   const std::vector<double>& exposure_shares() const { return exposure_shares_; }
 
-  /// Adds the complement of every demodulation, for a two-bucket sensor.
-  /// @throws std::invalid_argument unless taps() == 1
+  /// Adds the complement of every demodulation.
+  /// @throws InvalidArgument unless taps() == 1
   CodeSet with_two_buckets() const;
-  /// Replaces every gain d by the mixer weight 2 d - 1, which equals the difference of two buckets
-  /// with d and 1 - d.
-  /// @throws std::invalid_argument unless taps() == 1
+  /// Replaces every gain d by the mixer weight 2 d - 1, the difference of two buckets d and 1 - d.
+  /// @throws InvalidArgument unless taps() == 1
   CodeSet with_signed_weights() const;
-  /// Convert between a signed code and a code of two buckets with complementary gains.
-  /// @throws std::invalid_argument if the code is not of the required kind
+  /// Convert between a signed code and a code of two complementary buckets.
+  /// @throws InvalidArgument for other codes
   CodeSet signed_of_buckets() const;
   CodeSet buckets_of_signed() const;
 
