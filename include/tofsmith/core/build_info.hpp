@@ -8,32 +8,30 @@
 
 namespace tofsmith {
 
-/// Version, build options and instruction sets, for bug reports. Results do not depend on this;
-/// result files contain only the version.
+/// Version, build options and instruction sets, for bug reports. Results do not depend on it.
 struct BuildInfo {
-  std::string version;                ///< "0.1.0"
-  std::string commit;                 ///< 12 digits, "+dirty" after local changes; or "unknown"
-  std::string compiler;               ///< "GNU 12.2.0"
-  std::string build_type;             ///< "Release"
-  std::string library;                ///< "shared" or "static"
+  std::string version;
+  std::string commit;  ///< 12 digits, "+dirty" after local changes; or "unknown"
+  std::string compiler;
+  std::string build_type;
+  std::string library;
   std::vector<std::string> targets;   ///< instruction sets with dedicated kernels, best first
-  std::vector<std::string> features;  ///< optional features of this build: "TBB", "FFTW"
+  std::vector<std::string> features;  ///< optional features: "TBB", "FFTW"
 };
 
 BuildInfo build_info();
 
-/// Four lines, starting with "tofsmith 0.1.0 (commit 0123456789ab)".
 std::string to_text(const BuildInfo& info);
 
-/// Instruction set of the vector code in this process, e.g. "AVX2". Results have the same bits
-/// wherever it is the same; otherwise sums may be rounded differently.
+/// Instruction set of the vector code in this process, e.g. "AVX2". With another one, sums may be
+/// rounded differently.
 std::string dispatch_target();
 
-/// Instruction sets that both this machine and the library support, best first.
+/// Instruction sets that both machine and library support, best first.
 std::vector<std::string> dispatch_targets();
 
-/// Selects the instruction set of vector code in this process. Call it before any other work.
-/// @throws std::invalid_argument unless `name` is one of dispatch_targets(), case-insensitive
+/// Selects the instruction set in this process. Must be called before any other work.
+/// @throws InvalidArgument unless `name` is one of dispatch_targets(), case-insensitive
 void pin_dispatch_target(std::string_view name);
 
 }  // namespace tofsmith

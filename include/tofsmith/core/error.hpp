@@ -12,33 +12,33 @@
 
 namespace tofsmith {
 
-/// A file, configuration or network error. The message starts with the place (`name:line:column`,
-/// `name: byte 128`), followed by found and expected values.
+/// A file, configuration or network error. The message starts with the place, followed by found and
+/// expected values.
 class IoError : public std::runtime_error {
  public:
   IoError(std::string_view place, std::string_view problem);
 
-  /// A file, `name:line:column`, `name: byte 128`, or a setting as given.
+  /// File, `name:line:column`, `name: byte 128`, or a setting.
   const std::string& place() const { return place_; }
-  /// The message without the place.
+  /// Message without the place.
   const std::string& problem() const { return problem_; }
 
  private:
   std::string place_, problem_;
 };
 
-/// A rule and the value that violates it. Queries such as why_not_playable() return it or its text;
-/// checks throw it as InvalidArgument.
+/// A violated rule. Queries such as why_not_playable() return it or its text; checks throw it as
+/// InvalidArgument.
 struct BrokenRule {
   std::string field;  ///< as a user writes it: `sensor.taps`, `DesignOptions::trials`
-  std::string value;  ///< the value found
-  std::string rule;   ///< the requirement
+  std::string value;  ///< found
+  std::string rule;
 
   /// "`field` = `value`; `rule`"
   std::string text() const;
 };
 
-/// A bad argument, shape or option. The message is the text of the violated rule.
+/// A bad argument, shape or option. The message is BrokenRule::text().
 class InvalidArgument : public std::invalid_argument {
  public:
   explicit InvalidArgument(BrokenRule broken);
@@ -51,7 +51,7 @@ class InvalidArgument : public std::invalid_argument {
   BrokenRule broken_;
 };
 
-/// Work was cancelled by the caller's progress callback.
+/// The caller's progress callback cancelled the work.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
@@ -69,35 +69,32 @@ std::string describe(const Value& value) {
 }
 }  // namespace detail
 
-/// Throws InvalidArgument "`field` = `value`; `rule`".
+/// Throws InvalidArgument.
 [[noreturn]] void reject(std::string_view field, std::string_view value, std::string_view rule);
 
-/// Returns a violated rule with the printed form of `value`.
+/// Returns a rule that `value` violates.
 template <typename Value>
 BrokenRule broken(std::string_view field, const Value& value, std::string_view rule) {
   return {std::string(field), detail::describe(value), std::string(rule)};
 }
 
-/// Checks a setting.
-/// @throws InvalidArgument "`field` = `value`; `rule`" unless `holds`
+/// @throws InvalidArgument unless `holds`
 template <typename Value>
 void require(bool holds, std::string_view field, const Value& value, std::string_view rule) {
   if (!holds) reject(field, detail::describe(value), rule);
 }
 
-/// Converts the result of a query to a check.
 /// @throws InvalidArgument if a rule is violated
 void require(const std::optional<BrokenRule>& broken);
 
-/// Text of the violated rule; none if no rule is violated.
 std::optional<std::string> text_of(const std::optional<BrokenRule>& broken);
 
 /// Returns the entry of `known` with the smallest edit distance to `word`, or "" if none is
-/// similar. Ties are resolved by the longer common prefix.
+/// similar. The longer common prefix resolves ties.
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& known);
 
-/// Levenshtein distance between two words, with a swap of neighbours as one edit.
+/// Levenshtein distance, with a swap of neighbours as one edit.
 int edit_distance(std::string_view a, std::string_view b);
 
 template <typename Range>
@@ -120,7 +117,7 @@ std::string nearest_word(std::string_view word, const Range& known) {
 
 }  // namespace tofsmith
 
-/// Asserts an invariant: aborts and prints both operands if violated, which is a bug in tofsmith.
+/// Aborts and prints both operands if an invariant is violated, which is a bug in tofsmith.
 #define TOFSMITH_ASSERT_OP(a, op, b)                                                   \
   do {                                                                                 \
     if (!((a)op(b)))                                                                   \

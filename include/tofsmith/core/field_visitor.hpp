@@ -16,16 +16,16 @@
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
 
-// Describes structs that users set by keys, such as the tables of a camera file. Each such struct
-// has one function, next to its declaration, that passes its members to a visitor:
+// Structs that users set by keys, such as the tables of a camera file, have a function that passes
+// their members to a visitor:
 //
 //   inline void describe(FieldVisitor& fields, Generator& generator) {
 //     fields.value(Key("amplitude_bits", "Resolution of the amplitude", closed(1, 24)),
 //                  generator.amplitude_bits);
 //   }
 //
-// Visitors read and write documents, check ranges and list keys. The name, range and help text of a
-// key are defined only there. Units follow from the end of the name: unit_of_key().
+// Visitors read and write documents, check ranges and list keys. Names, ranges and help texts are
+// defined only there. Units follow from the end of the name: unit_of_key().
 namespace tofsmith {
 
 /// Name, range and help text of a key.
@@ -33,10 +33,10 @@ struct Key {
   std::string_view name;
   std::string_view help;                     ///< noun phrase without unit, range and default
   Range range = {};                          ///< of a number, or of each number in a list
-  std::string_view reason = {};              ///< explains why other numbers are rejected
-  std::string_view example = {};             ///< for a required key; empty: the key is optional
-  std::string_view condition = {};           ///< text, if the key does not always apply
-  bool applies = true;                       ///< the condition holds for this struct
+  std::string_view reason = {};              ///< why other numbers are rejected
+  std::string_view example = {};             ///< for a required key; empty: optional
+  std::string_view condition = {};           ///< if the key does not always apply
+  bool applies = true;                       ///< the condition holds
   bool is_basic = false;                     ///< commonly changed
   double usual_low = 0.0, usual_high = 0.0;  ///< range of typical cameras; both 0: unknown
 
@@ -52,33 +52,31 @@ struct Key {
   Key& usually(double low, double high) { return usual_low = low, usual_high = high, basic(); }
 };
 
-/// A word from a list.
 struct WordChoice {
   std::span<const std::string_view> words;
   std::size_t chosen;
 };
-/// A number, or a list of at least one number; the list is empty if there is a single number.
+/// The list is empty if there is a single number.
 struct NumberOrList {
   double& number;
   std::vector<double>& list;
 };
-/// A number, or a word instead.
 struct NumberOrWord {
   double& number;
   std::string_view word;
   bool& is_word;
 };
-/// A list of raw numbers, which may be NaN or infinite. Empty if the key is absent.
+/// Numbers may be NaN or infinite. Empty if the key is absent.
 struct RawNumberList {
   std::vector<double>& numbers;
 };
-/// The path of an input file, relative to the document. Empty if the key is absent.
+/// Relative to the document. Empty if the key is absent.
 struct InputPath {
   std::string& path;
 };
 
-/// Visits the keys of described structs in order. A visitor may change values, on which later keys
-/// may depend.
+/// Visits the keys of described structs in order. Later keys may depend on values that a visitor
+/// changed.
 class FieldVisitor {
  public:
   using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*,
@@ -101,7 +99,7 @@ class FieldVisitor {
     if (key.applies && !target) target.emplace();
     pass(key, target ? &*target : &blank);
   }
-  /// One of `words`, which are in the order of the enumerators.
+  /// `words` are in the order of the enumerators.
   template <typename Enum>
   void choice(const Key& key, Enum& target, std::span<const std::string_view> words) {
     WordChoice choice{words, static_cast<std::size_t>(target)};
@@ -109,7 +107,7 @@ class FieldVisitor {
     target = static_cast<Enum>(choice.chosen);
   }
   /// A table with the keys of a struct.
-  /// @param visit_fields  calls value() for each key: (FieldVisitor&, Struct&); default: describe()
+  /// @param visit_fields  calls value() for each key; default: describe()
   template <typename Struct, typename Describe>
   void table(const Key& key, Struct& target, const Describe& visit_fields) {
     if (!enter(key)) return;
@@ -127,8 +125,7 @@ class FieldVisitor {
     table(key, *target);
   }
   /// A struct whose keys are in the table of the containing struct.
-  /// @param key           name of the part in lists; not in documents
-  /// @param visit_fields  calls value() for each key: (FieldVisitor&, Struct&)
+  /// @param key  name of the part in lists; not in documents
   template <typename Struct, typename Describe>
   void part(const Key& key, std::optional<Struct>& target, const Describe& visit_fields) {
     Struct blank{};
@@ -152,8 +149,8 @@ class FieldVisitor {
   /// Returns true to visit the keys of a table, followed by leave().
   virtual bool enter(const Key& key) = 0;
   virtual void leave() = 0;
-  /// Returns true to visit the keys of a part, `names`, which creates its struct if absent;
-  /// followed by leave_part().
+  /// Returns true to visit the keys of a part, which creates its struct if absent; followed by
+  /// leave_part().
   virtual bool enter_part(const Key& key, std::span<const std::string> names, bool is_there) = 0;
   virtual void leave_part() {}
 
@@ -165,7 +162,7 @@ class FieldVisitor {
   static std::vector<std::string> names_of(const Describe& describe_struct);
 };
 
-/// Collects the names of the keys of one struct, including keys that do not apply.
+/// Collects the names of all keys, including keys that do not apply.
 class KeyNames : public FieldVisitor {
  public:
   std::vector<std::string> names;
@@ -186,7 +183,6 @@ std::vector<std::string> FieldVisitor::names_of(const Describe& describe_struct)
   return std::move(collector.names);
 }
 
-/// Type of the value of a key.
 enum class ValueType {
   boolean,
   integer,
@@ -204,17 +200,16 @@ enum class ValueType {
 };
 std::string_view name_of(ValueType type);
 
-/// Full name and description of a key.
 struct KeyDescription {
   std::string name;  ///< with tables: "light.impulse_response.f_max_hz"
-  std::string part;  ///< part of the table that contains the key, if any
+  std::string part;  ///< part of the table, if any
   ValueType type = ValueType::number;
-  std::vector<std::string> words = {};  ///< of a choice, or accepted instead of a number
+  std::vector<std::string> words = {};  ///< of a choice, or instead of a number
   bool may_be_absent = false;           ///< no default
   Key key;                              ///< range, help and condition
 };
 
-/// Lists the keys of described structs, including keys that do not apply and keys of absent tables.
+/// Lists all keys, including keys that do not apply and keys of absent tables.
 class KeyList : public FieldVisitor {
  public:
   std::vector<KeyDescription> keys;
@@ -236,7 +231,7 @@ class KeyList : public FieldVisitor {
   bool is_optional_ = false;  ///< for the next key
 };
 
-/// Visits the keys that are present and apply, with the prefixes of their full names.
+/// Visits the keys that are present and apply.
 class PresentKeyVisitor : public FieldVisitor {
  public:
   /// @param prefix  prepended to all names: "light."
@@ -253,7 +248,7 @@ class PresentKeyVisitor : public FieldVisitor {
   bool enter_part(const Key&, std::span<const std::string>, bool is_there) override {
     return is_there;
   }
-  /// Prefix of the key that is visited: "light.impulse_response.".
+  /// Prefix of the visited key: "light.impulse_response.".
   const std::string& prefix() const { return prefixes_.back(); }
 
  private:
@@ -269,7 +264,7 @@ class RangeCheck : public PresentKeyVisitor {
   void visit(const Key& key, const Value& value) override;
 };
 
-/// Checks the range of every number of a described struct.
+/// Checks the range of every number.
 /// @param prefix  prepended to keys in errors: "light."
 /// @throws InvalidArgument "light.peak_factor = 0; must be finite and >= 1"
 template <typename Struct>

@@ -18,23 +18,21 @@
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
 
-// The fields of an options or result struct are listed once, next to the struct, in the order of
-// declaration:
+// Fields of options and results are listed once, next to the struct, in the order of declaration:
 //
 //   auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 //     return std::tuple(Field("starts", o.starts, at_least(1), ByEffort{2}),
 //                       Field("polish", o.polish));
 //   }
 //
-// Validation, keys of finished work, JSON, command line options, Python keyword arguments with
-// their documentation, and effort use for_each_field(), which does not compile if a field is
-// missing.
+// Validation, keys of finished work, JSON, command line options, Python keyword arguments and
+// effort use for_each_field(), which does not compile if a field is missing.
 namespace tofsmith {
 
 /// Properties of a field besides its type.
 enum class FieldMark : unsigned {
-  from_above = 1,     ///< set by the enclosing struct, not user-settable
-  apart = 2,          ///< elsewhere in the JSON document, not in the struct's object
+  from_above = 1,     ///< set by the enclosing struct
+  apart = 2,          ///< elsewhere in the JSON document
   in_place = 4,       ///< its fields are part of the enclosing object
   without_error = 8,  ///< an estimate whose standard error is not reported
   as_object = 16,     ///< an estimate that is a separate object in JSON
@@ -43,46 +41,44 @@ enum class FieldMark : unsigned {
 };
 constexpr unsigned as_bits(FieldMark mark) { return static_cast<unsigned>(mark); }
 
-/// A count that is scaled by effort, down to this minimum (scale_by_effort).
+/// A count that is scaled by effort, down to this minimum.
 struct ByEffort {
   int min = 0;
 };
 
-/// A noun phrase for a field, or an imperative for a flag. Unit, range, words and default are added
-/// from the field.
+/// Noun phrase, or imperative for a flag, without unit, range, words and default.
 struct Help {
   std::string_view text;
 };
 
-/// Text that describes the value if an optional field is absent: "as many as fit".
+/// Describes the value of an absent optional field: "as many as fit".
 struct IfAbsent {
   std::string_view text;
 };
 
-/// Condition under which a field applies: "method unwrap".
+/// Condition of a field: "method unwrap".
 struct OnlyWith {
   std::string_view condition;
 };
 
-/// Name of a field in JSON documents, if different.
+/// Name in JSON documents, if different.
 struct InDocuments {
   std::string_view name;
 };
 
-/// An enumeration with a word for every value: words_of() returns the words in the order of the
-/// values.
+/// An enumeration with words_of(), which returns words in the order of the values.
 template <typename Enum>
 concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {
   words_of(any).size();
 };
 
 /// Returns the index of a word.
-/// @throws std::invalid_argument "field = word; must be a, b or c"
+/// @throws InvalidArgument "field = word; must be a, b or c"
 std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
                           std::string_view word);
 
-/// Returns the word of a value for one of its other names, such as a synonym; other text is
-/// returned unchanged. Enumerations with synonyms have their own overload.
+/// Returns the usual word for a synonym, and other text unchanged. Enumerations with synonyms
+/// overload it.
 template <HasWords Enum>
 constexpr std::string_view usual_word(Enum /*any*/, std::string_view name) {
   return name;
@@ -93,14 +89,13 @@ constexpr std::string_view word_of(Enum value) {
   return words_of(value).at(static_cast<std::size_t>(value));
 }
 
-/// @throws std::invalid_argument for any other word
+/// @throws InvalidArgument for other words
 template <HasWords Enum>
 Enum parse_word(std::string_view field, std::string_view word) {
   static constexpr auto words = words_of(Enum{});
   return static_cast<Enum>(index_of_word(field, words, usual_word(Enum{}, word)));
 }
 
-/// See Field::help_text().
 std::string full_help(std::string_view unit, std::string_view help, std::string_view only_with,
                       std::string_view if_absent);
 
@@ -123,10 +118,10 @@ struct Field {
     (set(its_marks), ...);
   }
   bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
-  /// Help text with unit, condition and default: "longest delay of a second return [m] (a third of
-  /// the range)".
+  /// With unit, condition and default: "longest delay of a second return [m] (a third of the
+  /// range)".
   std::string help_text() const { return full_help(unit(), help, only_with, if_absent); }
-  /// Unit of numbers; "" if there is none.
+  /// "" for plain numbers.
   std::string_view unit() const;
 
  private:
@@ -139,11 +134,9 @@ struct Field {
   void set(FieldMark mark) { marks |= as_bits(mark); }
 };
 
-/// A struct, const or not.
 template <typename Type, typename Struct>
 concept ConstOrNot = std::is_same_v<std::remove_const_t<Type>, Struct>;
 
-/// A struct whose fields are listed.
 template <typename Struct>
 concept HasFields = requires(Struct& its) {
   fields_of(its);
@@ -152,7 +145,7 @@ concept HasFields = requires(Struct& its) {
 namespace detail {
 template <typename Struct, typename Listed>
 inline constexpr bool lists_all = false;
-/// True if the struct can be initialized from the listed values, in order, but not from one more.
+/// True if the struct can be initialized from the listed values, but not from one more.
 template <typename Struct, typename... Values>
 inline constexpr bool lists_all<Struct, std::tuple<Field<Values>...>> = requires {
   Struct{std::declval<Values>()...};
@@ -160,7 +153,7 @@ inline constexpr bool lists_all<Struct, std::tuple<Field<Values>...>> = requires
 &&!requires { Struct{std::declval<Values>()..., {}}; };
 }  // namespace detail
 
-/// True if fields_of() lists every member of an aggregate, in the order of declaration.
+/// True if fields_of() lists every member in the order of declaration.
 template <typename Struct>
 inline constexpr bool lists_every_field =
     detail::lists_all<Struct, decltype(fields_of(std::declval<Struct&>()))>;
@@ -176,7 +169,6 @@ inline constexpr bool is_row =
                        fields_of(std::declval<Struct&>()))),
                    std::true_type>;
 
-/// Calls `visit` with the Field of every member.
 template <typename Struct, typename Visit>
 void for_each_field(Struct& its, Visit&& visit) {
   static_assert(lists_every_field<std::remove_const_t<Struct>>,
@@ -184,8 +176,8 @@ void for_each_field(Struct& its, Visit&& visit) {
   std::apply([&](const auto&... fields) { (visit(fields), ...); }, fields_of(its));
 }
 
-/// Name of the standard error of an estimate in results: "error_se_m" for "error_m", "linear_se_m"
-/// for "linear_mde_m".
+/// Name of the standard error of an estimate: "error_se_m" for "error_m", "linear_se_m" for
+/// "linear_mde_m".
 std::string error_name(std::string_view name);
 
 template <typename Value>
@@ -241,17 +233,17 @@ std::string_view Field<Value>::unit() const {
 
 /// Checks the range of every field; struct members check themselves.
 /// @param owner  prepended to names in errors: "OptimizeOptions::"
-/// @throws std::invalid_argument "OptimizeOptions::starts = -3; must be >= 1"
+/// @throws InvalidArgument "OptimizeOptions::starts = -3; must be >= 1"
 template <typename Struct>
 void check_fields(const Struct& its, std::string_view owner = "") {
   for_each_field(
       its, [&](const auto& field) { detail::check(field.name, field.value, field.range, owner); });
 }
 
-/// Returns a count times `effort`, rounded, but at least the minimum.
+/// Returns a count times `effort`, rounded, at least the minimum.
 int scaled_count(int count, double effort, ByEffort by_effort);
 
-/// Scales counts marked ByEffort by the factor `effort`, including those in struct members.
+/// Scales counts marked ByEffort, also in struct members.
 template <typename Struct>
 void scale_by_effort(Struct& its, double effort) {
   for_each_field(its, [&](const auto& field) {

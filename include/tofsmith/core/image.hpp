@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// An image of H x W values, row by row from the top left.
+/// H x W values, row by row from the top left.
 template <typename Value>
 struct Image {
   int height = 0;
@@ -35,8 +35,7 @@ struct Image {
   }
 };
 
-/// Raw measurements of one or more frames, (F, H, W, K), last axis fastest: electrons, or counts if
-/// the sensor has an ADC.
+/// Raw measurements (F, H, W, K), last axis fastest: electrons, or counts if the sensor has an ADC.
 struct RawFrames {
   int frames = 0;
   int height = 0;
@@ -54,64 +53,58 @@ struct RawFrames {
   float* frame(int f) { return const_cast<float*>(static_cast<const RawFrames*>(this)->frame(f)); }
 };
 
-/// Variances of filtered numbers, relative to the variance given by `RawView::averaged`, which is
-/// that of depth.
+/// Variances of filtered numbers, relative to the variance of depth given by `RawView::averaged`.
 struct NoiseRatios {
   float of_lobes = 1.0f;     ///< between lobes, for confidence
   float of_residual = 1.0f;  ///< of the component that no depth explains
 
-  /// Ratios of a pixel: 1 unless it is a mean, because filters leave some pixels unchanged.
+  /// Ratios of a pixel: 1 unless it is a mean.
   NoiseRatios at(float averaged) const { return averaged > 1.0f ? *this : NoiseRatios(); }
 };
 
-/// A view of the raw numbers of one frame, of four types and any regular layout: number k of the
-/// pixel at (row, column) is at offset row * row_stride + column * column_stride + k *
-/// measurement_stride [elements].
+/// View of the raw numbers of one frame in any regular layout: number k of the pixel at (row,
+/// column) is at offset row * row_stride + column * column_stride + k * measurement_stride
+/// [elements].
 struct RawView {
   std::variant<const float*, const double*, const std::uint16_t*, const std::uint8_t*> data;
   int height = 0;
   int width = 0;
   int measurements = 0;
-  std::ptrdiff_t row_stride = 0;          ///< [elements]
-  std::ptrdiff_t column_stride = 0;       ///< [elements]
-  std::ptrdiff_t measurement_stride = 0;  ///< [elements]
-  /// Number of equal measurements averaged in a pixel's numbers, each > 0, row by row (H, W); the
-  /// variance is divided by it. Null: 1, as output by a sensor.
+  std::ptrdiff_t row_stride = 0;
+  std::ptrdiff_t column_stride = 0;
+  std::ptrdiff_t measurement_stride = 0;
+  /// Number of equal measurements averaged in a pixel, > 0 (H, W); divides the variance. Null: 1.
   const float* averaged = nullptr;
   NoiseRatios noise;  ///< of pixels with `averaged` > 1
-  /// The numbers were stored as unsigned integers and then converted.
+  /// The numbers are converted unsigned integers.
   bool was_unsigned = false;
-  /// Special numbers have been replaced already (see RawMarking), so that decoders and filters do
-  /// not search for them.
+  /// Special numbers have been replaced already (RawMarking).
   bool is_marked = false;
 
   std::int64_t pixels() const { return std::int64_t{height} * width; }
-  /// Returns true if the numbers are or were unsigned integers.
   bool is_unsigned() const {
     return was_unsigned || std::holds_alternative<const std::uint8_t*>(data) ||
            std::holds_alternative<const std::uint16_t*>(data);
   }
 
-  /// (H, W, K), with the measurements of a pixel adjacent.
+  /// Layout (H, W, K).
   template <typename Number>
   static RawView interleaved(const Number* data, int height, int width, int measurements) {
     return {data,         height, width, measurements, std::ptrdiff_t{width} * measurements,
             measurements, 1};
   }
-  /// (K, H, W), one image per measurement.
+  /// Layout (K, H, W).
   template <typename Number>
   static RawView planar(const Number* data, int height, int width, int measurements) {
     return {data, height, width, measurements, width, 1, std::ptrdiff_t{height} * width};
   }
 };
 
-/// Returns a view of one frame.
-/// @throws std::invalid_argument if there is no such frame, or the number of values differs from
-///         the shape
+/// @throws InvalidArgument if there is no such frame, or the number of values differs from the
+///          shape
 RawView view_of_frame(const RawFrames& raw, int frame);
 
-/// Copies pixels [first, first + count) (row by row) as float, with the measurements of a pixel
-/// adjacent; doubles are rounded.
+/// Copies pixels [first, first + count) as float, (count, K); doubles are rounded.
 void copy_pixels(const RawView& raw, std::int64_t first, std::int64_t count, float* values);
 
 }  // namespace tofsmith

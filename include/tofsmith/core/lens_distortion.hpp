@@ -16,17 +16,15 @@ namespace tofsmith {
 enum class DistortionModel {
   opencv,        ///< radial (rational), tangential and thin prism, of x/z and y/z
   fisheye,       ///< polynomial of the angle from the axis
-  rational_6kt,  ///< Azure Kinect: radial (rational), with a tangential term that differs from
-                 ///< OpenCV's
+  rational_6kt,  ///< Azure Kinect: radial (rational), with another tangential term
 };
 
-/// Names of the enumerators, in their order.
 inline constexpr std::array<std::string_view, 3> distortion_models = {"opencv", "fisheye",
                                                                       "rational-6kt"};
 std::string_view name_of(DistortionModel model);
 
-/// Lens distortion, which moves image points from their ideal pinhole position. Positions are in
-/// the plane z = 1: x/z and y/z of an ideal ray, and (u - cx) / fx, (v - cy) / fy of a pixel.
+/// Moves image points from their ideal pinhole position. Positions are in the plane z = 1: x/z and
+/// y/z of an ideal ray, and (u - cx) / fx, (v - cy) / fy of a pixel.
 ///
 ///   opencv   x' = x R + 2 p1 x y + p2 (r^2 + 2 x^2) + s1 r^2 + s2 r^4
 ///            y' = y R + p1 (r^2 + 2 y^2) + 2 p2 x y + s3 r^2 + s4 r^4
@@ -34,31 +32,28 @@ std::string_view name_of(DistortionModel model);
 ///   rational-6kt  as opencv without thin prism, with p1 x y for 2 p1 x y and p2 x y for 2 p2 x y
 ///   fisheye  r' = a + k1 a^3 + k2 a^5 + k3 a^7 + k4 a^9,  a = atan r, same direction
 ///
-/// The inverse is defined only up to the radius at which the distortion folds back, i.e. where
-/// distorted positions stop moving outwards; beyond it several rays share a position.
+/// The inverse is defined up to the radius at which distorted positions stop moving outwards.
 /// @see OpenCV 4, module calib3d: projectPoints() and fisheye::projectPoints(); Azure Kinect Sensor
 ///      SDK, src/transformation/intrinsic_transformation.c
 struct LensDistortion {
   DistortionModel model = DistortionModel::opencv;
   /// opencv: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [0 0]]]]; fisheye: k1 k2 k3 k4; rational-6kt:
-  /// k1 k2 p1 p2 k3 k4 k5 k6. Missing coefficients are 0. The last two of opencv are the tilt of
-  /// the sensor, which must be 0.
+  /// k1 k2 p1 p2 k3 k4 k5 k6. Missing ones are 0. The tilt of the sensor, the last two of opencv,
+  /// must be 0.
   std::vector<double> coefficients;
-  /// Largest radius at z = 1 for which the formulas hold; pixels beyond it see nothing. None: the
-  /// formulas hold until the distortion folds back.
+  /// Largest radius at z = 1 for which the formulas hold; default: until the distortion folds back.
   std::optional<double> max_radius = {};
 
-  /// Returns the distorted position of an ideal one.
   Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;
-  /// Returns the ideal position of a distorted one; none beyond a fold, beyond max_radius, or at 90
-  /// degrees or more from the axis (fisheye).
+  /// Returns the ideal position; none beyond a fold, beyond max_radius, or at 90 degrees or more
+  /// from the axis (fisheye).
   std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
   /// Returns the fraction of the line from the axis to `distorted` on which undistort() succeeds; 1
-  /// if all of it does, or up to max_radius.
+  /// also up to max_radius.
   double reach(const Eigen::Vector2d& distorted) const;
 
-  /// @throws std::invalid_argument naming `field` if the number of coefficients is wrong, one is
-  ///         not finite, or the sensor is tilted
+  /// @throws InvalidArgument if the number of coefficients is wrong, one is not finite, or the
+  ///         sensor is tilted
   void validate(std::string_view field) const;
 
   friend bool operator==(const LensDistortion&, const LensDistortion&) = default;

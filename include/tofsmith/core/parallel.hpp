@@ -8,23 +8,21 @@
 
 namespace tofsmith {
 
-/// Half-open range of work items.
 struct IndexRange {
   std::int64_t begin = 0;
   std::int64_t end = 0;
 };
 
-/// Calls `work` for blocks of at most `block` indices that cover [0, count), on all threads. Block
-/// boundaries do not depend on the number of threads, so results stored per block and summed in
-/// order have the same bits on any machine.
+/// Calls `work` for blocks of at most `block` indices that cover [0, count), on all threads. Blocks
+/// do not depend on the number of threads, so sums over blocks in order have the same bits on any
+/// machine.
 void parallel_for_blocks(std::int64_t count, std::int64_t block,
                          const std::function<void(IndexRange)>& work);
 
-/// Calls `work(i)` for every i in [0, count), on all threads, or on one thread in builds without
-/// TBB.
+/// Calls `work(i)` for every i in [0, count), on all threads, or on one without TBB.
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work);
 
-/// Limits the number of threads during its lifetime (0: all cores); may exceed the number of cores.
+/// Limits the number of threads during its lifetime; 0: all cores.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

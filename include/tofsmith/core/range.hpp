@@ -8,15 +8,14 @@
 
 namespace tofsmith {
 
-/// Interval of numbers that a setting accepts. The default accepts every number, including NaN;
-/// other intervals are created by the functions below, which are evaluated and checked at compile
-/// time.
+/// Interval of numbers that a setting accepts. The default accepts every number, including NaN; the
+/// functions below create others and check them at compile time.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool includes_low = true, includes_high = true;
-  bool is_restricted = false;      ///< false: accepts every number
-  bool includes_infinity = false;  ///< accepts infinity although `high` is infinite
+  bool is_restricted = false;
+  bool includes_infinity = false;  ///< although `high` is infinite
 
   bool contains(double value) const {
     if (!is_restricted) return true;
@@ -24,10 +23,9 @@ struct Range {
     return std::isfinite(value) && (includes_low ? value >= low : value > low) &&
            (includes_high ? value <= high : value < high);
   }
-  /// Text of the interval: "finite and >= 0", "in (0, 1]", "finite"; for integers ">= 0".
+  /// "finite and >= 0", "in (0, 1]", "finite"; for integers ">= 0".
   std::string text(bool is_integer = false) const;
 
-  /// The same interval, including infinity.
   consteval Range or_infinity() const {
     Range range = *this;
     range.includes_infinity = true;
@@ -45,21 +43,15 @@ consteval Range checked(Range range) {
 
 /// All numbers except NaN and infinity.
 consteval Range finite() { return detail::checked({}); }
-/// value >= low.
 consteval Range at_least(double low) { return detail::checked({.low = low}); }
-/// value > low.
 consteval Range above(double low) { return detail::checked({.low = low, .includes_low = false}); }
-/// low <= value <= high.
 consteval Range closed(double low, double high) {
   return detail::checked({.low = low, .high = high});
 }
-/// low < value < high.
 consteval Range open(double low, double high) { return detail::checked({low, high, false, false}); }
-/// low <= value < high.
 consteval Range right_open(double low, double high) {
   return detail::checked({low, high, true, false});
 }
-/// low < value <= high.
 consteval Range left_open(double low, double high) {
   return detail::checked({low, high, false, true});
 }

@@ -8,17 +8,17 @@
 
 namespace tofsmith {
 
-/// Special raw numbers that a sensor or its driver outputs instead of a measurement. They are
-/// compared before any arithmetic and may be NaN or infinite.
+/// Raw numbers that a sensor or its driver outputs instead of a measurement. They are compared
+/// before any arithmetic and may be NaN or infinite.
 struct RawMarkers {
-  std::vector<double> saturated;  ///< the measurement is clipped
-  std::vector<double> invalid;    ///< there is no measurement, e.g. in a dead pixel
+  std::vector<double> saturated;
+  std::vector<double> invalid;  ///< e.g. in a dead pixel
 
   bool empty() const { return saturated.empty() && invalid.empty(); }
-  /// Return true if the list contains the number. NaN equals NaN.
+  /// NaN equals NaN.
   bool mean_saturated(double number) const;
   bool mean_invalid(double number) const;
-  /// @throws std::invalid_argument naming the field as raw.*, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 
   /// NaN equals NaN.

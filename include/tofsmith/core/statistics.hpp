@@ -13,17 +13,17 @@ struct Estimate {
   double value = 0.0;
   double standard_error = 0.0;
 };
-/// a / b; the standard error assumes that both are independent.
+/// a / b of independent estimates.
 Estimate ratio_of(const Estimate& a, const Estimate& b);
 
-/// Mean and variance of a stream of values in one pass (Welford).
+/// Mean and variance in one pass (Welford).
 class RunningStatistics {
  public:
   void add(double value);
 
   std::int64_t count() const { return count_; }
   double mean() const { return mean_; }
-  /// Unbiased sample variance; 0 for fewer than two values.
+  /// Unbiased; 0 for fewer than two values.
   double variance() const;
   /// Standard error of mean(); 0 for fewer than two values.
   double standard_error() const;
@@ -35,7 +35,7 @@ class RunningStatistics {
   double sum_of_squares_ = 0.0;  // of differences from the mean
 };
 
-/// Median; the mean of the middle two for an even number; 0 if empty.
+/// Mean of the middle two for an even number; 0 if empty.
 double median_of(std::vector<double> values);
 
 /// Returns the value at index floor(share (n - 1)) in ascending order.
@@ -43,10 +43,10 @@ double median_of(std::vector<double> values);
 /// @param share   in [0, 1]
 double quantile_of(std::vector<double> values, double share);
 
-/// Arithmetic mean of independent estimates with error propagation.
+/// Arithmetic mean of independent estimates.
 Estimate mean_of(std::span<const Estimate> estimates);
 
-/// Geometric mean of independent positive estimates with first-order error propagation. 0 if a
+/// Geometric mean of independent positive estimates, with first-order error propagation. 0 if a
 /// value is 0, NaN if one is NaN.
 Estimate geometric_mean_of(std::span<const Estimate> estimates);
 

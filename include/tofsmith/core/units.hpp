@@ -12,34 +12,33 @@ namespace tofsmith {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns the unit in which users specify a key, from the end of its name: "Hz" for "f_max_hz"; ""
-/// for plain numbers.
+/// Returns the unit of a key from the end of its name: "Hz" for "f_max_hz"; "" for plain numbers.
 std::string_view unit_of_key(std::string_view name);
 
 inline constexpr double speed_of_light_m_per_s = 299792458.0;
 
-/// Depth at which the round trip takes one period [m]: c / (2 f0).
+/// c / (2 f0), the depth at which the round trip takes one period.
 constexpr double unambiguous_range_m(double fundamental_frequency_hz) {
   return speed_of_light_m_per_s / (2.0 * fundamental_frequency_hz);
 }
 
-/// Wraps a position to [0, period).
+/// Wraps to [0, period).
 double wrap(double position, double period);
 
-/// Signed shortest difference on a circle of length `period`, in [-period/2, period/2).
+/// Signed shortest difference on a circle, in [-period/2, period/2).
 double circular_difference(double to, double from, double period);
 
-/// Formats a number with `digits` significant digits, but all digits before the decimal point,
+/// Formats a number with `digits` significant digits and all digits before the decimal point,
 /// without exponent: "61.23", "0.0123", "175312", "nan", "inf".
 std::string plain_number(double value, int digits);
 
-/// Formats a length with a suitable unit: 0.0653 as "65.3 mm", 1.25 as "1.25 m".
+/// "65.3 mm" for 0.0653, "1.25 m" for 1.25.
 std::string length_text(double metres);
 
-/// Formats value / unit with one standard error: "61.23 ± 0.45".
+/// value / unit with its standard error: "61.23 ± 0.45".
 std::string estimate_text(const Estimate& estimate, double unit, int digits = 5);
 
-/// Formats an error in mm with its standard error.
+/// In mm, with the standard error.
 std::string estimate_mm_text(const Estimate& error_m);
 
 }  // namespace tofsmith

@@ -10,18 +10,16 @@
 
 namespace tofsmith {
 
-/// Collects notes on numbers far outside the range that most cameras have (Key::usually()): a wrong
-/// unit or power of ten.
+/// Collects notes on numbers outside Key::usually(), which suggest a wrong unit or power of ten.
 class UnusualNumbers : public PresentKeyVisitor {
  public:
-  /// Such as "exposure_s = 20 s; most cameras have 1e-05 to 1 s: is the unit right?"
+  /// "exposure_s = 20 s; most cameras have 1e-05 to 1 s: is the unit right?"
   std::vector<std::string> notes;
 
  protected:
   void visit(const Key& key, const Value& value) override;
 };
 
-/// Returns notes on unusual numbers of a described struct.
 template <typename Struct>
 std::vector<std::string> unusual_numbers(Struct its) {
   UnusualNumbers visitor;
