@@ -15,11 +15,11 @@ namespace tofsmith {
 
 /// Methods of decoding depth from measurements.
 enum class DecodeMethod {
-  zncc,        ///< Decoder: any code
-  ml,          ///< LikelihoodDecoder: any code
-  unwrap,      ///< UnwrapDecoder: sinusoids of one or more frequencies
-  two_return,  ///< TwoReturnDecoder: codes with at least six independent means
-  tail,        ///< TailDecoder: codes with at least five independent means
+  zncc,        ///< Decoder
+  ml,          ///< LikelihoodDecoder
+  unwrap,      ///< UnwrapDecoder, for sinusoids
+  two_return,  ///< TwoReturnDecoder
+  tail,        ///< TailDecoder
 };
 
 inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMethod::ml,
@@ -29,12 +29,10 @@ inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMeth
 constexpr std::array<std::string_view, 5> words_of(DecodeMethod /*any*/) {
   return {"zncc", "ml", "unwrap", "two-return", "tail"};
 }
-/// "zncc", "ml", "unwrap", "two-return", "tail".
 std::string_view name_of(DecodeMethod method);
-/// @throws std::invalid_argument for any other word
+/// @throws InvalidArgument for other words
 DecodeMethod parse_decode_method(std::string_view name);
 
-/// Help texts of options that select a decoder.
 inline constexpr Help decode_method_help{
     "decoder: zncc or ml (maximum likelihood, slower) for any code; unwrap for sinusoids; "
     "two-return or tail for multipath"};
@@ -52,10 +50,9 @@ class DepthDecoder {
 
   virtual DecodeMethod method() const = 0;
   virtual const DecodingTable& table() const = 0;
-  /// See Decoder::decode(), decode_depth_bins() and decode_bins().
+  /// See Decoder.
   virtual void decode(const RawView& raw, const DecodedView& decoded,
                       const Progress& progress = {}) const = 0;
-  /// See Decoder::decode_within().
   virtual void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                              const Progress& progress = {}) const = 0;
   virtual void decode_depth_bins(const float* measurements, std::int64_t pixels,
@@ -67,9 +64,9 @@ class DepthDecoder {
 };
 
 /// Creates the decoder of a method, with defaults for all other options.
-/// @param unwrap_weights  for DecodeMethod::unwrap
-/// @param multipath       for DecodeMethod::two_return and tail, except for `status_thresholds`
-/// @throws std::invalid_argument if the method cannot decode this table
+/// @param unwrap_weights  for unwrap
+/// @param multipath       for two_return and tail, except for `status_thresholds`
+/// @throws InvalidArgument if the method cannot decode this table
 std::unique_ptr<const DepthDecoder> make_decoder(
     DecodeMethod method, DecodingTable table, const DecodeOptions& status_thresholds = {},
     UnwrapWeights unwrap_weights = UnwrapWeights::variance, const MultipathOptions& multipath = {});

@@ -6,8 +6,7 @@
 
 namespace tofsmith {
 
-/// Part of the unambiguous range, which may wrap around its end. Positions are fractions of the
-/// range.
+/// Part of the unambiguous range, which may wrap around its end, in fractions of the range.
 struct RangePart {
   double begin = 0.0;   ///< in [0, 1)
   double length = 1.0;  ///< 1 or more: the whole range

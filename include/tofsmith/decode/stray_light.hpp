@@ -9,16 +9,15 @@
 
 namespace tofsmith {
 
-/// Model of stray light: the lens scatters light from every pixel to all others. For light x the
-/// sensor receives (1 - s) x + kernel * x, where s is the sum of the kernel. Light scattered out of
-/// the image is lost; light scattered into the image from outside is unknown and not removed.
-/// Caches data for one frame size; not thread-safe.
+/// Model of stray light: for light x the sensor receives (1 - s) x + kernel * x, where s is the sum
+/// of the kernel. Light scattered out of the image is lost; light scattered into it from outside is
+/// not removed. Caches data for one frame size; not thread-safe.
 class StrayLight {
  public:
   /// @param kernel  (2 R + 1, 2 Q + 1): fraction of a pixel's light that reaches each surrounding
   ///   pixel; the centre is the pixel itself
-  /// @throws std::invalid_argument unless both sizes are odd, all values are finite and >= 0, and
-  ///   their sum is < 0.5
+  /// @throws InvalidArgument unless both sizes are odd, all values are finite and >= 0, and their
+  ///   sum is < 0.5
   explicit StrayLight(Image<float> kernel);
   ~StrayLight();
   StrayLight(StrayLight&&) noexcept;
@@ -27,7 +26,7 @@ class StrayLight {
   const Image<float>& kernel() const { return kernel_; }
   /// s, the scattered fraction of all light.
   double share() const { return share_; }
-  /// Memory of remove() for frames of this size [bytes].
+  /// Memory of remove() [bytes].
   double memory_bytes(int height, int width, int measurements) const;
 
   /// Returns the light that the sensor receives for light (H, W).
@@ -36,11 +35,10 @@ class StrayLight {
   /// of its largest value, at most 60 times.
   Image<float> gather(const Image<float>& seen);
   /// Applies gather() to each measurement of a frame. Saturated and invalid pixels keep their
-  /// values; a saturated pixel is assumed to scatter its measured light, an invalid one none.
-  /// @param table  provides the black level and the saturation level of the raw values
-  /// @param clean  (1, H, W, K), with approximately the noise of the raw values
-  /// @throws std::invalid_argument if the measurements differ
-  /// @note the same bits for any number of threads
+  /// values; they are assumed to scatter their measured light and none, respectively.
+  /// @param table  provides the black and saturation levels
+  /// @param clean  (1, H, W, K), with about the noise of the raw values
+  /// @throws InvalidArgument if the measurements differ
   void remove(const RawView& raw, const DecodingTable& table, RawFrames& clean);
 
  private:
