@@ -14,18 +14,17 @@
 
 namespace tofsmith {
 
-/// One measurement of a designed code.
+/// Measurement of a designed code.
 struct MeasurementReport {
   double residual_rms = 0.0;           ///< of the selected pair; 0 without a target
   double smallest_residual_rms = 0.0;  ///< of the pair nearest to the target
   double demodulation_duty = 0.0;
   double modulation_duty = 0.0;
   double peak = 0.0;
-  int edges = 0;                            ///< of modulation and demodulation
-  std::string start;                        ///< name of its start in the pool
-  std::vector<FactorizeIteration> history;  ///< see Factorization::history
+  int edges = 0;      ///< of modulation and demodulation
+  std::string start;  ///< name of the start
+  std::vector<FactorizeIteration> history;
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
   return std::tuple(
       Field("residual_rms", m.residual_rms, at_least(0), FieldMark::may_be_null),
@@ -35,25 +34,22 @@ auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
       Field("history", m.history, FieldMark::apart));
 }
 
-/// Progress of a search.
 struct SearchStep {
   double work = 0.0;     ///< in SearchRecord::work_unit
-  double error_m = 0.0;  ///< smallest error yet
+  double error_m = 0.0;  ///< smallest yet
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SearchStep> auto& s) {
   return std::tuple(Field("work", s.work), Field("error_m", s.error_m));
 }
 
 /// How a code was found.
 struct SearchRecord {
-  std::string work_unit;   ///< "gradient steps" or "candidates"
-  std::string error_name;  ///< error measure
+  std::string work_unit;  ///< "gradient steps" or "candidates"
+  std::string error_name;
   std::vector<SearchStep> steps;
   bool proved = false;  ///< no other code of the searched kind is better
   std::string account;  ///< search space, counts and pruning tests
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SearchRecord> auto& s) {
   return std::tuple(Field("work_unit", s.work_unit), Field("error_name", s.error_name),
                     Field("steps", s.steps), Field("proved", s.proved),
@@ -69,19 +65,18 @@ struct Candidate {
   DepthErrorReport error;  ///< by evaluate() with the seed and trials of DesignOptions
   int rotation_bin = 0;    ///< of the origin of depth
   int iterations = 0;      ///< convex or gradient steps, over all starts
-  double seconds = 0.0;    ///< design time
-  Eigen::MatrixXd target;  ///< of the factorization (N, K); else empty
+  double seconds = 0.0;
+  Eigen::MatrixXd target;                          ///< of the factorization (N, K); else empty
   std::vector<MeasurementReport> per_measurement;  ///< per demodulation; empty unless designed
   std::optional<SearchRecord> search;              ///< of optimized and searched codes
   std::string message;                             ///< outcome in one line
   /// Errors on perturbed cameras; for the winner, or for all with DesignOptions::robust.
   std::optional<RobustnessReport> robustness;
 
-  /// Error in operating.multipath, if the camera has it.
+  /// Error in operating.multipath.
   std::optional<OperatingMultipathReport> multipath;
 
-  /// Returns true if the code was designed for this camera, and is not a family, reference, naive
-  /// or atlas code.
+  /// Returns true if the code was designed for this camera.
   bool is_designed() const { return !per_measurement.empty(); }
 };
 

@@ -17,59 +17,58 @@
 
 namespace tofsmith {
 
-/// A binary waveform on a chip clock: bit k is set if it is on during chip k.
+/// Binary waveform on a chip clock; bit k: on during chip k.
 using ChipWord = std::uint32_t;
 
-/// Maximum number of chips per period.
+/// Per period.
 inline constexpr int max_chips = 24;
 
-/// Returns the word delayed cyclically by any number of chips.
+/// Returns the word delayed cyclically.
 ChipWord delayed_chips(ChipWord word, int shift, int chips);
 /// Returns the word reversed in time: chip k becomes chip -k.
 ChipWord reversed_chips(ChipWord word, int chips);
 constexpr ChipWord all_chips(int chips) { return (ChipWord{1} << chips) - 1; }
-/// Returns text such as "110" for three chips, on during the first two.
+/// "110": three chips, on during the first two.
 std::string chip_text(ChipWord word, int chips);
-/// Inverse of chip_text(). @throws std::invalid_argument for other characters or lengths
+/// Inverse of chip_text(). @throws InvalidArgument for other characters or lengths
 ChipWord chip_word(std::string_view text);
 
-/// A code of binary waveforms on a chip clock; at most one tap of an exposure is open at a time.
+/// Code of binary waveforms on a chip clock. At most one tap of an exposure is open at a time.
 struct ChipCode {
-  int chips = 0;                       ///< n, chips per period
-  int taps = 0;                        ///< t, taps per exposure
+  int chips = 0;                       ///< n, per period
+  int taps = 0;                        ///< t, per exposure
   std::vector<ChipWord> modulation;    ///< (E)
   std::vector<ChipWord> demodulation;  ///< (E x t), grouped by exposure
 
   int exposures() const { return static_cast<int>(modulation.size()); }
   int measurements() const { return static_cast<int>(demodulation.size()); }
-  /// Returns the words of the taps of an exposure.
+  /// Words of the taps of an exposure.
   const ChipWord* taps_of(int exposure) const;
-  /// Returns chi at a depth of `shift` chips: the number of chips with light on the open tap.
+  /// chi at a depth of `shift` chips: the number of chips with light on the open tap.
   int correlation(int measurement, int shift) const;
-  /// Returns text such as "M 110000 D 110000/001100/000011", with ", " between exposures.
+  /// "M 110000 D 110000/001100/000011", with ", " between exposures.
   std::string text() const;
 
-  /// @throws std::invalid_argument naming the word and the rule
+  /// @throws InvalidArgument
   void validate() const;
 
   friend bool operator==(const ChipCode&, const ChipCode&) = default;
 };
 
-/// Returns why a camera has no chip clock, or nothing: its period must be 3 to max_chips times its
-/// shortest pulse.
+/// Returns why a camera has no chip clock; none if its period is 3 to max_chips times its shortest
+/// pulse.
 std::optional<BrokenRule> why_no_chip_clock(const Camera& camera);
 
 /// Returns the chips per period: period / sensor.shortest_pulse_s.
-/// @throws std::invalid_argument as why_no_chip_clock()
+/// @throws InvalidArgument as why_no_chip_clock()
 int chips_of(const Camera& camera);
 
 /// Returns the level of a modulation that is on for `on_chips`, over average power: the peak
-/// factor, or less if the average power requires it. With light.peak_factor = 1 the level is 1, the
-/// *peak* power is fixed and S is the rate at peak light; with larger factors the mean power is
-/// fixed as soon as the peak allows it.
+/// factor, or less if the average power requires it. With a peak factor of 1, S is the rate at peak
+/// light.
 double chip_level(int on_chips, int chips, double peak_factor);
 
-/// Converts the code to waveforms with the levels and samples of the camera.
+/// Converts the code to the levels and samples of the camera.
 CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::string& name);
 
 /// Variance of depth that the search minimizes.
@@ -84,22 +83,21 @@ constexpr std::array<std::string_view, 2> words_of(ChipMetric /*any*/) {
   return {"unknown-light", "known-light"};
 }
 
-/// Options of the search for codes on a chip clock.
 struct ChipSearchOptions {
   int exposures = 1;  ///< E; 3 to 16 measurements with the camera's taps
   double margin_sigma = 8.0;
   double separation_periods = 1.0 / 36.0;  ///< a quarter of a chip at 9 chips per period
   bool equal_duty = true;
   ChipMetric metric = ChipMetric::unknown_light;
-  /// Size of the largest exhaustive search. Codes count as 1 with one exposure and three taps of
-  /// equal duty, and otherwise as 20 because they take 20 times as long.
+  /// A code with one exposure and three taps of equal duty counts as 1. Others count as 20, because
+  /// they take 20 times as long.
   double max_exhaustive = 3e11;
   int finalists = 4;
   int annealing_starts = 24;
   std::int64_t annealing_steps = 20000;
   std::uint64_t seed = 1;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 };
 auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
@@ -123,39 +121,34 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of annealing"}));
 }
 
-/// Statistics of a search. Dropped codes count for the first test that they failed.
+/// Dropped codes count for the first test that they failed.
 struct ChipSearchCounts {
   double raw = 0.0;                    ///< all words of light and taps
   double after_symmetry = 0.0;         ///< distinct up to symmetry
-  std::int64_t examined = 0;           ///< individually; a few symmetric codes twice
+  std::int64_t examined = 0;           ///< a few symmetric codes twice
   std::int64_t pruned_by_turning = 0;  ///< three taps: not one turn in one sense (exact)
-  std::int64_t pruned_by_bound = 0;    ///< by a lower bound on the metric
+  std::int64_t pruned_by_bound = 0;    ///< lower bound on the metric
   std::int64_t metric_evaluations = 0;
   std::int64_t pruned_by_metric = 0;
   std::int64_t ambiguous = 0;     ///< by an exact integer test
   std::int64_t below_margin = 0;  ///< depths closer than margin_sigma
-  std::int64_t kept = 0;          ///< among the best at that time
+  std::int64_t kept = 0;
 
   ChipSearchCounts& operator+=(const ChipSearchCounts& other);
 };
 
-/// A new best code.
 struct ChipImprovement {
   ChipCode code;
   double rms_m = 0.0;
-  double share = 0.0;  ///< fraction of the search completed at that time
+  double share = 0.0;  ///< completed fraction of the search
 };
 
-/// A resulting code.
 struct ChipFinalist {
   ChipCode code;
-  /// Geometric mean over the operating points of the root of the minimized variance.
-  double rms_m = 0.0;
-  double margin_sigma =
-      0.0;  ///< proven, at the point where it is smallest relative to the requirement
+  double rms_m = 0.0;         ///< root of the minimized variance, geometric mean over the points
+  double margin_sigma = 0.0;  ///< proven, where it is smallest relative to the requirement
 };
 
-/// Log of a search.
 struct ChipSearchLog {
   ChipSearchCounts counts;
   std::vector<ChipImprovement> improvements;
@@ -165,24 +158,21 @@ struct ChipSearchLog {
 
 /// Result of search_chip_codes().
 struct ChipSearchResult {
-  std::vector<ChipFinalist>
-      finalists;        ///< best first by the metric; judge() ranks them by depth error
-  bool proved = false;  ///< no code has a better metric
-  std::string proof;    ///< statement of the proof, or why there is none
+  std::vector<ChipFinalist> finalists;  ///< best first by the metric
+  bool proved = false;                  ///< no code has a better metric
+  std::string proof;                    ///< statement, or why there is none
   ChipSearchLog log;
 };
 
-/// Returns why codes of a valid camera cannot be searched, or nothing: no chip clock, too few or
-/// too many measurements, or a property that chip_metric_rms_m() does not model.
+/// Returns why codes of a valid camera cannot be searched; none if they can.
 std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures);
 
 /// Searches modulations and tap assignments on the camera's chip clock. Minimizes the geometric
 /// mean of chip_metric_rms_m() over the operating points, among unambiguous codes that keep the
-/// required margin at every point. (If no standard code keeps it, the margin of the best one is
-/// required.) If possible, the search is exhaustive up to symmetry and its result proven; otherwise
-/// codes are annealed from multi-phase squares, without proof.
-/// @throws std::invalid_argument for invalid options or camera, or as why_not_searchable();
-///   Interrupted
+/// required margin at every point (the margin of the best standard code, if none keeps it). The
+/// search is exhaustive up to symmetry and its result proven if possible; otherwise codes are
+/// annealed without proof.
+/// @throws InvalidArgument for invalid arguments, or as why_not_searchable()
 /// @note results and counts do not depend on the number of threads
 /// @see docs/exhaustive_search.md
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options = {},

@@ -15,12 +15,10 @@
 
 namespace tofsmith {
 
-/// Waveforms of one measurement.
 struct WaveformPair {
   Waveform modulation;
   Waveform demodulation;
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<WaveformPair> auto& p) {
   return std::tuple(Field("modulation", p.modulation), Field("demodulation", p.demodulation));
 }
@@ -28,30 +26,26 @@ auto fields_of(ConstOrNot<WaveformPair> auto& p) {
 /// Desired correlation function of one measurement.
 struct CorrelationTarget {
   Eigen::VectorXd samples;         ///< chi at the N bins, linear in between
-  double demodulation_mean = 0.5;  ///< mean gain for ambient light
-  /// Waveforms with this correlation function on an unlimited camera, if known.
+  double demodulation_mean = 0.5;  ///< gain for ambient light
+  /// Waveforms on an unlimited camera, if known.
   std::optional<WaveformPair> ideal;
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<CorrelationTarget> auto& t) {
   return std::tuple(Field("samples", t.samples), Field("demodulation_mean", t.demodulation_mean),
                     Field("ideal", t.ideal));
 }
 
-/// Desired correlation functions of a code.
 struct TargetSet {
   std::string name;
   std::vector<CorrelationTarget> measurements;
 
   int samples() const { return static_cast<int>(measurements.front().samples.size()); }
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<TargetSet> auto& t) {
   return std::tuple(Field("name", t.name), Field("measurements", t.measurements));
 }
 
-/// Returns the correlation functions of a one-tap code without impulse responses; ideal ones for a
-/// family built without a peak limit.
+/// Returns the correlation functions of a one-tap code without impulse responses.
 TargetSet targets_of(const CodeSet& code);
 
 /// Returns the camera without the limits that prevent ideal codes: one tap, read separately, full
@@ -59,20 +53,18 @@ TargetSet targets_of(const CodeSet& code);
 Camera ideal_camera(const Camera& camera);
 
 /// Creates targets from a table of correlation functions.
-/// @param table  (rows, K), equal steps of depth over one period without the end point; resampled
-///   linearly to `samples` bins
-/// @param normalize  rescales every column to minimum 0 and maximum 1
-/// @throws std::invalid_argument with column and row of a non-finite value
+/// @param table  (rows, K), without the end point; resampled linearly to `samples` bins
+/// @param normalize  rescales every column to [0, 1]
+/// @throws InvalidArgument with column and row of a non-finite value
 TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int samples,
                              bool normalize);
 
-/// Options of factorize().
 struct FactorizeOptions {
   /// lambda of problem (6). At 1e-2 the iteration collapses to constants.
   std::vector<double> total_variation_weights = {3e-4, 1e-5};
   int max_iterations = 12;
   double objective_tolerance = 1e-4;
-  /// As in the paper. In tests it reached zero error less often.
+  /// As in the paper; reaches zero error less often.
   bool feed_back_projection = false;
   int random_starts = 30;
   bool structured_starts = true;
@@ -82,7 +74,7 @@ struct FactorizeOptions {
   int kept = 16;
   std::uint64_t seed = 1;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 };
 auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
@@ -115,27 +107,25 @@ struct FactorizeIteration {
   double relaxed_residual_rms = 0.0;   ///< before projection
   double playable_residual_rms = 0.0;  ///< after projection
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<FactorizeIteration> auto& i) {
   return std::tuple(Field("objective", i.objective),
                     Field("relaxed_residual_rms", i.relaxed_residual_rms),
                     Field("playable_residual_rms", i.playable_residual_rms));
 }
 
-/// A feasible pair of waveforms and its residual.
+/// Feasible pair of waveforms.
 struct PairCandidate {
   WaveformPair pair;
-  double residual_rms = 0.0;  ///< RMS over depth; the target is linear between bins
-  std::string start;          ///< e.g. "random 3", "2 pulses 1/3 apart, duty 0.2", "naive"
+  double residual_rms = 0.0;  ///< over depth; the target is linear between bins
+  std::string start;          ///< "random 3", "2 pulses 1/3 apart, duty 0.2", "naive"
   int iterations = 0;         ///< pairs of convex steps
 };
 
-/// Result of factorize().
 struct Factorization {
   std::vector<PairCandidate> candidates;    ///< distinct, smallest residual first; never empty
   std::vector<FactorizeIteration> history;  ///< of the best random start, if any
   std::vector<int> iterations_per_start;    ///< of all starts with alternation
-  double target_variation_rms = 0.0;        ///< RMS of target minus mean
+  double target_variation_rms = 0.0;        ///< of target minus mean
   std::string message;                      ///< reached, approached or out of reach
 
   const PairCandidate& best() const { return candidates.front(); }
@@ -145,16 +135,14 @@ struct Factorization {
 /// Finds waveforms whose correlation function on `camera` approximates `target`:
 ///   min over m, d of  rms(chi - (h_m * m) corr (h_d * d)) + lambda (TV(d) + TV(m) / p)
 ///   s.t.  mean m <= 1,  0 <= m <= p,  0 <= d <= 1
-/// with m and d binary if the camera requires it. Unreachable targets yield a result with residual
-/// and message, not an exception.
-/// @throws std::invalid_argument for invalid options or camera, or a target of length other than N
-/// @throws Interrupted if `progress` requests it
+/// with m and d binary if the camera requires it. Unreachable targets yield a residual and a
+/// message.
+/// @throws InvalidArgument for invalid options or camera, or a target of length other than N
 /// @see Gutierrez-Barragan et al., CVPR 2019, problems (6) and (7); differs: no feedback of the
 ///   projection by default, and refined switching times
 Factorization factorize(const CorrelationTarget& target, const Camera& camera,
                         const FactorizeOptions& options = {}, const Progress& progress = {});
 
-/// One run of the alternation.
 struct Alternation {
   WaveformPair relaxed;                     ///< last iterate (N samples)
   WaveformPair playable;                    ///< best projection
@@ -162,12 +150,10 @@ struct Alternation {
 };
 
 /// Runs the alternation of factorize() once, without refinement of switching times.
-/// @param start  index of the random start, >= 0; waveforms depend on it, options.seed and N
-/// @param total_variation_weight  lambda >= 0, replaces options.total_variation_weights; 0 omits
-///   total variation
+/// @param start  index of the random start, >= 0
+/// @param total_variation_weight  lambda >= 0, replaces options.total_variation_weights
 /// @param options  only max_iterations, objective_tolerance, feed_back_projection and seed
-/// @throws std::invalid_argument for invalid arguments or camera, or a target of length other than
-///   N
+/// @throws InvalidArgument for invalid arguments, or a target of length other than N
 Alternation alternate(const CorrelationTarget& target, const Camera& camera, int start,
                       double total_variation_weight, const FactorizeOptions& options = {});
 

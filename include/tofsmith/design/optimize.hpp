@@ -14,7 +14,6 @@
 
 namespace tofsmith {
 
-/// Options of optimize().
 struct OptimizeOptions {
   int samples = 120;
   int starts = 36;
@@ -31,12 +30,12 @@ struct OptimizeOptions {
   std::uint64_t seed = 1;
   /// Weight of log E3 in the loss, next to weights 1 - w of log E1 and w of log E2
   /// (OperatingMultipath::weight). E3 is the error of the direct depth if pairs of returns are
-  /// searched on a grid of bins; the term keeps pairs distinguishable.
+  /// searched on a grid of bins.
   double two_return_weight = 0.02;
   /// Above it, judge() multiplies the error by the ratio to this limit, at most by 1.25.
   double max_two_return_loss = 3.0;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// @throws InvalidArgument
   void validate() const;
 };
 auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
@@ -77,29 +76,24 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 }
 
 /// Optimizes all modulations and demodulations jointly for the depth error of a camera: geometric
-/// mean over its operating points, linear or circular as selected by the camera.
+/// mean over its operating points, of the camera's kind.
 ///
-/// Waveforms follow stochastic gradients through band limit, correlation, noise and a soft decoder,
-/// from a pool of starts (families, mixtures of frequencies, random codes and the codes in `also`).
-/// Short descents select the best starts, whose descents are continued. The best codes are
-/// perturbed and descend again. The best codes of several starts are refined and, for binary arms,
-/// binarized; their edges are then optimized. Light may stay below its peak. Receivers: one tap;
-/// two buckets that share all charge; more exclusive taps, with drain if the camera has one; a
-/// mixer. Pulses and gaps of binary waveforms are at least sensor.shortest_pulse_s long.
+/// Waveforms follow stochastic gradients of a soft decoder's error, from families, mixtures of
+/// frequencies, random codes and the codes in `also`. Receivers: one tap; two buckets that share
+/// all charge; more exclusive taps; a mixer. Pulses and gaps of binary waveforms are at least
+/// sensor.shortest_pulse_s long.
 ///
-/// For analog arms, the search also runs for binary arms first and then starts from those results.
-/// From twice the default effort on (with_effort()), it starts with all of a search of half the
-/// effort. The candidates of both are returned, so more freedom or effort never gives a worse code.
+/// For analog arms, the result includes the codes of a search for binary arms; from twice the
+/// default effort on (with_effort()), also of a search of half the effort. More freedom or effort
+/// thus never gives a worse code.
 /// @param exposures  1 to 8, with at least 3 measurements (2 differences)
-/// @param also  further starts, if they have the same number of exposures
-/// @return feasible codes named "optimized-k<exposures>": the best code of every stage of the
-///   search or, with operating multipath, all refined codes of every stage. Stages for binary arms
-///   and of lower effort come first. Candidate::error is empty. judge() (design/design.hpp)
-///   compares them, at their best origins, with the initial codes on independent random numbers, as
-///   design() does.
-/// @throws std::invalid_argument for invalid options or camera, too few measurements, or a camera
-///   without band limit and without sensor.shortest_pulse_s; Interrupted
+/// @param also  starts, if they have the same number of exposures
+/// @return feasible codes named "optimized-k<exposures>" for judge(), which computes their errors:
+///   the best code of every stage or, with operating multipath, all refined codes
+/// @throws InvalidArgument for invalid options or camera, too few measurements, or a camera without
+///   band limit and without sensor.shortest_pulse_s
 /// @note bit-identical for any number of threads
+/// @see docs/optimize.md
 std::vector<Candidate> optimize(const Camera& camera, int exposures,
                                 const OptimizeOptions& options = {},
                                 std::span<const CodeSet> also = {}, const Progress& progress = {});
@@ -110,7 +104,7 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options = {},
                                 std::span<const CodeSet> also = {}, const Progress& progress = {});
 
-/// Returns a shortest pulse that the camera's samples can resolve [s]: two samples.
+/// Returns two samples of the camera, a shortest pulse that they can resolve [s].
 double suggested_shortest_pulse_s(const Camera& camera);
 
 }  // namespace tofsmith
