@@ -12,59 +12,50 @@
 
 namespace tofsmith {
 
-/// Converts a name to a file name: bytes other than ASCII letters, digits, "-", "_" and dots after
-/// the first byte become %XX. Different names give different file names, and no name leaves its
-/// directory.
+/// Replaces bytes other than ASCII letters, digits, "-", "_" and dots after the first byte by %XX.
+/// Different names give different file names without directories.
 std::string file_name_of(std::string_view name);
 
-/// Creates an output directory and its missing parents.
+/// Creates a directory and its missing parents.
 /// @throws IoError naming the directory if it cannot be created or is a file
 void make_output_directory(const std::filesystem::path& directory);
 
-/// Checks that an output does not overwrite an input file of the run.
-/// @param inputs  paths; names that are not files are ignored
-/// @throws IoError naming the output
+/// Rejects an output that is one of the input files. @throws IoError naming the output
 void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// Treatment of an output file that exists. refuse_other keeps a file with the same content, which
-/// an interrupted run may have written, and rejects any other file.
+/// Treatment of an existing file. refuse_other keeps a file with the same content and rejects
+/// others.
 enum class OutputPolicy { refuse_existing, refuse_other, overwrite };
 
-/// Returns the policy for several outputs that one run writes in sequence. If only the first
-/// outputs exist, an earlier run was interrupted and can be resumed: refuse_existing becomes
-/// refuse_other.
-/// @param outputs  in the order in which they are written
+/// Returns the policy for outputs that one run writes in this order: refuse_existing becomes
+/// refuse_other if only the first outputs exist, which an interrupted run has written.
 OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
                              OutputPolicy policy);
 
-/// Output file that is either written completely or not at all. Data goes to a hidden file in the
-/// same directory, which commit() renames. Without commit(), the destructor removes the hidden file
-/// and an existing target stays unchanged. The next process that writes to the directory removes
-/// the hidden files of killed processes, provided that they ran on the same machine since it was
-/// booted and in the same container. Symbolic links are followed. A file that is overwritten keeps
-/// its permissions.
+/// Output file that is written completely or not at all: commit() renames a hidden file in the same
+/// directory, which the destructor removes otherwise. The next process that writes there removes
+/// hidden files of killed processes of the same machine and container. Symbolic links are followed,
+/// and permissions are kept.
 class AtomicFile {
  public:
   /// @throws IoError naming `target` if it exists and must not be replaced, is not a regular file,
-  ///         or if its directory is missing or not writable
+  ///         or if its directory is not writable
   AtomicFile(std::filesystem::path target, OutputPolicy policy);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Returns the path of the hidden file, for libraries that open files by path. Its extension is
-  /// that of the target.
+  /// Hidden file, with the extension of the target.
   const std::filesystem::path& temporary_path() const { return temporary_; }
 
   /// Appends bytes. @throws IoError if the disk is full or fails
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
-  /// Overwrites bytes from position `offset` on, extending the file if necessary.
-  /// @throws IoError as write()
+  /// Overwrites bytes from `offset` on, or extends the file. @throws IoError as write()
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
-  /// Flushes the file to disk and renames it. Must be called once, last.
-  /// @throws IoError on failure, or if the target has appeared meanwhile and must not be replaced
+  /// Flushes and renames the file; must be called once, last.
+  /// @throws IoError also if the target has appeared and must not be replaced
   void commit();
 
  private:
@@ -79,8 +70,7 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes a whole file. If writing fails, `path` keeps its previous content.
-/// @throws IoError as AtomicFile
+/// Writes a whole file. @throws IoError as AtomicFile; `path` then keeps its previous content
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content,
                            OutputPolicy policy);
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,

@@ -17,15 +17,15 @@
 
 namespace tofsmith {
 
-/// Returns the code as a JSON document: binary waveforms by their switching times on the unit
-/// period, other waveforms by their samples. Numbers are read back exactly.
-/// @throws std::invalid_argument if a text is not UTF-8 or a number of the provenance is not finite
+/// Returns the code as JSON: binary waveforms by their switching times on the unit period, others
+/// by their samples. Numbers are read back exactly.
+/// @throws std::invalid_argument for texts that are not UTF-8 and numbers that are not finite
 std::string code_to_json(const CodeSet& code);
 
 /// Reads a code from JSON.
 /// @param file  name for error messages
-/// @throws IoError "file:line:column: ..." for invalid JSON; "file: /json/pointer: ..." for members
-///         that are missing, unknown or of the wrong type, inconsistent lengths, and invalid values
+/// @throws IoError "file:line:column: ..." for invalid JSON; "file: /json/pointer: ..." for missing
+///         or unknown members and invalid values
 CodeSet parse_code_json(std::string_view text, std::string_view file = "code.json");
 
 /// Order of the K columns of an array for E exposures with several taps.
@@ -34,82 +34,71 @@ enum class TapOrder {
   interleaved,  ///< all taps of exposure 0, then all taps of exposure 1, ...
 };
 
-/// Interpretation of the columns of an NPZ file, which the file does not contain.
+/// Interpretation of the columns of an NPZ file.
 struct TapLayout {
   int taps = 1;
   std::optional<TapOrder> order;  ///< required for several taps and several exposures
   bool is_signed = false;         ///< demodulations are weights of a mixer, in [-1, 1]
 };
 
-/// Reads the arrays `modfs` and `demodfs`, each (N, K) with one column per measurement, the layout
-/// that other time-of-flight projects publish. Columns with two levels, the lower of which is 0,
-/// become binary waveforms. The scale of the modulation is kept. The array `corrfs` is optional,
-/// but must have the same shape.
-/// @param file  name for error messages; its stem becomes the code's name
+/// Reads the arrays `modfs` and `demodfs`, each (N, K), the layout of other time-of-flight
+/// projects. Columns with two levels, the lower of which is 0, become binary waveforms. The scale
+/// of the modulation is kept.
+/// @param file  for error messages; its stem becomes the code's name
 /// @throws IoError naming file, array, row and column for inconsistent shapes, invalid values, taps
-///         of one exposure with different modulations, or a missing order of several taps and
-///         exposures
+///         of one exposure with different modulations, or a missing order
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
                        const TapLayout& layout = {});
 
-/// Writes the same layout: modulation and demodulation as cell averages, and the correlation
-/// without the impulse responses of a camera,
+/// Writes the same layout, as cell averages, and the correlation without impulse responses,
 ///   corrfs[z, i] = (1/N) sum_n modfs[n, i] demodfs[n + z, i].
-/// @throws std::invalid_argument if the code has several taps and exposures and `order` is missing
+/// @throws std::invalid_argument if `order` is required and missing
 std::vector<std::byte> serialize_code_npz(const CodeSet& code,
                                           std::optional<TapOrder> order = std::nullopt);
 
-/// Interpretation of NPZ files with several taps, for load_code().
 struct CodeFileOptions {
   std::optional<int> taps;            ///< measurements per exposure; none: the camera's
   std::optional<TapOrder> tap_order;  ///< required for several taps and several exposures
 };
 
-/// Reads a code by extension: .json, .npz or .csv. `layout` applies to .npz; only its is_signed
-/// applies to .csv. JSON files contain this information.
-/// @throws IoError as parse_code_json() and parse_code_npz(), or if the file cannot be read
+/// Reads a code by extension: .json, .npz (with `layout`) or .csv (with layout.is_signed).
+/// @throws IoError as parse_code_json() and parse_code_npz()
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout = {});
 
-/// Returns the waveforms of a code as a CSV table that read_code() can read, with one row per time
-/// sample and the columns
+/// Returns the waveforms as CSV that read_code() can read, as cell averages, with the columns
 ///   time_s, modulation_1 ... modulation_E (power over average), demodulation_1 ... demodulation_K
-/// Samples are cell averages, so that duties are exact.
 std::string waveforms_to_csv(const CodeSet& code, double fundamental_frequency_hz);
 
 /// Reads a code from arrays of other software: light (N, K), or (N) if all exposures are equal, and
-/// gates (N, K), in this order or with time along the second axis, and at any scale. The brightest
-/// light is scaled to a mean of 1, and gates above 1 are divided by the largest. Columns are as in
-/// parse_code_npz().
+/// gates (N, K), also transposed. The brightest light is scaled to a mean of 1, and gates above 1
+/// are divided by the largest.
 /// @param light, gates  .npy files; the stem of `gates` becomes the code's name
 /// @throws IoError as parse_code_npz(), or if all light is zero
 CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesystem::path& gates,
                          const TapLayout& layout = {});
 
-/// Writes a code by extension: .json or .npz. `order` applies to .npz.
-/// @throws IoError as AtomicFile
+/// Writes a code by extension: .json or .npz (with `order`).
 /// @throws std::invalid_argument as code_to_json() and serialize_code_npz()
 void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPolicy policy,
                 std::optional<TapOrder> order = std::nullopt);
 
 /// Reads rows of one exposure from arrays of other software: light (N), or several equal columns,
-/// and up to 16 rows (N, K) or (K, N) of any scale and sign. Light is scaled to a mean of 1;
-/// nothing else is changed.
+/// and up to 16 rows (N, K) or (K, N). Light is scaled to a mean of 1.
 /// @param light, rows  .npy files; the stem of `rows` becomes the code's name
 /// @throws IoError naming file, row and column for inconsistent shapes, light that is negative, all
-///         zero or differs between columns, and rows that are all zero or too many
+///         zero or differs between columns, and rows that are all zero
 CodeSet read_rows(const std::filesystem::path& light, const std::filesystem::path& rows);
 /// Reads rows from the arrays `modfs` and `demodfs` of an .npz file.
 CodeSet read_rows(const std::filesystem::path& archive);
 
-/// Reads an atlas of precomputed codes from a file.
-/// @throws IoError as parse_atlas(), or if the file cannot be read
+/// Reads precomputed codes. @throws IoError as parse_atlas()
 std::vector<AtlasEntry> read_atlas(const std::filesystem::path& path);
 
-/// Builds a built-in family for the camera, resamples a code of the built-in atlas to the camera's
-/// samples, or reads a code from a file without resampling. Cameras with rows read .npz files and
-/// the pair LIGHT.npy,ROWS.npy as rows; other cameras read LIGHT.npy,GATES.npy as exposures. For
-/// cameras with a mixer, the demodulations of .npz, .npy and .csv files are weights in [-1, 1].
-/// @throws IoError as read_code(), or if `name_or_path` is neither
+/// Builds a built-in family for the camera, resamples a code of the built-in atlas, or reads a file
+/// without resampling. Cameras with rows read .npz files and the pair LIGHT.npy,ROWS.npy as rows;
+/// other cameras read LIGHT.npy,GATES.npy as exposures. With a mixer, the demodulations of .npz,
+/// .npy and .csv files are weights in [-1, 1].
+/// @throws IoError as read_code(), or if `name_or_path` is unknown
 /// @throws std::invalid_argument for a family that the camera does not support
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,
                   const CodeFileOptions& options = {});

@@ -7,7 +7,7 @@
 
 namespace tofsmith {
 
-/// Returns a text as a field of a CSV file, with quotes if necessary (RFC 4180).
+/// Returns a text as a CSV field, quoted if necessary (RFC 4180).
 std::string csv_field(std::string_view text);
 
 }  // namespace tofsmith

@@ -24,67 +24,59 @@
 
 namespace tofsmith {
 
-/// Returns true if an output with this name contains points: .ply, .pcd.
+/// Returns true for files of points: .ply, .pcd.
 bool holds_points(const std::filesystem::path& path);
 
-/// Returns the type of the values of a plane in files; statuses are uint8.
 NpyType type_of(DecodedPlane plane);
-/// Returns the help text of DecodeRequest::outputs, which lists the planes.
+/// Help text of DecodeRequest::outputs, which lists the planes.
 std::string_view help_of_outputs();
 
 /// Request to decode a recording into files.
 struct DecodeRequest {
-  /// .npy, .npz or .h5 of shape (H, W, K) or (F, H, W, K) and any size; or K files of shape (H, W)
-  /// or (F, H, W), one per measurement, in order.
+  /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K); or K files (H, W) or (F, H, W) in order.
   std::vector<std::filesystem::path> raw;
   RawLayout layout = RawLayout::interleaved;
   std::string dataset;
   std::filesystem::path raw_format;
 
-  /// .npy, .pfm, .png (16 bits, mm): only depth; .npz: one array per plane; .exr: one channel per
-  /// plane; .ply, .pcd (organized): points, with planes as scalars. With several frames, the names
-  /// of the files are numbered: name-03.npz.
+  /// .npy, .pfm, .png (16 bits, mm): only depth; .npz: arrays; .exr: channels; .ply, .pcd
+  /// (organized): points with planes as scalars. Files of several frames are numbered: name-03.npz.
   std::filesystem::path output;
   std::vector<DecodedPlane> outputs;
   DepthKind kind = DepthKind::radial;
   bool all_points = false;
-  /// Lens for points and z-depth, which require a lens or `view_deg`. If it contains a map of rays,
-  /// pixels without a ray are invalid.
+  /// Lens for points and z-depth (or `view_deg`). Pixels without a ray in its map are invalid.
   std::optional<Lens> lens;
   std::optional<double> view_deg;
-  bool undistort = false;  ///< requires a lens; has no effect without distortion
+  bool undistort = false;
   std::optional<int> frame;
   bool stack = false;
-  /// Number of consecutive frames to average, at most all. Pixels that are invalid or saturated in
-  /// one frame are also invalid or saturated in the mean.
+  /// Number of consecutive frames to average. Invalid or saturated pixels of one frame are also
+  /// invalid or saturated in the mean.
   int average = 1;
-  /// The recording consists of groups of frames, each merged by merge_exposures(). Cannot be
-  /// combined with `average`.
+  /// Groups are merged by merge_exposures(). Not valid with `average`.
   std::vector<double> hdr;
-  /// F frames of E exposures give (F - 1) E + 1 depth images, in the order of their last
-  /// exposures. A time filter averages windows that share no exposure. Not valid with `average`,
-  /// `averaged`, `hdr` or `look_ahead`.
+  /// F frames of E exposures give (F - 1) E + 1 depth images. A time filter averages windows that
+  /// share no exposure. Not valid with `average`, `averaged`, `hdr` or `look_ahead`.
   bool sliding = false;
   std::filesystem::path stray_light;  ///< image with the kernel of StrayLight
   double averaged = 1.0;              ///< multiplied by `average`
-  /// Applied to consecutive frames, or to means of frames. If only one `frame` is decoded, the time
-  /// filter also reads the frames before it, and with `look_ahead` the frames after it. `filter`
-  /// sets `before_filter`.
+  /// Applied to consecutive frames or means. For one `frame`, the frames before it are read as
+  /// well, and with `look_ahead` the frames after it. `filter` sets `before_filter`.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< after the temporal filter
-  std::optional<MixedPixels> mixed;     ///< see mark_mixed_pixels()
-  std::optional<double> min_depth_m;    ///< see depth_limits()
+  std::optional<MixedPixels> mixed;
+  std::optional<double> min_depth_m;  ///< see depth_limits()
   std::optional<double> max_depth_m;
   std::filesystem::path offset_map;  ///< as PixelMaps::delay_offset_m
   double offset_m = 0.0;
   std::filesystem::path gain_map;  ///< as PixelMaps::gain
   double memory_mb = 256.0;
-  /// Order of the code's exposures in the decoder's table, as Playback::order. It is only used to
-  /// suggest other orders if the raw numbers do not fit. Empty: one exposure per measurement, in
-  /// the order of the code.
+  /// Order of the exposures, as Playback::order, for errors about raw numbers that do not fit.
+  /// Empty: one exposure per measurement, in the order of the code.
   std::vector<int> order;
   OutputPolicy policy = OutputPolicy::refuse_existing;
-  std::vector<std::string> other_inputs;  ///< further input files, which outputs must not replace
+  std::vector<std::string> other_inputs;  ///< which outputs must not replace
 };
 auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
   return std::tuple(
@@ -178,12 +170,12 @@ struct DecodedRecording {
   int height = 0;
   int width = 0;
   int measurements = 0;
-  int first_frame = 0;                       ///< first requested frame; means count as frames
-  int frame_count = 0;                       ///< number of requested frames; 0 before the start
-  std::vector<DecodedPlane> outputs;         ///< written planes
+  int first_frame = 0;  ///< first requested frame; means count as frames
+  int frame_count = 0;
+  std::vector<DecodedPlane> outputs;
   std::vector<std::filesystem::path> files;  ///< per finished frame; of a stack: per plane
   std::vector<StatusCounts> frames;  ///< per finished frame; zero if statuses were not requested
-  std::int64_t pixels = 0;           ///< number of decoded pixels in all frames
+  std::int64_t pixels = 0;
   double seconds = 0.0;
   std::vector<std::string> notes;  ///< for the user
 
@@ -193,57 +185,50 @@ struct DecodedRecording {
 };
 
 /// Decodes a recording of any length with constant memory, in bands of rows (whole frames if they
-/// are filtered). The next band is read while a band is decoded. Files are written completely or
-/// not at all.
+/// are filtered).
 /// @param backend  the table of its decoder defines the meaning of the raw numbers
-/// @throws std::invalid_argument "field = value; rule" for an invalid request, before any file is
-///         written
+/// @throws std::invalid_argument "field = value; rule" for an invalid request, before any output
 /// @throws IoError as RawFramesReader; for maps that do not match; for outputs that exist, are
 ///         inputs or cannot represent a depth; and for frames that need more than `memory_mb`
-/// @throws Interrupted if `progress` requests it; files of finished frames are kept
-/// @note the same bits for any number of threads and any memory limit
+/// @throws Interrupted (files of finished frames are kept)
+/// @note same bits for any number of threads and any memory limit
 DecodedRecording decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                                   const Progress& progress = {});
-/// Decodes a recording as above. If it throws, `result` contains the finished part.
-/// @param result  updated after every frame
+/// As above; `result` is updated after every frame, also if it throws.
 void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                       const Progress& progress, DecodedRecording& result);
 
-/// Fills `into` with bytes from a stream. Returns the number of bytes, which is smaller only at the
-/// end of the stream.
+/// Returns fewer bytes than the size of `into` only at the end of the stream.
 using ReadStream = std::function<std::size_t(std::span<std::byte> into)>;
-/// Consumes bytes.
 using WriteStream = std::function<void(std::span<const std::byte> bytes)>;
 
 /// Result of decode_stream().
 struct DecodedStream {
-  int height = 0;  ///< of the frames; 0 until their description is read
+  int height = 0;  ///< 0 until the header is read
   int width = 0;
-  std::int64_t frames = 0;  ///< number of decoded and written frames
-  StatusCounts statuses;    ///< of their pixels, if status is an output
-  double seconds = 0.0;     ///< time until the last frame was written, including waiting
+  std::int64_t frames = 0;
+  StatusCounts statuses;  ///< if status is an output
+  double seconds = 0.0;   ///< including waiting
 };
 
-/// Decodes the frames of a stream. Writes each frame before reading the next, unless a temporal
-/// filter looks ahead; needs memory for a few frames. The output of a frame consists of its planes
-/// in the order of the request's `outputs` (default: depth), each with H x W little-endian items,
-/// row by row. Items are uint8 for status and returns, int32 for bin, and float32 for all other
-/// planes. The numbers are the same as from decode_recording().
+/// Decodes the frames of a stream with memory for a few frames. Each frame is written before the
+/// next is read, unless a temporal filter looks ahead, as planes in the order of `outputs`
+/// (default: depth) with H x W little-endian items: uint8 for status and returns, int32 for bin,
+/// otherwise float32.
 /// @param request  `raw_format` describes the stream, a header followed by frames; `raw`, `output`,
 ///                 `frame`, `stack`, `memory_mb` and `policy` are ignored
-/// @param result   updated after every frame, also if an exception is thrown
+/// @param result   updated after every frame
 /// @throws std::invalid_argument, IoError as decode_recording(); IoError if the stream ends within
 ///         a frame or before the first; exceptions of `read` and `write`; Interrupted
 void decode_stream(const DecodeRequest& request, const FrameBackend& backend,
                    const ReadStream& read, const WriteStream& write, const Progress& progress,
                    DecodedStream& result);
 
-/// Writes the planes of a decoded frame in the format of the extension, as DecodeRequest::output.
-/// @param planes      ignored for .npy, .pfm and .png
-/// @param view        for points (.ply, .pcd)
-/// @param all_points  also write points of pixels that are not ok
+/// Writes the planes of a decoded frame by extension, as DecodeRequest::output.
+/// @param planes  ignored for .npy, .pfm and .png
+/// @param view    for points (.ply, .pcd)
 /// @throws std::invalid_argument if the frame does not have a plane; IoError for an unknown
-///         extension, or as AtomicFile
+///         extension
 void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<DecodedPlane>& planes, const PinholeView& view,
                    OutputPolicy policy, bool all_points = false);

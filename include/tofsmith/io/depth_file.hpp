@@ -13,36 +13,29 @@
 
 namespace tofsmith {
 
-/// Reads depth [m], shape (H, W), from .npy, .npz, .exr or .pfm (metres, see read_float_image()) or
-/// .png (16-bit grey, millimetres). Pixels without a return are NaN: 0, NaN and infinity in any
-/// format, as depth cameras write them. Other values are unchanged.
-/// @throws IoError if the extension is unknown or the file does not contain a depth image
+/// Reads depth [m], (H, W), from .npy, .npz, .exr or .pfm (metres, see read_float_image()) or .png
+/// (16-bit grey, millimetres). 0 and infinity become NaN (no return).
+/// @throws IoError if the file is not such an image
 Image<float> read_depth(const std::filesystem::path& path);
 
-/// Returns the kind of distance stated by the file: the array `depth_is_z` of .npz, the attribute
-/// `depthKind` of .exr, the text "Depth kind" of .png. None for .npy, .pfm and files of other
-/// programs.
-/// @throws IoError if the file is damaged
+/// Returns the kind of distance that the file specifies: the array `depth_is_z` of .npz, the
+/// attribute `depthKind` of .exr or the text "Depth kind" of .png; none in other files.
 std::optional<DepthKind> stored_depth_kind(const std::filesystem::path& path);
 
-/// Returns the kind of distance of a depth image: as stated by the file, else as requested, else
-/// `fallback`.
-/// @throws IoError if the file states another kind than the requested one
+/// Returns the kind that the file specifies, else the requested one, else `fallback`.
+/// @throws IoError if the file specifies another kind than the requested one
 DepthKind depth_kind_of(const std::filesystem::path& path, std::optional<DepthKind> requested,
                         DepthKind fallback);
 
-/// Writes depth [m] by extension, with its kind if the format can state it. In .png, depth is
-/// rounded to millimetres, and pixels that are not finite become 0; the other formats contain the
-/// floats.
+/// Writes depth [m] by extension, with its kind if the format supports it. In .png, depth is
+/// rounded to millimetres, and 0 if it is not finite.
 /// @throws std::invalid_argument if the image is empty
-/// @throws IoError as AtomicFile, if the extension is unknown, or if a depth is outside the range
-///         of .png (-0.0005 m to 65.535 m)
+/// @throws IoError also if a depth is outside the range of .png (-0.0005 m to 65.535 m)
 void write_depth(const std::filesystem::path& path, const Image<float>& depth_m,
                  OutputPolicy policy, DepthKind kind = DepthKind::radial);
 
-/// Reads the multipath returns of a scene from an NPZ with the arrays `first` (H W + 1, integers),
-/// `distance_m` and `ratio` (one number per return). MultipathReturns::validate() checks them
-/// against the scene.
+/// Reads multipath returns from an NPZ with the arrays `first` (H W + 1, integers), `distance_m`
+/// and `ratio` (one number per return). They are not compared with a scene.
 /// @throws IoError naming file and array
 MultipathReturns read_multipath_returns(const std::filesystem::path& path, int height, int width);
 
@@ -52,25 +45,23 @@ enum class TransientOrigin {
   peak,   ///< the brightest bin of all pixels together is at the pixel's depth
 };
 
-/// Interpretation of a file of transients.
+/// Interpretation of transients.
 struct TransientFileOptions {
-  double bin_s = 0.0;  ///< duration of one bin [s], > 0
+  double bin_s = 0.0;  ///< duration of a bin, > 0
   TransientOrigin origin = TransientOrigin::first;
-  /// Subtracts the median of each histogram as constant background and clips at 0.
+  /// Subtracts the median of each histogram and clips at 0.
   bool subtract_median = false;
 };
 
 /// Reads transients from an NPY: one histogram (T) for all pixels, or (H, W, T).
-/// @throws IoError naming the file, the value found and the value expected; with the index of a bin
-///         that is negative or not finite
+/// @throws IoError for another shape, or with the index of a bin that is negative or not finite
 std::vector<Transient> read_transients(const std::filesystem::path& path, int height, int width,
                                        const TransientFileOptions& options);
 
-/// Writes the ground truth of all returns as an NPZ: `depth_m` and `direct_e_per_s` (H, W); `first`
-/// (H W + 1), `distance_m`, `signal_e_per_s` and `ratio` of the multipath returns, as read by
-/// read_multipath_returns(); optionally `tail` (mean delay [m], ratio); and `transient` (T) or (H,
-/// W, T) with unit sum, `transient_bin_m` and `transient_first_m`.
-/// @throws IoError as AtomicFile
+/// Writes all returns as an NPZ: `depth_m` and `direct_e_per_s` (H, W); `first`, `distance_m`,
+/// `signal_e_per_s` and `ratio` for read_multipath_returns(); optionally `tail` (mean delay [m],
+/// ratio); and `transient` (T) or (H, W, T) with unit sum, `transient_bin_m` and
+/// `transient_first_m`.
 void write_multipath_truth(const std::filesystem::path& path, const MultipathTruth& truth,
                            const SceneLight& light, OutputPolicy policy);
 

@@ -7,9 +7,9 @@
 
 namespace tofsmith {
 
-/// Which distance is written as depth.
+/// Distance that is written as depth.
 enum class DepthKind {
-  radial,  ///< along the ray, as the camera measures it
+  radial,  ///< along the ray
   z,       ///< along the optical axis
 };
 

@@ -9,21 +9,17 @@
 
 namespace tofsmith {
 
-/// Contents of a directory of `tofsmith design`.
 struct DesignRecord {
   Camera camera;
   DesignResult result;
 };
 
-/// Directory with the output of a design:
-///   camera.toml              camera with defaults filled in, measured responses as samples
-///   design.json              design document
-///   details.json             targets and iteration histories, for reports
-///   codes/NAME.code.json     every candidate
-///   finished/NAME.json       finished designed codes, which a later run with the same camera,
-///                            target, options and seed reuses; codes in damaged files are
-///                            designed again
-/// NAME is the code's name, converted by file_name_of().
+/// Directory with the output of a design, where NAME is file_name_of() of the code's name:
+///   camera.toml           camera with defaults, measured responses as samples
+///   design.json           design document
+///   details.json          targets and iteration histories
+///   codes/NAME.code.json  every candidate
+///   finished/NAME.json    finished codes, reused by a run with the same inputs
 class DesignDirectory {
  public:
   explicit DesignDirectory(std::filesystem::path path);
@@ -31,13 +27,12 @@ class DesignDirectory {
   const std::filesystem::path& path() const { return path_; }
   bool holds_design() const;
 
-  /// Returns a store of the finished codes of a design with inputs `camera` and `options`. Creates
-  /// the directory if necessary. @throws IoError
+  /// Returns a store of the finished codes of a design with these inputs. @throws IoError
   DesignStore store(const Camera& camera, const DesignOptions& options) const;
-  /// @throws IoError if files exist and must not be replaced, or cannot be written
+  /// @throws IoError if files exist and must not be replaced
   void write(const Camera& camera, const DesignResult& result, const DesignOptions& options,
              OutputPolicy policy) const;
-  /// @throws IoError naming the file and the error
+  /// @throws IoError naming the file
   DesignRecord read() const;
 
  private:
@@ -49,7 +44,7 @@ class DesignDirectory {
 ///   QUANTITY.code.json    for bandwidth, power and exposure: the code that meets the requirement,
 ///   QUANTITY.camera.toml  and the camera with the required value; omitted if not reachable
 ///   requirements.json     requirements_document(), written last
-/// @throws IoError if files exist and must not be replaced, or cannot be written
+/// @throws IoError if files exist and must not be replaced
 void write_requirements(const std::filesystem::path& directory, const Camera& camera,
                         const Requirements& found, const RequirementOptions& options,
                         OutputPolicy policy);

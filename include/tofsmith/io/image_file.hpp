@@ -25,21 +25,18 @@ constexpr double luminance_rec709(double red, double green, double blue) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 
-/// Reads one number per pixel, unconverted, by extension:
+/// Reads one number per pixel by extension:
 ///   .npy   float16, float32 or float64 of shape (H, W)
 ///   .npz   the same types, from the array `name` or the only array
 ///   .exr   the channel `name`, "Z" or "Y", the only channel, or R, G and B if all are equal
 ///   .pfm   grey
-/// @param name  content of the image, such as "depth" or "offset"
-/// @throws IoError for other extensions, or if the file is not such an image
+/// @throws IoError if the file is not such an image
 Image<float> read_float_image(const std::filesystem::path& path, std::string_view name);
-/// Reads an image named "kernel" for a StrayLight. @throws IoError also for an invalid kernel
+/// Reads an image named "kernel". @throws IoError also for an invalid kernel
 Image<float> read_stray_light(const std::filesystem::path& path);
 
-/// Writes float32. The array in .npz is named `name`; the channel in .exr is "Z" for depth and
-/// `name` otherwise.
+/// Writes float32, under the name `name` in .npz; in .exr "Z" for depth, else `name`.
 /// @throws std::invalid_argument if the image is empty
-/// @throws IoError as AtomicFile, or for other extensions
 void write_float_image(const std::filesystem::path& path, const Image<float>& image,
                        std::string_view name, OutputPolicy policy);
 
@@ -47,53 +44,41 @@ void write_float_image(const std::filesystem::path& path, const Image<float>& im
 struct PngImage {
   int height = 0;
   int width = 0;
-  int channels = 1;   ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
-  int bit_depth = 8;  ///< 8 or 16
+  int channels = 1;  ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
+  int bit_depth = 8;
   std::vector<std::uint16_t> values;
-  /// Text "Depth kind" of a depth image; empty: none.
+  /// Text "Depth kind".
   std::string depth_kind = {};
 
   /// Returns the value of full white: 255 or 65535.
   int max_value() const { return bit_depth == 16 ? 65535 : 255; }
 };
 
-/// Decodes a PNG. Palettes are resolved and values of fewer than 8 bits are scaled to 8 bits; other
-/// values are unchanged.
-/// @param file  name for error messages
+/// Decodes a PNG. Palettes are resolved and values of fewer than 8 bits scaled to 8 bits.
 /// @throws IoError if the file is damaged, a side exceeds 65536 or the number of pixels 2^28
 PngImage parse_png(std::span<const std::byte> content, std::string_view file);
 PngImage read_png(const std::filesystem::path& path);
 
-/// @throws std::invalid_argument if a member is outside its documented range, or a value exceeds
-///         max_value()
 std::vector<std::byte> serialize_png(const PngImage& image);
-/// @throws IoError as AtomicFile
 void write_png(const std::filesystem::path& path, const PngImage& image, OutputPolicy policy);
 
-/// Transfer function of the values of an image file.
 enum class Transfer { srgb, linear };
 
-/// Reads albedo, shape (H, W), as the Rec. 709 luminance of an image:
+/// Reads albedo, (H, W), as the Rec. 709 luminance of an image:
 ///   .png   8 or 16 bits, grey or RGB, alpha ignored; 1.0 is full white
 ///   .npy   floats, (H, W) or (H, W, 3), linear
 ///   .exr   "Y", the only channel, or R, G and B, linear
 ///   .pfm   grey or RGB, linear
-/// @param png_transfer  transfer function of PNG files, which rarely specify it: sRGB for
-///         photographs, often linear for measured albedo
-/// @throws IoError for other extensions, or if the file is not such an image
+/// @param png_transfer  usually sRGB for photographs and linear for measured albedo
 Image<float> read_albedo(const std::filesystem::path& path, Transfer png_transfer = Transfer::srgb);
 
-/// Converts an image to albedo in [0, 1]. If the image has values above 1, such as rendered
-/// radiance, the whole image is scaled down.
-/// @param file  name for error messages
-/// @param depth_m  empty, or of the same size: where depth is NaN (no return), albedo may be NaN
-///         and becomes 0
+/// Converts an image to albedo in [0, 1]; an image with values above 1 is scaled down as a whole.
+/// @param depth_m  same size or empty; where it is NaN, albedo may be NaN and becomes 0
 /// @throws IoError naming the first pixel that is negative or not finite
 Image<float> albedo_of_picture(Image<float> picture, std::string_view file,
                                const Image<float>& depth_m = {});
 
-/// Reads the ambient light of every pixel relative to that of the scene, from the same files as
-/// read_albedo().
+/// Reads the ambient light of every pixel, relative to the light of the scene.
 /// @throws IoError as read_albedo(), or naming the first pixel that is negative or not finite
 Image<float> read_ambient_scale(const std::filesystem::path& path,
                                 Transfer png_transfer = Transfer::srgb);

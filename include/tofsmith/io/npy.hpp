@@ -27,14 +27,14 @@ enum class NpyType {
   uint16,
   uint32,
   uint64,
-  float16,  ///< IEEE half precision; has no C++ type, to_floats() converts it
+  float16,
   float32,
   float64
 };
 
-/// Returns the size of an item [bytes].
+/// Size of an item [bytes].
 std::size_t item_size(NpyType type);
-/// Returns NumPy's name of the type, such as "float32" or "bool".
+/// NumPy's name of the type, such as "float32" or "bool".
 std::string_view name_of(NpyType type);
 /// Returns true for floating-point types.
 bool is_float(NpyType type);
@@ -73,7 +73,7 @@ class NpyArray {
  public:
   /// Creates an array of shape (0,).
   NpyArray() : NpyArray(NpyType::float64, {0}) {}
-  /// Creates an array of zeros. @throws std::invalid_argument if its size exceeds the address space
+  /// Array of zeros. @throws std::invalid_argument if its size exceeds the address space
   NpyArray(NpyType type, NpyShape shape);
   /// Copies `values`. @throws std::invalid_argument if their number differs from that of `shape`
   template <typename Item>
@@ -86,7 +86,7 @@ class NpyArray {
   NpyType type() const { return type_; }
   const NpyShape& shape() const { return shape_; }
   std::size_t axes() const { return shape_.size(); }
-  /// Returns the number of items.
+  /// Number of items.
   std::size_t size() const { return bytes_.size() / item_size(type_); }
 
   std::span<const std::byte> bytes() const { return bytes_; }
@@ -99,7 +99,7 @@ class NpyArray {
     return {reinterpret_cast<const Item*>(bytes_.data()), size()};
   }
 
-  /// Returns the items, converted from any type.
+  /// Return the items, converted from any type.
   std::vector<double> to_doubles() const;
   std::vector<float> to_floats() const;
 
@@ -112,23 +112,20 @@ class NpyArray {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads format versions 1.0 to 3.0 in either byte order. Fortran order is converted to C order.
-/// @param file  name for error messages
+/// Reads format versions 1.0 to 3.0. Fortran order is converted to C order.
 /// @throws IoError at a byte offset if the header is malformed, the items are objects, records,
-///         text or complex numbers, or the length of the data differs from the header
+///         text or complex numbers, or the length differs from the header
 NpyArray parse_npy(std::span<const std::byte> content, std::string_view file);
 NpyArray read_npy(const std::filesystem::path& path);
 
 /// Writes format version 1.0, little endian, C order, with the same bytes as NumPy 1.24.
 std::vector<std::byte> serialize_npy(const NpyArray& array);
-/// @throws IoError as AtomicFile
 void write_npy(const std::filesystem::path& path, const NpyArray& array, OutputPolicy policy);
 
-/// Reads parts of an NPY file, for recordings larger than memory.
+/// Reads parts of an NPY file larger than memory.
 class NpyReader {
  public:
-  /// Reads the header and checks the length of the file.
-  /// @throws IoError as read_npy()
+  /// Checks header and length. @throws IoError as read_npy()
   explicit NpyReader(const std::filesystem::path& path);
   ~NpyReader();
   NpyReader(NpyReader&&) noexcept;
@@ -138,12 +135,9 @@ class NpyReader {
   /// Returns true if the first axis is the fastest in the file.
   bool fortran_order() const;
 
-  /// Reads the whole array.
   NpyArray read_all() const;
-  /// Reads items starting at item `first` into the memory `into`, in the order of the file and in
-  /// native byte order.
+  /// Reads items from item `first` on, in the order of the file and native byte order.
   /// @throws std::invalid_argument if there are too few items, or `into` does not end with an item
-  /// @throws IoError if the file cannot be read or has become shorter
   void read_items(std::size_t first, std::span<std::byte> into) const;
 
  private:
@@ -151,19 +145,16 @@ class NpyReader {
   std::unique_ptr<State> state_;
 };
 
-/// Writes an NPY file of a given shape in pieces of any number of items. The file appears at
-/// commit(), as with AtomicFile.
+/// Writes an NPY file of a given shape in pieces, see AtomicFile.
 class NpyItemWriter {
  public:
-  /// @throws IoError as AtomicFile
   NpyItemWriter(const std::filesystem::path& path, NpyType type, const NpyShape& shape,
                 OutputPolicy policy);
 
-  /// Appends items in native byte order and C order.
-  /// @throws std::invalid_argument if they exceed the shape
+  /// Appends items in native byte order and C order. @throws std::invalid_argument if there are too
+  /// many
   void append(std::span<const std::byte> items);
-  /// Completes and renames the file. Must be called once, last.
-  /// @throws std::invalid_argument if items are missing
+  /// Must be called once, last. @throws std::invalid_argument if items are missing
   void commit();
 
  private:
@@ -172,34 +163,29 @@ class NpyItemWriter {
   std::size_t missing_bytes_;
 };
 
-/// Default maximum size of one array of an archive [bytes]: an image with the maximum number of
-/// pixels in float64.
+/// Default maximum size of an array [bytes].
 inline constexpr std::uint64_t max_npz_array_bytes = std::uint64_t{1} << 29;
-/// Maximum total unpacked size of the arrays of an archive [bytes]. The limit is necessary because
-/// a few kilobytes can unpack to any size.
+/// Maximum total unpacked size of the arrays [bytes]: a few kilobytes can unpack to any size.
 inline constexpr std::uint64_t max_npz_bytes = std::uint64_t{1} << 34;
 
-/// Reads the arrays of an NPZ archive, stored or deflated, and unpacks each on request.
-/// @note not safe for concurrent use
+/// Reads an NPZ archive, stored or deflated, and unpacks each array on request.
+/// @note not thread-safe
 class NpzReader {
  public:
   /// @throws IoError if the file is not a ZIP archive, a name occurs twice, or the total size of
   ///         the arrays exceeds max_npz_bytes
   explicit NpzReader(const std::filesystem::path& path);
   /// @param content  must outlive the reader
-  /// @param file     name for error messages
   NpzReader(std::span<const std::byte> content, std::string_view file);
   ~NpzReader();
   NpzReader(NpzReader&&) noexcept;
 
-  /// Returns the names of the arrays, without the ".npy" of the archive, in the archive's order.
+  /// Names without ".npy", in the archive's order.
   const std::vector<std::string>& names() const;
   bool contains(std::string_view name) const;
-  /// Returns the unpacked size of an array, including its header [bytes].
-  /// @throws IoError if there is no such array
+  /// Unpacked size including the header [bytes]. @throws IoError if there is no such array
   std::uint64_t unpacked_bytes(std::string_view name) const;
-  /// @throws IoError as parse_npy(), if there is no such array (lists the existing ones), if it is
-  ///         larger than `max_bytes`, or if it is damaged
+  /// @throws IoError as parse_npy(), or if the array is missing, larger than `max_bytes` or damaged
   NpyArray read(std::string_view name, std::uint64_t max_bytes = max_npz_array_bytes) const;
 
  private:
@@ -215,11 +201,10 @@ NpzArrays read_npz(const std::filesystem::path& path);
 
 enum class NpzCompression { stored, deflated };
 
-/// Writes an archive. Equal arrays give equal bytes, independent of the date.
+/// Equal arrays give equal bytes, independent of the date.
 /// @throws std::invalid_argument if there are no arrays or a name is empty
 std::vector<std::byte> serialize_npz(const NpzArrays& arrays,
                                      NpzCompression compression = NpzCompression::stored);
-/// @throws IoError as AtomicFile
 void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, OutputPolicy policy,
                NpzCompression compression = NpzCompression::stored);
 

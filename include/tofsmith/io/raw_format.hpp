@@ -43,8 +43,7 @@ inline constexpr std::array<std::string_view, 3> raw_order_words{"planar", "inte
 enum class RawAlignment { low, high };
 inline constexpr std::array<std::string_view, 2> raw_alignment_words{"low", "high"};
 
-/// Treatment of the unused bits of a container. checked: they must be zero or copies of the sign;
-/// ignored: they may have any value.
+/// Treatment of the unused bits of a container. checked: zero or copies of the sign.
 enum class UnusedBits { checked, ignored };
 inline constexpr std::array<std::string_view, 2> unused_bits_words{"checked", "ignored"};
 
@@ -60,82 +59,76 @@ inline constexpr std::array<std::string_view, 3> negated_lines_words{"none", "ev
 inline constexpr std::array<std::string_view, 2> raw_byte_order_words{"little", "big"};
 inline constexpr std::array<std::string_view, 2> raw_tap_words{"keep", "subtract"};
 
-/// Layout of the raw dump of a sensor. The dump contains no description of its layout, so a
-/// `*.raw.toml` file provides it. describe() lists the keys; docs/raw_formats.md explains them.
+/// Layout of the raw data of a sensor, from a `*.raw.toml` file; see docs/raw_formats.md.
 struct RawFormat {
-  int width = 0;         ///< columns of an image in the file
-  int height = 0;        ///< rows of an image in the file
-  int measurements = 0;  ///< numbers per pixel and frame in the file, including skipped ones
+  int width = 0;
+  int height = 0;
+  int measurements = 0;  ///< per pixel and frame, including skipped ones
   int frames = 0;        ///< 0: determined by the size of the file
 
   RawNumbers numbers = RawNumbers::integers;
-  int bits = 16;           ///< of a number: integers 1 to 32, floats 16, 32 or 64
-  int container_bits = 0;  ///< plain: 8, 16 or 32; 0: the smallest container for `bits`
+  int bits = 16;           ///< integers 1 to 32, floats 16, 32 or 64
+  int container_bits = 0;  ///< plain: 8, 16 or 32; 0: the smallest
   RawPacking packing = RawPacking::plain;
   RawAlignment align = RawAlignment::low;        ///< plain
   UnusedBits unused_bits = UnusedBits::checked;  ///< plain
   bool big_endian = false;                       ///< plain, and floats
   bool is_signed = false;
   SignEncoding sign_encoding = SignEncoding::twos_complement;  ///< signed
-  std::optional<int> sign_bit;  ///< signed: bits above it are ignored; none: the highest
-  NegatedLines negate_rows = NegatedLines::none;     ///< rows of the file, from 0
-  NegatedLines negate_columns = NegatedLines::none;  ///< columns of the file, from 0
-  int negate_from_row = 0;     ///< numbers from this row of an image on are negated; 0: none
-  int negate_from_column = 0;  ///< the same for columns; two negations cancel
+  std::optional<int> sign_bit;  ///< signed: bits above it are ignored
+  NegatedLines negate_rows = NegatedLines::none;
+  NegatedLines negate_columns = NegatedLines::none;
+  int negate_from_row = 0;     ///< numbers from this row on are negated; 0: none
+  int negate_from_column = 0;  ///< two negations cancel
 
   RawOrder layout = RawOrder::planar;
-  /// order[j] is the index of the measurement stored as number j of a pixel; -1: skipped. Numbers
-  /// beyond the end of the list are skipped, too. Empty: number j is measurement j.
+  /// Index of the measurement that is number j of a pixel; -1, or beyond the list: skipped. Empty:
+  /// number j is measurement j.
   std::vector<int> order;
-  bool flip_rows = false;      ///< the file begins with the bottom row
-  bool flip_columns = false;   ///< rows begin with the rightmost pixel
-  int rotate_deg = 0;          ///< clockwise, after flips: 0, 90, 180 or 270
-  double black_level = 0.0;    ///< subtracted from every number
-  bool subtract_taps = false;  ///< returns measurement 2 i minus measurement 2 i + 1
+  bool flip_rows = false;
+  bool flip_columns = false;
+  int rotate_deg = 0;  ///< clockwise, after flips
+  double black_level = 0.0;
+  bool subtract_taps = false;  ///< measurement 2 i minus measurement 2 i + 1
 
   // Skipped bytes.
-  int header_bytes = 0;          ///< before the first frame
-  int trailer_bytes = 0;         ///< after the last frame
-  int frame_header_bytes = 0;    ///< before every frame
-  int frame_trailer_bytes = 0;   ///< after every frame
-  int image_header_bytes = 0;    ///< before every image, planar
-  int image_trailer_bytes = 0;   ///< after every image, planar
-  int row_header_bytes = 0;      ///< before every row
-  int row_bytes = 0;             ///< distance between rows; 0: no gap
-  bool rows_start_bytes = true;  ///< lsb_first, msb_first: each row starts at a whole byte
+  int header_bytes = 0;
+  int trailer_bytes = 0;
+  int frame_header_bytes = 0;
+  int frame_trailer_bytes = 0;
+  int image_header_bytes = 0;   ///< planar
+  int image_trailer_bytes = 0;  ///< planar
+  int row_header_bytes = 0;
+  int row_bytes = 0;  ///< distance between rows; 0: no gap
+  bool rows_start_bytes = true;
 
-  /// Returns the measurement stored as the given number of a pixel in the file; -1 if skipped.
+  /// Measurement stored as this number of a pixel; -1 if skipped.
   int measurement_of(int number) const;
-  /// Returns the number of measurements that are not skipped.
+  /// Number of measurements that are not skipped.
   int kept_measurements() const;
-  /// Returns the number of measurements per pixel after subtraction of taps.
   int output_measurements() const {
     return subtract_taps ? kept_measurements() / 2 : kept_measurements();
   }
-  /// Returns true if rows and columns are exchanged by the rotation.
+  /// Returns true if the rotation exchanges rows and columns.
   bool is_transposed() const { return rotate_deg % 180 != 0; }
-  /// Rows of an image after its rotation.
+  /// Size after rotation.
   int output_height() const { return is_transposed() ? width : height; }
-  /// Columns of an image after its rotation.
   int output_width() const { return is_transposed() ? height : width; }
-  /// Returns true if decoded numbers need 64-bit floats to be exact.
+  /// Returns true if decoded numbers exceed the precision of floats.
   bool needs_doubles() const { return bits > 24 && !(numbers == RawNumbers::floats && bits == 32); }
-  /// Index of the sign bit of signed integers.
   int sign_bit_index() const { return sign_bit.value_or(bits - 1); }
 
-  /// Returns the count of numbers in one row of the file.
   std::size_t numbers_per_row() const;
-  /// Returns the number of file rows per image (see images()).
   std::size_t rows_per_image() const;
-  /// Returns the number of images per frame: K if planar, else 1.
+  /// Images per frame: K if planar, else 1.
   std::size_t images() const;
-  /// Size of the numbers of one row, if rows start at whole bytes [bytes].
+  /// Numbers of a row, if rows start at whole bytes.
   std::uint64_t tight_row_bytes() const;
-  /// Distance between consecutive rows, if rows start at whole bytes [bytes].
+  /// Distance between rows, if rows start at whole bytes.
   std::uint64_t row_pitch_bytes() const;
-  /// Size of one image without its header and trailer [bytes].
+  /// Size without header and trailer.
   std::uint64_t image_bytes() const;
-  /// Size of one frame with its headers and trailers [bytes].
+  /// Size with headers and trailers.
   std::uint64_t frame_bytes() const;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -147,7 +140,6 @@ struct RawFormat {
 /// Maximum size of a gap [bytes].
 inline constexpr int max_raw_gap_bytes = (1 << 30) - 1;  // the sum of two gaps fits into an int
 
-/// Keys of a .raw.toml file.
 inline void describe(FieldVisitor& fields, RawFormat& f) {
   const Range gap = closed(0, max_raw_gap_bytes);
   fields.value(Key("width", "Columns of an image in the file", closed(1, 65536)).required("320"),
@@ -249,38 +241,33 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                f.rows_start_bytes);
 }
 
-/// Returns the keys of a description as a JSON array, in the format of camera_keys_json().
+/// Returns the keys in the format of camera_keys_json().
 std::string raw_format_keys_json();
 
-/// Parses the description of a layout.
-/// @param source_name  path, or name for error messages
-/// @throws IoError "file:line:column: ..." for invalid TOML, unknown keys (with the most similar
-///         known one), wrong types, and invalid or contradictory values
+/// Parses a description. @param source_name  path, or name for error messages
+/// @throws IoError "file:line:column: ..." for invalid TOML, keys or values
 RawFormat parse_raw_format(std::string_view text, std::string_view source_name = "sensor.raw.toml");
-/// @throws IoError as parse_raw_format(), or if the file cannot be read
 RawFormat read_raw_format(const std::filesystem::path& path);
 
-/// Returns the layout of the raw frames that the driver of a built-in camera outputs, as TOML, with
-/// its source as a comment.
-/// @throws std::invalid_argument for an unknown camera, or with the reason if its layout is unknown
+/// Returns the layout of the frames from the driver of a built-in camera, as TOML.
+/// @throws std::invalid_argument for an unknown camera or layout
 std::string built_in_raw_format_toml(const std::string& camera);
 /// Returns the names of the built-in cameras with a known layout.
 std::vector<std::string> built_in_raw_format_names();
 
-/// A container of a plain dump whose number needs more than RawFormat::bits.
+/// Container whose number needs more than RawFormat::bits.
 struct OversizedNumber {
-  std::size_t index;        ///< of the number in the row
-  std::uint64_t container;  ///< as stored
+  std::size_t index;  ///< in the row
+  std::uint64_t container;
 };
-/// Returns the first number of a row that exceeds `bits`, which indicates a wrong byte order,
-/// alignment or number of bits. None if all numbers fit or unused bits are ignored.
-/// @param row  bytes, beginning with the first number
+/// Returns the first oversized number of a row, a sign of a wrong byte order, alignment or number
+/// of bits. None if unused bits are ignored.
 std::optional<OversizedNumber> find_oversized_number(const RawFormat& format,
                                                      std::span<const std::byte> row);
 
-/// Unpacks the numbers of a row. Black level, order and differences are not applied.
-/// @param row        bytes, beginning with the byte that contains the first bit of the row
-/// @param first_bit  position of the first bit in this byte; 0 if rows start at whole bytes
+/// Unpacks the numbers of a row, without black level, order and differences.
+/// @param row        begins with the byte of the first bit
+/// @param first_bit  position in this byte; 0 if rows start at whole bytes
 void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,
                     std::span<double> numbers);
 

@@ -15,38 +15,33 @@
 
 namespace tofsmith {
 
-/// Depth error of a code, and the rotation of the code's origin that was used.
+/// Depth error of a code at the rotation that was used.
 struct EvaluatedCode {
   DepthErrorReport error;
   int rotation_bin = 0;
-  /// For DecodeMethod::ml: the error of zncc in the same trials, for comparison.
+  /// For DecodeMethod::ml: the error of zncc in the same trials.
   std::optional<DepthErrorReport> zncc_error;
-  /// On perturbed cameras, if requested.
   std::optional<RobustnessReport> robustness;
 };
 
-/// Returns the generator limits and errors of each waveform as a JSON list of objects.
+/// Returns the generator limits and errors of each waveform as a JSON list.
 std::string generators_document(const std::vector<GeneratorReport>& reports);
 
-/// Returns the output of `tofsmith evaluate --json`: version, seed, trials, the camera with its
-/// defaults filled in, the decoder, and one entry per code with depth errors, bounds, their ratios
-/// to the errors, and robustness.
+/// Returns the output of `tofsmith evaluate --json`, with one entry per code.
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options);
 
-/// Returns the output of `tofsmith design --json`: evaluation_document() with one entry per
-/// candidate, the name of the best code, and a comparison of each designed code with its target.
+/// Returns the output of `tofsmith design --json`: evaluation_document() of the candidates, the
+/// best code, and comparisons of designed codes with their targets.
 std::string design_document(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options);
 
-/// Returns the output of `tofsmith require --json`: camera and options, the present error, the
-/// required value and the bound of each quantity, and the error over bandwidth and power.
+/// Returns the output of `tofsmith require --json`.
 std::string requirements_document(const Camera& camera, const Requirements& found,
                                   const RequirementOptions& options);
 
-/// Returns the result of `tofsmith multipath` as JSON: per code and signal, every cell; unsupported
-/// cells are null.
-/// @param scene  errors in a scene by mean delay of its multipath light; null: none
+/// Returns the output of `tofsmith multipath --json`; unsupported cells are null.
+/// @param scene  null: none
 std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,
                                const MultipathErrorOptions& options,
                                const MultipathScene* scene = nullptr);
