@@ -15,13 +15,13 @@ namespace tofsmith {
 
 /// Texts of a figure.
 struct FigureText {
-  std::string id = {};        ///< unique on a page; letters, digits and dashes, e.g. "coding-curve"
-  std::string title = {};     ///< a few words, in bold before the caption
-  std::string caption = {};   ///< describes the contents
+  std::string id = {};     ///< unique on a page; letters, digits and dashes
+  std::string title = {};  ///< in bold before the caption
+  std::string caption = {};
   std::string alt_text = {};  ///< for screen readers; default: the title
 };
 
-/// Ends of an axis or of a colour scale, in the unit of the values.
+/// Ends of an axis or of a colour scale.
 struct ValueRange {
   double low = 0;
   double high = 1;
@@ -31,21 +31,20 @@ struct ValueRange {
 struct Axis {
   std::string label = {};
   std::string unit = {};
-  bool logarithmic = false;              ///< values <= 0 are omitted
-  bool from_zero = false;                ///< always include zero (linear axes)
+  bool logarithmic = false;  ///< values <= 0 are omitted
+  bool from_zero = false;
   std::optional<ValueRange> range = {};  ///< default: from the values
 };
 
 /// Returns "label (unit)", or "label" if the unit is empty.
 std::string axis_title(const std::string& label, const std::string& unit);
 
-/// A figure as data: values, axes and units. The page's viewer draws it.
+/// A figure as data, which the page's viewer draws.
 class Figure {
  public:
   /// @param kind  "lines", "map", "image", "curves" or "cloud"
-  /// @param json  members of the figure in the document, as written by the functions below
-  /// @throws std::invalid_argument if the id contains other characters than letters, digits and
-  ///         dashes, or the title is empty
+  /// @throws std::invalid_argument if the id has other characters than letters, digits and dashes,
+  ///         or the title is empty
   Figure(FigureText text, std::string kind, std::string json);
 
   const FigureText& text() const { return text_; }
@@ -58,7 +57,7 @@ class Figure {
   std::string json_;
 };
 
-/// Converts a vector expression to the type that the functions below accept.
+/// Converts a vector expression for the functions below.
 std::vector<double> to_values(const Eigen::Ref<const Eigen::VectorXd>& vector);
 
 enum class Dash { solid, dash, dot, dash_dot };
@@ -70,9 +69,8 @@ struct LineStyle {
   double width_px = 1.8;
 };
 
-/// Assigns each name a fixed colour and dash. One object per report gives a code the same look in
-/// every figure. Colours are assigned in the order of first use; when the palette is exhausted, it
-/// is repeated with the next dash.
+/// Assigns each name a fixed colour and dash, in the order of first use. When the palette is
+/// exhausted, it is repeated with the next dash.
 /// @see Okabe and Ito, "Color Universal Design", 2008; without yellow, which is too pale on white
 class ColourAssignment {
  public:
@@ -82,7 +80,7 @@ class ColourAssignment {
   std::map<std::string, int> order_;
 };
 
-/// Grey and dotted, for targets, limits and bounds that do not belong to a code.
+/// Grey and dotted, for targets, limits and bounds.
 LineStyle reference_style();
 
 /// Colour maps. Sequential maps also work in grey and with any colour vision; diverging is blue,
@@ -91,7 +89,7 @@ enum class ColourMap { viridis, cividis, diverging };
 
 /// Mapping of values to colours.
 struct ColourScale {
-  std::string label = {};  ///< title of the colour bar
+  std::string label = {};
   std::string unit = {};
   ColourMap map = ColourMap::viridis;
   bool logarithmic = false;              ///< not supported for diverging maps
@@ -100,25 +98,24 @@ struct ColourScale {
 };
 
 enum class Mark {
-  line,              ///< points joined by straight lines
-  steps,             ///< constant until the next point: binary waveforms, patterns
-  line_and_markers,  ///< lines with a dot at every point
-  markers            ///< dots only
+  line,   ///< joined by straight lines
+  steps,  ///< constant until the next point
+  line_and_markers,
+  markers
 };
 
-/// One curve. Values that are not finite leave a gap.
+/// A curve; values that are not finite leave a gap.
 struct Series {
   std::string name = {};
   std::vector<double> x = {};
   std::vector<double> y = {};
-  std::vector<double> y_error = {};   ///< half lengths of error bars; may be empty
+  std::vector<double> y_error = {};   ///< half lengths; may be empty
   std::optional<double> period = {};  ///< of x; the curve is closed by one more point
   Mark mark = Mark::line;
   LineStyle style = {};
 };
 
-/// Curves on common axes; use a logarithmic y axis for convergence plots.
-/// @throws std::invalid_argument if there is no series, or x, y and y_error differ in length
+/// Curves on common axes. @throws std::invalid_argument if there is no series, or lengths differ
 Figure line_figure(FigureText text, const std::vector<Series>& series, const Axis& x,
                    const Axis& y);
 
@@ -136,63 +133,59 @@ struct HeatMap {
 };
 
 struct HeatMapOptions {
-  int columns = 3;          ///< panels per row
-  bool show_values = true;  ///< write every value into its cell, with two significant digits
+  int columns = 3;
+  bool show_values = true;  ///< with two significant digits
 };
 
-/// Heat maps on the same axes with one colour scale, e.g. depth error by operating point, one
-/// panel per code.
-/// @throws std::invalid_argument unless every map has y.ticks x x.ticks values and the colour
-///         scale suits them
+/// Heat maps on the same axes with one colour scale, e.g. depth error by operating point.
+/// @throws std::invalid_argument unless every map has y.ticks x x.ticks values that suit the scale
 Figure heat_map_figure(FigureText text, const std::vector<HeatMap>& maps, const CategoryAxis& x,
                        const CategoryAxis& y, const ColourScale& colours,
                        const HeatMapOptions& options = {});
 
-/// An image of values, first row at the top; NaN is transparent.
+/// Image of values, first row at the top; NaN is transparent.
 struct ValueImage {
   std::string title = {};
   Image<float> pixels = {};
   Image<float> before = {};  ///< same size; shown to the left of a slider; may be empty
 };
 
-/// Reference values; the figure can also show the differences from them.
+/// Reference values, whose differences can also be shown.
 struct ImageReference {
-  std::string name = {};     ///< name of the differences, e.g. "error"
-  Image<float> values = {};  ///< same size as the images
-  double period = 0;         ///< differences are wrapped to this period; 0: none
-  double factor = 1;         ///< converts differences to the unit of `colours`
-  ColourScale colours = {};  ///< for the differences
+  std::string name = {};  ///< of the differences, e.g. "error"
+  Image<float> values = {};
+  double period = 0;  ///< differences are wrapped to this period; 0: none
+  double factor = 1;  ///< converts differences to the unit of `colours`
+  ColourScale colours = {};
 };
 
 struct ImageFigureOptions {
-  int columns = 3;                     ///< images per row
-  int max_side = 320;                  ///< larger images are subsampled; stated in the caption
-  std::string before_name = "before";  ///< labels of the ends of the slider
+  int columns = 3;
+  int max_side = 320;  ///< larger images are subsampled
+  std::string before_name = "before";
   std::string after_name = "after";
   std::optional<ImageReference> reference = {};
 };
 
-/// Images (H, W) side by side with a common colour scale, e.g. depth maps and error maps.
-/// @throws std::invalid_argument unless all images have the same shape and the colour scale is
-///         suitable
+/// Images side by side with a common colour scale.
+/// @throws std::invalid_argument unless they have the same shape and suit the colour scale
 Figure image_figure(FigureText text, const std::vector<ValueImage>& images,
                     const ColourScale& colours, const ImageFigureOptions& options = {});
 
-/// A closed curve in space; the last point is joined to the first.
+/// A closed curve in space.
 struct Curve3d {
   std::string title = {};
   Eigen::MatrixX3d points = {};  ///< (N, 3)
-  Eigen::VectorXd values = {};   ///< (N): colour the curve, e.g. depth
+  Eigen::VectorXd values = {};   ///< (N), shown as colours
 };
 
-/// Closed curves, each in its own box, with a common colour scale, e.g. coding curves. A browser
-/// can show about 16 boxes per page.
+/// Closed curves, each in its own box, with a common colour scale; browsers show about 16 boxes.
 /// @throws std::invalid_argument if there is no curve or points and values differ in number
 Figure curve_3d_figure(FigureText text, const std::vector<Curve3d>& curves,
                        const std::array<Axis, 3>& axes, const ColourScale& colours);
 
 struct PointCloudOptions {
-  int max_points = 40000;      ///< larger clouds are thinned randomly; stated in the caption
+  int max_points = 40000;      ///< larger clouds are thinned randomly
   double point_size_px = 2.2;  ///< diameter
 };
 
@@ -200,12 +193,12 @@ struct PointCloudOptions {
 struct ColouredPoints {
   std::string title = {};
   Eigen::MatrixX3f points = {};  ///< (P, 3)
-  Eigen::VectorXf values = {};   ///< (P): colour the points
+  Eigen::VectorXf values = {};   ///< (P), shown as colours
 };
 
-/// Point clouds, each in its own box, with a common colour scale. Points with a coordinate or value
-/// that is not finite are omitted. Thinning is reproducible.
-/// @throws std::invalid_argument if there is no cloud or points and values differ in number
+/// Point clouds, each in its own box, with a common colour scale. Points that are not finite are
+/// omitted. Thinning is reproducible.
+/// @throws std::invalid_argument as curve_3d_figure()
 Figure point_cloud_figure(FigureText text, const std::vector<ColouredPoints>& clouds,
                           const ColourScale& colours, const PointCloudOptions& options = {});
 /// As above for one cloud.
@@ -226,8 +219,7 @@ struct PanelRow {
   std::vector<std::vector<Series>> panels = {};
 };
 
-/// A grid of panels, e.g. measurements (rows) by modulation, demodulation and correlation
-/// (columns). Series with the same name share a legend entry.
+/// A grid of panels. Series with the same name share a legend entry.
 /// @throws std::invalid_argument unless every row has one panel per column
 Figure small_multiples(FigureText text, const std::vector<PanelColumn>& columns,
                        const std::vector<PanelRow>& rows);
