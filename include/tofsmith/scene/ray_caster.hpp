@@ -19,46 +19,40 @@
 
 namespace tofsmith {
 
-/// The nearest hit found, and the index of its shape.
+/// Nearest hit and the index of its shape.
 struct NearestHit {
   Hit hit{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), 0.0};
-  std::int32_t shape = -1;  ///< -1: none
+  std::int32_t shape = -1;
 };
 
-/// Finds the nearest hit of rays with the triangles of one mesh.
+/// Finds the nearest hit of rays with one mesh.
 /// @note immutable; trace() is thread-safe
 class MeshSearch {
  public:
   static constexpr std::size_t packet = 8;  ///< maximum number of rays per call
 
   virtual ~MeshSearch() = default;
-  /// Replaces hits that are farther than this mesh.
-  /// @param rays     at most `packet`
-  /// @param nearest  one per ray
-  /// @param shape    index of the mesh
+  /// Replaces hits that are farther than this mesh, whose index is `shape`.
+  /// @param rays  at most `packet`, with one `nearest` each
   virtual void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
                      std::int32_t shape) const = 0;
 };
 
-/// Creates the search structure of a mesh; the mesh must outlive it. An example is embree_search()
-/// of tofsmith/io. If empty, every triangle is tested.
+/// Creates the search structure of a mesh, which must outlive it, e.g. embree_search(). Empty:
+/// every triangle is tested.
 using MeshSearchMaker = std::function<std::unique_ptr<const MeshSearch>(const Mesh& mesh)>;
 
-/// Image seen by a camera, with the shape in each pixel.
+/// Image with the shape in each pixel.
 struct SeenScene {
   SceneImage image;
-  Image<std::int32_t> shape;  ///< index of the shape in each pixel; -1: no return
+  Image<std::int32_t> shape;  ///< -1: no return
 };
 
-/// Shapes prepared for many rays. Meshes use a search structure; other shapes are intersected in
-/// closed form.
+/// Shapes prepared for many rays. Meshes use a search structure; other shapes have closed forms.
 /// @note immutable; thread-safe; the image does not depend on the number of threads
 class RayCaster {
  public:
-  /// Copies the shapes.
-  /// @param search_of  search structure for meshes, e.g. embree_search(); empty: tests every
-  ///                   triangle, which is slow for large meshes
-  /// @throws std::invalid_argument if a shape is invalid; exceptions of `search_of`
+  /// Copies the shapes. @throws std::invalid_argument if one is invalid; exceptions of `search_of`
   explicit RayCaster(std::span<const Shape> shapes, const MeshSearchMaker& search_of = {});
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
@@ -67,13 +61,12 @@ class RayCaster {
   /// Returns the nearest hit of all shapes.
   std::optional<Hit> nearest(const Ray& ray) const;
 
-  /// Casts a ray through the centre of every pixel. Pixels that hit nothing have no return (NaN). A
-  /// camera inside a shape sees its inner side: see check_view().
-  /// @param camera_to_world  pose of the camera; identity: the axes of the view
+  /// Casts a ray through the centre of every pixel. A camera inside a shape sees its inner side:
+  /// see check_view().
   /// @throws std::invalid_argument if the view is invalid or the pose is not rigid and finite
   SeenScene see(const PinholeView& view,
                 const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity()) const;
-  /// As above with precomputed rays.
+  /// For precomputed rays.
   SeenScene see(const PixelRays& pixel_rays,
                 const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity()) const;
 
@@ -82,37 +75,26 @@ class RayCaster {
   std::unique_ptr<const Prepared> prepared_;
 };
 
-/// Returns the nearest hit, in closed form and triangle by triangle. A reference for RayCaster,
-/// which is faster.
+/// Returns the nearest hit without a search structure: a slow reference for RayCaster.
 std::optional<Hit> nearest_hit(std::span<const Shape> shapes, const Ray& ray);
 
-/// Returns the image of a pinhole camera, as RayCaster::see. Use a RayCaster for several views of a
-/// scene, or to obtain the shape in each pixel.
-/// @param camera_to_world  pose of the camera; identity: the axes of the view
-/// @param search_of        see RayCaster
-/// @throws std::invalid_argument if the view, the pose or a shape is invalid
+/// Returns the image of RayCaster::see() for a single view. @throws std::invalid_argument as see()
 SceneImage ray_cast(std::span<const Shape> shapes, const PinholeView& view,
                     const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity(),
                     const MeshSearchMaker& search_of = {});
 
-/// Returns true if a point is inside a solid: a box, a sphere, a capsule or a closed mesh. Planes
-/// and open meshes have no inside.
-///
-/// A mesh is closed if every edge, identified by the positions of its ends, belongs to an even
-/// number of triangles. A point is inside if rays from it cross the mesh an odd number of times, by
-/// majority of three directions; orientation does not matter.
+/// Returns true if a point is inside a box, a sphere, a capsule or a closed mesh, in which every
+/// edge belongs to an even number of triangles: rays from the point cross the mesh an odd number of
+/// times, by majority of three directions.
 bool is_inside(const Shape& shape, const Eigen::Vector3d& point);
 
-/// Rejects a camera inside a solid shape, which would see only its inner side. Ray casting itself
-/// permits this, for rooms.
-/// @throws std::invalid_argument naming index and kind of the shape
+/// Rejects a camera inside a solid shape, which RayCaster permits. @throws std::invalid_argument
 void require_camera_outside(std::span<const Shape> shapes, const Eigen::Vector3d& camera);
 
-/// Rejects an image without any return.
-/// @throws std::invalid_argument with advice on what to change
+/// Rejects an image without any return. @throws std::invalid_argument with advice
 void require_something_in_view(const SceneImage& image);
 
-/// Performs both checks. @throws std::invalid_argument
+/// Performs both checks.
 void check_view(const StagedScene& scene, const SceneImage& image);
 
 }  // namespace tofsmith
