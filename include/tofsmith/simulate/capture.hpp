@@ -23,7 +23,7 @@ struct CaptureOptions {
   double reference_distance_m = 1.0;
   bool falloff = true;  ///< S = signal albedo cosine / (d / d_ref)^2; else signal albedo
   std::uint64_t seed = 1;
-  int frames = 1;  ///< F
+  int frames = 1;
 
   /// @throws std::invalid_argument
   void validate() const;
@@ -41,51 +41,47 @@ auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
             Help{"number of frames, each with independent noise"}));
 }
 
-/// Signal of a pixel at a gate that is always open [e/s]; 0 without a return (NaN depth).
+/// Signal of a pixel at a gate that is always open [e/s]; 0 without a return.
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
                             const CaptureOptions& options);
 
 /// Simulates raw measurements of a scene, (F, H, W, K), in electrons, or counts if the sensor has
-/// an ADC. Depth beyond the unambiguous range wraps. Pixels without a return receive only ambient
-/// light. A lens (Camera::blur) blurs the image pixels; staged_capture.hpp casts several rays per
-/// pixel.
-/// @throws std::invalid_argument if scene, camera or options are invalid, or the code does not fit
-///         the camera; Interrupted if `progress` cancels
+/// an ADC. Depth beyond the unambiguous range wraps; pixels without a return receive only ambient
+/// light. A lens (Camera::blur) blurs image pixels; see also staged_capture.hpp.
+/// @throws std::invalid_argument if the arguments are invalid or do not fit; Interrupted
 /// @note noise depends only on (seed, pixel, frame): same bits for any number of threads
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
                   const CaptureOptions& options = {}, const Progress& progress = {});
 
 /// Indirect light in a scene. Multipath returns and a tail are added to the direct return; a
-/// transient replaces it, so that its histogram distributes the pixel's signal over time.
+/// transient replaces it.
 struct SceneLight {
-  MultipathReturns returns;             ///< may be empty
+  MultipathReturns returns;
   std::optional<ExponentialTail> tail;  ///< added to every direct return
-  /// One for all pixels, or one per pixel, row by row; may be empty.
+  /// One for all pixels, or one per pixel; may be empty.
   std::vector<Transient> transients;
-  /// Stray light in the lens, including ambient light: the kernel of StrayLight
-  /// (decode/stray_light.hpp); may be empty.
+  /// Kernel of StrayLight (decode/stray_light.hpp), also for ambient light; may be empty.
   Image<float> stray_light;
 
   bool is_direct_only() const { return returns.empty() && !tail && transients.empty(); }
 
-  /// @throws std::invalid_argument if something does not fit the scene or the camera's range, or if
-  ///         transients are combined with returns or a tail
+  /// @throws std::invalid_argument if it does not fit the scene or the camera's range, or combines
+  ///         transients with returns or a tail
   void validate(const SceneImage& scene, const Camera& camera) const;
 };
 
-/// As capture() above, with indirect light. Without indirect light the frames have the same bits;
-/// with it, pixels use the same random streams.
+/// As above with indirect light; without it, the frames have the same bits.
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
                   const Camera& camera, const CaptureOptions& options = {},
                   const Progress& progress = {});
 
-/// True light of a capture. For tails and transients see SceneLight.
+/// True light of a capture.
 struct MultipathTruth {
-  Image<float> direct_m;               ///< depth of the direct return; NaN: none
-  Image<float> direct_e_per_s;         ///< its signal; with a transient, the pixel's total signal
+  Image<float> direct_m;               ///< NaN: none
+  Image<float> direct_e_per_s;         ///< with a transient, the total signal
   std::vector<std::int64_t> first{0};  ///< see MultipathReturns
-  std::vector<float> distance_m;       ///< of every multipath return [m]
-  std::vector<float> signal_e_per_s;   ///< of every multipath return [e/s]
+  std::vector<float> distance_m;       ///< of every multipath return
+  std::vector<float> signal_e_per_s;   ///< of every multipath return
 };
 MultipathTruth multipath_truth(const SceneImage& scene, const SceneLight& light,
                                const CaptureOptions& options);

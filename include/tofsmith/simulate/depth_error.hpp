@@ -22,19 +22,18 @@ namespace tofsmith {
 /// Distribution of the true depths of trials.
 enum class DepthSampling {
   uniform,  ///< anywhere in the range
-  bins,     ///< on bins only; favours codes that are wrong in between
+  bins,     ///< favours codes that are wrong in between
 };
 constexpr std::array<std::string_view, 2> words_of(DepthSampling /*any*/) {
   return {"uniform", "bins"};
 }
 
-/// Default of the circular error above which a depth is an outlier.
 inline constexpr double default_outlier_threshold_m = 0.5;
 inline constexpr Help outlier_threshold_help{"circular error above which a depth is an outlier"};
 
-/// Options of evaluate(), described in fields_of() below.
+/// Options of evaluate().
 struct EvaluateOptions {
-  std::int64_t trials = 20000;  ///< odd numbers are rounded up
+  std::int64_t trials = 20000;  ///< rounded up to even numbers
   std::uint64_t seed = 1;
   double outlier_threshold_m = default_outlier_threshold_m;
   bool sub_bin = true;
@@ -77,16 +76,16 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
 /// Depth error at one operating point.
 struct PointDepthError {
   OperatingPoint point;
-  std::int64_t trials = 0;        ///< number of trials
-  Estimate linear_mde_m;          ///< mean |decoded - true|
-  Estimate circular_mde_m;        ///< mean wrapped |decoded - true|
-  Estimate linear_rmse_m;         ///< root mean square of the linear error
-  Estimate circular_rmse_m;       ///< root mean square of the circular error
-  Estimate outlier_rate;          ///< share of circular errors above the threshold
-  double cramer_rao_mae_m = 0.0;  ///< CramerRaoBound of the code
-  /// ReceiverBound of the camera for the code's exposures; for rows, HistogramBound of their light.
+  std::int64_t trials = 0;
+  Estimate linear_mde_m;    ///< |decoded - true|
+  Estimate circular_mde_m;  ///< wrapped |decoded - true|
+  Estimate linear_rmse_m;
+  Estimate circular_rmse_m;
+  Estimate outlier_rate;          ///< circular errors above the threshold
+  double cramer_rao_mae_m = 0.0;  ///< CramerRaoBound
+  /// ReceiverBound of the camera; for rows, HistogramBound of their light.
   double receiver_bound_mae_m = 0.0;
-  double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: none
+  double direct_tof_bound_mae_m = 0.0;  ///< 0: none
 
   const Estimate& of(DepthErrorMeasure measure) const {
     const bool is_linear = measure.kind == DepthErrorKind::linear;
@@ -95,7 +94,7 @@ struct PointDepthError {
     return is_linear ? linear_mde_m : circular_mde_m;
   }
 };
-/// Returns a bound for numeric tables: NaN for 0, which means no bound.
+/// Replaces 0, which means no bound, by NaN.
 inline double bound_or_nan(double bound_m) {
   return bound_m == 0.0 ? std::numeric_limits<double>::quiet_NaN() : bound_m;
 }
@@ -129,15 +128,15 @@ struct DepthErrorReport {
   std::string code;
   int exposures = 0;
   int taps = 0;
-  int measurements = 0;  ///< that the sensor outputs
+  int measurements = 0;
   int samples = 0;
-  std::int64_t trials = 0;         ///< per operating point; with a target: the maximum
-  int points_short_of_target = 0;  ///< points that reached max_trials first
+  std::int64_t trials = 0;         ///< per point; with a target: the maximum
+  int points_short_of_target = 0;  ///< reached max_trials first
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
-  DepthErrorMean linear, circular;            ///< of mean absolute errors
-  DepthErrorMean linear_rmse, circular_rmse;  ///< of root mean square errors
-  std::vector<PointDepthError> points;        ///< in the order of OperatingRange::points()
+  DepthErrorMean linear, circular;
+  DepthErrorMean linear_rmse, circular_rmse;
+  std::vector<PointDepthError> points;
 
   const DepthErrorMean& of(DepthErrorMeasure measure) const {
     const bool is_linear = measure.kind == DepthErrorKind::linear;
@@ -157,62 +156,50 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
       Field("circular_rmse", r.circular_rmse), Field("points", r.points));
 }
 
-/// Computes the depth error at every operating point of the camera by Monte Carlo simulation, with
-/// bounds.
+/// Computes the depth error at every operating point by Monte Carlo simulation, with bounds; see
+/// docs/montecarlo.md.
 ///
-/// Trial t of point p uses only the random stream (seed, p, t). Its depth is uniform in the t-th of
-/// `trials` equal slices of the range (slices of equal probability if the camera weights depths).
-/// Then the albedo, if it is uniform, and the noise are drawn. All codes are thus compared at the
-/// same depths. Noise is normal or Poisson, as specified by the sensor, with the variance at that
-/// depth. For rows, Poisson noise is drawn in every time bin, and normal noise with the covariance
-/// of the rows. If the conversion is linear and the method is ZNCC, normal noise is drawn only in
-/// the subspace that ZNCC uses. This gives the same distribution of errors from fewer random
-/// numbers. Standard errors are computed from differences of trials in neighbouring slices, and are
-/// slightly too large.
-///
-/// With a target, a point gets further rounds of trials, each sliced separately and at least half
-/// as large as all previous ones together. The number of trials for the linear error takes into
-/// account how many wraps the circular error predicts, because few trials may contain no wrap.
+/// Trial t of point p uses only the random stream (seed, p, t), and its depth is uniform in the
+/// t-th of `trials` slices of equal probability, so that all codes are compared at the same depths.
+/// If the conversion is linear and the method is ZNCC, normal noise is only drawn in the subspace
+/// that ZNCC uses, which gives the same distribution of errors. With a target, a point gets further
+/// rounds of trials, each sliced separately and at least half as large as all previous ones
+/// together.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
-///         the method cannot decode it; Interrupted if `progress` cancels
+///         the method cannot decode it; Interrupted
 /// @note same bits for any number of threads with the same dispatch_target()
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
                           const EvaluateOptions& options = {}, const Progress& progress = {});
 
-/// The best origin of depth of a code.
+/// Best origin of depth of a code.
 struct BestRotation {
-  int rotation_bin = 0;  ///< argument of CodeSet::rotated with the smallest linear error
-  /// Geometric mean over the operating points of the linear error [m] for each rotation (N). If the
-  /// camera weights depths, it is that of the camera's error kind.
+  int rotation_bin = 0;  ///< argument of CodeSet::rotated()
+  /// Geometric mean of the error [m] over the operating points for each rotation (N): linear, or
+  /// the camera's error kind if it weights depths.
   std::vector<double> linear_geometric_mean_m;
 };
 
-/// Finds the rotation with the smallest linear depth error. The circular error does not depend on
-/// rotation unless the camera weights depths (OperatingRange::depths). In that case the camera's
-/// error kind decides, and the uniformly drawn trials are weighted at every rotation by the
-/// frequency of their depth.
+/// Finds the rotation with the smallest linear depth error. If the camera weights depths
+/// (OperatingRange::depths), its error kind decides, and uniformly drawn trials are weighted at
+/// every rotation.
 ///
-/// A rotation moves true and decoded depths alike. The error of a trial is |decoded - true|, except
-/// at rotations that put the origin between the two, where it is the range minus that. One run of
-/// trials therefore gives the error at all N rotations. (The minimum over rotations that share
-/// trials is biased low; evaluate the rotated code for an unbiased value. If a generator of the
-/// light rounds switching times, only rotations by whole points are considered.)
-/// @param options  as for evaluate
+/// A rotation moves true and decoded depths alike. The error of a trial is |decoded - true|, or the
+/// range minus that if the origin is between the two, so one run of trials gives the error at all N
+/// rotations. The minimum is biased low; evaluate the rotated code for an unbiased value. If a
+/// generator of the light rounds switching times, only rotations by whole points are considered.
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});
 
-/// Computes the mean circular depth error [m] of a table for frames simulated from the table
-/// itself, in order to compare measured tables with codes. Expected electrons lie on the chords
-/// (straight lines) between its rows, noise is normal with its variance, and there is one depth in
-/// each of `trials` equal slices of the range.
+/// Computes the mean circular depth error [m] of a measured table for frames simulated from the
+/// table itself. Expected electrons are interpolated linearly between its rows, and one depth is
+/// drawn in each of `trials` equal slices of the range.
 /// @param light   S relative to the light of the table's measurement, A in e/s
-/// @param trials  >= 2; odd numbers are rounded up
+/// @param trials  >= 2, rounded up to even numbers
 /// @throws std::invalid_argument if the table or the number of trials is invalid
-/// @note same bits for any number of threads with the same dispatch_target()
 Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& light,
                              std::int64_t trials = 20000, std::uint64_t seed = 1);
 
-/// Error of the direct depth [m]: geometric means over the operating points of mean |error|.
+/// Geometric means over the operating points of mean |error| of the direct depth.
 struct OperatingMultipathError {
   Estimate linear_m, circular_m;
 
@@ -227,18 +214,16 @@ auto fields_of(ConstOrNot<OperatingMultipathError> auto& e) {
 
 /// Errors of a code with the camera's multipath light.
 struct OperatingMultipathReport {
-  OperatingMultipathError single_path;                ///< by a single-path decoder
-  std::optional<OperatingMultipathError> two_return;  ///< by a two-return decoder, if supported
+  OperatingMultipathError single_path;                ///< single-path decoder
+  std::optional<OperatingMultipathError> two_return;  ///< two-return decoder, if supported
 };
 auto fields_of(ConstOrNot<OperatingMultipathReport> auto& r) {
   return std::tuple(Field("single_path", r.single_path), Field("two_return", r.two_return));
 }
 
-/// Computes the depth error with a second return in every pixel, for zncc and for the two-return
-/// decoder on the same trials. Trial t of an operating point draws albedo, return, noise and a
-/// depth from its own random stream. The depth is uniform in the t-th slice of the range. Only
-/// `trials` (per operating point) and `seed` of the options are used.
-/// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
+/// Computes the depth error with a second return in every pixel, for zncc and the two-return
+/// decoder on the same trials, as evaluate(). Only `trials` and `seed` of the options are used.
+/// @throws std::invalid_argument as evaluate(); Interrupted
 OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
                                                     const OperatingMultipath& later,
                                                     const EvaluateOptions& options = {},

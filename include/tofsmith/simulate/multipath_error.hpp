@@ -15,58 +15,56 @@
 
 namespace tofsmith {
 
-/// Depth of a scene from one decoder.
+/// Decoded depth of a scene.
 struct MultipathSceneDecoding {
-  std::string method;    ///< "single-path", "two-return"
-  Image<float> depth_m;  ///< NaN: none
-  Image<float> error_m;  ///< decoded - true, wrapped; NaN where unknown
+  std::string method;  ///< "single-path", "two-return"
+  Image<float> depth_m;
+  Image<float> error_m;  ///< wrapped; NaN where unknown
 };
 
-/// Errors of decoders in pixels with a similar delay of the multipath light.
+/// Errors in pixels with a similar delay of the multipath light.
 struct DelayClass {
-  double from_m = 0.0, to_m = 0.0;  ///< mean delay of the multipath light
+  double from_m = 0.0, to_m = 0.0;  ///< mean delay
   std::int64_t pixels = 0;
-  double ratio = 0.0;           ///< mean ratio of multipath to direct light
-  std::vector<double> bias_m;   ///< mean of decoded - true, per decoder
-  std::vector<double> error_m;  ///< mean of |decoded - true|
-  double two_share = 0.0;       ///< share of pixels with two returns detected
+  double ratio = 0.0;
+  std::vector<double> bias_m;   ///< mean error, per decoder
+  std::vector<double> error_m;  ///< mean |error|
+  double two_share = 0.0;       ///< share of pixels with two returns
   double unresolved_share = 0.0;
 };
 
-/// A scene with interreflections, captured once and decoded by a single-path and a two-return
-/// decoder.
+/// A scene with interreflections, decoded by a single-path and a two-return decoder.
 struct MultipathScene {
   std::string name, code;
   SceneImage truth;
   PinholeView view;
   CaptureOptions light;
-  Image<float> multipath_ratio;    ///< ratio to direct light; 0: none; NaN: no return
-  Image<float> multipath_delay_m;  ///< mean delay of the multipath light; NaN: none
+  Image<float> multipath_ratio;                   ///< 0: none; NaN: no return
+  Image<float> multipath_delay_m;                 ///< mean; NaN: none
   std::vector<MultipathSceneDecoding> decodings;  ///< single-path, then two-return
-  Image<ReturnStatus> returns;                    ///< from two-return decoding
-  std::vector<DelayClass> classes;                ///< by mean delay; without empty classes
-  DelayClass all;                                 ///< all pixels with multipath light
+  Image<ReturnStatus> returns;
+  std::vector<DelayClass> classes;  ///< without empty classes
+  DelayClass all;                   ///< pixels with multipath light
 };
 
-/// Captures and decodes the scene. Pixels without multipath light are in no class.
+/// Captures and decodes the scene.
 /// @throws std::invalid_argument as capture(), TwoReturnDecoder and returns.validate(); Interrupted
-///         if `progress` cancels
 MultipathScene multipath_scene(std::string name, const SceneImage& truth, const PinholeView& view,
                                const MultipathReturns& returns, const CodeSet& code,
                                const Camera& camera, const CaptureOptions& light,
                                const MultipathOptions& decoding = {},
                                const Progress& progress = {});
 
-/// Multipath light to simulate, and parameters of the simulation.
+/// Multipath light to simulate.
 struct MultipathErrorOptions {
   std::vector<double> delay_m = {0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};
-  std::vector<double> ratio = {0.1, 0.3, 0.6};  ///< r = S2 / S1
+  std::vector<double> ratio = {0.1, 0.3, 0.6};  ///< S2 / S1
   std::vector<double> tail_m = {0.25, 0.5, 1.0};
   std::vector<double> signal_e_per_s = {1e4, 1e5};  ///< S1
   double ambient_e_per_s = 1e4;                     ///< A
   std::int64_t trials = 2000;
   std::uint64_t seed = 1;
-  MultipathOptions decoding;  ///< tail_m is replaced by the mean delay of each tail
+  MultipathOptions decoding;  ///< tail_m is replaced by each tail
 
   /// @throws std::invalid_argument
   void validate(double range_m) const;
@@ -83,16 +81,16 @@ auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
       Field("decoding", o.decoding, Help{"options of two-return and tail decoding"}));
 }
 
-/// Error of the direct depth for one kind of light; all errors are wrapped.
+/// Error of the direct depth for one kind of light; errors are wrapped.
 struct MultipathCell {
   double ratio = 0.0;
-  double delay_m = 0.0;           ///< of the second return, or mean delay of the tail
-  double law_m = 0.0;             ///< r delta / (1 + r)
-  Estimate single_bias_m;         ///< mean of decoded - true, single-path (zncc)
-  Estimate single_error_m;        ///< mean of |decoded - true|
-  Estimate bias_m, error_m;       ///< by the two-return (tail) decoder; NaN if unsupported
+  double delay_m = 0.0;    ///< of the second return, or mean of the tail
+  double law_m = 0.0;      ///< r delta / (1 + r)
+  Estimate single_bias_m;  ///< single-path (zncc), as is single_error_m
+  Estimate single_error_m;
+  Estimate bias_m, error_m;       ///< two-return (tail) decoder; NaN if unsupported
   double cramer_rao_mae_m = 0.0;  ///< MultipathBound
-  double two_share = 0.0;         ///< share of pixels with two returns detected
+  double two_share = 0.0;         ///< share of pixels with two returns
   double unresolved_share = 0.0;
 
   double gain() const { return single_error_m.value / error_m.value; }
@@ -109,10 +107,10 @@ auto fields_of(ConstOrNot<MultipathCell> auto& c) {
 
 struct MultipathMaps {
   double signal_e_per_s = 0.0;
-  MultipathCell single;               ///< no second return: cost of two-return decoding
-  MultipathCell single_by_tail;       ///< as above by the decoder for the middle tail
-  std::vector<MultipathCell> points;  ///< all delays of the first ratio, then of the next
-  std::vector<MultipathCell> tails;   ///< as above for tails
+  MultipathCell single;               ///< without a second return
+  MultipathCell single_by_tail;       ///< decoded for the middle tail
+  std::vector<MultipathCell> points;  ///< by ratio, then delay
+  std::vector<MultipathCell> tails;
 };
 auto fields_of(ConstOrNot<MultipathMaps> auto& m) {
   return std::tuple(Field("signal_e_per_s", m.signal_e_per_s),
@@ -121,21 +119,19 @@ auto fields_of(ConstOrNot<MultipathMaps> auto& m) {
                     Field("points", m.points, InDocuments{"multipath"}), Field("tails", m.tails));
 }
 
-/// Errors of a code with two returns or a tail.
+/// Errors with two returns or a tail.
 struct MultipathErrorReport {
   std::string code;
   int measurements = 0;
-  std::string why_no_two_returns;   ///< empty if two-return decoding is supported
-  std::string why_no_tail;          ///< empty if tail decoding is supported
+  std::string why_no_two_returns;   ///< empty if supported
+  std::string why_no_tail;          ///< empty if supported
   std::vector<MultipathMaps> maps;  ///< per signal
 };
 
 /// Computes bias and error over (delta, r) for single-path and two-return decoding, with the
-/// camera's noise. Trial t of a cell uses the random stream (seed, cell, t): its depth is uniform
-/// in the t-th of `trials` slices of the range (weighted as by the camera), then follows noise; all
-/// codes use the same depths and noise.
-/// @throws std::invalid_argument if camera, code or options are invalid; Interrupted if `progress`
-///         cancels
+/// camera's noise. Trial t of a cell uses the random stream (seed, cell, t) and a depth in the t-th
+/// of `trials` slices of the range, so that all codes use the same depths and noise.
+/// @throws std::invalid_argument if camera, code or options are invalid; Interrupted
 /// @note same bits for any number of threads
 MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
                                      const MultipathErrorOptions& options = {},

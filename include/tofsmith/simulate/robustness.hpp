@@ -15,7 +15,7 @@
 
 namespace tofsmith {
 
-/// Deviations of a camera from its description, and parameters of the evaluation.
+/// Deviations of a camera from its description.
 struct RobustnessOptions {
   double bandwidth = 0.2;
   double peak = 0.1;
@@ -25,7 +25,7 @@ struct RobustnessOptions {
   double droop = 0.0;
   bool together = false;
   std::int64_t trials = 4000;
-  std::uint64_t seed = 1;  ///< all cameras use the same depths and noise
+  std::uint64_t seed = 1;
   DecodeMethod method = DecodeMethod::zncc;
   UnwrapWeights unwrap_weights = UnwrapWeights::variance;
 
@@ -54,49 +54,42 @@ auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
 /// A camera that deviates from its description.
 struct PerturbedCamera {
   std::string name;      ///< "bandwidth -20 %", ...
-  Camera camera;         ///< with its changed limits; used with perturbed_code()
-  double peak = 1.0;     ///< peak power relative to the description
-  double clock_s = 0.0;  ///< grid of switching times [s]; 0: none
-  double droop = 0.0;    ///< sag of the light within half a period
+  Camera camera;         ///< with its changed limits; for perturbed_code()
+  double peak = 1.0;     ///< relative to the description
+  double clock_s = 0.0;  ///< grid of switching times; 0: none
+  double droop = 0.0;    ///< sag within half a period
 };
 
-/// Returns cameras with one change each, at the same light levels and average power:
-/// - bandwidth: all frequencies of both arms' impulse responses are scaled (measured responses are
-///   stretched in time); omitted if no arm has one,
-/// - peak: peak power is scaled, see perturbed_code(),
-/// - edge jitter: added in quadrature to the jitter of each arm, independently (common jitter would
-///   cancel),
-/// - tap mismatch: added to the camera's; omitted if the sum would reach 1,
-/// - clock: switching times of both arms are rounded to a clock, see perturbed_code(),
-/// - droop: the light sags while it is on, see perturbed_code(),
-/// - together: all changes at once, with lower bandwidth and peak.
+/// Returns cameras with one change each, at the same light levels and average power
+/// (docs/robustness.md), then one with all changes, lower bandwidth and lower peak. Bandwidth is
+/// omitted without impulse responses, tap mismatch if the sum would reach 1. Jitter is added in
+/// quadrature to the jitter of each arm, because common jitter would cancel.
 std::vector<PerturbedCamera> perturbations(const Camera& camera,
                                            const RobustnessOptions& options = {});
 
 /// Returns a code as emitted and received by a perturbed camera, at the same average power.
 /// - Binary modulation: the level is multiplied by `peak` and the length of every pulse divided by
-///   it, about its centre. Pulses that would overlap merge, which loses the overlapping light;
-///   pulses that would fill the period stay on.
-/// - Sampled modulation: deviations from the mean are scaled so that the peak changes by the factor
-///   `peak`; negative values are clipped, and the result is scaled to the old mean, which slightly
-///   reduces the peak. If even the mean would exceed the new peak, the modulation is dimmed.
+///   it, about its centre. Overlapping pulses merge and lose light; pulses that would fill the
+///   period stay on.
+/// - Sampled modulation: deviations from the mean are scaled so that the peak changes by `peak`;
+///   negative values are clipped and the mean is restored. If even the mean would exceed the new
+///   peak, the modulation is dimmed.
 ///
-/// A clock then moves every switching time of both arms to its nearest point (a whole number of
-/// points per period), as generated(); modulation above the average power is dimmed. Finally,
-/// binary light with droop decays as exp(-t / s) from every rise, with s such that half a period
-/// reduces it to 1 - droop; power is lost. It is stored as means over the code's samples. Other
-/// light has no plateaus and is not changed by droop. Demodulation changes only by the clock.
+/// A clock then moves every switching time to its nearest point, as generated(); modulation above
+/// the average power is dimmed. Finally, binary light with droop decays as exp(-t/s) from every
+/// rise, with s such that half a period reduces it to 1 - droop; power is lost. Demodulation
+/// changes only by the clock.
 /// @throws std::invalid_argument if the clock has fewer than 2 points per period or leaves a
 ///         modulation dark
 CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed);
 
-/// Depth error on a perturbed camera: geometric mean over its operating points [m].
+/// Geometric mean of the depth error over the operating points [m].
 struct PerturbedError {
   std::string name;
-  /// With a decoder that knows the perturbed camera. Equal to uncalibrated_m if the code cannot
-  /// measure depth on that camera, e.g. because mismatched taps let ambient light through.
+  /// With a decoder for the perturbed camera. Equal to uncalibrated_m if the code cannot measure
+  /// depth there, e.g. because mismatched taps pass ambient light.
   Estimate calibrated_m;
-  Estimate uncalibrated_m;  ///< with a decoder that assumes the described camera
+  Estimate uncalibrated_m;  ///< with a decoder for the described camera
 };
 auto fields_of(ConstOrNot<PerturbedError> auto& e) {
   return std::tuple(Field("name", e.name),
@@ -106,10 +99,10 @@ auto fields_of(ConstOrNot<PerturbedError> auto& e) {
                           InDocuments{"uncalibrated"}));
 }
 
-/// Depth error of a code on a camera and on its perturbations.
+/// Depth error of a code on perturbed cameras.
 struct RobustnessReport {
-  DepthErrorKind kind = DepthErrorKind::linear;  ///< of all errors, from the operating range
-  std::int64_t trials = 0;                       ///< per operating point
+  DepthErrorKind kind = DepthErrorKind::linear;  ///< from the operating range
+  std::int64_t trials = 0;                       ///< per point
   std::uint64_t seed = 0;
   Estimate nominal_m;  ///< on the camera as described
   std::vector<PerturbedError> perturbed;
@@ -125,22 +118,19 @@ auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
       Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
 }
 
-/// Evaluates a code on the perturbations of its camera. Perturbations that lead to a code that the
-/// camera does not support are omitted, e.g. pulses too short for the light's generator.
-/// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
-///         the method cannot decode it; Interrupted if `progress` cancels
-/// @note same bits for any number of threads
+/// Evaluates a code on the perturbations of its camera, except for perturbed codes that the camera
+/// does not support, e.g. pulses too short for the light's generator.
+/// @throws std::invalid_argument as evaluate(); Interrupted
 RobustnessReport robustness(const CodeSet& code, const Camera& camera,
                             const RobustnessOptions& options = {}, const Progress& progress = {});
 
-/// Effect of the limits of a camera's generators on a code. All three errors use the same depths
-/// and noise, without bounds.
+/// Effect of the camera's generators on a code; all errors use the same depths and noise.
 struct GeneratorLoss {
-  DepthErrorReport nominal;       ///< on the camera without generators
-  DepthErrorReport actual;        ///< with generators and a decoder for the actual waveforms
-  DepthErrorReport uncalibrated;  ///< with generators and a decoder for the nominal waveforms
-  /// RMS difference of nominal and actual correlation functions, per measurement (K), relative to
-  /// the RMS of the nominal one about its mean.
+  DepthErrorReport nominal;       ///< without generators
+  DepthErrorReport actual;        ///< with a decoder for the actual waveforms
+  DepthErrorReport uncalibrated;  ///< with a decoder for the nominal waveforms
+  /// RMS change of the correlation functions (K), relative to the RMS of the nominal ones about
+  /// their means.
   std::vector<double> correlation_change;
 
   /// Geometric mean over the operating points [m].
@@ -151,9 +141,7 @@ struct GeneratorLoss {
   double uncalibrated_ratio(DepthErrorKind kind) const;
 };
 
-/// @param camera  with generators; without them the waveforms are nominal
-/// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
-/// @note same bits for any number of threads
+/// @throws std::invalid_argument as evaluate(); Interrupted
 GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
                              const EvaluateOptions& options = {}, const Progress& progress = {});
 
