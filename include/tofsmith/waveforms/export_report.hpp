@@ -11,16 +11,15 @@
 
 namespace tofsmith {
 
-/// Returns the rows of a table of the waveforms that the generators output, headings first.
+/// Returns a table of the waveforms that the generators output, headings first.
 std::vector<std::vector<std::string>> generator_report_rows(
     const std::vector<GeneratorReport>& reports);
 
-/// Returns the rows of a table of the resulting change in depth error, headings first.
+/// Returns a table of the resulting change in depth error, headings first.
 std::vector<std::vector<std::string>> generator_loss_rows(const GeneratorLoss& loss,
                                                           DepthErrorKind kind);
 
-/// Returns the page of an export: nominal and actual waveforms, correlation functions, and the
-/// depth error caused by the limits of the hardware.
+/// Returns the page of an export: waveforms, correlation functions and depth error.
 Page export_page(const ExportedCode& exported, const std::string& command_line);
 
 }  // namespace tofsmith

@@ -14,17 +14,17 @@ namespace tofsmith {
 
 /// Waveforms for one channel of a generator.
 struct UploadChannel {
-  int channel = 1;                        ///< 1, 2
-  std::vector<QuantizedWaveform> stored;  ///< tables to store, in this order
-  int selected = 0;                       ///< index of the table to output
+  int channel = 1;
+  std::vector<QuantizedWaveform> stored;
+  int selected = 0;  ///< table to output
 
-  /// @throws std::out_of_range if no stored waveform is selected
+  /// @throws std::out_of_range if none is selected
   const QuantizedWaveform& selected_waveform() const;
 };
 
-/// Header of a waveform sent to a Siglent generator; sources disagree, see docs/instruments.md.
+/// Header of a waveform for a Siglent generator, see docs/instruments.md.
 enum class WaveHeader {
-  length,   ///< with LENGTH, so that the message contains its own size
+  length,   ///< with LENGTH
   plain,    ///< as in Siglent's application note
   minimal,  ///< name and data only
 };
@@ -69,32 +69,31 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
 struct AnswerCheck {
   int channel = 0;       ///< 0: none
   std::string quantity;  ///< "amplitude_vpp", ...
-  std::string field;     ///< key in answers such as "C1:BSWV FRQ,1000HZ,AMP,4V"; empty: the whole
-                         ///< answer
-  double wanted = 0.0;   ///< expected number
+  std::string field;     ///< key in "C1:BSWV FRQ,1000HZ,AMP,4V"; empty: the whole answer
+  double wanted = 0.0;
   double tolerance = 0.0;
-  std::vector<std::string> texts;  ///< expected word: any of these, upper case
-  bool within = false;             ///< the word may occur anywhere in the answer
+  std::vector<std::string> texts;  ///< any of these, upper case
+  bool within = false;             ///< the word may be part of the answer
 };
 
-/// A message to the instrument and the answer that it must return.
+/// A message to the instrument and the required answer.
 struct UploadStep {
   enum class Answer {
     none,
-    line,       ///< a line of text that passes `checks`
-    block,      ///< a block whose bytes are `expected`
-    arb_file,   ///< a block with an .arb file whose points are the numbers in `expected`
+    line,       ///< text that passes `checks`
+    block,      ///< the bytes `expected`
+    arb_file,   ///< an .arb file with the numbers in `expected` as points
     wave_data,  ///< a header that passes `checks`, "WAVEDATA,", then the bytes `expected`
   };
-  std::string what;     ///< description: "select the waveform of channel 1"
+  std::string what;     ///< "select the waveform of channel 1"
   std::string message;  ///< without end of line
-  std::string data;     ///< bytes after the message
+  std::string data;
   bool line_end = true;
-  bool switches_on = false;  ///< switches an output on
+  bool switches_on = false;  ///< of an output
   Answer answer = Answer::none;
   std::vector<AnswerCheck> checks;
   std::string expected;
-  double more_s = 0.0;   ///< additional time for the answer
+  double more_s = 0.0;   ///< for the answer
   double pause_s = 0.0;  ///< after the message
 };
 
@@ -102,24 +101,22 @@ struct UploadScript {
   GeneratorModel model;
   std::vector<UploadChannel> channels;
   std::vector<UploadStep> steps;
-  std::vector<std::string> outputs_off;          ///< messages that bring the instrument into a safe
-                                                 ///< state
-  bool reads_back = true;                        ///< the points of every waveform are compared
+  std::vector<std::string> outputs_off;          ///< messages that switch to a safe state
+  bool reads_back = true;                        ///< points are compared
   std::vector<std::string> cannot_be_read_back;  ///< settings that no answer confirms
 };
 
 /// Returns the messages of an upload.
-/// @throws std::invalid_argument naming the channel, table, rate or voltage that does not fit the
-///         model
+/// @throws std::invalid_argument naming what does not fit the model
 UploadScript upload_script(const GeneratorModel& model, const UploadRequest& request);
 
-/// Returns the messages as text, one per line; data is shown as a number of bytes.
+/// Returns the messages as lines; data is shown as a number of bytes.
 std::string script_text(const UploadScript& script);
 
-/// Returns the voltage at a load per volt into 50 ohm.
+/// Voltage at a load per volt into 50 ohm.
 double load_gain(double load_ohm);
 
-/// Exposures of a code to load, and the exposure to output.
+/// Exposures to load, and the exposure to output.
 struct UploadSelection {
   int light_channel = 1;
   int sensor_channel = 2;
@@ -140,37 +137,37 @@ auto fields_of(ConstOrNot<UploadSelection> auto& s) {
       Field("all", s.all, Help{"load all exposures; the selected one is output"}));
 }
 
-/// Converts a code to tables for a model, in the model's format. The default sample rate is the
-/// model's highest, or the highest without skipped points if `true_arb`.
+/// Converts a code to tables for a model. The default sample rate is the highest, with `true_arb`
+/// the highest without skipped points.
 /// @throws std::invalid_argument naming the option that breaks a rule of the format or the model
 WaveformExport export_for_model(const CodeSet& code, const Camera& camera,
                                 const GeneratorModel& model, ExportOptions options, bool true_arb);
 
-/// Returns the channels of a selection, each with its stored tables and the selected one.
+/// Returns the channels of a selection.
 /// @throws std::invalid_argument if the code has no such exposure or tap
 std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
                                              const UploadSelection& selection);
 
-/// Parses "step", "normal" or "off" into the filter name of a Keysight command.
+/// Parses "step", "normal" or "off" into the name of a Keysight filter.
 /// @throws std::invalid_argument
 std::string parse_output_filter(std::string_view word);
 /// Parses "length", "plain" or "minimal". @throws std::invalid_argument
 WaveHeader parse_wave_header(std::string_view word);
 
-/// A script as a text file, for one exposure and all models that accept the same messages.
+/// A script for one exposure and all models that accept the same messages.
 struct ExportedScript {
-  std::string name;  ///< "SDG2042X_exposure_1.scpi.txt", named after the first model
+  std::string name;  ///< "SDG2042X_exposure_1.scpi.txt", after the first model
   std::string text;
 };
 
 struct ExportedScripts {
   std::vector<ExportedScript> files;
-  std::string problem;  ///< message of the fastest model, if no model can output the tables
+  std::string problem;  ///< of the fastest model, if none can output the tables
 };
 
-/// Returns scripts that load and select each exposure of a code on two-channel generators with the
-/// format of the tables: light on channel 1, first tap on channel 2, outputs off. Models with equal
-/// scripts share one. Empty if no model uses this format.
+/// Returns scripts for each exposure of a code on two-channel generators with the format of the
+/// tables: light on channel 1, first tap on channel 2, outputs off. Models with equal scripts share
+/// one.
 ExportedScripts export_scripts(const WaveformExport& exported);
 
 }  // namespace tofsmith

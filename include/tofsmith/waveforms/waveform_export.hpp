@@ -17,28 +17,25 @@
 
 namespace tofsmith {
 
-/// A waveform as a table of integer codes for a generator or the memory of an FPGA; input of all
-/// format writers.
+/// A waveform as a table of integer codes.
 struct QuantizedWaveform {
-  std::string name;         ///< letters, digits and _, beginning with a letter: "modulation_1"
-  Arm arm = Arm::light;     ///< arm that the waveform drives
-  int index = 0;            ///< exposure (light) or tap value (sensor), from 0
-  std::int32_t levels = 2;  ///< codes are in [0, levels - 1]; 2 to 2^24
-  std::vector<std::int32_t> codes;  ///< all periods, one after another
-  int periods = 1;                  ///< in the table, >= 1; divides the number of codes
-  double sample_rate_hz = 0.0;      ///< of the table, > 0
-  double full_scale = 1.0;          ///< value of the waveform (power over average power, or gain)
-                                    ///< at the largest code; code 0 has the value 0
-  double low_v = 0.0;               ///< output voltage at code 0 [V]
-  double high_v = 1.0;              ///< output voltage at the largest code [V], > low_v
+  std::string name;  ///< letters, digits and _, beginning with a letter
+  Arm arm = Arm::light;
+  int index = 0;                    ///< exposure (light) or tap value (sensor)
+  std::int32_t levels = 2;          ///< codes are in [0, levels - 1]; 2 to 2^24
+  std::vector<std::int32_t> codes;  ///< all periods
+  int periods = 1;                  ///< >= 1; divides the number of codes
+  double sample_rate_hz = 0.0;      ///< > 0
+  double full_scale = 1.0;          ///< power over average power, or gain, at the largest code
+  double low_v = 0.0;               ///< at code 0
+  double high_v = 1.0;              ///< at the largest code, > low_v
 
   int points() const { return static_cast<int>(codes.size()); }
   int points_per_period() const { return points() / periods; }
-  /// Repetition rate of the whole table.
   double repetition_hz() const { return sample_rate_hz / points(); }
-  /// Difference between adjacent codes, in units of the waveform.
+  /// Difference between adjacent codes.
   double step() const { return full_scale / (levels - 1); }
-  /// Value of a code, in units of the waveform.
+  /// In units of the waveform.
   double value_of(std::int32_t code) const { return step() * code; }
   double volts_of(std::int32_t code) const {
     return low_v + (high_v - low_v) * code / (levels - 1);
@@ -46,7 +43,7 @@ struct QuantizedWaveform {
   double amplitude_vpp() const { return high_v - low_v; }
   double offset_v() const { return 0.5 * (low_v + high_v); }
 
-  /// Returns true if the trigger is on, i.e. in the first half of every period.
+  /// On in the first half of every period.
   bool trigger_at(int point) const {
     return point % points_per_period() < (points_per_period() + 1) / 2;
   }
@@ -57,49 +54,47 @@ struct QuantizedWaveform {
   friend bool operator==(const QuantizedWaveform&, const QuantizedWaveform&) = default;
 };
 
-/// Rounds a waveform, which must be constant within each point, to integer codes. The error is at
-/// most half a step. The caller sets name, voltages and sample rate.
-/// @param table   from generator_table(), with `points` points
-/// @param scale   factor of the waveform; the full scale is its peak times this factor
+/// Rounds a waveform, which is constant within each point, to integer codes. The caller sets name,
+/// voltages and sample rate.
+/// @param table  from generator_table(), with `points` points
+/// @param scale  the full scale is the waveform's peak times this factor
 QuantizedWaveform quantized(const Waveform& table, int points, std::int32_t levels,
                             double scale = 1.0);
 
-/// Contents of the files of a format.
+/// Content of the files of a format.
 enum class FormatContent {
   one_waveform,  ///< one file per waveform
   all_columns,   ///< one file with a column per waveform
   words,         ///< memory words that contain all outputs, exposures one after another
 };
 
-/// A variant of a format where sources disagree; the first one is the default.
+/// A variant where sources disagree; the first one is the default.
 struct FormatVariant {
   std::string name;
   std::string description;
 };
 
-/// A waveform file format and the limits of its hardware. docs/formats.md contains layouts and
-/// sources.
+/// A file format and the limits of its hardware, see docs/formats.md.
 struct WaveformFormat {
-  std::string name;         ///< "siglent-csv", ...
-  std::string extension;    ///< ".csv", ...
-  std::string description;  ///< one line
+  std::string name;
+  std::string extension;
+  std::string description;
   FormatContent content = FormatContent::one_waveform;
   int min_points = 2;  ///< of a table
   int max_points = 1 << 20;
   int multiple_of = 1;      ///< of the points of a table
-  std::int32_t levels = 0;  ///< of a point; 0: 2^bits, for any requested number of bits
+  std::int32_t levels = 0;  ///< of a point; 0: 2^bits
   int default_bits = 14;
-  int max_bits = 16;          ///< of amplitude
-  bool skips_points = false;  ///< accepts tables that exceed the sample rate; skips points
-  std::string trigger;        ///< where the trigger is stored; empty: nowhere
+  int max_bits = 16;
+  bool skips_points = false;  ///< if the sample rate is too high
+  std::string trigger;        ///< where it is stored; empty: nowhere
   std::vector<FormatVariant> variants;
 };
 
 const std::vector<WaveformFormat>& waveform_formats();
-/// @throws std::invalid_argument that lists the formats and suggests the most similar one
+/// @throws std::invalid_argument that lists the formats
 const WaveformFormat& waveform_format(std::string_view name);
-/// Returns the index of a variant of the format; 0 for "". @throws std::invalid_argument that lists
-/// the variants
+/// Returns the index of a variant; 0 for "". @throws std::invalid_argument that lists the variants
 int variant_index(const WaveformFormat& format, std::string_view variant);
 
 /// Families of generators with the same commands.
@@ -109,43 +104,37 @@ enum class GeneratorFamily {
   tektronix_afg3000,  ///< AFG3000, AFG3000B and AFG3000C
 };
 
-/// Capabilities of a generator; docs/instruments.md lists the sources. Limits apply to the
-/// smallest version; the instrument's answers take precedence.
+/// Capabilities of the smallest version of a generator, see docs/instruments.md.
 struct GeneratorModel {
-  std::string name;    ///< "SDG2042X"
+  std::string name;
   std::string vendor;  ///< as in the answer to *IDN?
   GeneratorFamily family = GeneratorFamily::siglent_x;
   int channels = 2;
-  double sample_rate_hz = 0.0;          ///< maximum
-  double max_repetition_hz = 0.0;       ///< maximum for a whole table; 0: limited only by the
-                                        ///< sample rate
-  double true_arb_rate_hz = 0.0;        ///< maximum without skipped points, if the generator can
-                                        ///< skip points (Siglent); 0: not supported
+  double sample_rate_hz = 0.0;
+  double max_repetition_hz = 0.0;       ///< of a table; 0: limited only by the sample rate
+  double true_arb_rate_hz = 0.0;        ///< without skipped points; 0: never skips points
   int min_points = 2, max_points = 0;   ///< of a table
-  int memories = 0;                     ///< maximum number of stored tables; 0: limited by size
+  int memories = 0;                     ///< maximum number of tables; 0: limited by size
   double min_vpp = 0.0, max_vpp = 0.0;  ///< into 50 ohm
 
-  /// Name of the WaveformFormat that the generator accepts.
+  /// Name of its WaveformFormat.
   std::string format() const;
-  /// Returns true if the list of errors can be queried.
+  /// Returns true if errors can be queried.
   bool has_error_queue() const { return family != GeneratorFamily::siglent_x; }
 };
 
 const std::vector<GeneratorModel>& generator_models();
-/// Finds a model by name, case-insensitive, with or without the letter of its generation; null if
-/// unknown.
+/// Finds a model by name, case-insensitive, with or without the letter of its generation, or null.
 const GeneratorModel* find_generator_model(std::string_view name);
-/// @throws std::invalid_argument that suggests the most similar model, or lists the families
+/// @throws std::invalid_argument that suggests the most similar model
 const GeneratorModel& generator_model(std::string_view name);
-/// Supported families, for messages.
 inline constexpr std::string_view known_generators =
     "Siglent SDG1000X, SDG2000X, SDG6000X; Keysight 33500, 33600; Tektronix AFG3000";
 
-/// Highest sample rate of the models that accept a WaveformFormat, or of all models if none does.
+/// Highest sample rate of the models that accept a format, or of all models if none does.
 double fastest_sample_rate_hz(std::string_view format);
 
-/// Hardware that a code is exported for. Defaults come from the camera's generator, else from the
-/// code and the format.
+/// Hardware of an export. Defaults come from the camera's generator, else from code and format.
 struct ExportOptions {
   std::string format;
   std::string variant;
@@ -175,48 +164,44 @@ auto fields_of(ConstOrNot<ExportOptions> auto& o) {
       Field("high_v", o.high_v, Help{"output for peak light and a gain of 1"}));
 }
 
-/// All waveforms of a code, ready to be written.
+/// Waveforms of a code, ready to be written.
 struct WaveformExport {
   WaveformFormat format;
   int variant = 0;  ///< index in format.variants
   std::string code, camera;
   double fundamental_frequency_hz = 0.0;
   int exposures = 0;
-  int taps = 1;              ///< tap values per exposure
-  bool shared_taps = false;  ///< both taps are driven by one generator; the second is 1 - the first
-  /// Modulation of every exposure, then demodulation of every tap value (with shared taps, only the
-  /// first of each exposure).
+  int taps = 1;
+  bool shared_taps = false;  ///< one generator drives both taps; the second is 1 - the first
+  /// Modulation of every exposure, then demodulation of every tap value (with shared taps, the
+  /// first).
   std::vector<QuantizedWaveform> waveforms;
-  Generator light, sensor;  ///< of the exported tables
+  Generator light, sensor;  ///< of the tables
 };
 
-/// Returns the camera with the generators of the exported tables. Evaluate a code on it to obtain
-/// the depth error under the limits of the hardware.
+/// Returns the camera with the generators of the tables.
 /// @throws std::invalid_argument naming the option that breaks a rule of the format or the hardware
 Camera exporting_camera(const CodeSet& code, const Camera& camera, const ExportOptions& options);
 
-/// Converts the code to tables for the generators of `actual`, which exporting_camera() returned. A
-/// value read back from a table differs from the evaluated one by at most half a step of the
-/// format.
+/// Converts the code to tables for the camera from exporting_camera(), with an error of at most
+/// half a step.
 /// @throws std::invalid_argument as exporting_camera(), or if no number of periods fits the format
 WaveformExport export_waveforms(const CodeSet& code, const Camera& actual,
                                 const ExportOptions& options);
 
 struct ExportedFile {
-  std::string name;  ///< without directory
+  std::string name;
   std::vector<std::byte> bytes;
-  std::vector<int> waveforms;  ///< indices of the contained waveforms
+  std::vector<int> waveforms;  ///< contained
 };
 
-/// Returns the files of all waveforms. @throws std::invalid_argument if the format cannot contain
-/// them
+/// Returns the files. @throws std::invalid_argument if the format cannot contain the waveforms
 std::vector<ExportedFile> export_files(const WaveformExport& exported);
 
-/// Returns manifest.json: format, clock, limits, and the contents, scale, size and SHA-256 of each
-/// file.
+/// Returns manifest.json: format, clock, limits, and the contents and SHA-256 of each file.
 std::string export_manifest(const WaveformExport& exported, const std::vector<ExportedFile>& files);
 
-/// Returns a table with header: time_s, trigger, then the value of every waveform.
+/// Returns a table: time_s, trigger, then the value of every waveform.
 std::string quantized_csv(const std::vector<QuantizedWaveform>& waveforms);
 
 }  // namespace tofsmith

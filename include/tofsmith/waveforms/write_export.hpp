@@ -19,42 +19,39 @@ namespace tofsmith {
 /// Result of exporting a code.
 struct ExportedCode {
   CodeSet code;   ///< resampled to the camera's samples
-  Camera actual;  ///< the camera with the generators of the tables
+  Camera actual;  ///< with the generators of the tables
   WaveformExport waveforms;
-  std::string manifest;                 ///< contents of manifest.json
-  std::vector<ExportedScript> scripts;  ///< SCPI for the generators that support the tables
+  std::string manifest;
+  std::vector<ExportedScript> scripts;  ///< for the generators that support the tables
   std::vector<GeneratorReport> generators;
   std::optional<GeneratorLoss> loss;  ///< if requested
   std::vector<std::string> notes;     ///< for the user
-  std::filesystem::path output;       ///< as requested
-  /// Written files: tables; in a directory also scripts, manifest.json and report.html.
+  std::filesystem::path output;
+  /// Written files. In a directory: tables, scripts, manifest.json and report.html.
   std::vector<std::filesystem::path> files;
 };
 
 struct ExportRequest {
   ExportOptions options;
-  /// A directory, created if missing, for all files; or one file with the format's extension, if
-  /// the format stores all waveforms in one file.
+  /// A directory for all files, or one file with the format's extension, if it stores all
+  /// waveforms.
   std::filesystem::path output;
   OutputPolicy policy = OutputPolicy::refuse_existing;
-  std::optional<EvaluateOptions> loss;  ///< how to evaluate the depth error under the hardware's
-                                        ///< limits; none: not evaluated
-  /// Contents of report.html, e.g. export_page(); none: not written. Only for directories.
+  std::optional<EvaluateOptions> loss;  ///< evaluation of the depth error; none: not evaluated
+  /// Contents of report.html, e.g. export_page(); only for directories.
   std::function<std::string(const ExportedCode&)> page;
 
-  /// Returns true if `output` is one file.
   /// @throws std::invalid_argument naming output, if it cannot be one file, or format
   bool is_one_file() const;
 };
 
-/// Writes all waveforms of a code as files. No file is written unless all of them can be.
+/// Writes all waveforms of a code, or no file.
 /// @throws std::invalid_argument as exporting_camera(), export_waveforms(), generator_loss() and
-///         ExportRequest::is_one_file(); IoError if a file exists or cannot be written; Interrupted
-///         if `progress` cancels
+///         is_one_file(); IoError if a file exists or cannot be written; Interrupted
 ExportedCode write_export(const CodeSet& code, const Camera& camera, const ExportRequest& request,
                           const Progress& progress = {});
 
-/// Returns the output of `tofsmith export --json`: manifest, generators, depth error and notes.
+/// Returns the output of `tofsmith export --json`.
 std::string export_document(const ExportedCode& exported);
 
 }  // namespace tofsmith
