@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns T [s] of every column (K); empty if the camera has a single exposure time.
+/// T [s] of every column (K); empty if all exposures are equal.
 Eigen::VectorXd column_exposures_s(const Camera& camera, int columns, int columns_per_exposure) {
   Eigen::VectorXd exposure_s;
   if (camera.exposure_s.each_s.empty()) return exposure_s;

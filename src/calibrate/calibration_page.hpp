@@ -9,7 +9,7 @@
 
 namespace tofsmith {
 
-/// Adds the end of every calibration page: notes, the command unless it is empty, and the footer.
+/// Adds notes, the command unless it is empty, and the footer.
 Page finished_calibration_page(Page page, const std::vector<std::string>& notes,
                                const std::string& command_line);
 

@@ -21,9 +21,8 @@
 namespace tofsmith {
 namespace {
 
-/// Computes Sensor::tap_mismatch m of each exposure with two taps. Their changes with delay are
-/// opposite, with ratio -(1 - m / 2) / (1 + m / 2) of the second to the first.
-/// @param notes  receives a note if taps differ significantly, or if they are not opposite
+/// Sensor::tap_mismatch m of each exposure with two taps, whose changes with delay have the ratio
+/// -(1 - m / 2) / (1 + m / 2).
 std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::MatrixXd& error,
                                     std::vector<std::string>& notes) {
   std::vector<Estimate> mismatch;
@@ -59,11 +58,11 @@ struct Workbench {
   const RawFrames& raw;
   DelayGroups groups;
   std::vector<std::size_t> live;
-  Eigen::MatrixXd mean;  // (F, K), over the live pixels
+  Eigen::MatrixXd mean;
   SweepDrift drift;
   HarmonicBasis basis;
 
-  /// Returns the values of a pixel corrected for the drift of light and level.
+  /// Corrected for the drift of light and level.
   Eigen::MatrixXd corrected(std::size_t pixel) const {
     Eigen::MatrixXd values = pixel_values(raw, pixel);
     if (drift.significant) values -= swing(values) / swing(mean) * drift.correction;
@@ -97,7 +96,6 @@ std::vector<Eigen::MatrixXcf> pixel_harmonics(const Workbench& bench) {
   return harmonics;
 }
 
-/// Removes pixels with a response below a tenth of the median.
 bool drop_low_pixels(std::vector<std::size_t>& live, const PixelAlignment& alignment,
                      DeadPixels& dead) {
   const double usual = median_of(alignment.gain);
@@ -110,18 +108,17 @@ bool drop_low_pixels(std::vector<std::size_t>& live, const PixelAlignment& align
   return dropped;
 }
 
-/// Returns N rows at j / N.
 Eigen::MatrixXd table_of(const Workbench& bench, const PixelAlignment& alignment) {
   const int rows = bench.groups.count();
   if (!bench.groups.from_zero) return curve_of(alignment.common, rows);
-  // If rows are measured positions, components that the harmonics do not contain (corners, the
-  // highest harmonic of an even N) are taken from the means.
+  // If rows are measured positions, components beyond the harmonics (corners, the highest harmonic
+  // of an even N) are taken from the means.
   const Eigen::MatrixXd mean = bench.mean - bench.drift.correction;
   const Eigen::MatrixXcd unaligned = bench.basis.coefficients(mean);
   return group_means(mean, bench.groups) + curve_of(alignment.common - unaligned, rows);
 }
 
-/// Estimates the variance of a raw number at each position (G, K).
+/// Variance of a raw number at each position (G, K).
 Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& alignment,
                                CalibratedCorrelation& result) {
   const int groups = bench.groups.count(), frames = bench.raw.frames;
@@ -141,7 +138,7 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
       ++used;
     }
     const double values = static_cast<double>(frames) * static_cast<double>(columns);
-    // Degrees of freedom: each pixel's levels, gain and delay are fitted, and the common curve.
+    // Fitted parameters: levels, gain and delay of each pixel, and the common curve.
     const double freedom = (values - static_cast<double>(columns) - 2.0) / values *
                            (1.0 - 1.0 / static_cast<double>(bench.live.size()));
     return group_means(sum, bench.groups) / (used * freedom);
@@ -160,7 +157,7 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
         pixels * rest.squaredNorm() /
             (static_cast<double>(frames - groups) * static_cast<double>(columns)));
   }
-  // Use the upper half of the harmonics, which contains only noise for band-limited cameras.
+  // The upper half of the harmonics contains only noise for band-limited cameras.
   result.noise_source = "high harmonics";
   const Eigen::MatrixXcd c = bench.basis.coefficients(mean);
   const Eigen::Index upper = std::max<Eigen::Index>(1, (c.rows() - 1) / 2);
@@ -193,7 +190,7 @@ void set_errors(const Workbench& bench, const PixelAlignment& alignment,
   }
   result.standard_error = result.standard_error.cwiseSqrt();
 
-  // Fisher information of a pixel's delay and gain.
+  // Fisher information of delay and gain.
   const Eigen::MatrixXcd& c = alignment.common;
   double slope2 = 0.0, size2 = 0.0;
   for (Eigen::Index n = 1; n < c.rows(); ++n) {
@@ -212,7 +209,7 @@ void set_maps(const Workbench& bench, const PixelAlignment& alignment,
   if (raw.pixels_per_frame() == 1) return;
   result.maps.delay_offset_m = Image<float>(raw.height, raw.width, NAN);
   result.maps.gain = Image<float>(raw.height, raw.width, NAN);
-  double geometry_m = 0.0;  // mean geometry, as the table belongs to the mean pixel
+  double geometry_m = 0.0;  // mean, as the table belongs to the mean pixel
   if (!options.geometry_m.empty())
     for (const std::size_t p : bench.live)
       geometry_m += options.geometry_m.pixels[p] / static_cast<double>(bench.live.size());
@@ -250,8 +247,8 @@ void set_scale(const Workbench& bench, const CorrelationCalibrationOptions& opti
   }
 }
 
-/// Returns twice the standard errors of the table, in percent of the signal's part of the
-/// measurements without ambient light (root mean squares).
+/// Twice the standard errors of the table, in percent of the signal's part of the measurements
+/// (root mean squares).
 double model_error_percent(const CalibratedCorrelation& found) {
   const MeasuredTable& table = found.table;
   const Eigen::Index columns = table.correlation.cols();
@@ -340,7 +337,7 @@ CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
   CalibratedCorrelation result;
   result.notes = sweep.notes;
 
-  // Align usable pixels with their mean; repeat without pixels of low response.
+  // Align with the mean; repeat without pixels of low response.
   std::vector<std::size_t> live = live_pixels(sweep, options, result.dead);
   PixelAlignment alignment = align_pixels(pixel_harmonics(workbench_of(sweep, live)), progress);
   if (drop_low_pixels(live, alignment, result.dead))

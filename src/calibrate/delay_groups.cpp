@@ -17,7 +17,7 @@ namespace {
 
 constexpr double same = 0.02;  // relative to a step
 
-/// Returns the median step between distinct adjacent delays.
+/// Median step between distinct delays.
 double usual_step(std::vector<double> sorted) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < sorted.size(); ++i)

@@ -6,15 +6,14 @@
 
 namespace tofsmith {
 
-/// Frames of a sweep grouped by position in the period.
 struct DelayGroups {
-  std::vector<double> place;        ///< of each group in [0, 1), increasing (G)
-  std::vector<int> group_of_frame;  ///< (F)
-  std::vector<int> repeats;         ///< frames of each group (G)
-  double span_periods = 0.0;        ///< range of the given delays
-  double first_periods = 0.0;       ///< minimum delay
-  bool equal_steps = false;         ///< the positions are equally spaced over the period
-  bool from_zero = false;  ///< and one of them is 0: they are the rows of a table with N = G
+  std::vector<double> place;  ///< in [0, 1), increasing (G)
+  std::vector<int> group_of_frame;
+  std::vector<int> repeats;  ///< frames (G)
+  double span_periods = 0.0;
+  double first_periods = 0.0;
+  bool equal_steps = false;  ///< positions are equally spaced over the period
+  bool from_zero = false;    ///< positions are the rows of a table with N = G
 
   int count() const { return static_cast<int>(place.size()); }
   bool has_repeats() const { return place.size() < group_of_frame.size(); }

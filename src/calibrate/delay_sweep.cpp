@@ -66,7 +66,6 @@ DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions option
                   "measurement");
   // A row counter may precede the delays.
   const Eigen::Index delay = counts_samples(table, 0) && is_named_time(table, 1) ? 1 : 0;
-  // Use the unit of the header unless one was given.
   if (options.unit == DelayUnit::second && options.unit_scale == 1.0 && !table.names.empty())
     if (const double unit_s = seconds_per_unit(table.names[static_cast<std::size_t>(delay)]);
         unit_s > 0.0)

@@ -57,7 +57,7 @@ DepthFit start(std::vector<ReferenceSample> samples, int height, int width, doub
   return fit;
 }
 
-/// Computes the terms at the phase predicted from the reference and the current errors.
+/// Terms at the phase predicted from the reference and the current errors.
 void fill_terms(const Eigen::VectorXd& predicted_m, DepthFit& fit) {
   fit.terms.resize(error_terms, fit.size());
   const auto place = [](int at, int n) { return n > 1 ? 2.0 * at / (n - 1) - 1.0 : 0.0; };
@@ -82,7 +82,7 @@ Eigen::VectorXd predicted(const DepthFit& fit, const std::vector<int>& columns,
 
 constexpr double biweight_reach = 4.685;  // standard deviations; 95 % efficiency for normal errors
 
-/// Computes weights from residuals by Tukey's biweight.
+/// Tukey's biweight.
 void weigh(const Eigen::VectorXd& residual_m, DepthFit& fit) {
   std::vector<double> size_m(static_cast<std::size_t>(residual_m.size()));
   for (Eigen::Index i = 0; i < residual_m.size(); ++i)
@@ -94,7 +94,7 @@ void weigh(const Eigen::VectorXd& residual_m, DepthFit& fit) {
   }
 }
 
-/// Solves iteratively reweighted least squares over some columns, updating the predicted phase.
+/// Iteratively reweighted least squares, which updates the predicted phase.
 Eigen::VectorXd solve_robustly(const std::vector<int>& columns, int rounds, DepthFit& fit) {
   const std::vector<int> one_cell(fit.samples.size(), 0);
   Eigen::VectorXd coefficient, fitted_m;
@@ -102,7 +102,7 @@ Eigen::VectorXd solve_robustly(const std::vector<int>& columns, int rounds, Dept
     coefficient = sums_of(fit.terms, fit.error_m, fit.weight, one_cell, 1).front().solve(columns);
     fitted_m = predicted(fit, columns, coefficient);
     weigh(fit.error_m - fitted_m, fit);
-    // Terms are not updated in the last round, as the coefficients belong to them.
+    // Coefficients of the last round belong to its terms.
     if (round + 1 < rounds && round % 2 == 1) fill_terms(fitted_m, fit);
   }
   return coefficient;
@@ -113,8 +113,7 @@ int part_of(double depth_m, double range_m) {
   return std::min(range_parts - 1, static_cast<int>(share * range_parts));
 }
 
-/// Mean of the nominal depth error and its root mean square deviation from the mean, without
-/// outliers [m].
+/// Mean of the nominal depth error and rms deviation from it, without outliers [m].
 struct DepthError {
   double mean_m = 0.0, rms_m = 0.0;
 };
@@ -140,8 +139,8 @@ std::vector<bool> parts_with_depths(const DepthFit& fit) {
   return has;
 }
 
-/// Returns 1 for parts of the range that are known, else 0. Gaps that are shorter than the
-/// resolution of the highest harmonic are known, too.
+/// 1 for known parts of the range, including gaps shorter than the highest harmonic resolves; else
+/// 0.
 Eigen::VectorXd known_share_of(std::vector<bool> has, int highest_harmonic) {
   const int reach = range_parts / (2 * std::max(1, highest_harmonic) + 1);
   Eigen::VectorXd share(range_parts);
@@ -157,8 +156,7 @@ Eigen::VectorXd known_share_of(std::vector<bool> has, int highest_harmonic) {
   return share;
 }
 
-/// Assigns samples to square tiles of pixels, the same in each frame. The tiles are at most 16
-/// pixels wide, and narrower if there would be fewer than 200 tiles.
+/// Assigns samples to square tiles of at most 16 pixels, narrower if there would be fewer than 200.
 std::vector<int> tiles_of(const DepthFit& fit, int& tiles) {
   constexpr int enough = 200;
   int side = 16;
@@ -171,7 +169,7 @@ std::vector<int> tiles_of(const DepthFit& fit, int& tiles) {
   return tile;
 }
 
-/// Returns the degree of the field that the positions of the samples can determine.
+/// Degree of the field that the positions of the samples determine.
 int degree_within(const DepthFit& fit, std::vector<std::string>& notes) {
   const auto [top, bottom] =
       std::ranges::minmax(each(fit.samples, [](const auto& s) { return double(s.row); }));
@@ -201,9 +199,8 @@ Eigen::VectorXd standard_errors(const DepthFit& fit, const std::vector<int>& col
   return tile_errors(fit.terms, columns, slope, influence, tile, tiles);
 }
 
-/// Returns the smallest model error [%] with which at most 1 % of the pixels with correct depth are
-/// inconsistent, in steps of 20 %. Some pixels are always inconsistent, because they see two
-/// surfaces. None if the code has no degrees of freedom.
+/// Smallest model error [%] with which at most 1 % of the pixels with correct depth are
+/// inconsistent. None if the code has no degrees of freedom.
 std::optional<double> model_error_percent(const RawFrames& frames, const DepthFit& fit,
                                           const DecodingTable& table, const Progress& progress) {
   RawFrames raw{.frames = 1, .height = 1, .measurements = frames.measurements};
@@ -313,7 +310,7 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
     result.notes.push_back(*note);
 }
 
-/// Converts z-depth to depth along the camera's rays. Images of other sizes are rejected later.
+/// z-depth to depth along the camera's rays. Other image sizes are rejected later.
 ReferenceDepth along_rays(ReferenceDepth z, const Camera& camera, int height, int width) {
   require(camera.lens.has_value(), "lens", "none",
           "is required to convert a reference along the axis to distances along the rays");
@@ -341,7 +338,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   const double range_m = camera.range_m();
   const ProgressParts parts(progress, {3.0, 1.0, 1.0}), decoding(parts[0], 2);
 
-  // Calibrate each frequency of the code, and compute the error of the uncalibrated model before.
+  // Calibrate each frequency, after computing the uncalibrated error.
   std::optional<DepthError> nominal;
   if (auto by_frequency = calibrate_frequencies(frames, reference, code, camera)) {
     auto samples =
@@ -371,7 +368,7 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   if (turned) turn_backwards(result.table, samples, range_m);
   result.reversed = result.reversed != turned;
 
-  // Fit all terms robustly to identify outliers.
+  // Fit all terms to identify outliers.
   DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
   const DepthError error = error_of(fit);
   result.mean_error_m = nominal.value_or(error).mean_m;
@@ -388,7 +385,6 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   fill_terms(Eigen::VectorXd::Zero(fit.size()), fit);
   solve_robustly(all.columns(), 10, fit);
 
-  // Choose terms by cross-validation and fit only those.
   report(parts[1], 0.5, "selecting terms");
   const Chosen chosen = choose(fit, highest, all.degree, !result.frequencies.empty());
   const std::vector<int> far_columns = chosen.beyond.columns(), columns = chosen.known.columns();
@@ -433,8 +429,7 @@ Camera with_depth(Camera camera, const CalibratedDepth& found) {
   const double known_m = found.reversed ? -playback.offset_m : playback.offset_m;
   playback.reversed = playback.reversed != found.reversed;
   playback.set_offsets_m(found.offsets_m);
-  // Use the mean error: if only part of the range is known, the offset term is correlated with
-  // harmonics.
+  // The offset term is correlated with harmonics if only part of the range is known.
   if (found.offsets_m.empty()) playback.offset_m = found.mean_error_m + known_m;
   if (!found.contrasts.empty() && camera.sensor.mixes_taps())
     camera.sensor.modulation_contrasts = found.contrasts;

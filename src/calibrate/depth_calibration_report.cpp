@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the correction in the middle of the image, without the mean error [mm].
+/// Correction in the middle of the image, without the mean error [mm].
 std::vector<Series> correction_curves(const CalibratedDepth& found) {
   ColourAssignment colours;
   Series known{.name = "correction", .style = colours.style("correction")};
@@ -64,7 +64,6 @@ Figure error_figure(const CalibratedDepth& found) {
       series, {.label = "decoded depth", .unit = "m"}, {.label = "depth error", .unit = "mm"});
 }
 
-/// Returns a figure of frame values over temperature, with the fitted line.
 Figure drift_figure(const FigureText& text, const TemperatureDrift& found,
                     const std::vector<double>& of_frames, const Estimate& per_c, double scale,
                     const Axis& axis) {

@@ -23,8 +23,8 @@ std::string power_name(const char* name, int power) {
   return power == 1 ? std::string(name) : fmt::format("{}^{}", name, power);
 }
 
-/// Factorization with columns scaled to unit size, so that units do not matter. A small constant on
-/// the diagonal regularizes columns that a part of the range cannot separate.
+/// Factorization with columns of unit size. A small constant on the diagonal regularizes columns
+/// that a part of the range cannot separate.
 struct ScaledFactor {
   Eigen::VectorXd scale;
   Eigen::LDLT<Eigen::MatrixXd> factor;

@@ -14,28 +14,26 @@ inline constexpr int max_error_harmonic = 8, max_error_degree = 4, max_error_sig
 inline constexpr int field_terms = (max_error_degree + 1) * (max_error_degree + 2) / 2 - 1;
 inline constexpr int error_terms = 1 + 2 * max_error_harmonic + field_terms + max_error_signal;
 
-/// Terms of a depth error to fit.
 struct TermChoice {
   unsigned harmonics = 0;  ///< bit h - 1: harmonic h
-  int degree = 0;          ///< of the field over rows and columns
-  int signal = 0;          ///< highest power of the logarithm of the signal
+  int degree = 0;          ///< over rows and columns
+  int signal = 0;          ///< highest power of its logarithm
 
-  /// Returns their columns among all error_terms: offset, harmonics, field, signal.
+  /// Columns among all error_terms: offset, harmonics, field, signal.
   std::vector<int> columns() const;
   int size() const { return static_cast<int>(columns().size()); }
 };
 
-/// Returns the name of a column: "offset", "cos 4", "row^2 column", "log signal^2".
+/// "offset", "cos 4", "row^2 column", "log signal^2".
 std::string error_term_name(int column);
 
-/// Computes all terms for one pixel, see DepthErrorTerms.
+/// All terms of one pixel, see DepthErrorTerms.
 void fill_error_terms(double phase_rad, double row, double column, double log_signal,
                       double* terms);
 
-/// Converts the coefficients of chosen columns to the terms of a correction.
 DepthErrorTerms terms_of(const TermChoice& choice, const Eigen::VectorXd& coefficient);
 
-/// Sums for weighted least squares over any number of samples.
+/// Sums for weighted least squares.
 struct NormalSums {
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(error_terms, error_terms);
   Eigen::VectorXd moment = Eigen::VectorXd::Zero(error_terms);
@@ -43,20 +41,19 @@ struct NormalSums {
   double weight = 0.0;
 
   void add(const NormalSums& other);
-  /// Returns the least squares solution for some columns.
   Eigen::VectorXd solve(const std::vector<int>& columns) const;
-  /// Returns the weighted residual sum of squares for coefficients of some columns.
+  /// Weighted residual sum of squares.
   double left(const std::vector<int>& columns, const Eigen::VectorXd& coefficient) const;
 };
 
-/// @param terms   (error_terms, samples)
-/// @param cell    of each sample, in [0, cells)
+/// @param terms  (error_terms, samples)
+/// @param cell   of each sample, in [0, cells)
 std::vector<NormalSums> sums_of(const Eigen::MatrixXd& terms, const Eigen::VectorXd& error_m,
                                 const Eigen::VectorXd& weight, const std::vector<int>& cell,
                                 int cells);
 
-/// Computes standard errors of coefficients whose residuals may be correlated within tiles
-/// (cluster-robust sandwich estimator).
+/// Standard errors of coefficients whose residuals may be correlated within tiles (cluster-robust
+/// sandwich estimator).
 /// @param slope  derivative of each sample's influence with respect to its residual
 /// @param influence  weight times residual
 Eigen::VectorXd tile_errors(const Eigen::MatrixXd& terms, const std::vector<int>& columns,

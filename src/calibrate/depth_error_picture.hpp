@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Returns the errors of a fit and its residuals.
-/// @param offset_m  mean error, subtracted in addition to the start of the fit
+/// Returns the errors and residuals of a fit.
+/// @param offset_m  mean error, subtracted as well
 /// @param fitted_m  fitted error of every sample
 DepthErrorPicture picture_of(const DepthFit& fit, const Eigen::VectorXd& fitted_m, double offset_m);
 

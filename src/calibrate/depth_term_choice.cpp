@@ -19,7 +19,7 @@ namespace {
 
 constexpr int slabs = 4, checkers = 2;
 
-/// Columns of the blocks of pixels that have data, by frame and row.
+/// Columns of the blocks with data, by frame and row.
 using BlocksWithData = std::map<int, std::map<int, std::set<int>>>;
 
 int block_count(const BlocksWithData& blocks) {
@@ -29,16 +29,15 @@ int block_count(const BlocksWithData& blocks) {
   return count;
 }
 
-/// Returns the number of keys before a key of an ordered container.
+/// Position of a key in an ordered container.
 template <typename Keys, typename Key>
 int rank_of(const Keys& keys, const Key& key) {
   return static_cast<int>(std::distance(keys.begin(), keys.find(key)));
 }
 
-/// Returns the colour of each sample on a checkerboard of blocks. Only blocks with data are
-/// numbered, so that both colours have data if two blocks have. Blocks are an eighth of the image
-/// high and wide, or smaller if few of these have data. The colour of samples without weight is
-/// arbitrary.
+/// Colour of each sample on a checkerboard of blocks with data, so that both colours have data if
+/// two blocks have. Blocks are an eighth of the image or smaller. The colour of samples without
+/// weight is arbitrary.
 std::vector<int> colours_of(const DepthFit& fit) {
   constexpr int enough_blocks = 8;
   int block_rows = 0, block_columns = 0;
@@ -68,7 +67,7 @@ std::vector<int> colours_of(const DepthFit& fit) {
   return colours;
 }
 
-/// Returns the cell of each sample: its colour on the checkerboard, and its quarter of the range.
+/// Cell of each sample: its colour and its quarter of the range.
 std::vector<int> cells_of(const DepthFit& fit) {
   const auto at_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
   std::array<double, slabs - 1> border_m{};
@@ -81,12 +80,11 @@ std::vector<int> cells_of(const DepthFit& fit) {
   return cell;
 }
 
-/// Sums of the samples that a fold holds out, and of the others.
+/// Samples that a fold holds out, and the others.
 struct Fold {
   NormalSums out, kept;
 };
 
-/// Returns the folds that hold out some samples and keep others.
 std::vector<Fold> folds_of(const std::vector<NormalSums>& sums, bool by_range) {
   std::vector<Fold> folds;
   for (int fold = 0; fold < (by_range ? slabs : checkers); ++fold) {
@@ -100,7 +98,7 @@ std::vector<Fold> folds_of(const std::vector<NormalSums>& sums, bool by_range) {
   return folds;
 }
 
-/// Returns the rms error of a choice on held-out samples; none without folds.
+/// Rms error on held-out samples; none without folds.
 std::optional<double> held_out_rms_m(const std::vector<Fold>& folds, const TermChoice& choice) {
   if (folds.empty()) return {};
   const std::vector<int> columns = choice.columns();
@@ -112,16 +110,15 @@ std::optional<double> held_out_rms_m(const std::vector<Fold>& folds, const TermC
   return std::sqrt(left / weight);
 }
 
-/// Returns true if the terms are as small as depth errors can be. Terms that the depths of the
-/// reference cannot separate are far larger and cancel each other.
+/// Terms that the depths of the reference cannot separate cancel each other and are larger than any
+/// depth error.
 bool is_plausible(const NormalSums& all, const TermChoice& choice, double range_m) {
   constexpr double largest_share = 0.1;
   return all.solve(choice.columns()).lpNorm<Eigen::Infinity>() < largest_share * range_m;
 }
 
-/// Returns true if the signal varies independently of the other terms. On targets of one albedo it
-/// is a function of depth, and terms in signal and depth would cancel each other and be wrong in
-/// other scenes.
+/// On targets of one albedo the signal is a function of depth. Terms in signal and depth would then
+/// cancel each other and be wrong in other scenes.
 bool signal_varies(const NormalSums& all, int highest_harmonic, int degree) {
   constexpr double least_share = 0.02;
   const std::vector<int> others = TermChoice{(1u << highest_harmonic) - 1u, degree, 0}.columns();
@@ -133,7 +130,7 @@ bool signal_varies(const NormalSums& all, int highest_harmonic, int degree) {
   return left(others) > least_share * left({0});
 }
 
-/// Returns sets of harmonics that are common in cameras; for k equally spaced phases, k and 2 k.
+/// Sets that are common in cameras: for k equally spaced phases, k and 2 k.
 std::vector<unsigned> harmonic_sets(int highest) {
   const auto set = [](std::initializer_list<int> list) {
     unsigned bits = 0;
@@ -173,8 +170,8 @@ Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree, bool pr
       }
   const auto& near = *std::ranges::min_element(candidates, {}, &Candidate::near_m);
   const auto& far = *std::ranges::min_element(candidates, {}, &Candidate::far_m);
-  // Include terms in the signal only if they improve the prediction. Of the other terms, use the
-  // most that predict equally well, since omitting a term biases others.
+  // Use terms in the signal only if they improve the prediction; of the other terms, the most that
+  // predict equally well, since omitting a term biases others.
   constexpr double shows = 1.01, as_well = 1.005;
   int signal = near.choice.signal;
   for (const Candidate& c : candidates)

@@ -15,17 +15,17 @@ namespace tofsmith {
 namespace {
 
 constexpr int buckets = 2;
-constexpr double min_signal_sigma = 8.0;  // of pixels with reliable depth, and so reliable light
+constexpr double min_signal_sigma = 8.0;  // for reliable depth, and so reliable light
 constexpr std::size_t min_group = 256, max_groups = 16;
-constexpr double max_filled = 0.95;  // relative to the maximum of a bucket's converter
+constexpr double max_filled = 0.95;  // relative to the maximum of a converter
 
-/// One measurement of a pixel in two frames with the same light.
+/// A measurement in two frames with the same light.
 struct PairedNumber {
-  double light_dn;  ///< collected by both buckets
-  double change;    ///< between the two frames [DN]
+  double light_dn;  ///< of both buckets
+  double change;    ///< [DN]
 };
 
-/// Returns the table in raw numbers, so that the signal is in DN/s.
+/// Scales the table so that the signal is in DN/s.
 DecodingTable in_raw_numbers(DecodingTable table) {
   table.gain_e_per_raw.setOnes();
   table.constant_variance_e2.setConstant(buckets / 12.0);
@@ -35,11 +35,11 @@ DecodingTable in_raw_numbers(DecodingTable table) {
   return table;
 }
 
-/// Mean of two frames and their difference, corrected for a common change of light.
+/// Mean and difference of two frames, corrected for a common change of light.
 struct FramePair {
   RawFrames mean;
   RawFrames change;
-  double mean_square = 0.0;  ///< of the changes, per number
+  double mean_square = 0.0;  ///< of the changes
 };
 
 FramePair pair_of(const RawFrames& raw, int first) {
@@ -75,7 +75,7 @@ FramePair pair_of(const RawFrames& raw, int first) {
   return pair;
 }
 
-/// Returns the light collected in each measurement at `depth_m`, per signal and second.
+/// Light of each measurement at a depth, per signal and second.
 Eigen::VectorXd light_per_signal(const DecodingTable& table, double depth_m) {
   const double at = depth_m / table.row_m();
   const double whole = std::floor(at);
@@ -86,9 +86,9 @@ Eigen::VectorXd light_per_signal(const DecodingTable& table, double depth_m) {
   return row.transpose().cwiseProduct(table.exposure_s);
 }
 
-/// Returns the numbers of all pixels with reliable depth whose fuller bucket is below `limit_dn`,
-/// since a difference does not reveal clipping. The selection depends only on the mean of both
-/// frames, which is independent of the change.
+/// Numbers of pixels with reliable depth whose fuller bucket is below `limit_dn`, since a
+/// difference does not reveal clipping. The selection depends only on the mean of the frames, which
+/// is independent of the change.
 std::vector<PairedNumber> paired_numbers(const FramePair& pair, const Decoder& decoder,
                                          double limit_dn, std::size_t& too_bright) {
   const DecodingTable& table = decoder.table();
@@ -103,7 +103,7 @@ std::vector<PairedNumber> paired_numbers(const FramePair& pair, const Decoder& d
     double square = 0.0;
     for (std::size_t k = 0; k < measurements; ++k)
       square += static_cast<double>(mean[k]) * static_cast<double>(mean[k]);
-    // The variance of the mean of two frames is a quarter of that of their difference.
+    // The mean of two frames has a quarter of the variance of their difference.
     const double needed = min_signal_sigma * min_signal_sigma * 0.25 * pair.mean_square *
                           static_cast<double>(measurements);
     if (!(signal > 0.0) || !std::isfinite(depth_m) || !(square > needed)) continue;
@@ -132,7 +132,7 @@ void add_point(const RunningStatistics& light_dn, const RunningStatistics& chang
        .dark = dark});
 }
 
-/// Adds points for groups of pairs with similar light.
+/// Adds a point per group of similar light.
 void add_groups(std::vector<PairedNumber> numbers, double averaged, PhotonTransfer& result) {
   std::ranges::sort(numbers, {}, &PairedNumber::light_dn);
   const std::size_t groups = std::min(max_groups, numbers.size() / min_group);

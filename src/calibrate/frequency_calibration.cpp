@@ -77,8 +77,7 @@ Fundamentals fundamentals_of(const CodeSet& code, const Camera& camera,
   return found;
 }
 
-/// Computes the phasor of each frequency in each pixel, S exp(i phase), (F, P); empty if the
-/// measurements do not determine them.
+/// Phasor S exp(i phase) of each frequency and pixel, (F, P); empty if it is not determined.
 Eigen::MatrixXcd phasors_of(const Fundamentals& model, const ReferencePixels& pixels) {
   constexpr double independent = 1e-6;
   const auto frequencies = static_cast<Eigen::Index>(model.repetitions.size());
@@ -106,7 +105,7 @@ Eigen::MatrixXcd phasors_of(const Fundamentals& model, const ReferencePixels& pi
 
 struct PhasorOffsets {
   std::vector<double> offset_rad, contrast;
-  double agreement = 0.0;  // minimum over frequencies; 1 if phases follow the reference exactly
+  double agreement = 0.0;  // minimum over frequencies; at most 1
 };
 
 PhasorOffsets offsets_of(const Fundamentals& model, const ReferencePixels& pixels,
@@ -154,8 +153,8 @@ std::vector<std::size_t> frequency_of_exposures(const CodeSet& code,
   return frequency;
 }
 
-/// Shifts offsets by phases and scales contrasts. The geometric mean of the contrasts is kept
-/// unless one would exceed 1.
+/// Shifts offsets by phases and scales contrasts, whose geometric mean is kept unless one would
+/// exceed 1.
 void adjust(CalibratedCamera& calibrated, const std::vector<std::size_t>& frequency,
             const std::vector<int>& repetitions, const std::vector<double>& offset_rad,
             const std::vector<double>& contrast) {
@@ -179,12 +178,11 @@ std::string list_of(const std::vector<int>& numbers) {
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
-/// Adds the standard errors and the harmonics of a frequency.
-/// @param found   contains frequency, offset and contrast
-/// @param notes   receives a note on parameters that the frames do not determine
+/// Adds standard errors and harmonics to `found`, which contains frequency, offset and contrast.
+/// @param notes   receives a note on undetermined parameters
 void add_fit(const HarmonicFit& fit, std::size_t frequency, double period_m,
              CalibratedFrequency& found, std::vector<std::string>& notes) {
-  constexpr int noted_harmonic = 8;  // higher harmonics are negligible
+  constexpr int noted_harmonic = 8;
   const std::size_t fundamental = fit.fundamental(frequency);
   const std::complex<double> gain = fit.gain(frequency);
   const double size = std::abs(gain);
@@ -214,7 +212,7 @@ void add_fit(const HarmonicFit& fit, std::size_t frequency, double period_m,
                     name, list_of(unknown), period_m));
 }
 
-/// Returns the frequencies of a code in units of f0, in increasing order.
+/// Frequencies in units of f0, increasing.
 std::vector<int> repetitions_of(const CodeSet& code) {
   std::set<int> found;
   for (const int e : code.frequency_starts()) found.insert(code.modulation(e).repetitions());
@@ -260,7 +258,6 @@ std::optional<FrequencyCalibration> calibrate_frequencies(const RawFrames& frame
   if (offsets.agreement < agrees) return std::nullopt;
   adjust(calibrated, frequency, repetitions, offsets.offset_rad, offsets.contrast);
 
-  // Fit harmonics, and refine offsets and contrasts.
   const Fundamentals model = fundamentals_of(code, calibrated.camera, repetitions);
   HarmonicFit fit(model, pixels, code.samples());
   fit.solve();

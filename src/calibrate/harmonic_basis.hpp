@@ -8,19 +8,19 @@
 
 namespace tofsmith {
 
-inline constexpr double turn = 2 * std::numbers::pi;  ///< radians
+inline constexpr double turn = 2 * std::numbers::pi;
 
-/// Curves y(u) = c_0 + 2 Re sum_n c_n exp(2 pi i n u), sampled at given positions u.
+/// Curves y(u) = c_0 + 2 Re sum_n c_n exp(2 pi i n u) at positions u.
 class HarmonicBasis {
  public:
-  /// @param places     positions of the values, in periods (F)
+  /// @param places     in periods (F)
   /// @param harmonics  H, with 2 H + 1 <= number of distinct positions
   HarmonicBasis(const std::vector<double>& places, int harmonics);
 
   int harmonics() const { return harmonics_; }
-  /// Returns the least squares coefficients c (H + 1, K) of values (F, K).
+  /// Least squares coefficients c (H + 1, K) of values (F, K).
   Eigen::MatrixXcd coefficients(const Eigen::MatrixXd& values) const;
-  /// Returns the values (F, K) of coefficients c (H + 1, K) at the positions.
+  /// Values (F, K) of coefficients c (H + 1, K).
   Eigen::MatrixXd values(const Eigen::MatrixXcd& coefficients) const;
 
  private:
@@ -28,10 +28,10 @@ class HarmonicBasis {
   Eigen::MatrixXd basis_, inverse_;  // 1, cos, sin; (F, 2 H + 1) and its pseudo-inverse
 };
 
-/// Returns the values (rows, K) of coefficients c (H + 1, K) at j / rows.
+/// Values (rows, K) of coefficients c (H + 1, K) at j / rows.
 Eigen::MatrixXd curve_of(const Eigen::MatrixXcd& coefficients, int rows);
 
-/// Multiplies each row n of c by exp(2 pi i n shift): y(u + shift).
+/// c_n exp(2 pi i n shift): y(u + shift).
 Eigen::MatrixXcd advanced(Eigen::MatrixXcd coefficients, double shift);
 
 }  // namespace tofsmith

@@ -14,7 +14,6 @@
 
 namespace tofsmith {
 
-/// Measurements with known depth.
 struct ReferencePixels {
   Eigen::MatrixXd electrons;  // (K, P)
   std::vector<double> depth_m;
@@ -24,15 +23,14 @@ struct ReferencePixels {
   Eigen::Index size() const { return electrons.cols(); }
 };
 
-/// Correlation functions of a camera and their fundamentals.
 struct Fundamentals {
-  DecodingTable table;                         // with many rows
-  std::vector<int> repetitions;                // of every frequency, in units of f0
-  std::vector<std::size_t> frequency;          // of every measurement
-  std::vector<std::complex<double>> harmonic;  // of every measurement
+  DecodingTable table;                 // with many rows
+  std::vector<int> repetitions;        // of frequencies, in units of f0
+  std::vector<std::size_t> frequency;  // of measurements
+  std::vector<std::complex<double>> harmonic;
 
   int measurements() const { return table.measurements(); }
-  /// Returns the correlation functions at a depth (K), interpolated between rows of the table.
+  /// Interpolates the correlation functions at a depth (K).
   Eigen::VectorXd at(double depth_m) const {
     const auto rows = static_cast<double>(table.samples());
     const double row = (depth_m / table.range_m - std::floor(depth_m / table.range_m)) * rows;
@@ -46,11 +44,11 @@ struct Fundamentals {
   }
 };
 
-/// Fit of deviations b_h from the correlation functions for each frequency, see
-/// calibrate_frequencies(). Columns are the real and imaginary parts of b_h.
+/// Fit of deviations b_h for each frequency, see calibrate_frequencies(). Columns are their real
+/// and imaginary parts.
 class HarmonicFit {
  public:
-  /// @param rows  N, which limits the number of harmonics
+  /// @param rows  N, which limits the harmonics
   HarmonicFit(const Fundamentals& model, const ReferencePixels& pixels, int rows);
 
   void solve();
@@ -64,20 +62,20 @@ class HarmonicFit {
     const auto at = 2 * static_cast<Eigen::Index>(term);
     return {deviation_[at], deviation_[at + 1]};
   }
-  /// Returns the index of the term of a frequency's fundamental.
+  /// Term of a frequency's fundamental.
   std::size_t fundamental(std::size_t frequency) const;
-  /// Returns the ratio of a frequency's fundamental to that of the model, 1 + b_1.
+  /// Ratio of a frequency's fundamental to the model's, 1 + b_1.
   std::complex<double> gain(std::size_t frequency) const {
     return 1.0 + deviation(fundamental(frequency));
   }
-  /// Returns the standard errors of the real and the imaginary part of a deviation.
+  /// Standard errors of the real and the imaginary part.
   std::array<double, 2> standard_errors(std::size_t term) const;
-  /// Returns the standard error of Re b_1 of a frequency relative to its mean over all frequencies.
+  /// Standard error of Re b_1 relative to its mean over all frequencies.
   double contrast_error(std::size_t frequency) const;
-  /// Returns true if the frames determine a deviation better than the prior does. For fundamentals,
-  /// the phase is tested.
+  /// Returns true if the frames determine a deviation (of fundamentals, the phase) better than the
+  /// prior.
   bool is_determined(std::size_t term) const;
-  /// Returns the change of the correlation functions by the deviations at a depth (K).
+  /// Change of the correlation functions at a depth (K).
   Eigen::VectorXd added(double depth_m) const { return functions(depth_m) * deviation_; }
 
  private:
@@ -86,19 +84,18 @@ class HarmonicFit {
     Eigen::MatrixXd moment;  // (columns, tiles)
   };
   struct PixelTerms {
-    Eigen::MatrixXd design;  // (K, columns), weighted, with signal and ambient light projected out
-    Eigen::VectorXd residual;  // (K), weighted and projected in the same way
+    Eigen::MatrixXd design;    // weighted, without signal and ambient light
+    Eigen::VectorXd residual;  // weighted, without signal and ambient light
     bool is_valid = false;
   };
 
   Eigen::Index columns() const { return 2 * static_cast<Eigen::Index>(terms_.size()); }
-  /// Returns the inverse prior covariance. The mean contrast is kept fixed, because it cannot be
-  /// distinguished from the unknown brightness of the scene.
+  /// Inverse prior covariance. The mean contrast is fixed, because the brightness of the scene is
+  /// unknown.
   Eigen::MatrixXd prior_information() const;
   Eigen::MatrixXd information_of(const Sums& sums) const;
 
-  /// Returns the derivatives of the correlation functions by the deviations at a depth (K,
-  /// columns).
+  /// Derivatives of the correlation functions by the deviations (K, columns).
   Eigen::MatrixXd functions(double depth_m) const;
 
   PixelTerms terms_of(Eigen::Index pixel) const;
@@ -108,7 +105,6 @@ class HarmonicFit {
   void for_each_pixel(const Add& add) const;
   Sums all_sums() const;
 
-  /// Updates the weights and the misfit from the residuals.
   void weigh();
 
   void estimate_errors();
@@ -118,12 +114,12 @@ class HarmonicFit {
   const ReferencePixels& pixels_;
   std::vector<Term> terms_;
   Eigen::VectorXd prior_;          // standard deviations
-  Eigen::VectorXd mean_contrast_;  // coefficients of the mean of Re b_1 over frequencies
+  Eigen::VectorXd mean_contrast_;  // of Re b_1 over frequencies
   Eigen::VectorXd deviation_;      // b
   Eigen::MatrixXd covariance_;
-  Eigen::VectorXd posterior_;  // variances, with the prior
+  Eigen::VectorXd posterior_;  // variances
   std::vector<double> weight_;
-  double misfit_ = 1.0;  // median variance of residuals relative to their noise
+  double misfit_ = 1.0;  // median variance of residuals relative to noise
 };
 
 }  // namespace tofsmith

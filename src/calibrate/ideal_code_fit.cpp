@@ -44,7 +44,7 @@ Camera unlimited_camera(Camera camera) {
   return camera;
 }
 
-/// Returns the transfer of harmonic n by two equal arms.
+/// Transfer by two equal arms.
 double both_arms(Kind kind, double parameter_hz, double frequency_hz) {
   const ImpulseResponse response{.kind = kind, .f_max_hz = parameter_hz, .cutoff_hz = parameter_hz};
   return std::norm(response.transfer(frequency_hz));
@@ -56,7 +56,7 @@ Eigen::MatrixXcd limited(Eigen::MatrixXcd c, Kind kind, double parameter_hz, dou
   return c;
 }
 
-/// Least squares fit of y by x over scale and delay.
+/// Least squares fit of y by x.
 struct Match {
   double left = INFINITY;  // |y - scale x(u - delay)|^2
   double scale = 0.0;
@@ -80,8 +80,7 @@ Eigen::MatrixXcd ordered(const Eigen::MatrixXcd& x, const std::vector<int>& orde
   return result;
 }
 
-/// Finds direction, sign and order with the smallest residual without a response, and applies them
-/// to x.
+/// Applies the direction, sign and order with the smallest residual to x.
 void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeFit& fit) {
   const Eigen::MatrixXcd original = x;
   std::vector<int> order(static_cast<std::size_t>(x.cols() / taps));
@@ -94,7 +93,7 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
         Eigen::MatrixXcd turned = ordered(reversed ? original.conjugate() : original, order, taps);
         if (inverted) turned = -turned;
         const Match found = match(y, turned);
-        // Symmetric codes give ties, in which the first variant (unchanged) wins.
+        // Symmetric codes give ties; keep the first variant (unchanged).
         if (found.left >= min_left - 1e-6 * y.squaredNorm()) continue;
         min_left = found.left;
         x = std::move(turned);
@@ -105,7 +104,6 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
   } while (permute && std::next_permutation(order.begin(), order.end()));
 }
 
-/// Golden-section search for a minimum.
 double golden(double low, double high, const std::function<double(double)>& f) {
   constexpr double share = 0.6180339887498949;
   double a = high - share * (high - low), b = low + share * (high - low);
@@ -142,8 +140,7 @@ void fit_response(const Eigen::MatrixXcd& y, const Eigen::MatrixXcd& x, double f
     best = found;
     fit.response = {.kind = kind};
     (kind == Kind::hann ? fit.response.f_max_hz : fit.response.cutoff_hz) = std::exp(log_hz);
-    // Standard error from the curvature over the logarithm of the parameter, and the residual as
-    // noise.
+    // Standard error from the curvature over the logarithm of the parameter.
     const double move = 1e-2;
     const double curvature =
         (left(log_hz + move) - 2 * found.left + left(log_hz - move)) / (move * move);

@@ -16,8 +16,8 @@
 namespace tofsmith {
 namespace {
 
-/// Finds peaks of a response, highest first: at least 15 % of the highest and 5 `noise_rms`, and
-/// separated from all higher peaks by a valley below 70 % of their height.
+/// Peaks, highest first: at least 15 % of the highest and 5 `noise_rms`, and separated from higher
+/// peaks by a valley below 70 % of their height.
 std::vector<ResponsePeak> peaks_of(const ImpulseResponse& response, double noise_rms) {
   constexpr double lowest = 0.15, deepest_valley = 0.7;
   const std::vector<double>& h = response.samples;
@@ -76,8 +76,8 @@ Excitation excitation_of(const Eigen::VectorXd& values) {
                                                               : Excitation::pulse;
 }
 
-/// Rotates a record of a whole period whose pulse wraps around its ends, so that the pulse is at
-/// one third of the record.
+/// Rotates a whole period whose pulse wraps around, so that the pulse is at one third of the
+/// record.
 void unroll(CalibratedResponse& result, Eigen::VectorXd& values) {
   Index peak = 0;
   values.maxCoeff(&peak);
@@ -98,11 +98,11 @@ void unroll(CalibratedResponse& result, Eigen::VectorXd& values) {
 }
 
 struct Place {
-  Index centre = 0;    // peak, or half of the step
-  double width = 1.0;  // full width at half maximum of the response [samples]
+  Index centre = 0;    // of the peak, or half of the step
+  double width = 1.0;  // full width at half maximum [samples]
 };
 
-/// Locates a smoothed pulse by the points at half its height.
+/// Locates a pulse by the points at half height.
 Place place_of_pulse(const Eigen::VectorXd& values) {
   Place place;
   const double middle = median_of_all(values);
@@ -114,7 +114,7 @@ Place place_of_pulse(const Eigen::VectorXd& values) {
   return place;
 }
 
-/// Locates a smoothed step by the points at 10 %, 50 % and 90 %; the width is that of a Gaussian.
+/// Locates a step by the points at 10 %, 50 % and 90 %; the width is that of a Gaussian.
 Place place_of_step(const Eigen::VectorXd& values) {
   const Index tenth = std::max<Index>(1, values.size() / 10);
   const double base = median_of_all(values.head(tenth)), top = median_of_all(values.tail(tenth));
@@ -128,7 +128,7 @@ Place place_of_step(const Eigen::VectorXd& values) {
           std::max(1.0, static_cast<double>(crossing(0.9) - crossing(0.1)) / rise_per_width)};
 }
 
-/// Returns the values before the response, or, if there are too few, those after a pulse.
+/// Values before the response, or, if there are too few, after a pulse.
 Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitation,
                              const Place& place) {
   constexpr Index min_samples = 8;
@@ -144,7 +144,7 @@ Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitatio
   return {};
 }
 
-/// Returns the range of significant values of the smoothed response, with a margin.
+/// Range of significant values, with a margin.
 std::pair<Index, Index> support_of(const Eigen::VectorXd& response, const Place& place,
                                    double noise_of_smoothed, Index smoothing) {
   const Eigen::VectorXd smooth = moving_average(response, smoothing);
@@ -190,7 +190,7 @@ ResponseWindow window_of(const CalibratedResponse& result, const Eigen::VectorXd
   return window;
 }
 
-/// Returns a period over a multiple of N, fine enough for the response.
+/// A period over a multiple of N, fine enough for the response.
 double output_step_s(const ResponseCalibrationOptions& options, double width_s, double span_s) {
   constexpr double steps_per_width = 16.0, max_samples = 16384.0;
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
@@ -218,9 +218,9 @@ void fit_kinds(CalibratedResponse& result, const Eigen::VectorXd& values,
   std::ranges::stable_sort(result.fits, {}, &ParametricResponse::residual_rms);
 }
 
-/// Returns the number n of equal highest values if a pulse was clipped, else 0. If values are only
-/// rounded to steps q, the top is a parabola, which falls by 4 q over the next n / 2 values on
-/// either side. A clipped pulse falls faster.
+/// Number n of equal highest values if a pulse was clipped, else 0. If values are only rounded to
+/// steps q, the top is a parabola, which falls by 4 q over the next n / 2 values; a clipped pulse
+/// falls faster.
 Index clipped_values(const Eigen::VectorXd& values) {
   constexpr Index fewest = 3;
   constexpr double steeper = 2.0;
@@ -266,7 +266,7 @@ double bandwidth_hz(const ImpulseResponse& response) {
   response.validate("response");
   require(response.kind != ImpulseResponse::Kind::none, "response.kind", "none",
           "must be a response with a finite bandwidth");
-  // Frequency step: 1/64 of a scale at which every kind has negligible loss.
+  // Step: 1/64 of a scale at which every kind has negligible loss.
   const double scale_hz =
       response.kind == ImpulseResponse::Kind::hann ? response.f_max_hz
       : response.kind == ImpulseResponse::Kind::file
@@ -298,7 +298,7 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.record = std::move(record);
   Eigen::VectorXd values = result.record.values;
 
-  // Determine the excitation, its sign and position.
+  // Determine excitation, sign and position.
   result.excitation = options.excitation.value_or(excitation_of(values));
   const bool is_step = result.excitation == Excitation::step;
   const Index tenth = std::max<Index>(1, values.size() / 10);
@@ -331,7 +331,6 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   if (result.record.counts)  // variance = mean, estimated from adjacent values
     variance = moving_average(values, std::max<Index>(3, smoothing)).cwiseMax(variance);
 
-  // Fit the parametric kinds, then denoise the measured response.
   fit_kinds(result, values, variance, place, sign);
   const double background_variance =
       result.noise_rms * result.noise_rms / static_cast<double>(quiet.size());

@@ -18,7 +18,7 @@ using Vector4 = Eigen::Vector4d;  // position [s], log of the scale [s], height,
 
 using std::numbers::pi;
 
-/// Returns the integral of the response of unit scale up to x.
+/// Integral of the response of unit scale up to x.
 double step_response(Kind kind, double x) {
   switch (kind) {
     case Kind::hann:
@@ -32,7 +32,7 @@ double step_response(Kind kind, double x) {
   }
 }
 
-/// Returns width times f_max of a Hann window, whose transfer is 1/2 at the frequency 1 / width.
+/// Width times f_max of a Hann window, whose transfer is 1/2 at 1 / width.
 double hann_width_times_f_max() {
   const ImpulseResponse window{.kind = Kind::hann, .f_max_hz = 1.0};
   double low_hz = 0.0, high_hz = 1.0;
@@ -43,14 +43,14 @@ double hann_width_times_f_max() {
   return 1.0 / low_hz;
 }
 
-/// Returns the scale per full width at half maximum.
+/// Scale per full width at half maximum.
 double scale_per_width(Kind kind) {
   if (kind == Kind::hann) return 2.0;
   if (kind == Kind::gaussian) return 1.0 / (2 * std::sqrt(2 * std::numbers::ln2));
   return 1.0 / std::numbers::ln2;
 }
 
-/// Returns the response for a scale: window width, standard deviation, or time constant.
+/// @param scale_s  window width, standard deviation, or time constant
 ImpulseResponse response_of(Kind kind, double scale_s) {
   ImpulseResponse response{.kind = kind};
   if (kind == Kind::hann)
@@ -66,7 +66,7 @@ class Fit {
  public:
   Fit(Kind kind, const ResponseFitProblem& problem) : kind_(kind), problem_(problem) {}
 
-  /// Sets position and scale; height and background follow by linear least squares.
+  /// Height and background follow by linear least squares.
   void start(double place_s, double scale_s) {
     const Eigen::VectorXd shape = shape_of(place_s, std::log(scale_s));
     Eigen::MatrixXd columns(shape.size(), 2);
@@ -112,7 +112,7 @@ class Fit {
     const auto count = static_cast<double>(residual.size());
     const Eigen::MatrixXd jacobian = jacobian_at(parameters_);
     const Matrix4 hessian = jacobian.transpose() * problem_.weights.asDiagonal() * jacobian;
-    // Scaled to a unit diagonal, because parameters in seconds are small.
+    // Unit diagonal, because parameters in seconds are small.
     const Vector4 unit = hessian.diagonal().cwiseSqrt().cwiseInverse();
     const Matrix4 scaled = unit.asDiagonal() * hessian * unit.asDiagonal();
     const double variance =
@@ -152,7 +152,7 @@ class Fit {
     return (problem_.weights.array() * residual.array().square()).sum();
   }
 
-  /// Returns the Jacobian of the model, with central differences for position and log scale.
+  /// Central differences for position and log scale.
   Eigen::MatrixXd jacobian_at(const Vector4& p) const {
     constexpr double relative = 1e-4;
     const double move_s = relative * std::exp(p[1]);
@@ -178,7 +178,7 @@ ParametricResponse fit_parametric_response(Kind kind, const ResponseFitProblem& 
   std::optional<Fit> best;
   for (const double factor : {0.5, 1.0, 2.0}) {
     const double scale_s = factor * scale_per_width(kind) * problem.width_s;
-    // The low-pass response starts at its peak, whereas the others are centred.
+    // Unlike the others, the low-pass response starts at its peak.
     const double lead_s = kind != Kind::lowpass                    ? 0.0
                           : problem.excitation == Excitation::step ? std::numbers::ln2 * scale_s
                                                                    : 0.0;

@@ -15,7 +15,7 @@ namespace tofsmith {
 namespace {
 
 constexpr double rounding_dn2 = 1.0 / 12.0;
-constexpr double max_clipped = 1e-4;  // maximum share of pixels at the limit for a valid point
+constexpr double max_clipped = 1e-4;  // share of pixels at the limit of a valid point
 
 struct PairStatistics {
   RunningStatistics mean, difference, raw;
@@ -40,7 +40,7 @@ PairStatistics statistics_of(const RawFrames& raw, int first, int measurement, d
   return s;
 }
 
-/// Returns the number at which pixels accumulate, or the highest number.
+/// Number at which pixels accumulate, or the highest.
 double limit_of(const std::vector<RawFrames>& levels, bool& piled_up) {
   double highest = -INFINITY;
   for (const RawFrames& raw : levels)
@@ -54,7 +54,7 @@ double limit_of(const std::vector<RawFrames>& levels, bool& piled_up) {
       else if (static_cast<double>(value) >= highest - 8.5)
         ++near_top;
     }
-  // The tail of a distribution decreases, whereas clipping accumulates pixels at the top.
+  // Tails decrease, whereas clipping accumulates pixels at the top.
   piled_up = at_top >= 32 && at_top > near_top;
   return highest;
 }
@@ -83,7 +83,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, double averaged,
       const PairStatistics s = statistics_of(raw, f, k, limit);
       if (s.pixels < 16) continue;
       PhotonTransferPoint point{.mean_dn = s.mean.mean(), .dark = dark};
-      // A change of light between the frames shifts the mean of the difference, not its variance.
+      // A change of light shifts the mean of the difference, not its variance.
       const double variance = 0.5 * averaged * s.difference.variance();
       point.variance_dn2 = {variance,
                             variance * std::sqrt(2.0 / static_cast<double>(s.pixels - 1))};
@@ -93,7 +93,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, double averaged,
     }
 }
 
-/// Line variance - rounding = a + b (mean - black), with iteratively updated weights.
+/// variance - rounding = a + b (mean - black), with iterated weights.
 struct FittedLine {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
@@ -178,7 +178,7 @@ void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
   const double a = line.value[0] / result.buckets, b = line.value[1];
   require(b > 0.0 && b > 3 * std::sqrt(line.covariance(1, 1)), "rise of variance with the mean", b,
           "must be > 0 by 3 standard errors: the light levels must differ");
-  // Increase the errors if points scatter more than their pixel numbers predict.
+  // Points may scatter more than their pixel numbers predict.
   const Eigen::DiagonalMatrix<double, 2> of_one(1.0 / result.buckets, 1.0);
   const Eigen::Matrix2d covariance =
       of_one * line.covariance * of_one * std::max(1.0, line.reduced_chi2);

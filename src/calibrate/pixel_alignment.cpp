@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns the sum over measurements of c conj(C) for each harmonic.
+/// Sum over measurements of c conj(C) for each harmonic.
 Eigen::VectorXcd products(const Eigen::MatrixXcd& pixel, const Eigen::MatrixXcd& common) {
   Eigen::VectorXcd s = pixel.cwiseProduct(common.conjugate()).rowwise().sum();
   s[0] = 0.0;
@@ -24,7 +24,7 @@ double energy(const Eigen::MatrixXcd& common) {
   return common.bottomRows(common.rows() - 1).squaredNorm();
 }
 
-/// Returns the least squares common curve for given delays and gains.
+/// Least squares common curve for given delays and gains.
 Eigen::MatrixXcd common_curve(const std::vector<Eigen::MatrixXcf>& pixels,
                               const PixelAlignment& alignment) {
   Eigen::MatrixXcd sum = Eigen::MatrixXcd::Zero(pixels.front().rows(), pixels.front().cols());

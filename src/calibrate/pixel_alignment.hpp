@@ -9,15 +9,14 @@
 
 namespace tofsmith {
 
-/// Harmonics of pixels relative to a common curve: c_p = gain_p advanced(C, delay_p).
+/// Pixels relative to a common curve: c_p = gain_p advanced(C, delay_p).
 struct PixelAlignment {
-  std::vector<double> delay_periods;  ///< excess depth of each pixel; mean 0
+  std::vector<double> delay_periods;  ///< excess depth; mean 0
   std::vector<double> gain;           ///< mean 1
   Eigen::MatrixXcd common;            ///< C (H + 1, K)
 };
 
-/// Shift [periods] that maximizes the real part of sum over n of s_n exp(-2 pi i n shift), and the
-/// maximum. s (H + 1); s_0 is ignored.
+/// Maximum over shift [periods] of Re sum_n s_n exp(-2 pi i n shift); s_0 is ignored.
 struct BestShift {
   double shift = 0.0;
   double value = 0.0;

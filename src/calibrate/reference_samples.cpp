@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t min_compared = 100;
 constexpr double max_compared = 2.5e5;
 
-/// Returns |mean of exp(i turn (depth -+ reference) / range)|: 1 if they agree up to an offset.
+/// |mean of exp(i turn (depth -+ reference) / range)|: 1 if they agree up to an offset.
 template <typename Reference>
 double coherence(const std::vector<ReferenceSample>& samples, double range_m, double sign,
                  const Reference& reference_m) {
@@ -39,8 +39,7 @@ double coherence(const std::vector<ReferenceSample>& samples, double range_m, do
   return count < 0.5 * static_cast<double>(samples.size()) ? 0.0 : std::abs(sum) / count;
 }
 
-/// Returns the median deviation of depth -+ reference from its typical offset [m], robust to
-/// outliers.
+/// Median deviation of depth -+ reference from its typical offset [m].
 template <typename Reference>
 double scatter_of(const std::vector<ReferenceSample>& samples, double range_m, double sign,
                   const Reference& reference_m) {
@@ -88,7 +87,7 @@ double wrapped_difference_m(double difference_m, double range_m) {
 std::vector<ReferenceSample> decoded_samples(const RawFrames& frames,
                                              const ReferenceDepth& reference,
                                              const DecodingTable& table, const Progress& progress) {
-  // Model errors are to be calibrated here, so they must not reject pixels.
+  // Model errors are calibrated here.
   const Decoder decoder(table, {.false_alarm_rate = 0.0});
   const double all = static_cast<double>(frames.pixels_per_frame()) * frames.frames;
   const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(all / max_compared))));
@@ -138,8 +137,7 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
           fmt::format("median {:.4g}", middle_m),
           "must be in metres; this looks like millimetres or centimetres");
   if (found < differs) {
-    // The unit must explain the depths better than a constant, as a scene with few depths fits any
-    // unit.
+    // Any unit fits a scene with few depths, so it must be better than a constant.
     double best_m =
         0.5 * scatter_of(samples, range_m, 1.0, [](const ReferenceSample&) { return 0.0; });
     std::string best_unit;

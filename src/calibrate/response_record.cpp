@@ -16,7 +16,7 @@
 namespace tofsmith {
 namespace {
 
-constexpr double equal_steps = 0.01;  // of a step: allows for times with few digits
+constexpr double equal_steps = 0.01;  // allows for times with few digits
 constexpr double longest_gap = 10.0;  // in steps
 constexpr Eigen::Index min_values = 16;
 
@@ -60,7 +60,7 @@ void set_times(ResponseRecord& record, const Eigen::VectorXd& time_s,
     largest = std::max(largest, std::abs(gap_s - step_s));
   }
   record.start_time_s = time_s[0];
-  // Use the mean step, because rounded times make the median step one of two adjacent values.
+  // The median of rounded times is one of two adjacent values.
   const double mean_step_s =
       (time_s[time_s.size() - 1] - time_s[0]) / static_cast<double>(time_s.size() - 1);
   double strayed = 0.0;

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Returns the sum of h[i] exp(-2 pi j f t_i), with t from the first value.
+/// Sum of h[i] exp(-2 pi j f t_i), with t from the first value.
 std::complex<double> transform_at(const ResponseWindow& window, double frequency_hz) {
   const std::complex<double> turn = std::polar(1.0, -2 * pi * frequency_hz * window.time_step_s);
   std::complex<double> sum = 0.0;
@@ -22,7 +22,7 @@ std::complex<double> transform_at(const ResponseWindow& window, double frequency
   return sum;
 }
 
-/// Returns the transfer of differencing, which averages the derivative over one step.
+/// Transfer of a difference, which averages the derivative over one step.
 double differencing(const ResponseWindow& window, double frequency_hz) {
   const double x = pi * frequency_hz * window.time_step_s;
   return !window.differentiated || x == 0.0 ? 1.0 : std::sin(x) / x;
@@ -33,12 +33,12 @@ double gain_at(const ResponseWindow& window, double frequency_hz) {
          differencing(window, frequency_hz);
 }
 
-/// Returns the standard deviation of gain_at() by first-order propagation.
+/// Standard deviation of gain_at() by first-order propagation.
 double gain_error_at(const ResponseWindow& window, double frequency_hz) {
   const Eigen::Index count = window.values.size();
   const std::complex<double> value = transform_at(window, frequency_hz);
   const double total = window.values.sum(), gain = std::abs(value) / total;
-  Eigen::VectorXd slope(count);  // derivative of the gain by each value of the response
+  Eigen::VectorXd slope(count);  // derivative of the gain by each value
   for (Eigen::Index i = 0; i < count; ++i) {
     const double phase = -2 * pi * frequency_hz * window.time_step_s * static_cast<double>(i);
     slope[i] =
@@ -55,7 +55,7 @@ double gain_error_at(const ResponseWindow& window, double frequency_hz) {
   return std::sqrt(variance) / differencing(window, frequency_hz);
 }
 
-/// Returns the noise power in coefficient k of M.
+/// Noise power in coefficient k of M.
 double noise_power(const ResponseWindow& window, int k, int coefficients) {
   const double white = window.variance.sum();
   if (!window.differentiated) return white;
@@ -102,10 +102,10 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
   Eigen::VectorXcd spectrum;
   PeriodicTransform(coefficients).forward(padded, spectrum);
 
-  // Wiener filter: 1 - noise / power, and 0 above the frequency at which noise dominates.
+  // Wiener filter: 1 - noise / power; 0 where noise dominates.
   const Eigen::Index reach = coefficients / length;
   Eigen::Index kept = 1;
-  double left = 0.0;  // remaining noise
+  double left = 0.0;
   Eigen::VectorXcd filtered = spectrum;
   for (; kept < spectrum.size(); ++kept) {
     const double noise = noise_power(window, static_cast<int>(kept), coefficients);
@@ -116,7 +116,7 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
     filtered[kept] *= pass / differencing(window, frequency_hz);
     left += 2 * pass * pass * noise;
   }
-  // Taper the last third, as a sharp cut-off would cause ringing.
+  // A sharp cut-off would cause ringing.
   const Eigen::Index fading = kept / 3;
   for (Eigen::Index k = kept - fading; k < kept; ++k)
     filtered[k] *= std::pow(
@@ -141,7 +141,7 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
     moment_s += t_s * samples[i];
   }
   const double centre_s = moment_s / samples.sum();
-  // Shift the sampling points so that the centre is one of them.
+  // Make the centre a sampling point.
   const double offset_s = centre_s - time_step_s * std::floor(centre_s / time_step_s);
   const double first_s = offset_s - time_step_s * std::ceil(offset_s / time_step_s);
   for (Eigen::Index i = 0; i < count; ++i)

@@ -17,10 +17,10 @@ namespace tofsmith {
 namespace {
 
 constexpr double first_radius_px = 3.0, radius_step = 1.5;
-constexpr int guard_px = 2;  // around the target, to exclude its blurred edge
+constexpr int guard_px = 2;  // excludes the blurred edge of the target
 constexpr int target_rounds = 3;
 
-/// Returns means over frames [raw numbers], (H W, K) row by row; NaN if any value is NaN.
+/// Means over frames, (H W, K); NaN if any value is NaN.
 Eigen::MatrixXd mean_of(const RawFrames& raw) {
   const auto pixels = static_cast<Eigen::Index>(raw.pixels_per_frame());
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(pixels, raw.measurements);
@@ -33,9 +33,8 @@ Eigen::MatrixXd mean_of(const RawFrames& raw) {
   return mean;
 }
 
-/// Returns the share of light scattered to a given distance for a unit share at node `node`. r^2
-/// times the kernel is piecewise linear in log r between nodes; below the first node the
-/// kernel is constant.
+/// Light scattered to a distance for a unit share at a node. r^2 times the kernel is piecewise
+/// linear in log r between nodes; below the first node the kernel is constant.
 double basis(const std::vector<double>& nodes, std::size_t node, double radius_px) {
   if (radius_px < 0.5) return 0.0;
   const double r = std::max(radius_px, nodes.front());
@@ -60,9 +59,9 @@ Image<float> kernel_of(const std::vector<double>& nodes, const std::vector<doubl
 
 struct Scene {
   int height = 0, width = 0;
-  std::vector<double> light;  // projection on the target's mean, which is 1
+  std::vector<double> light;  // relative to the target's mean
   std::vector<std::size_t> target;
-  std::vector<std::size_t> around;  // pixels at a sufficient distance from it
+  std::vector<std::size_t> around;  // at a sufficient distance
 };
 
 std::vector<double> along(const Eigen::MatrixXd& numbers, const Eigen::VectorXd& direction) {
@@ -111,7 +110,7 @@ Scene scene_of(const Eigen::MatrixXd& numbers, const Eigen::MatrixXd& seen, doub
   return scene;
 }
 
-/// Returns distances up to that of the farthest surrounding pixel from the target's centre.
+/// Distances up to the farthest surrounding pixel from the target's centre.
 std::vector<double> nodes_of(const Scene& scene) {
   const auto place_of = [&](std::size_t pixel) {
     const int row = static_cast<int>(pixel) / scene.width;
@@ -131,7 +130,7 @@ std::vector<double> nodes_of(const Scene& scene) {
   return nodes;
 }
 
-/// Returns the stray light around the target for a unit share of each node (pixels, nodes).
+/// Stray light around the target for a unit share of each node (pixels, nodes).
 Eigen::MatrixXd made_by_nodes(const Scene& scene, const std::vector<double>& nodes,
                               const Image<float>& target, int reach_px) {
   Eigen::MatrixXd made(static_cast<Eigen::Index>(scene.around.size()),
@@ -184,7 +183,7 @@ CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFra
   for (std::size_t i = 0; i < scene.around.size(); ++i)
     observed[static_cast<Eigen::Index>(i)] = scene.light[scene.around[i]];
 
-  // The light of the target depends slightly on the kernel, so iterate.
+  // The light of the target depends slightly on the kernel.
   Image<float> target(scene.height, scene.width);
   for (const std::size_t p : scene.target) target.pixels[p] = static_cast<float>(scene.light[p]);
   Eigen::VectorXd shares;
@@ -196,8 +195,8 @@ CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFra
     require(normal.info() == Eigen::Success, "pixels around the target", result.pixels,
             "cannot separate the distances");
     shares = normal.solve(made.transpose() * observed);
-    // Noise differs between pixels and is estimated from their residuals, corrected for leverage
-    // (HC3 of MacKinnon and White 1985).
+    // Noise differs between pixels: residuals corrected for leverage (HC3 of MacKinnon and White
+    // 1985).
     const Eigen::ArrayXd followed =
         (made * normal.solve(Eigen::MatrixXd::Identity(made.cols(), made.cols())))
             .cwiseProduct(made)

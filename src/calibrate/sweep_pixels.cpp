@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns the residual of x (F, K) about its group means.
+/// Residual of x (F, K) about its group means.
 Eigen::MatrixXd within_groups(const Eigen::MatrixXd& x, const DelayGroups& groups) {
   const Eigen::MatrixXd means = group_means(x, groups);
   Eigen::MatrixXd rest = x;
@@ -68,7 +68,7 @@ SweepDrift sweep_drift(const Eigen::MatrixXd& curve, const DelayGroups& groups,
   }
   const auto repeated = static_cast<double>((frames - groups.count()) * columns);
   if (noise_variance == 0.0) {
-    constexpr double min_values = 3.0;  // values in excess of the two fitted changes
+    constexpr double min_values = 3.0;  // in addition to the two fitted changes
     if (repeated < 2 + min_values) return drift;
     noise_variance = left / (repeated - 2);
   }

@@ -22,8 +22,8 @@ namespace {
 
 constexpr int min_frames = 5;
 constexpr double narrow_c = 2.0;
-constexpr double significant = 4.0;  // standard errors of a term that is reported
-/// Condition number above which regressors count as collinear (Belsley, Kuh and Welsch 1980).
+constexpr double significant = 4.0;  // standard errors
+/// Condition number of collinear regressors (Belsley, Kuh and Welsch 1980).
 constexpr double collinear = 30.0;
 
 void validate(const std::vector<double>& temperature_c, const std::string& field, int frames) {
@@ -42,8 +42,8 @@ void validate(const RawFrames& frames, const FrameTemperatures& temperatures) {
           fmt::format("must be at least {}", min_frames + has_sensor));
 }
 
-/// 97.5 % point of Student's t: the normal one, corrected to third order (Abramowitz and Stegun
-/// 26.7.5); 1 % low at 3 degrees of freedom.
+/// 97.5 % point of Student's t to third order (Abramowitz and Stegun 26.7.5); 1 % low at 3 degrees
+/// of freedom.
 double t_factor(int freedom) {
   const double z = 1.959964, n = freedom, z2 = z * z;
   return z + z * (z2 + 1.0) / (4.0 * n) + z * ((5.0 * z2 + 16.0) * z2 + 3.0) / (96.0 * n * n) +
@@ -66,13 +66,12 @@ double weighted_median(std::vector<Weighted> items) {
   return items.back().value;
 }
 
-/// Coefficients of the columns of a least-squares fit, and the rms residual.
 struct LinearFit {
   std::vector<Estimate> coefficients;
   double rms = 0.0;
 };
 
-/// Fits y = sum of coefficient * column; all coefficients are 0 if the columns are dependent.
+/// y = sum of coefficient * column; all 0 if the columns are dependent.
 LinearFit fit(const std::vector<Eigen::VectorXd>& columns, const std::vector<double>& y) {
   const auto count = static_cast<Eigen::Index>(y.size()),
              unknowns = static_cast<Eigen::Index>(columns.size());
@@ -103,15 +102,14 @@ Eigen::VectorXd from_mean(const std::vector<double>& values, double mean) {
   return all.array() - mean;
 }
 
-/// Returns the condition number of two centred columns scaled to equal norms; infinite if they are
+/// Condition number of two centred columns scaled to equal norms; infinite if they are
 /// proportional.
 double condition_number(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const double correlation = std::abs(a.dot(b)) / (a.norm() * b.norm());
   return std::sqrt((1.0 + correlation) / std::max(1.0 - correlation, 0.0));
 }
 
-/// Returns the sign of the temperature's change at each frame; 0 for changes of at most 1 % of the
-/// span.
+/// Sign of the temperature's change; 0 for changes of at most 1 % of the span.
 Eigen::VectorXd directions(const std::vector<double>& temperature_c) {
   constexpr double still = 0.01;
   const auto [least, most] = std::ranges::minmax_element(temperature_c);
@@ -126,8 +124,8 @@ Eigen::VectorXd directions(const std::vector<double>& temperature_c) {
   return signs;
 }
 
-/// Returns the offset at rising minus the offset at falling temperatures; none unless at least
-/// three frames have each.
+/// Offset at rising minus offset at falling temperatures; none unless at least three frames have
+/// each.
 std::optional<Estimate> hysteresis_of(std::vector<Eigen::VectorXd> columns,
                                       const TemperatureDrift& drift) {
   constexpr Eigen::Index min_branch = 3;
@@ -141,7 +139,6 @@ std::optional<Estimate> hysteresis_of(std::vector<Eigen::VectorXd> columns,
   return Estimate{2.0 * half.value, 2.0 * half.standard_error};
 }
 
-/// Compares each pixel of all frames with its own mean over them.
 void compare_frames(const std::vector<DepthImage>& images, double range_m,
                     TemperatureDrift& result) {
   const std::size_t count = images.size();
@@ -177,7 +174,7 @@ void compare_frames(const std::vector<DepthImage>& images, double range_m,
   }
 }
 
-/// Fits lines over the temperatures, then hysteresis and a second-order term in addition to them.
+/// Fits lines, then hysteresis and a second-order term in addition.
 void fit_lines(const FrameTemperatures& temperatures, TemperatureDrift& result) {
   const std::vector<double>& camera_c = temperatures.of_camera_c;
   const std::vector<double>& sensor_c = temperatures.of_sensor_c;
@@ -220,7 +217,6 @@ bool is_significant(const Estimate& term) {
   return std::abs(term.value) > significant * term.standard_error;
 }
 
-/// Adds the notes on temperatures of the camera or of the sensor.
 void note_temperatures(const std::vector<double>& temperature_c, std::vector<std::string>& notes) {
   const auto [least, most] = std::ranges::minmax_element(temperature_c);
   if (*most - *least < narrow_c)
@@ -233,7 +229,7 @@ void note_temperatures(const std::vector<double>& temperature_c, std::vector<std
                     *least));
 }
 
-/// Adds the notes on terms that the lines lack.
+/// Adds notes on terms that the lines lack.
 void note_lines(bool has_sensor, TemperatureDrift& result) {
   for (const auto& [what, second] :
        {std::pair("offset", result.offset_m_per_c2), std::pair("signal", result.signal_per_c2)})
@@ -260,7 +256,7 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
   Camera cold = camera;
   cold.temperature.reset();
   const DecodingTable table = make_decoding_table(ForwardModel(code, cold), cold);
-  // Errors of the model must not drop pixels.
+  // Errors of the model must not reject pixels.
   const Decoder decoder(table, {.false_alarm_rate = 0.0});
   const ProgressParts parts(progress, static_cast<std::size_t>(frames.frames));
   std::vector<DepthImage> images;
