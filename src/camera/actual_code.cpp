@@ -19,7 +19,6 @@ Waveform scaled(const Waveform& waveform, double factor) {
                               : waveform.scaled(0.0, factor);
 }
 
-/// Reorders exposures as in [playback], and complements or swaps taps if inverted.
 void apply(const Playback& playback, int taps, ActualCode& actual) {
   const ActualCode said = actual;
   for (std::size_t e = 0; e < playback.order.size(); ++e) {
@@ -36,8 +35,7 @@ void apply(const Playback& playback, int taps, ActualCode& actual) {
       std::swap(actual.demodulation[i - 1], actual.demodulation[i]);
 }
 
-/// Returns the error if the generator outputs no pulse of modulation e.
-/// @param points  output of the generator for modulation e
+/// Returns the error if the generator outputs no pulse of modulation e, whose output is `points`.
 std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform& points,
                                      const Generator& generator, double frequency_hz) {
   const Waveform& nominal = code.modulation(e);

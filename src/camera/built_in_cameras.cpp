@@ -16,7 +16,6 @@ using Sources = std::vector<NumberSource>;
 
 constexpr const char* paper = "Gutierrez-Barragan et al., CVPR 2019";
 
-/// A camera of the paper's simulations.
 Camera paper_camera(double peak_factor, std::optional<double> band_in_f0) {
   Camera camera;
   camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it
@@ -40,10 +39,9 @@ Sources paper_sources() {
   return sources;
 }
 
-/// A camera of typical parts in a room: a laser diode of 1 W and a pixel, both with 100 MHz. It has
-/// one tap and no saturation because it is also the default for decoding raw frames. The signals
-/// correspond to white surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from lamps to 5 klx
-/// of sunlight (`evaluate --distance D --klux L` computes both from the optics).
+/// Typical parts in a room: a laser diode of 1 W and a pixel, both with 100 MHz. One tap and no
+/// saturation, because it is the default for decoding raw frames. The signals correspond to white
+/// surfaces at 1.1, 2.1 and 3.6 m; the ambient light ranges from lamps to 5 klx of sunlight.
 Camera indoor_camera() {
   Camera camera;
   camera.fundamental_frequency_hz = 20e6;
@@ -66,8 +64,8 @@ Camera indoor_camera() {
   return camera;
 }
 
-/// Three exclusive taps with a clock of nine chips per period. The peak power is fixed: the light
-/// may be always on (peak factor 1), and S is the rate at peak light.
+/// Three exclusive taps with a clock of nine chips per period. The light may always be on (peak
+/// factor 1), and S is the rate at peak light.
 Camera three_tap_camera() {
   Camera camera;
   constexpr double chip_s = 10e-9;
@@ -81,14 +79,13 @@ Camera three_tap_camera() {
   return camera;
 }
 
-/// A commercial camera with two taps that are read out as their difference, and light that is on
-/// for half of the time. Full well and converter are not set, because the electrons per count are
-/// unknown.
+/// A commercial camera that outputs the difference of two taps, with light that is on for half of
+/// the time. Full well and converter are not set, because the electrons per count are unknown.
 Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   Camera camera;
   camera.fundamental_frequency_hz = fundamental_frequency_hz;
   camera.exposure_s.total_s = exposure_s;
-  camera.samples = 720;  // 36 or more in a period of the highest of their frequencies
+  camera.samples = 720;  // >= 36 per period of their highest frequency
   camera.light.peak_factor = 2.0;
   camera.sensor.taps = 2;
   camera.sensor.drain = false;
@@ -98,7 +95,6 @@ Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
   return camera;
 }
 
-/// Returns a camera that can generate square waves at these frequencies.
 Camera with_frequencies(Camera camera, std::vector<double> frequencies_hz, int phase_steps,
                         int max_exposures) {
   SquareLight& square = camera.light.square.emplace();
@@ -108,8 +104,7 @@ Camera with_frequencies(Camera camera, std::vector<double> frequencies_hz, int p
   return camera;
 }
 
-/// Modulation frequencies of this camera are a clock of 96 MHz divided by 4 and by a second
-/// divider.
+/// Frequencies are a clock of 96 MHz divided by 4 and by a second divider.
 Camera epc660() {
   Camera camera = two_tap_camera(12e6, 4e-3);
   SquareLight& square = camera.light.square.emplace();
@@ -123,7 +118,6 @@ struct Entry {
   Camera camera;
 };
 
-/// Returns the list of all built-in cameras.
 std::vector<Entry> entries() {
   constexpr const char* kinect_pixel =
       "Sell and O'Connor, IEEE Micro 34(2), 2014, by libfreenect2's issue 150: differential";

@@ -33,7 +33,7 @@ void validate_adc(const Sensor& sensor) {
   }
 }
 
-/// Rows are sums of counts and support no properties of taps.
+/// Rows are sums of counts.
 void validate_rows(const Sensor& sensor) {
   const auto require_none = [](bool none, const char* field, const char* value) {
     require(none, field, value, "cannot be combined with sensor.readout = \"rows\"");
@@ -237,7 +237,6 @@ double Temperature::signal_gain() const {
 
 namespace {
 
-/// Rejects an implausible factor of the signal.
 void check_signal_gain(const std::string& prefix, const auto& temperature) {
   const double gain = std::exp(temperature.signal_per_c * temperature.above_reference_c());
   constexpr double max_gain = 1e3;
@@ -289,7 +288,7 @@ void Camera::validate() const {
 
 namespace {
 
-/// Returns the error if the gains of the taps do not sum to 1 without a drain.
+/// Error if the gains of the taps do not sum to 1 without a drain.
 std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& what) {
   const Eigen::MatrixXd gain = code.demodulation_samples();
   for (int first = 0; first < code.measurements(); first += code.taps()) {
@@ -301,7 +300,7 @@ std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& 
   return std::nullopt;
 }
 
-/// Returns the error if a list does not have one value per exposure or per frequency of a code.
+/// Error unless a list has one value per exposure or per frequency.
 std::optional<BrokenRule> list_misfit(const std::string& key, const std::vector<double>& list,
                                       const CodeSet& code) {
   const std::size_t count = list.size(), frequencies = code.frequency_starts().size();
@@ -312,7 +311,6 @@ std::optional<BrokenRule> list_misfit(const std::string& key, const std::vector<
                             code.exposures(), frequencies, code.name()));
 }
 
-/// Returns the values of a list for every exposure.
 std::vector<double> per_exposure(const std::string& key, const std::vector<double>& list,
                                  const CodeSet& code) {
   require(list_misfit(key, list, code));
@@ -413,7 +411,7 @@ FamilyOptions family_options(const Camera& camera) {
           .taps = camera.sensor.taps > 2 ? camera.sensor.taps : 1};
 }
 
-/// Returns why code and camera do not both use rows, or both do not.
+/// Returns a text unless code and camera both use rows, or neither does.
 std::optional<std::string> why_other_receiver(const CodeSet& code, const Camera& camera) {
   if (camera.sensor.readout == Readout::rows) return why_no_rows(code);
   if (!code.is_rows()) return std::nullopt;

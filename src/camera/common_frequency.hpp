@@ -7,11 +7,10 @@
 
 namespace tofsmith {
 
-/// Resolution to which frequencies must have a common divisor [Hz].
+/// Resolution of a common divisor [Hz].
 inline constexpr double common_frequency_resolution_hz = 10.0;
 
-/// Greatest common divisor of frequencies [Hz], by Euclid's algorithm on real numbers; none if it
-/// is below the resolution.
+/// Greatest common divisor [Hz], by Euclid's algorithm on real numbers; none below the resolution.
 std::optional<double> common_frequency_hz(std::span<const double> frequencies_hz);
 
 }  // namespace tofsmith

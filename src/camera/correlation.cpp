@@ -41,7 +41,7 @@ class Integral {
   std::vector<double> at_breakpoint_;
 };
 
-/// Sorts positions in [0, 1), the first of which is 0, and removes duplicates.
+/// Sorts positions in [0, 1) that begin with 0, and removes duplicates.
 void sort_corners(std::vector<double>& corners) {
   std::sort(corners.begin(), corners.end());
   constexpr double same = 1e-12;  // rounding error
@@ -51,8 +51,7 @@ void sort_corners(std::vector<double>& corners) {
   while (corners.size() > 1 && corners.back() > 1.0 - same) corners.pop_back();
 }
 
-/// Returns the positions at which the correlation of two step functions changes slope, sorted and
-/// without duplicates.
+/// Sorted positions at which the correlation of two step functions changes slope.
 std::vector<double> corner_positions(const StepFunction& d, const StepFunction& m) {
   std::vector<double> corners{0.0};
   corners.reserve(d.breakpoints.size() * m.breakpoints.size() + 1);
@@ -62,8 +61,8 @@ std::vector<double> corner_positions(const StepFunction& d, const StepFunction& 
   return corners;
 }
 
-/// Returns the number of equal cells such that both functions change only at cell borders; 0 if the
-/// closest breakpoints of a function do not define such cells.
+/// Number of equal cells such that both functions change only at cell borders; 0 if the closest
+/// breakpoints of a function define no such cells.
 int common_cells(const StepFunction& d, const StepFunction& m) {
   double closest = 1.0;
   for (const StepFunction* function : {&d, &m})
@@ -89,7 +88,7 @@ Eigen::VectorXd cell_values(const StepFunction& function, int cells) {
   return values;
 }
 
-/// Interpolates linearly at `position` in [0, 1), between corner i and the next corner.
+/// Interpolates at `position` in [0, 1), between corner i and the next one.
 double between_corners(const std::vector<double>& corners, const std::vector<double>& values,
                        std::size_t i, double position) {
   const bool last = i + 1 == corners.size();
@@ -99,11 +98,11 @@ double between_corners(const std::vector<double>& corners, const std::vector<dou
   return values[i] + share * (value_at_end - values[i]);
 }
 
-/// Returns the total variation of a waveform over one period, or an upper bound on it.
+/// Total variation over one period, or an upper bound.
 double variation(const Waveform& waveform) {
   if (waveform.is_binary())
     return 2.0 * waveform.level() * static_cast<double>(waveform.on_intervals().size());
-  double sum = 0.0;  // bound: variations of all cosines
+  double sum = 0.0;  // variations of all cosines
   for (Eigen::Index n = 1; n < waveform.coefficients().size(); ++n)
     sum += 8.0 * static_cast<double>(n) * std::abs(waveform.coefficients()[n]);
   if (!waveform.is_sampled()) return sum;
@@ -111,7 +110,7 @@ double variation(const Waveform& waveform) {
   return (x - circular_shift(x, 1)).cwiseAbs().sum();
 }
 
-/// Returns the highest harmonic that both waveforms have; no_end if neither is band-limited.
+/// Highest harmonic that both waveforms have; no_end if neither is band-limited.
 constexpr int no_end = std::numeric_limits<int>::max();
 int last_harmonic(const Waveform& d, const Waveform& m) {
   int last = no_end;
@@ -121,8 +120,8 @@ int last_harmonic(const Waveform& d, const Waveform& m) {
   return last;
 }
 
-/// Returns the highest harmonic of the transfer function above rounding error: the sum of all
-/// higher ones is negligible. Harmonic n of a waveform is at most variation / (2 pi n).
+/// Highest harmonic above rounding error: the sum of all higher ones is negligible. Harmonic n of a
+/// waveform is at most variation / (2 pi n).
 int last_that_counts(const Waveform& d, const Waveform& m, const Eigen::VectorXcd& transfer) {
   constexpr double rounding = 1e-15;
   const double allowed = rounding * d.mean() * m.mean() / (variation(d) * variation(m));
@@ -144,8 +143,8 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
     return;
   }
   const StepFunction d = demodulation.steps(), m = modulation.steps();
-  // Each pair of breakpoints yields a corner. If there are many pairs, both functions usually
-  // change on a common grid, on which most corners coincide.
+  // Each pair of breakpoints yields a corner. Many pairs usually mean a common grid, on which most
+  // corners coincide.
   const double pairs =
       static_cast<double>(d.breakpoints.size()) * static_cast<double>(m.breakpoints.size());
   constexpr double many_pairs = 1 << 12, max_pairs = 1 << 27;
@@ -154,7 +153,7 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
       const Eigen::VectorXd of_d = cell_values(d, cells), of_m = cell_values(m, cells);
       Eigen::VectorXd values = circular_correlation(of_d, of_m) / cells;
       if (of_d.minCoeff() >= 0.0 && of_m.minCoeff() >= 0.0)
-        values = values.cwiseMax(0.0);  // remove negative rounding errors
+        values = values.cwiseMax(0.0);  // negative rounding errors
       for (int i = 0; i < cells; ++i) corners_.push_back(static_cast<double>(i) / cells);
       values_.assign(values.begin(), values.end());
       return;
@@ -203,7 +202,7 @@ CorrelationFunction CorrelationFunction::moved(double delay, bool reversed) cons
 double CorrelationFunction::operator()(double u) const {
   if (harmonics_.size() > 0) {
     const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * wrap(u, 1.0));
-    std::complex<double> sum = 0.0;  // Horner's method, from the highest harmonic
+    std::complex<double> sum = 0.0;  // Horner's method
     for (Eigen::Index n = harmonics_.size() - 1; n >= 1; --n) sum = (sum + harmonics_[n]) * turn;
     return harmonics_[0].real() + 2.0 * sum.real();
   }
@@ -233,7 +232,7 @@ Eigen::VectorXd CorrelationFunction::table(int points) const {
     }
     return values;
   }
-  // Harmonics above points/2 alias to lower ones, which is exact at the points of the table.
+  // Harmonics above points/2 alias to lower ones, which is exact at the points.
   std::vector<std::complex<double>> folded(static_cast<std::size_t>(points), 0.0);
   folded[0] = harmonics_[0].real();
   for (Eigen::Index n = 1; n < harmonics_.size(); ++n) {

@@ -8,7 +8,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns where depths begin (end = 0) or end (end = 1), as a fraction of the range.
+/// Begin (end = 0) or end (end = 1) of depths, as a fraction of the range.
 double share_of(const Camera& camera, std::size_t end) {
   const auto& distance_m = camera.operating.working_distance_m;
   return distance_m ? (*distance_m)[end] / camera.range_m() : static_cast<double>(end);
@@ -23,8 +23,7 @@ DepthPrior::DepthPrior(const std::vector<double>& weights, double begin, double 
   mass_ = alike ? std::vector<double>{1.0} : weights;
   const double largest = *std::max_element(mass_.begin(), mass_.end());
   double sum = 0.0;
-  for (double& mass : mass_)
-    sum += mass /= largest;  // scaled, because sums of very large numbers overflow
+  for (double& mass : mass_) sum += mass /= largest;  // sums of very large numbers overflow
   double below = 0.0;
   for (double& mass : mass_) {
     mass /= sum;
@@ -77,7 +76,7 @@ double DepthPrior::quantile(double part) const {
   if (is_uniform()) return part;
   const auto next = std::upper_bound(below_.begin(), below_.end() - 1, part);
   auto cell = static_cast<std::size_t>(next - below_.begin()) - 1;
-  while (mass_[cell] == 0.0) --cell;  // skip empty parts, reached only by rounding
+  while (mass_[cell] == 0.0) --cell;  // empty parts, reached only by rounding
   const double within = std::clamp((part - below_[cell]) / mass_[cell], 0.0, 1.0);
   const double begin = begin_of(cell);
   return std::min(begin + within * (begin_of(cell + 1) - begin), std::nextafter(1.0, 0.0));

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// @throws InvalidArgument for an empty list and for a value that is listed twice
+/// @throws InvalidArgument for an empty list or a repeated value
 template <typename Number>
 void require_distinct(const std::string& field, const std::vector<Number>& values) {
   require(!values.empty(), field, "[]", "must list at least one value");

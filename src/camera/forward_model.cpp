@@ -18,7 +18,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Mixes the taps of an exposure for a contrast below 1: C x_j + (1 - C) / t sum_k x_k.
+/// Mixes taps for a contrast below 1: C x_j + (1 - C) / t sum_k x_k.
 template <typename Columns>
 void mix_taps(Columns& values, int taps, const std::vector<double>& contrasts) {
   for (Eigen::Index first = 0; first < values.cols(); first += taps) {
@@ -30,7 +30,7 @@ void mix_taps(Columns& values, int taps, const std::vector<double>& contrasts) {
   }
 }
 
-/// Returns the sensitivity of every tap value relative to the mean of its pixel.
+/// Sensitivity of every tap value relative to the mean of its pixel.
 Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
   Eigen::VectorXd sensitivity = Eigen::VectorXd::Ones(code.measurements());
   for (int i = 0; i < code.measurements(); ++i) {
@@ -41,7 +41,7 @@ Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
   return sensitivity.transpose().replicate(2, 1).reshaped();  // both signs of an exposure
 }
 
-/// Returns x^2 of a waveform that is not binary.
+/// x^2 of a waveform that is not binary.
 Waveform squared(const Waveform& x) {
   if (x.is_sampled()) return Waveform::sampled(x.samples().array().square());
   const Eigen::VectorXcd& c = x.coefficients();
@@ -57,7 +57,7 @@ Waveform squared(const Waveform& x) {
   return Waveform::cosines(std::move(product));
 }
 
-/// Returns a x + b y + c of two waveforms of the same kind.
+/// a x + b y + c, of the same kind.
 Waveform combined(const Waveform& x, double a, const Waveform& y, double b, double c) {
   if (x.is_sampled())
     return Waveform::sampled(a * x.samples().array() + b * y.samples().array() + c);
@@ -67,8 +67,7 @@ Waveform combined(const Waveform& x, double a, const Waveform& y, double b, doub
   return Waveform::cosines(std::move(sum));
 }
 
-/// Returns the two taps of a mixer with drive x and weight w = 2 x - 1: (w^2 + w) / 2 and
-/// (w^2 - w) / 2.
+/// Two taps of a mixer with drive x and weight w = 2 x - 1: (w^2 + w) / 2 and (w^2 - w) / 2.
 std::array<Waveform, 2> taps_of_weight(const Waveform& drive) {
   if (drive.is_binary()) return {drive, drive.complement()};
   const Waveform square = squared(drive);
@@ -76,7 +75,7 @@ std::array<Waveform, 2> taps_of_weight(const Waveform& drive) {
   return {combined(square, 2.0, drive, -1.0, 0.0), combined(square, 2.0, drive, -3.0, 1.0)};
 }
 
-/// Returns the demodulation functions of the tap values.
+/// Demodulation functions of the tap values.
 std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> demodulation) {
   if (!code.is_signed()) return demodulation;
   std::vector<Waveform> taps;
@@ -85,7 +84,7 @@ std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> d
   return taps;
 }
 
-/// Returns the constant that [playback] adds to the depth of each exposure of the camera [m].
+/// Constant that [playback] adds to the depth of each exposure [m].
 std::vector<double> offsets_m(const CodeSet& code, const Camera& camera) {
   const Playback playback = camera.playback.value_or(Playback());
   return in_camera_order(playback.offsets_of(code, camera.range_m()), camera);
@@ -95,8 +94,7 @@ std::vector<double> offsets_m(const CodeSet& code, const Camera& camera) {
 
 // Harmonics decrease as 1/n^2 for binary waveforms, as 1/n^3 for each arm with a Hann response, and
 // as 1/n for a low-pass beyond its cutoff. For cutoffs within a few hundred f0, the omitted
-// harmonics are below 1e-6. Much faster responses are truncated at this number of harmonics, which
-// rounds corners of the correlation function by 1/n of a period.
+// harmonics are below 1e-6; otherwise corners are rounded by 1/n of a period.
 int harmonics_kept(int samples) { return std::max(2048, 8 * samples); }
 
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
@@ -164,7 +162,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     exposure_s_[i] = tap_exposure_s_[i * tap_values / measurements()];
 }
 
-/// Sets the taps to time bins, which share the light of the exposure.
+/// Taps are time bins, which share the light of the exposure.
 void ForwardModel::read_rows(const CodeSet& code, const Waveform& light,
                              const Eigen::VectorXcd& transfer, double moved) {
   const double share = 1.0 / samples_;
@@ -337,7 +335,7 @@ RowCovariance row_covariance(const ForwardModel& model, int points) {
   const int samples = model.samples(), step = points / samples;
   require(points > 0 && points % samples == 0, "points", points,
           "must be a multiple of the samples");
-  // Light in time bin 0 at depths that are a whole number of bins and the same part of one.
+  // Light in time bin 0 at depths with the same position in their bin.
   const Eigen::VectorXd bin = model.tap_exposure_s()[0] * model.time_bin_table(points);
   Eigen::MatrixXd phases(samples, step);
   for (int j = 0; j < points; ++j) phases(j / step, j % step) = bin[j];

@@ -9,8 +9,8 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the time from the start of a frame to the start of an exposure. With exposure =
-/// exposures: the duration of all exposures and readout gaps.
+/// Time from the start of the frame. With exposure = exposures: the duration of all exposures and
+/// readout gaps.
 double exposure_start_s(const Camera& camera, int exposure, int exposures) {
   double start_s = 0.0;
   for (int i = 0; i < exposure; ++i)

@@ -16,14 +16,14 @@ namespace {
 
 // Rounding error of switching times that lie on a grid [points].
 constexpr double rounding = 1e-9;
-constexpr double max_points = 1 << 20;  // exceeds the detail of any code
+constexpr double max_points = 1 << 20;  // more than the detail of any code
 
-/// First point of a pulse and first point after it.
+/// First point, and first point after the pulse.
 struct Pulse {
   double begin, end;
 };
 
-/// Returns the pulses that do not vanish, sorted, with adjacent pulses merged.
+/// Pulses that do not vanish, sorted, with adjacent pulses merged.
 std::vector<Pulse> pulses_on_points(const std::vector<OnInterval>& on, double points) {
   std::vector<Pulse> pulses;
   for (const OnInterval& interval : on) {
@@ -68,7 +68,7 @@ double max_points_per_period(double sample_rate_hz, double frequency_hz) {
   return sample_rate_hz / frequency_hz * (1 + 1e-12);
 }
 
-/// Number of steps of an edge grid per period, an integer for valid generators.
+/// Steps of an edge grid per period, an integer for valid generators.
 double grid_steps(double edge_grid_s, double frequency_hz) {
   return std::round(1.0 / (edge_grid_s * frequency_hz));
 }

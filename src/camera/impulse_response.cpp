@@ -16,7 +16,7 @@ namespace tofsmith {
 namespace {
 constexpr double pi = std::numbers::pi;
 
-// Width of a Hann window times f_max: the solution x of sinc(x) / (1 - x^2) = 1/5.
+// Width of a Hann window times f_max: sinc(x) / (1 - x^2) = 1/5.
 constexpr double hann_width_times_f_max = 1.444010597686313;
 
 double hann_transfer(double x) {
@@ -26,8 +26,7 @@ double hann_transfer(double x) {
   return std::sin(pi * x) / (pi * x) / (1.0 - x * x);
 }
 
-/// Returns the Fourier transform of the linearly interpolated samples; 0 above half the sampling
-/// rate.
+/// Fourier transform of the linearly interpolated samples; 0 above half the sampling rate.
 std::complex<double> measured_transfer(const ImpulseResponse& response, double frequency_hz) {
   const double turns_per_step = frequency_hz * response.time_step_s;
   if (std::abs(turns_per_step) > 0.5) return 0.0;
@@ -55,7 +54,7 @@ std::complex<double> ImpulseResponse::transfer(double frequency_hz) const {
       return hann_transfer(frequency_hz * hann_width_times_f_max / f_max_hz);
     case Kind::gaussian: {
       const double ratio = frequency_hz / cutoff_hz;
-      return std::exp2(-0.5 * ratio * ratio);  // 2^(-1/2), i.e. -3 dB, at the cutoff
+      return std::exp2(-0.5 * ratio * ratio);  // -3 dB at the cutoff
     }
     case Kind::lowpass:
       return 1.0 / std::complex<double>(1.0, frequency_hz / cutoff_hz);

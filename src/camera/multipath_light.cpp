@@ -17,11 +17,9 @@ namespace tofsmith {
 
 namespace {
 
-/// Second integral of a histogram normalized to total 1: 0 before the histogram, quadratic within
-/// bins, linear with slope 1 after it.
+/// Second integral of a histogram of total 1: 0 before it, quadratic within bins, linear after it.
 class SecondIntegral {
  public:
-  /// @param bin_rows  length of a bin in rows
   SecondIntegral(const std::vector<double>& light, double bin_rows) : bin_rows_(bin_rows) {
     const double total = std::accumulate(light.begin(), light.end(), 0.0);
     for (const double bin : light) {
@@ -47,8 +45,7 @@ class SecondIntegral {
   std::vector<double> once_{0.0}, twice_{0.0};  // at the start of each bin
 };
 
-/// Returns row weights whose correlation with a piecewise linear table equals that of the
-/// histogram.
+/// Row weights whose correlation with a piecewise linear table equals the histogram's.
 Eigen::VectorXd row_weights(const Transient& transient, double range_m, int points) {
   const double rows_per_m = points / range_m;
   const SecondIntegral integral(transient.light, rows_per_m * transient.bin_m);
@@ -59,7 +56,7 @@ Eigen::VectorXd row_weights(const Transient& transient, double range_m, int poin
   const auto end = static_cast<std::int64_t>(std::ceil(first + length)) + 1;
   for (std::int64_t row = begin; row <= end; ++row) {
     const double at = static_cast<double>(row) - first;
-    // Integral of the histogram times a triangle of half width 1.
+    // Histogram times a triangle of half width 1.
     weight[((row % points) + points) % points] +=
         integral(at + 1.0) - 2.0 * integral(at) + integral(at - 1.0);
   }

@@ -17,15 +17,15 @@ namespace {
 
 constexpr double planck_j_s = 6.62607015e-34;
 
-// Sunlight on a surface that faces the sun [W/m2/nm]: averages over 10 nm of the global spectrum of
-// ASTM G173-03 (air mass 1.5), from 800 nm, and the illuminance of that spectrum.
+// Sunlight on a surface that faces the sun [W/m2/nm]: global spectrum of ASTM G173-03 (air mass
+// 1.5) averaged over 10 nm, and its illuminance.
 constexpr double sun_first_m = 800e-9, sun_step_m = 10e-9, sun_klux = 109.9;
 constexpr std::array sun_w_per_m2_nm = {1.076, 0.936, 0.909, 0.961, 1.002, 0.952, 0.959,
                                         0.951, 0.926, 0.799, 0.713, 0.655, 0.703, 0.271,
                                         0.352, 0.344, 0.513, 0.627, 0.708, 0.745};
 constexpr double sun_last_m = sun_first_m + sun_step_m * sun_w_per_m2_nm.size();
 
-/// Returns the mean spectral irradiance between two wavelengths of the table.
+/// Mean between two wavelengths of the table.
 double sunlight_between(double first_m, double last_m) {
   double sum = 0.0;
   for (std::size_t i = 0; i < sun_w_per_m2_nm.size(); ++i) {

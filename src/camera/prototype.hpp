@@ -10,18 +10,14 @@ namespace tofsmith {
 /// N = 300 samples, 3 per point of a generator of 500 MS/s and 14 bits with 100 points per period;
 /// one generator and a Hann response of 150 MHz on each arm; p = 15.
 ///
-/// The mixer multiplies the detector signal by the bipolar demodulation 2 d - 1. Its mean equals
-/// the difference of two taps with gains d and 1 - d. The camera therefore has taps = 2, drain =
-/// false and readout = "difference", and one exposure gives one measurement. Ambient light and dark
-/// current cancel in the mean (for d of duty 1/2), but not in the noise. The paper's read noise of
-/// 20 e per measurement corresponds to 20 / sqrt(2) per tap. Shot noise is computed for all light,
-/// which is exact while the mixer is at +1 or -1. In between (smoothed edges, analog demodulation)
-/// a real mixer weights the variance by (2 d - 1)^2, so the model is pessimistic.
+/// The mixer multiplies the detector signal by 2 d - 1, whose mean equals the difference of two
+/// taps with gains d and 1 - d: taps = 2, drain = false, readout = "difference". Ambient light and
+/// dark current cancel in the mean (for d of duty 1/2), but not in the noise. The paper's read
+/// noise of 20 e per measurement is 20 / sqrt(2) per tap. Shot noise is computed for all light,
+/// which is pessimistic where the mixer is not at +1 or -1.
 ///
-/// Operating points: signals of 1e6 e/s (assumed for 1 mW of average source power) behind filters
-/// of optical density 3 to 0, and ambient light of 1e3 and 1e4 e/s. The exposure is 0.3 s per point
-/// in total, as in the paper's simulations, so that O.D. 1, 2 and 3 give S = 1e5, 1e4 and 1e3 e/s
-/// of its grid.
+/// Signals are 1e6 e/s (assumed for 1 mW of average source power) behind optical densities 3 to 0.
+/// The exposure is 0.3 s per point in total.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Table 1 and Fig. 9
 Camera prototype_camera();
 

@@ -15,7 +15,7 @@
 namespace tofsmith {
 
 std::optional<double> common_frequency_hz(std::span<const double> frequencies_hz) {
-  // Quotients of a clock are rounded, and the remainders of the algorithm multiply rounding errors.
+  // Remainders of Euclid's algorithm multiply the rounding errors of quotients of a clock.
   constexpr double rounding_hz = 0.1;
   double common_hz = 0.0;
   for (double other_hz : frequencies_hz) {

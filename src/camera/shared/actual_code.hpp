@@ -10,21 +10,19 @@
 
 namespace tofsmith {
 
-/// Returns the error for the first modulation whose pulses all fall between the points of the
-/// light's generator.
+/// Error for the first modulation whose pulses all fall between the points of the light's
+/// generator.
 std::optional<BrokenRule> pulse_not_generated(const CodeSet& code, const Camera& camera);
 
-/// Returns the factor that preserves the average power of the source: 1 / mean for a mean above 1,
-/// otherwise 1.
+/// Factor that preserves the average power of the source: 1 / mean for a mean above 1, else 1.
 double average_power_scale(const Waveform& modulation);
 Waveform at_average_power(const Waveform& modulation);
 
-/// Returns true if delaying a modulation by `rotation_bin` of N bins only delays the output of the
-/// light's generator, i.e. if the delay is a whole number of its points to within 1/16 bin. Other
-/// delays change the rounding.
+/// Returns true if a delay by `rotation_bin` of N bins is a whole number of points of the light's
+/// generator to within 1/16 bin, and so does not change the rounding.
 bool plays_alike_rotated(const Camera& camera, int samples, int rotation_bin);
 
-/// Returns true if the second tap of every exposure is the complement of the first.
+/// Returns true if the second tap of every exposure complements the first.
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera);
 
 }  // namespace tofsmith

@@ -9,14 +9,14 @@
 
 namespace tofsmith {
 
-/// Returns the brightest ambient light of the operating range; 0 without operating points.
+/// 0 without operating points.
 inline double brightest_ambient_e_per_s(const Camera& camera) {
   const auto& ambient = camera.operating.ambient_e_per_s;
   return ambient.empty() ? 0.0 : *std::max_element(ambient.begin(), ambient.end());
 }
 
-/// Criterion of unknown_ambient_gain(): returns true if the ambient light left in measurements (K)
-/// [e] is negligible compared with their noise.
+/// Criterion of unknown_ambient_gain(): the ambient light left in measurements (K) [e] is
+/// negligible compared with their noise.
 inline bool ambient_cancels(const Camera& camera, const Eigen::VectorXd& leak_e,
                             const Eigen::VectorXd& variance_e2) {
   constexpr double share_of_noise = 0.05;

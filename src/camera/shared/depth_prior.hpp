@@ -9,14 +9,12 @@
 
 namespace tofsmith {
 
-/// Prior distribution of depths (OperatingRange::depths within working_distance_m) over depth as a
-/// fraction of the unambiguous range in [0, 1). The density is constant within equal parts of an
-/// interval.
+/// Prior distribution of depths (OperatingRange::depths within working_distance_m) as fractions of
+/// the range in [0, 1), with constant density within equal parts of an interval.
 class DepthPrior {
  public:
-  /// @param weights     one per equal part of the interval, already validated; empty or all equal:
-  ///   uniform over the interval
-  /// @param begin, end  of the interval, 0 <= begin < end <= 1
+  /// @param weights     one per equal part of the interval, validated; empty or all equal: uniform
+  /// @param begin, end  0 <= begin < end <= 1
   explicit DepthPrior(const std::vector<double>& weights, double begin = 0.0, double end = 1.0);
   explicit DepthPrior(const Camera& camera);
   DepthPrior() = default;  ///< uniform over the whole range
@@ -24,21 +22,19 @@ class DepthPrior {
   static bool are_alike(const std::vector<double>& weights);
 
   bool is_uniform() const { return mass_.empty(); }
-  /// Density relative to that of uniform depths. At share = 1, the density of the last depths.
+  /// Relative to uniform depths. At share = 1, of the last depths.
   double density(double share) const;
   double max_density() const;
-  /// Cumulative distribution.
   double below(double share) const;
   /// Quantile for `part` in [0, 1).
   double quantile(double part) const;
-  // Interval, probability of each part, and probability below each part and below 1. The vectors
-  // are empty if the prior is uniform.
+  // The vectors are empty if the prior is uniform.
   double begin() const { return begin_; }
   double end() const { return end_; }
   const std::vector<double>& part_masses() const { return mass_; }
   const std::vector<double>& below_parts() const { return below_; }
 
-  /// Probability of each of `parts` equal parts of the range; empty if uniform.
+  /// Probability of `parts` equal parts of the range; empty if uniform.
   Eigen::VectorXd masses(Eigen::Index parts) const;
 
  private:
@@ -47,11 +43,10 @@ class DepthPrior {
 
   double begin_ = 0.0, end_ = 1.0;
   std::vector<double> mass_;   // of each part
-  std::vector<double> below_;  // below each part, and 1
+  std::vector<double> below_;  // and 1
 };
 
-/// Returns the mean of values over equal parts of the range. Values of parts with probability 0 may
-/// be infinite.
+/// Mean over equal parts of the range. Values of parts with probability 0 may be infinite.
 /// @param masses  DepthPrior::masses() for the same parts
 double mean_over_depths(const Eigen::VectorXd& values, const Eigen::VectorXd& masses);
 

@@ -12,8 +12,7 @@
 
 namespace tofsmith {
 
-/// Returns the error if a camera lists exposure times, or an order of exposures, for another number
-/// of exposures.
+/// Error if a camera lists times or an order for another number of exposures.
 /// @param whose  " of code NAME", for the message
 inline std::optional<BrokenRule> other_exposures_listed(const Camera& camera, int exposures,
                                                         const std::string& whose = "") {
@@ -27,7 +26,7 @@ inline std::optional<BrokenRule> other_exposures_listed(const Camera& camera, in
   return std::nullopt;
 }
 
-/// Returns values of the code's exposures in the order of the camera's exposures.
+/// Reorders values of the code's exposures.
 inline std::vector<double> in_camera_order(std::vector<double> of_code, const Camera& camera) {
   if (!camera.playback || camera.playback->order.size() != of_code.size()) return of_code;
   std::vector<double> of_camera;

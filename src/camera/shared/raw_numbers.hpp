@@ -12,9 +12,7 @@ struct ConverterNumbers {
   double min_dn = 0.0, max_dn = 0.0;
 };
 
-/// Returns the range from 0, or a symmetric range for a mixer without black level (its output
-/// without light).
-/// @param sensor  must have adc_bits
+/// From 0, or symmetric for a mixer without black level. @param sensor  must have adc_bits
 inline ConverterNumbers raw_numbers(const Sensor& sensor) {
   const double count = std::exp2(*sensor.adc_bits);
   if (sensor.is_signed() && !sensor.black_level_dn) return {-0.5 * count, 0.5 * count - 1.0};
