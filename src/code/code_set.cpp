@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 namespace {
-// Tolerance for rounding in files and refinements; far below any effect on depth.
+// For rounding in files and refinements; far below any effect on depth.
 constexpr double tolerance = 1e-9;
 
 void check_modulation(const Waveform& waveform, int exposure) {

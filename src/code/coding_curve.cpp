@@ -49,7 +49,7 @@ Eigen::MatrixXd coding_curve_in_space(const Eigen::MatrixXd& table) {
   const Eigen::Index axes = std::min<Eigen::Index>(3, centred.cols());
   Eigen::MatrixXd points = Eigen::MatrixXd::Zero(table.rows(), 3);
   for (Eigen::Index axis = 0; axis < axes; ++axis) {
-    // Beyond the rank of the curve, the remainder is rounding error.
+    // The remainder beyond the rank of the curve is rounding error.
     if (svd.values[axis] < 1e-9 * svd.values[0]) break;
     points.col(axis) = centred * svd.v.col(axis);
   }

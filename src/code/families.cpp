@@ -19,7 +19,6 @@
 namespace tofsmith {
 namespace {
 
-/// A member of a family, such as hamiltonian-k4.
 struct Member {
   std::function<std::optional<BrokenRule>(const FamilyOptions&)> misfit;
   std::function<CodeSet(const FamilyOptions&)> build;
@@ -33,7 +32,7 @@ std::optional<int> integer(std::string_view text) {
   return value;
 }
 
-/// Returns the number after `prefix` if the name consists of both.
+/// Number after `prefix`, if the name consists of both.
 std::optional<int> number_after(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return std::nullopt;
   return integer(name.substr(prefix.size()));
@@ -128,8 +127,7 @@ BrokenRule unknown_family(std::string_view name) {
                              : fmt::format("is not a built-in family; did you mean {}?", near));
 }
 
-/// Returns the rule that a member violates (number out of range, unsuitable grid), reported under
-/// the requested name.
+/// Rule that a member violates, reported under the requested name.
 std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                                     const FamilyOptions& options) {
   if (options.taps > 2 && !member.has_phase_steps)
@@ -144,8 +142,8 @@ std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
                             nearest_word(name, examples())));
 }
 
-/// Returns a sinusoid within the peak factor: of mean 1, or, for taps that share the exposure,
-/// fully modulated, even if the mean is then below 1.
+/// Sinusoid within the peak factor: of mean 1, or, for taps that share the exposure, fully
+/// modulated with a mean of at most 1.
 Waveform sinusoid_light(int frequency, const FamilyOptions& options) {
   if (options.taps <= 2)
     return Waveform::cosine(frequency, 1.0, std::min(1.0, options.peak_factor - 1.0), 0.0);

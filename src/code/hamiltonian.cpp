@@ -14,8 +14,8 @@ namespace tofsmith {
 
 namespace {
 
-/// One code of a published walk: lengths of its alternating on and off runs, and the start of the
-/// first, in edges of the walk.
+/// Code of a published walk: lengths of its alternating on and off runs, and the start of the
+/// first.
 struct CodeRuns {
   int shift;
   std::vector<int> runs;
@@ -52,8 +52,8 @@ std::vector<std::uint32_t> walk_of_runs(const std::vector<CodeRuns>& codes, int 
   return walk;
 }
 
-/// Excludes all-zeros and all-ones and, for even K, one complementary pair of odd weight, which
-/// balances the two sides of the bipartite cube and keeps every duty at one half.
+/// Excludes all-zeros, all-ones and, for even K, one complementary pair of odd weight, which
+/// balances the bipartite cube and keeps every duty at one half.
 std::vector<bool> usable_vertices(int measurements) {
   const std::uint32_t all = (1u << measurements) - 1;
   std::vector<bool> usable(std::size_t{1} << measurements, true);
@@ -62,8 +62,8 @@ std::vector<bool> usable_vertices(int measurements) {
   return usable;
 }
 
-/// Posa's rotation-extension search for a Hamiltonian cycle: extends the path to an unused
-/// neighbour, otherwise closes it on itself and reverses the tail.
+/// Posa's rotation-extension search for a Hamiltonian cycle: extends the path, or closes it on
+/// itself and reverses the tail.
 std::optional<std::vector<std::uint32_t>> search_cycle(int measurements, std::uint64_t attempt) {
   const std::vector<bool> usable = usable_vertices(measurements);
   const auto length = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), true));

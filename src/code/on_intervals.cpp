@@ -16,7 +16,7 @@ bool overlap(const OnInterval& first, const OnInterval& second) {
   return second.rise <= first.fall + rounding;
 }
 
-/// Appends an interval, merging it with the last ones that it overlaps.
+/// Merges the interval with the last ones that it overlaps.
 void append(OnInterval next, std::vector<OnInterval>& on) {
   for (; !on.empty() && overlap(on.back(), next); on.pop_back())
     next = {std::min(on.back().rise, next.rise), std::max(on.back().fall, next.fall)};
@@ -50,7 +50,7 @@ std::vector<OnInterval> stretched(const std::vector<OnInterval>& on, double fact
     const double half = 0.5 * factor * (interval.fall - interval.rise);
     append({centre - half, centre + half}, longer);
   }
-  // The last interval may overlap the first one of the next period, and then further ones.
+  // The last interval may overlap the first ones of the next period.
   while (longer.size() > 1) {
     const OnInterval first{longer.front().rise + 1.0, longer.front().fall + 1.0};
     if (!overlap(longer.back(), first)) break;

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the first rule that prevents a conversion to rows.
+/// First rule that prevents a conversion to rows.
 std::optional<BrokenRule> not_rows(const CodeSet& code) {
   const std::string what = "code " + code.name();
   if (code.is_rows()) return std::nullopt;

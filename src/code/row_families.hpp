@@ -9,12 +9,12 @@
 namespace tofsmith {
 
 /// Truncated Fourier series: the shortest pulse within the peak factor, and rows cos and sin at f0,
-/// 2 f0, ...; if the number is odd, the last row is a cosine.
+/// 2 f0, ...; an odd last row is a cosine.
 CodeSet fourier_rows(int rows, const FamilyOptions& options);
 std::optional<BrokenRule> fourier_rows_misfit(int rows, const FamilyOptions& options);
 
-/// Histogram of K consecutive time gates of equal length; the pulse is as long as a gate, or longer
-/// if the peak factor requires it.
+/// Histogram of K consecutive gates of equal length; the pulse is as long, or longer if the peak
+/// factor requires it.
 CodeSet histogram_rows(int rows, const FamilyOptions& options);
 std::optional<BrokenRule> histogram_rows_misfit(int rows, const FamilyOptions& options);
 

@@ -13,8 +13,8 @@ namespace tofsmith {
 
 CodeSet square_code(int phase_steps, const FamilyOptions& options) {
   require(square_misfit(phase_steps, options));
-  // Taps that share an exposure split the period. Their light is on for half of the period, even if
-  // the peak factor then limits its mean to less than 1.
+  // Taps that share an exposure split the period; light is on for half of it, even if the peak
+  // factor then limits its mean to less than 1.
   const bool shared = options.taps > 2;
   const double open = shared ? 1.0 / options.taps : 0.5;
   const Waveform light = shared ? Waveform::binary({{0.0, 0.5}}, std::min(2.0, options.peak_factor))
@@ -32,7 +32,7 @@ CodeSet square_code(int phase_steps, const FamilyOptions& options) {
 CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
                                     const FamilyOptions& options) {
   require(pulsed_multi_frequency_misfit(low_steps, high_frequency, options));
-  // Quadrature or thirds of a period, with the shortest pulses that the steps can use.
+  // Quadrature or thirds of a period, with the shortest usable pulses.
   const double low_step = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 3.0;
   const double low_pulse = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 6.0;
   const double low_duty = std::max(1.0 / options.peak_factor, low_pulse);

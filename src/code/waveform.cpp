@@ -19,7 +19,7 @@ namespace tofsmith {
 namespace {
 constexpr double pi = std::numbers::pi;
 
-/// Splits intervals at the end of the period; the result is sorted and within [0, 1].
+/// Splits intervals at the end of the period, sorted within [0, 1].
 std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
   std::vector<OnInterval> pieces;
   for (const OnInterval& interval : on) {
@@ -35,8 +35,7 @@ std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
   return pieces;
 }
 
-/// Adds sign exp(-2 pi i n t) to sum n. Works in blocks: a block is its first factor times the
-/// first block.
+/// Adds sign exp(-2 pi i n t) to sum n. Each block is its first factor times the first block.
 void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
   constexpr Eigen::Index block = 64;
   const auto turn = [&](Eigen::Index n) {
@@ -51,9 +50,9 @@ void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
   }
 }
 
-/// Returns a sum of cosines at t = (j + offset) / points, j = 0, ..., points - 1.
+/// Sum of cosines at t = (j + offset) / points, j = 0, ..., points - 1.
 Eigen::VectorXd values_of(const Eigen::VectorXcd& coefficients, int points, double offset) {
-  // Harmonics above points / 2 alias to lower ones, which is exact at these times.
+  // Harmonics above points / 2 alias to lower ones, which is exact here.
   Eigen::VectorXcd folded = Eigen::VectorXcd::Zero(points);
   folded[0] = coefficients[0];
   for (Eigen::Index n = 1; n < coefficients.size(); ++n) {
@@ -70,7 +69,7 @@ Eigen::VectorXd values_of(const Eigen::VectorXcd& coefficients, int points, doub
   return values;
 }
 
-/// Points per period that resolve a sum of cosines: 64 or more per period of its highest harmonic.
+/// Points per period: 64 or more per period of the highest harmonic.
 int resolving_points(const Eigen::VectorXcd& coefficients) {
   return std::max(256, 64 * static_cast<int>(coefficients.size() - 1));
 }
@@ -196,7 +195,7 @@ Eigen::VectorXd Waveform::cell_averages(int samples) const {
   require(samples >= 1, "samples", samples, "must be >= 1");
   if (samples_.size() == samples) return samples_;
   if (coefficients_.size() > 0) {
-    // Averaging over a cell multiplies harmonic n by sin(x) / x with x = pi n / samples.
+    // An average over a cell multiplies harmonic n by sin(x) / x with x = pi n / samples.
     Eigen::VectorXcd averaged = coefficients_;
     for (Eigen::Index n = 1; n < averaged.size(); ++n) {
       const double x = pi * static_cast<double>(n) / samples;
@@ -253,7 +252,7 @@ Eigen::VectorXcd Waveform::harmonics(int highest) const {
   const int size = static_cast<int>(samples_.size());
   Eigen::VectorXcd spectrum;
   PeriodicTransform(size).forward(samples_, spectrum);
-  // Each sample is constant over its cell: sin(x) / x exp(-i x) with x = pi n / size.
+  // Constant within a cell: sin(x) / x exp(-i x) with x = pi n / size.
   Eigen::VectorXcd held(size);
   for (int k = 0; k < size; ++k) {
     const std::complex<double> dft = k <= size / 2 ? spectrum[k] : std::conj(spectrum[size - k]);

@@ -6,12 +6,11 @@
 
 namespace tofsmith {
 
-/// Gated ramp: the gain rises over the period in the first exposure, is constant in the second to
-/// measure the signal, and the light is off in the third to measure ambient light. K = 3.
+/// Gated ramp: a rising gain in the first exposure, a constant gain in the second to measure the
+/// signal, and no light in the third to measure ambient light. K = 3.
 CodeSet single_ramp_code(const FamilyOptions& options);
 
-/// A rising and a falling ramp, whose ratio determines depth, and an exposure with the light off to
-/// measure ambient light. K = 3.
+/// A rising and a falling ramp, whose ratio determines depth, and an exposure without light. K = 3.
 CodeSet double_ramp_code(const FamilyOptions& options);
 
 }  // namespace tofsmith
