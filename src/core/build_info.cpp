@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Instruction sets with compiled kernels; better ones have lower bits.
+/// Better instruction sets have lower bits.
 std::vector<std::string> compiled_targets() {
   std::vector<std::string> names;
   for (std::uint64_t left = HWY_TARGETS; left != 0; left &= left - 1)

@@ -16,7 +16,7 @@ ThinSvd thin_svd(const Eigen::MatrixXd& matrix) {
   try {
     svd->compute(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
   } catch (const std::bad_alloc&) {
-    // After this exception Eigen's destructor would free memory twice, so leak the object instead.
+    // Eigen's destructor would free memory twice after this exception, so leak the object.
     [[maybe_unused]] const auto* const leaked = svd.release();
     throw;
   }

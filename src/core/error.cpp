@@ -34,7 +34,7 @@ std::optional<std::string> text_of(const std::optional<BrokenRule>& broken) {
 }
 
 int edit_distance(std::string_view a, std::string_view b) {
-  // Three rows of the optimal string alignment table; the oldest is needed for swaps.
+  // Three rows of the optimal string alignment table; swaps need the oldest.
   std::vector<int> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) above[j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {

@@ -28,7 +28,7 @@ KeyDescription& KeyList::add(const Key& key, ValueType type) {
 }
 
 void KeyList::visit(const Key& key, const Value& value) {
-  // In the order of the alternatives of Value.
+  // Order of the alternatives of Value.
   constexpr std::array<ValueType, std::variant_size_v<Value>> types = {
       ValueType::boolean,        ValueType::integer,     ValueType::number,
       ValueType::text,           ValueType::numbers,     ValueType::integers,

@@ -24,16 +24,15 @@ constexpr EnumWords<DistortionModel, distortion_models.size()> model_words("Dist
                                                                            "distortion_model",
                                                                            distortion_models);
 
-/// Distorted position, and its derivative with respect to the position.
+/// Distorted position and its derivative.
 struct Imaged {
   Vector2d image;
   Matrix2d slope;
 };
 
-/// OpenCV's formulas with all coefficients.
 class OpenCvFormula {
  public:
-  /// @param cross  factor of p1 x y and p2 x y; 1 in rational-6kt
+  /// @param cross  1 in rational-6kt
   explicit OpenCvFormula(const std::vector<double>& given, double cross = 2.0) : cross_(cross) {
     std::copy_n(given.begin(), std::min(given.size(), c_.size()), c_.begin());
   }
@@ -47,7 +46,7 @@ class OpenCvFormula {
                  below_dq = k4 + q * (2 * k5 + 3 * q * k6);
     const double radial = above / below;
     const double dq = (above_dq - radial * below_dq) / below;
-    // The thin prism terms depend only on q = r^2.
+    // Thin prism terms depend only on q = r^2.
     const double x_dq = s1 + 2 * q * s2, y_dq = s3 + 2 * q * s4;
     Imaged result;
     result.image = {
@@ -61,7 +60,6 @@ class OpenCvFormula {
     return result;
   }
 
-  /// The formula applies to ideal positions directly.
   static Vector2d of_ideal(const Vector2d& ideal) { return ideal; }
   static std::optional<Vector2d> ideal_of(const Vector2d& place) { return place; }
 
@@ -106,8 +104,8 @@ auto with_formula(const LensDistortion& distortion, const Use& use) {
   return use(OpenCvFormula(given, distortion.model == DistortionModel::opencv ? 2.0 : 1.0));
 }
 
-/// Finds the position near `start` with image `target` by Newton's method. None if it would be on
-/// another fold: orientation reversed, or the path bends too much.
+/// Newton's method. None if the position would be on another fold: orientation reversed, or the
+/// path bends too much.
 template <typename Formula>
 std::optional<Vector2d> next_place(const Formula& formula, const Vector2d& start,
                                    const Vector2d& target) {
@@ -135,7 +133,7 @@ struct Followed {
   double reach;  ///< fraction of the path
 };
 
-/// Returns true if a position is beyond max_radius.
+/// Returns true beyond max_radius.
 template <typename Formula>
 bool is_beyond(const Formula& formula, const Vector2d& place, std::optional<double> max_radius) {
   if (!max_radius) return false;
@@ -143,8 +141,8 @@ bool is_beyond(const Formula& formula, const Vector2d& place, std::optional<doub
   return !ideal || ideal->norm() > *max_radius;
 }
 
-/// Follows the straight line from the axis to an image and tracks the position, so that it stays on
-/// the first fold.
+/// Follows the straight line from the axis to an image, so that the position stays on the first
+/// fold.
 /// @param first_step  fraction of the line; reduced where the path bends
 template <typename Formula>
 Followed follow(const Formula& formula, const Vector2d& image, double first_step,
@@ -189,7 +187,7 @@ double LensDistortion::reach(const Vector2d& distorted) const {
     const Followed way = follow(formula, distorted, careful_step, max_radius);
     if (is_beyond(formula, way.place, max_radius)) return 1.0;
     if (formula.ideal_of(way.place)) return way.reach;
-    // Image of the fisheye's right angle in this direction.
+    // The fisheye's right angle in this direction.
     const Vector2d edge = (0.5 * std::numbers::pi / way.place.norm()) * way.place;
     return std::min(way.reach, formula(edge).image.norm() / distorted.norm());
   });

@@ -10,7 +10,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the next product of 2, 3 and 5, for which transforms are fast.
+/// Next product of 2, 3 and 5, for fast transforms.
 int fast_length(int least) {
   for (int length = least;; ++length) {
     int rest = length;
@@ -20,7 +20,6 @@ int fast_length(int least) {
   }
 }
 
-/// Returns the reach of a kernel, limited by the size of the image.
 int reach(int kernel_size, int image_size) { return std::min(kernel_size / 2, image_size - 1); }
 
 }  // namespace
@@ -71,8 +70,7 @@ Image<float> PaddedConvolution::apply(const Image<float>& image) const {
   for (int v = 0; v < height_; ++v)
     for (int u = 0; u < width_; ++u) padded(v, u) = static_cast<double>(image(v, u));
   Halves halves = of_rows(padded, height_);
-  // Product of a column a + i b with the kernel's c + i d; a, b, c and d are transforms of real
-  // signals.
+  // Column a + i b times kernel c + i d, with transforms a, b, c and d of real signals.
   Eigen::VectorXcd a, b;
   Eigen::VectorXd values;
   for (Eigen::Index c = 0; c < real_.cols(); ++c) {
@@ -98,7 +96,7 @@ Image<float> PaddedConvolution::apply(const Image<float>& image) const {
 double PaddedConvolution::bytes(const Image<float>& kernel, int height, int width) {
   const double rows = fast_length(height + reach(kernel.height, height));
   const double columns = fast_length(width + reach(kernel.width, width));
-  return 24.0 * rows * columns;  // spectra of the kernel, and halves of the image
+  return 24.0 * rows * columns;  // kernel, and halves of the image
 }
 
 }  // namespace tofsmith

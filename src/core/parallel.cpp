@@ -9,8 +9,7 @@
 #include "core/shared/working_threads.hpp"
 #include "tofsmith/core/error.hpp"
 
-// The thread sanitizer reports false races in Debian's TBB, which is not instrumented. Sanitizer
-// builds use the threads below instead, so that it detects races in our own code.
+// Debian's TBB is not instrumented, so the thread sanitizer would report false races.
 #if defined(__SANITIZE_THREAD__)
 #include <atomic>
 #include <exception>
@@ -84,7 +83,7 @@ int working_threads() { return allowed_threads; }
 #elif defined(TOFSMITH_HAS_TBB)
 namespace {
 
-/// Arena for more threads than cores; null: TBB's default, which never exceeds the cores.
+/// Arena for more threads than cores; null: TBB's default.
 std::atomic<tbb::task_arena*> wide_arena = nullptr;
 
 int allowed_parallelism() {
@@ -102,8 +101,7 @@ int working_threads() {
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   const auto run = [&] {
-    // If an enclosing task group is cancelled, TBB skips the remaining iterations but returns
-    // normally.
+    // If an enclosing task group is cancelled, TBB skips iterations but returns normally.
     tbb::task_group_context own;
     tbb::parallel_for(
         std::int64_t{0}, count, [&](std::int64_t i) { work(i); }, own);
@@ -145,7 +143,7 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
   TOFSMITH_ASSERT_LT(std::int64_t{0}, block);
   const std::int64_t blocks = (count + block - 1) / block;
   const auto work_on = [&](std::int64_t b) { work({b * block, std::min(count, (b + 1) * block)}); };
-  parallel_for(blocks, std::ref(work_on));  // avoids a heap allocation
+  parallel_for(blocks, std::ref(work_on));  // without a heap allocation
 }
 
 ThreadLimit::ThreadLimit(int threads) {

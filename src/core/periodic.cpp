@@ -10,8 +10,7 @@
 namespace tofsmith {
 
 namespace {
-/// Eigen's transform caches plans by length, with scratch space, so it must not be shared between
-/// threads.
+/// Eigen's transform caches plans with scratch space, so it must not be shared between threads.
 Eigen::FFT<double>& plans_of_this_thread() {
 #ifdef EIGEN_FFTW_DEFAULT
   // All threads share FFTW's planner.

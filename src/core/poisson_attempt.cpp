@@ -23,8 +23,7 @@ double log_factorial(double n) {
   return table[static_cast<std::size_t>(n)];
 }
 
-/// ln of the probability of k; for k >= 16 by Stirling's series, which is then exact in double
-/// precision.
+/// ln of the probability of k; for k >= 16 by Stirling's series, exact in double precision.
 double log_probability(double k, double mean) {
   if (k < 16.0) return k * std::log(mean) - mean - log_factorial(k);
   const double r = 1.0 / k, r2 = r * r;

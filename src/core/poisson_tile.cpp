@@ -42,7 +42,7 @@ HWY_INLINE Double open_uniform(const std::uint32_t* word) {
   return hn::Mul(hn::Add(number, all(0.5)), all(0x1p-32));
 }
 
-/// A vector of attempts, see attempted_poisson().
+/// Vector of attempts, see attempted_poisson().
 struct Attempt {
   HWY_INLINE Attempt(const std::uint32_t* u_word, const std::uint32_t* v_word, const double* means)
       : mean(hn::Max(hn::LoadU(Doubles(), means), all(min_rejection_mean))),
@@ -54,14 +54,13 @@ struct Attempt {
     const Double slope = hn::Add(hn::Div(hn::Add(a, a), us), b);
     k = hn::Floor(hn::Add(hn::MulAdd(slope, u, mean), all(0.43)));
   }
-  /// Accepted without evaluating the density, v <= 0.9277 - 3.6224 / (b - 2): four in five.
+  /// Accepted without evaluating the density (four in five): v <= 0.9277 - 3.6224 / (b - 2).
   HWY_INLINE auto is_quick() const {
     const Double room = hn::Sub(b, all(2.0));
     const auto is_low = hn::Le(hn::Mul(v, room), hn::MulAdd(all(0.9277), room, all(-3.6224)));
     return hn::And(hn::Ge(us, all(0.07)), is_low);
   }
-  /// Accepted by the density; requires k >= 16, where Stirling's series is exact in double
-  /// precision.
+  /// Accepted by the density; requires k >= 16, where Stirling's series is exact.
   HWY_INLINE auto is_below_density() const {
     const Doubles d;
     const Double inverse_alpha = hn::Add(all(1.1239), hn::Div(all(1.1328), hn::Sub(b, all(3.4))));
@@ -88,7 +87,7 @@ HWY_INLINE void store_mask(Mask mask, std::uint8_t* is_so) {
   for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) is_so[lane] = one[lane] > 0.0;
 }
 
-/// First attempts of all trials; counts with a mean below 10 are meaningless and drawn otherwise.
+/// Counts with a mean below 10 are meaningless and drawn otherwise.
 void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
                    const double* mean, double* count, std::uint8_t* is_accepted) {
   for (int i = 0; i < trials; i += lanes_of(Doubles())) {
@@ -98,7 +97,7 @@ void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int
   }
 }
 
-/// Attempts; acceptance is not valid for counts below 16.
+/// Acceptance is not valid for counts below 16.
 void full_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
                   const double* mean, double* count, std::uint8_t* is_accepted) {
   for (int i = 0; i < trials; i += lanes_of(Doubles())) {
@@ -130,7 +129,6 @@ std::uint32_t block_of(int draw, std::uint32_t number) {
   return first_poisson_block + static_cast<std::uint32_t>(draw) * blocks_per_draw + number;
 }
 
-/// Scalar version for one stream.
 std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t block, int i) {
   const r123::Philox4x32::ctr_type counter = {
       {block, streams.first_trial + static_cast<std::uint32_t>(i),
@@ -142,7 +140,7 @@ std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t
   return {words[0], words[1], words[2], words[3]};
 }
 
-/// Trials without an accepted count, stored contiguously.
+/// Trials without an accepted count.
 struct OpenTrials {
   int size = 0;
   std::array<int, trials_per_tile> trial;
@@ -154,7 +152,7 @@ struct OpenTrials {
     trial[static_cast<std::size_t>(size)] = i;
     mean[static_cast<std::size_t>(size++)] = mean_;
   }
-  /// Makes one attempt per trial; accepted counts are moved to `counts`.
+  /// One attempt per trial; accepted counts move to `counts`.
   void attempt(double* counts) {
     for (std::size_t i = static_cast<std::size_t>(size); i % 8 != 0; ++i) {
       mean[i] = min_rejection_mean;  // fills the last vector

@@ -51,8 +51,7 @@ double RandomStream::normal() {
 
 double RandomStream::poisson(double mean) {
   if (!(mean > 0.0)) return 0.0;
-  // Above 1e9 the standard deviation is below 3e-5 of the mean, and the normal approximation is
-  // accurate to all digits that a double count can hold.
+  // Above 1e9 the normal approximation is accurate to all digits that a double count can hold.
   if (mean > 1e9) return std::round(mean + std::sqrt(mean) * normal());
   for (;;) {
     const result_type first = (*this)(), second = (*this)();
@@ -62,7 +61,7 @@ double RandomStream::poisson(double mean) {
 }
 
 std::uint64_t combine_keys(std::uint64_t a, std::uint64_t b) {
-  // Finalizer of SplitMix64 over a weighted sum, which decorrelates the keys of different pairs.
+  // Finalizer of SplitMix64 over a weighted sum, which decorrelates keys.
   std::uint64_t z = a * 0x9e3779b97f4a7c15ull + b + 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;

@@ -20,11 +20,10 @@ constexpr std::uint32_t multiplier_0 = 0xD2511F53, multiplier_2 = 0xCD9E8D57;
 constexpr std::uint32_t step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
 constexpr int rounds = 10;
 
-/// 64-bit words; only the lower halves are used.
+/// Only the lower halves are used.
 using Wide = hn::CappedTag<std::uint64_t, 8>;
 using WideVector = hn::Vec<Wide>;
 
-/// Product of the lower halves.
 HWY_INLINE WideVector product(WideVector a, std::uint32_t b) {
 #if HWY_TARGET == HWY_SCALAR
   const Wide d;
@@ -58,7 +57,7 @@ void words(const TrialStreams& streams, std::uint32_t block, int trials, std::ui
   const auto item_low = hn::Set(d, streams.work_item & 0xffffffffu);
   const auto item_high = hn::Set(d, streams.work_item >> 32);
   auto trial = hn::Iota(d, streams.first_trial);
-  // Two vectors at a time hide the latency of multiplications.
+  // Two vectors hide the latency of multiplications.
   for (int i = 0; i < trials; i += 2 * lanes) {
     const auto next = hn::Add(trial, hn::Set(d, static_cast<std::uint64_t>(lanes)));
     WideVector a0 = draw, a1 = trial, a2 = item_low, a3 = item_high;

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Compares two raw numbers; NaN equals NaN.
+/// NaN equals NaN.
 bool is_same_number(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 bool is_same_list(const std::vector<double>& a, const std::vector<double>& b) {

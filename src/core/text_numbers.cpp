@@ -22,7 +22,7 @@ std::optional<double> take_number(std::string_view& text) {
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   return number;
 #else
-  // Emscripten lacks std::from_chars for doubles; its strtod() ignores the locale.
+  // Emscripten lacks std::from_chars for doubles; strtod() ignores its locale.
   const std::string_view digits = text.substr(0, text.find_first_not_of("0123456789.e-+"));
   if (digits.empty() || digits.front() == '+') return std::nullopt;
   const std::string copy(digits);

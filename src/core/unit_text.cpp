@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// A unit with a prefix, such as "klx": `factor` times `base`.
+/// "klx": `factor` times `base`.
 struct PrefixedUnit {
   double factor;
   std::string_view base;
@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// Returns the unit in the spelling of unit_of_key().
+/// Spelling of unit_of_key().
 std::string_view spelling(std::string_view unit) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> others = {
       {{"lux", "lx"},
@@ -42,14 +42,14 @@ std::string_view spelling(std::string_view unit) {
   return unit;
 }
 
-/// Splits a unit whose name begins with a prefix.
+/// Splits a unit with a prefix.
 PrefixedUnit base_of(std::string_view unit) {
   if (unit == "klx") return {1e3, "lx"};
   if (unit == "MB") return {1e6, "B"};
   return {1.0, unit};
 }
 
-/// Returns the factor that converts from `written` to `unit`; none if the base units differ.
+/// Factor from `written` to `unit`; none if the base units differ.
 std::optional<double> factor_of(std::string_view written, const PrefixedUnit& unit) {
   constexpr std::array<std::pair<std::string_view, double>, 11> prefixes = {{{"", 1.0},
                                                                              {"f", 1e-15},

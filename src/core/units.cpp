@@ -11,7 +11,7 @@
 namespace tofsmith {
 
 std::string_view unit_of_key(std::string_view name) {
-  // Longer endings come first: "_e_per_s" also ends with "_s".
+  // "_e_per_s" also ends with "_s".
   constexpr std::array<std::pair<std::string_view, std::string_view>, 23> units = {{
       {"_e_per_s", "e/s"},
       {"_e_per_dn", "e/DN"},

@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// Mask of the lowest 0 to 64 bits.
+/// Lowest 0 to 64 bits.
 constexpr std::uint64_t mask_of(int bits) {
   return bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
 }

@@ -4,11 +4,10 @@
 
 namespace tofsmith {
 
-/// Probability that a chi-square variable with `degrees` >= 1 degrees of freedom exceeds `value` >=
-/// 0.
+/// Probability that a chi-square variable with `degrees` >= 1 exceeds `value` >= 0.
 double chi_square_tail(double value, int degrees);
 
-/// Value that a chi-square variable exceeds with probability `rate` in (0, 1).
+/// Inverse of chi_square_tail() for `rate` in (0, 1).
 double chi_square_quantile_of_tail(double rate, int degrees);
 
 }  // namespace tofsmith

@@ -14,12 +14,11 @@
 
 namespace tofsmith {
 
-/// Words for the values 0 to Count - 1 of an enumeration.
+/// Words for the values 0 to Count - 1.
 template <typename Enum, std::size_t Count>
 class EnumWords {
  public:
-  /// @param type   name of the enumeration
-  /// @param field  name of the setting
+  /// @param type, field  names of the enumeration and of the setting
   template <typename... Words>
   constexpr EnumWords(std::string_view type, std::string_view field, Words... words)
       : type_(type), field_(field), words_{words...} {
@@ -30,10 +29,9 @@ class EnumWords {
                       const std::array<std::string_view, Count>& words)
       : type_(type), field_(field), words_(words) {}
 
-  /// Words in the order of the values.
   std::span<const std::string_view, Count> all() const { return words_; }
 
-  /// @throws std::invalid_argument if the enumeration has no such value
+  /// @throws std::invalid_argument if there is no such value
   std::string_view of(Enum value) const {
     const auto at = static_cast<std::size_t>(value);
     require(at < Count, type_, at, fmt::format("must be in [0, {}]", Count - 1));

@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Returns the average of periodic columns over exponential delays, exact for linear interpolation
-/// between rows:
+/// Average of periodic columns over exponential delays, exact for linear interpolation between
+/// rows:
 ///   y(n) = integral_0^inf exp(-u / mean) / mean x(n + u) du,  rows modulo their number
 /// @param table      (N, columns), N >= 1
 /// @param mean_rows  mean delay in rows, > 0

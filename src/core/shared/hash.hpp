@@ -8,8 +8,7 @@
 
 namespace tofsmith {
 
-/// 64-bit FNV-1a of the bytes of `text`, identical on all machines and in all versions, so it may
-/// be stored. Not cryptographically secure.
+/// 64-bit FNV-1a, identical on all machines and in all versions; not cryptographically secure.
 constexpr std::uint64_t fnv1a_64(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const char c : text) {
@@ -19,8 +18,8 @@ constexpr std::uint64_t fnv1a_64(std::string_view text) {
   return hash;
 }
 
-/// 128-bit FNV-1a of the bytes of `text` as 32 hexadecimal digits, for large sets of keys in which
-/// 64 bits could collide. Identical on all machines and in all versions.
+/// 128-bit FNV-1a as 32 hexadecimal digits, for large sets of keys in which 64 bits could collide.
+/// Identical on all machines and in all versions.
 std::string fnv1a_128_hex(std::string_view text);
 
 }  // namespace tofsmith

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// "[1, 2.5]", as lists are written in documents and messages.
+/// "[1, 2.5]".
 template <typename Number>
 std::string list_text(const std::vector<Number>& values) {
   return fmt::format("[{}]", fmt::join(values, ", "));

@@ -4,7 +4,7 @@
 
 namespace tofsmith {
 
-/// Combines lambdas into one function object for std::visit.
+/// Lambdas as one function object for std::visit.
 template <typename... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;

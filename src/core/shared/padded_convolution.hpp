@@ -9,19 +9,18 @@
 
 namespace tofsmith {
 
-/// Convolution of images of one size with a kernel; values outside the image are 0.
+/// Convolution of images of one size; values outside are 0.
 class PaddedConvolution {
  public:
-  /// @param kernel  (2 R + 1, 2 Q + 1), centred; parts beyond the size of the image are ignored
+  /// @param kernel  (2 R + 1, 2 Q + 1), centred; parts beyond the image are ignored
   PaddedConvolution(const Image<float>& kernel, int height, int width);
 
-  /// @param image  of the size given to the constructor
   Image<float> apply(const Image<float>& image) const;
-  /// Memory of a convolution in addition to its image [bytes].
+  /// Additional memory [bytes].
   static double bytes(const Image<float>& kernel, int height, int width);
 
  private:
-  /// Row transforms of an image: real and imaginary parts, (rows, columns / 2 + 1) each.
+  /// Row transforms: real and imaginary parts, (rows, columns / 2 + 1) each.
   struct Halves {
     Eigen::MatrixXd real, imaginary;
   };
@@ -29,7 +28,7 @@ class PaddedConvolution {
 
   int height_, width_;
   PeriodicTransform along_row_, along_column_;
-  Eigen::MatrixXcd real_, imaginary_;  // kernel: column transforms of both halves
+  Eigen::MatrixXcd real_, imaginary_;  // column transforms of the kernel's halves
 };
 
 }  // namespace tofsmith

@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// Real Fourier transform of a periodic signal of N samples, without the end point.
+/// Real Fourier transform of a periodic signal of N samples,
 ///   X[k] = sum_n x[n] exp(-2 pi i k n / N),  k = 0, ..., N/2
 /// Plans are cached per thread and length; objects may be shared between threads.
 class PeriodicTransform {
@@ -15,28 +15,27 @@ class PeriodicTransform {
   explicit PeriodicTransform(int samples);
 
   int samples() const { return samples_; }
-  /// Number of independent coefficients, N/2 + 1.
+  /// N/2 + 1.
   int coefficients() const { return samples_ / 2 + 1; }
 
-  /// Computes the half spectrum (N/2 + 1) of `signal` (N).
   void forward(const Eigen::VectorXd& signal, Eigen::VectorXcd& spectrum) const;
-  /// Computes the signal (N) from its half spectrum (N/2 + 1); inverse(forward(x)) = x.
+  /// inverse(forward(x)) = x.
   void inverse(const Eigen::VectorXcd& spectrum, Eigen::VectorXd& signal) const;
 
  private:
   int samples_;
 };
 
-/// (a * b)[n] = sum_j a[j] b[n - j], indices modulo N.
+/// (a * b)[n] = sum_j a[j] b[n - j], modulo N.
 Eigen::VectorXd circular_convolution(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
-/// (a corr b)[z] = sum_n a[n] b[n - z], indices modulo N: the match of a with b delayed by z.
+/// (a corr b)[z] = sum_n a[n] b[n - z], modulo N: the match of a with b delayed by z.
 Eigen::VectorXd circular_correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
-/// Circular total variation: sum_n |x[n + 1] - x[n]|, indices modulo N.
+/// sum_n |x[n + 1] - x[n]|, modulo N.
 double circular_total_variation(const Eigen::VectorXd& x);
 
-/// x[n - shift], indices modulo N: delays the signal by `shift` samples.
+/// x[n - shift], modulo N.
 Eigen::VectorXd circular_shift(const Eigen::VectorXd& x, int shift);
 
 }  // namespace tofsmith

@@ -9,9 +9,9 @@
 
 namespace tofsmith {
 
-/// Calls use(number, length, done) for every run of the pixels [first, first + count) within one
-/// row: pointer to the first number, number of pixels, and number of pixels in previous runs.
-/// Pixels of a run are column_stride apart, their measurements measurement_stride.
+/// Calls use(number, length, done) for every run of pixels within a row: pointer to the first
+/// number, number of pixels, and number of pixels before. Pixels of a run are column_stride apart,
+/// their measurements measurement_stride.
 template <typename Use>
 void for_each_run(const RawView& view, std::int64_t first, std::int64_t count, const Use& use) {
   std::visit(

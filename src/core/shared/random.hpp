@@ -8,9 +8,8 @@
 
 namespace tofsmith {
 
-/// Random numbers that depend only on their purpose: Philox4x32-10 with key = seed and counter =
-/// (draw, trial, work item). Any thread or process draws the same numbers for an item, in any order
-/// of work.
+/// Philox4x32-10 random numbers with key = seed and counter = (draw, trial, work item): an item has
+/// the same numbers in any thread or process and in any order of work.
 /// @see Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011 (Random123)
 class RandomStream {
  public:
@@ -24,9 +23,9 @@ class RandomStream {
   result_type operator()();
   /// Uniform on [0, 1), 53 random bits.
   double uniform();
-  /// Standard normal (Box-Muller; the second number of a pair is kept for the next call).
+  /// Standard normal (Box-Muller; keeps the second number of a pair).
   double normal();
-  /// Number of events of a Poisson process with this mean; 0 if mean <= 0.
+  /// Poisson count; 0 if mean <= 0.
   double poisson(double mean);
 
  private:
@@ -37,7 +36,6 @@ class RandomStream {
   std::optional<double> spare_normal_;
 };
 
-/// Combines keys to one 64-bit key, for work items identified by several numbers.
 std::uint64_t combine_keys(std::uint64_t a, std::uint64_t b);
 
 }  // namespace tofsmith

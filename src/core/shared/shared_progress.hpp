@@ -11,18 +11,16 @@
 
 namespace tofsmith {
 
-/// Progress of a parallel loop, which can be cancelled between its pieces. Any thread reports
-/// completed pieces; the callback is called only from the thread that created this object, at a
-/// limited rate, so that small pieces have no overhead.
+/// Progress of a parallel loop, which can be cancelled between its pieces. The callback is called
+/// only from the thread that created this object, at a limited rate.
 class SharedProgress {
  public:
-  /// Reports the start of `step`.
   /// @param pieces  total number
   /// @throws Interrupted if the callback cancels
   SharedProgress(Progress progress, double pieces, std::string step);
 
-  /// Adds completed pieces, possibly fractions.
-  /// @throws Interrupted on every thread after the callback has cancelled
+  /// Adds completed pieces, possibly fractions. @throws Interrupted on every thread after
+  /// cancellation
   void add(double pieces = 1.0);
 
  private:

@@ -8,13 +8,13 @@
 
 namespace tofsmith {
 
-// Parsing of numbers and letters, independent of the locale.
+// Parsing independent of the locale.
 
-/// Removes a decimal number such as "-1.5e3" from the beginning of `text` and returns it. None if
-/// there is no number, or it is out of range.
+/// Removes a number such as "-1.5e3" from the beginning of a text; none if it is missing or out of
+/// range.
 std::optional<double> take_number(std::string_view& text);
 
-/// Parses all of `text` as a number, which may begin with a plus sign.
+/// Parses all of `text`, which may begin with a plus sign.
 std::optional<double> number_in(std::string_view text);
 
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -23,8 +23,7 @@ constexpr bool is_letter_or_digit(char c) { return is_letter(c) || is_digit(c); 
 constexpr char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
-/// Returns the letters and digits of a text in lower case: "Sample Interval" and "SAMPLE_INTERVAL"
-/// are equal.
+/// In lower case: "Sample Interval" and "SAMPLE_INTERVAL" are equal.
 std::string letters_and_digits(std::string_view text);
 constexpr char upper_case(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;

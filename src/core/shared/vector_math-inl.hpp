@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions of float vectors without approximate instructions: same bits on all CPUs
-// with the same instruction set. Compiled once per instruction set.
+// Elementary functions of float vectors, with the same bits on all CPUs of an instruction set.
+// Compiled once per instruction set.
 #if defined(TOFSMITH_CORE_VECTOR_MATH_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_CORE_VECTOR_MATH_INL_HPP
 #undef TOFSMITH_CORE_VECTOR_MATH_INL_HPP
@@ -22,8 +22,7 @@ namespace {
 
 using Words = hn::Vec<hn::RebindToUnsigned<Floats>>;
 
-/// 1 / sqrt(x) of a positive normal x, to the last bits: an initial guess from the exponent, then
-/// Newton's method. Finite for 0, so that x times the result is 0.
+/// 1 / sqrt(x) of a positive normal x, to the last bits, by Newton's method. Finite for 0.
 HWY_INLINE Vector reciprocal_sqrt(Vector x) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
@@ -35,7 +34,7 @@ HWY_INLINE Vector reciprocal_sqrt(Vector x) {
   return y;
 }
 
-/// ln x of a positive normal x, with a relative error of about 1e-7 (polynomial of Cephes' logf).
+/// ln x of a positive normal x, relative error about 1e-7 (polynomial of Cephes' logf).
 HWY_INLINE Vector natural_log(Vector x) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
@@ -56,7 +55,7 @@ HWY_INLINE Vector natural_log(Vector x) {
   return hn::MulAdd(e, all(0.693359375f), hn::Add(m, p));
 }
 
-/// Length of a vector of two normals, sqrt(-2 ln u), with u in (0, 1] from the upper 31 bits.
+/// sqrt(-2 ln u), with u in (0, 1] from the upper 31 bits.
 HWY_INLINE Vector normal_radius(Words word) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
@@ -66,7 +65,7 @@ HWY_INLINE Vector normal_radius(Words word) {
   return hn::Mul(square, reciprocal_sqrt(square));
 }
 
-/// A uniform point on the unit circle from the upper 24 bits (polynomials of Cephes' sinf, cosf).
+/// Uniform point on the unit circle from the upper 24 bits (polynomials of Cephes' sinf, cosf).
 HWY_INLINE void unit_circle(Words word, Vector& cosine, Vector& sine) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
@@ -74,8 +73,7 @@ HWY_INLINE void unit_circle(Words word, Vector& cosine, Vector& sine) {
   const auto part = hn::And(hn::ShiftRight<8>(word), hn::Set(du, 0x3fffff));
   const Vector turn =
       hn::Mul(hn::Add(hn::ConvertTo(d, hn::BitCast(di, part)), all(0.5f)), all(0x1p-22f));
-  // The angle is within an eighth of a turn of the centre of a quadrant, which is selected by the
-  // upper two bits.
+  // Within an eighth of a turn of the centre of a quadrant, which the upper two bits select.
   const Vector x = hn::Mul(hn::Sub(turn, all(0.5f)), all(1.57079632679f));
   const Vector x2 = hn::Mul(x, x);
   Vector s = hn::MulAdd(x2, all(-1.9515295891e-4f), all(8.3321608736e-3f));

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Vector types of all kernels: as wide as the instruction set supports, up to 64 bytes. Compiled
-// once per instruction set.
+// Vector types of all kernels, up to 64 bytes wide. Compiled once per instruction set.
 #if defined(TOFSMITH_CORE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOFSMITH_CORE_VECTORS_INL_HPP
 #undef TOFSMITH_CORE_VECTORS_INL_HPP
@@ -36,8 +35,8 @@ HWY_INLINE int lanes_of(Tag tag = {}) {
 HWY_INLINE Vector all(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE DoubleVector all(double value) { return hn::Set(Doubles(), value); }
 
-/// Returns the sum of all N lanes, added by halves: lane i + N/2 to lane i, then i + N/4, and so
-/// on. The order of hn::SumOfLanes differs between versions of Highway.
+/// Sum of all N lanes by halves: lane i + N/2 to lane i, then i + N/4, and so on. The order of
+/// hn::SumOfLanes differs between versions of Highway.
 template <typename Tag>
 HWY_INLINE hn::TFromD<Tag> sum_of_lanes(Tag, hn::Vec<Tag> lanes) {
   if constexpr (hn::MaxLanes(Tag()) == 1) {

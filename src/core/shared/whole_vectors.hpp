@@ -9,15 +9,14 @@ namespace tofsmith {
 
 constexpr int widest_vector = 16;  // floats, over all instruction sets
 
-/// Returns the smallest multiple of `multiple` that is >= `count`.
+/// Smallest multiple of `multiple` that is >= `count`.
 constexpr int rounded_up(int count, int multiple) {
   return (count + multiple - 1) / multiple * multiple;
 }
 
-/// Rounds a number of floats up to whole vectors of any width.
+/// Rounds up to whole vectors of any width.
 constexpr int whole_vectors(int count) { return rounded_up(count, widest_vector); }
 
-/// Converts values to single precision for kernels.
 inline std::vector<float> in_floats(const Eigen::VectorXd& values) {
   return {values.begin(), values.end()};
 }

@@ -4,7 +4,7 @@
 
 namespace tofsmith {
 
-/// Returns the maximum number of threads of parallel_for: all cores, or the current ThreadLimit.
+/// Maximum number of threads: all cores, or the current ThreadLimit.
 int working_threads();
 
 }  // namespace tofsmith
