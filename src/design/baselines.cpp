@@ -27,8 +27,7 @@ namespace {
 constexpr int samples_of_standard_codes = 360;
 constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pulse_s";
 
-/// Screening: trials per operating point, maximum ratio to the smallest error, and maximum number
-/// of codes. A first evaluation with fewer trials excludes poor codes.
+/// Quick screening: a first evaluation with fewer trials excludes poor codes.
 constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000, share_looked_at = 5;
 constexpr double contending = 1.12, far = 1.5;
 constexpr std::size_t max_contenders = 8, max_atlas_codes = 4;
@@ -63,7 +62,6 @@ std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, con
   return errors_m;
 }
 
-/// Uses fewer trials for poor codes. Infinite for null pointers.
 std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, const Camera& camera,
                                            std::uint64_t seed) {
   const int trials = trials_per_point(camera);

@@ -12,29 +12,28 @@
 
 namespace tofsmith {
 
-/// Returns true if taps, modulations and demodulations are equal.
 bool has_same_waveforms(const CodeSet& a, const CodeSet& b);
 
-/// Records why a code does not compete, in one line per reason.
+/// Records in one line per reason why codes do not compete.
 void leave_out(DesignResult& result, const std::string& name, const std::string& reason);
 
-/// Adds families, standard codes for exclusive taps, and the naive code of every target. Without
-/// explicit baselines the best of all families by a quick screening are added.
+/// Adds families, standard codes and the naive code of every target; without explicit baselines,
+/// the best of all families by a quick screening.
 void add_baselines(const Camera& camera, const DesignOptions& options,
                    const std::vector<TargetSet>& targets, DesignResult& result);
 
-/// Returns all built-in codes except suggested_baselines() with up to 10 measurements and
+/// Returns the built-in codes, except suggested_baselines(), with up to 10 measurements and
 /// frequencies within the bandwidth, at most 30 f0. Empty for three or more taps.
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options);
 
-/// Returns the error of a code by few trials with the random numbers of searches [m]: circular, or
+/// Returns the error of a code by few trials with the random numbers of searches [m], circular or
 /// linear at the best origin, as selected by the camera; infinite if the code determines no depth.
 double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options);
 
-/// Codes that may be the best on a camera, and why others are not among them.
+/// Codes that may be the best on a camera, and reasons that exclude others.
 struct Contenders {
-  std::vector<CodeSet> codes;                                ///< best first
-  std::map<std::string, std::vector<std::string>> left_out;  ///< names, grouped by reason
+  std::vector<CodeSet> codes;  ///< best first
+  std::map<std::string, std::vector<std::string>> left_out;
 };
 
 /// Returns up to eight families that a quick screening does not find clearly worse.
@@ -43,7 +42,7 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
 
 /// Returns the best codes of the nearest atlas cameras by a quick screening, best first, up to
 /// three per number of exposures. Empty if the options disable the atlas.
-/// @param trials  per operating point; none: 25000 for all points together, at least 1000 for each
+/// @param trials  per operating point; none: 25000 in total, at least 1000 each
 Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options,
                                   std::optional<int> trials = {});
 

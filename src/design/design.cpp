@@ -27,16 +27,14 @@ constexpr EnumWords<DesignMethod, 6> method_words("DesignMethod", "method",
 constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
                                                       "converged", "stalled", "iteration_limit");
 
-/// A code to be designed.
 struct Task {
   DesignMethod method;
   std::string name;
-  double effort;                      ///< share of the time, for the progress
+  double effort;
   std::optional<BrokenRule> why_not;  ///< reason if the camera is not supported
   std::function<std::vector<Candidate>(const Progress&)> run;
 };
 
-/// Error of a search that found no code.
 BrokenRule no_code_found(const std::string& name) {
   return broken(name, "none", "no code on the camera's chip clock distinguishes all depths");
 }
@@ -45,8 +43,7 @@ bool includes(DesignMethod asked, DesignMethod method) {
   return asked == method || asked == DesignMethod::best;
 }
 
-/// Returns true if a method supports a camera. Otherwise it throws if this method was requested, or
-/// records the reason if all methods were.
+/// Throws if this method was requested; otherwise records the reason.
 bool serves(DesignMethod method, const std::optional<BrokenRule>& why_not,
             const DesignOptions& options, DesignResult& result) {
   if (options.method == method) require(why_not);
@@ -54,7 +51,6 @@ bool serves(DesignMethod method, const std::optional<BrokenRule>& why_not,
   return !why_not;
 }
 
-/// Returns the starts of the optimization: atlas codes, then all other candidates.
 std::vector<CodeSet> starts_of(const std::vector<CodeSet>& atlas_codes,
                                const DesignResult& result) {
   std::vector<CodeSet> starts = atlas_codes;
@@ -63,8 +59,7 @@ std::vector<CodeSet> starts_of(const std::vector<CodeSet>& atlas_codes,
   return starts;
 }
 
-/// Returns the tasks: one for every target, then one for every number of exposures. They keep
-/// references to all five arguments.
+/// One task per target, then one per number of exposures. Tasks keep references to all arguments.
 std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                             const std::vector<TargetSet>& targets, const Contenders& atlas,
                             DesignResult& result) {
@@ -109,7 +104,6 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
   return tasks;
 }
 
-/// Loads the candidates of a task from an earlier run, or runs the task.
 std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
                                    const Progress& progress) {
   if (store.load)
@@ -168,8 +162,6 @@ void require_exposures(const Camera& camera, const DesignOptions& options) {
                         max_exposure_rows));
 }
 
-/// Designs square waves at frequencies of the camera's chip and ranks them with the requested
-/// baselines.
 DesignResult design_frequencies(const Camera& camera, const DesignOptions& options,
                                 const Progress& progress) {
   DesignResult result;
@@ -195,7 +187,6 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
     return design_frequencies(camera, options, progress);
   DesignResult result;
 
-  // 1. Choose the targets of the factorization, and add the baselines.
   std::vector<TargetSet> targets;
   if (includes(options.method, DesignMethod::factorize) &&
       serves(DesignMethod::factorize, why_not_factorizable(camera, options), options, result))
@@ -204,7 +195,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   const Contenders atlas = contending_atlas_codes(camera, options);
   add_atlas_codes(atlas, result);
 
-  // 2. Design codes. The direct optimization starts at the candidates found before it.
+  // The direct optimization starts at the candidates found before it.
   const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
@@ -218,7 +209,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
 
   if (options.split_exposures) add_split_exposures(camera, options, result, parts[1]);
 
-  // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
+  // Judge all with the same fresh random numbers.
   judge_candidates(camera, options, result, parts[2]);
   if (camera.sensor.readout == Readout::rows)
     if (auto note = dim_light_note(camera, result, options))

@@ -13,7 +13,6 @@ namespace tofsmith {
 /// Smallest share of the integration time that designs assign to an exposure.
 inline constexpr double min_exposure_share = 0.01;
 
-/// Returns the code with its provenance.
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
                   std::uint64_t seed);
 

@@ -17,15 +17,14 @@ namespace {
 
 std::string length_mm(const Estimate& e) { return estimate_mm_text(e) + " mm"; }
 
-/// Returns the best baseline other than the winner, or null. Atlas codes are no baselines because
-/// they were designed.
+/// Returns null if there is none. Atlas codes are no baselines, because they were designed.
 const Candidate* best_baseline(const DesignResult& result, DepthErrorMeasure measure) {
   for (const Candidate* c : by_geometric_mean_error(result, measure))
     if (c != &result.winner() && !c->is_designed() && c->method != "atlas") return c;
   return nullptr;
 }
 
-/// Returns " with 2 exposures" if the best of all codes has another number of exposures.
+/// Returns " with 2 exposures" if the best code has another number of exposures.
 std::string among_exposures(const DesignResult& result, DepthErrorMeasure measure,
                             const std::vector<int>& exposures) {
   const std::vector<const Candidate*> order = by_geometric_mean_error(result, measure);

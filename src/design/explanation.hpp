@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Explains the winner in three sentences: its lead over other codes; the effect of bandwidth and
-/// taps on its number of exposures; the limits of its error in dim and in bright light.
+/// Explains the winner in three sentences: its lead, its number of exposures, and the limits of its
+/// error in dim and in bright light.
 /// @param exposures  requested numbers of exposures; empty: any
 std::vector<std::string> explain(const Camera& camera, const DesignResult& result,
                                  const std::vector<int>& exposures = {});

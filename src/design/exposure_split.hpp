@@ -6,14 +6,14 @@
 
 namespace tofsmith {
 
-/// Moves integration time between the exposures of a code, in steps of 30, 10 and 3 % of the time
-/// of an exposure, and keeps the moves for which few trials find a smaller error.
+/// Moves integration time between the exposures in steps of 30, 10 and 3 %, and keeps the moves for
+/// which few trials find a smaller error.
 /// @return the code, with exposure_shares() if the error decreased
 CodeSet with_split_exposures(const CodeSet& code, const Camera& camera,
                              const DesignOptions& options);
 
-/// Adds a copy of each optimized and factorized code of several exposures, with exposures of
-/// different length and the same name; judge_candidates() keeps the better one. Does nothing for
+/// Adds a copy with exposures of different length and the same name for each optimized and
+/// factorized code of several exposures; judge_candidates() keeps the better one. Does nothing for
 /// cameras that list times.
 void add_split_exposures(const Camera& camera, const DesignOptions& options, DesignResult& result,
                          const Progress& progress);

@@ -13,8 +13,7 @@ namespace tofsmith {
 /// for k in [0, N/2], exact at the N bins. All ones without impulse responses.
 Eigen::VectorXcd grid_transfer(const Camera& camera, int samples);
 
-/// Returns the ratio of harmonic n of a correlation function to coefficient n mod N of its samples
-/// at the N bins:
+/// Returns the ratio of harmonic n of a correlation function to coefficient n mod N of its samples:
 ///   chi_n = shares[n] chi[n mod N] / N,  shares[n] = H(n) sinc^2(n / N) / G[n mod N],
 /// for n = 0, 1, ... while above 1e-12. Only with impulse responses; otherwise functions are linear
 /// between bins.

@@ -24,7 +24,6 @@ int measurements_per_exposure(const Sensor& sensor) {
   return sensor.readout == Readout::difference ? 1 : sensor.taps;
 }
 
-/// Returns a property of the camera if known, otherwise the reasons of the first candidates.
 BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                             const std::vector<std::string>& left_out) {
   if (camera.light.peak_factor <= 1.0)
@@ -65,7 +64,7 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                 fmt::format("no candidate can be used on this camera: {}", reasons));
 }
 
-/// Some targets have no code that determines depth; this is an error only if no candidate is left.
+/// This is an error only if no candidate is left.
 void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& options,
                                    DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {
@@ -78,7 +77,6 @@ void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& op
   if (result.candidates.empty()) require(why_no_candidate(camera, options, result.left_out));
 }
 
-/// Evaluates a candidate with new random numbers, at its best origin if requested.
 void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                CameraBounds& bounds, const Progress& progress) {
   EvaluateOptions judging;
@@ -110,7 +108,6 @@ void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOp
                  {.trials = std::min(options.trials, max_trials), .seed = options.seed}, progress);
 }
 
-/// Ranking errors [m], including the penalty for two-return errors.
 std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const Camera& camera,
                                const DesignOptions& options) {
   TwoReturnLimit two_returns(options.optimize.max_two_return_loss);
@@ -122,8 +119,8 @@ std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const C
   return ranking_m;
 }
 
-/// Keeps only the best of the candidates with the same name, in the place of the first. Then finds
-/// the winner, with a requested number of exposures if there is such a candidate.
+/// Keeps the best candidate of each name, then finds the winner, with a requested number of
+/// exposures if possible.
 void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vector<int>& exposures,
                             DesignResult& result) {
   std::vector<Candidate> kept;
@@ -188,7 +185,7 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
                       const Progress& progress) {
   leave_out_what_tells_no_depth(camera, options, result);
   CameraBounds bounds(camera);
-  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner comes last
+  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});
   const ProgressParts of_candidates(parts[0], result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});

@@ -10,15 +10,13 @@
 
 namespace tofsmith {
 
-/// Returns the seed for choosing codes and origins; judge() uses DesignOptions::seed.
+/// Seed for choosing codes and origins; judge() uses DesignOptions::seed.
 std::uint64_t search_seed(const DesignOptions& options);
 
-/// Returns true if candidates are moved to their best origin, which has no effect on the circular
-/// error without weighted depths.
+/// False for the circular error without weighted depths, which does not depend on the origin.
 bool rotates(const Camera& camera, const DesignOptions& options);
 
-/// Returns why a code measures no depth, or nothing: the camera does not support it, or its
-/// measurements do not determine depth.
+/// Returns why the camera cannot measure depth with a code, or nothing.
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
 /// @throws std::invalid_argument for invalid options or camera, or robust codes with

@@ -34,7 +34,6 @@ struct BestCode {
 
 using Codes = std::vector<const CodeSet*>;
 
-/// Rotates the code to its best origin if depths are weighted.
 CodeSet at_best_origin(const CodeSet& code, const Camera& camera, const DesignOptions& options) {
   if (!rotates(camera, options) || why_no_depth(code, camera)) return code;
   const EvaluateOptions search{.trials = options.trials, .seed = search_seed(options)};
@@ -52,9 +51,9 @@ class CodePool {
     design_.baselines = suggested_baselines(camera, design_);  // only these, for speed
   }
 
-  /// Adds atlas codes or, for an exact answer, the winner of a design, which starts from them.
-  /// @param exposures  numbers of exposures of designs; empty: as design() selects them
-  /// @param again      number of earlier designs for a similar camera; selects the seed
+  /// Adds atlas codes or, for an exact answer, the winner of a design.
+  /// @param exposures  of designs; empty: as design() selects them
+  /// @param again  number of earlier designs for a similar camera; selects the seed
   void add_codes_for(const Camera& camera, const std::vector<int>& exposures,
                      const Progress& progress, int again = 0) {
     design_.exposures = exposures;
@@ -63,8 +62,8 @@ class CodePool {
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
-  /// Returns the number of exposures of the best code on a camera, and numbers that differ from it
-  /// by up to `difference`. Empty for lookups in the atlas, which consider all numbers.
+  /// Returns numbers of exposures within `difference` of the best code's number. Empty for lookups
+  /// in the atlas.
   std::vector<int> exposures_near(const Camera& camera, int difference) const {
     if (!options_.exact) return {};
     const int best = best_on(camera, all()).code->exposures();
@@ -80,7 +79,6 @@ class CodePool {
     return codes;
   }
 
-  /// Codes that may be best on one of the cameras or between them.
   Codes contenders(const Camera& a, const Camera& b) const {
     const std::vector<double> on_a = first_errors(a, all()), on_b = first_errors(b, all());
     const double least_a = *std::min_element(on_a.begin(), on_a.end());
@@ -91,7 +89,6 @@ class CodePool {
     return codes;
   }
 
-  /// Returns the best code on a camera, after a screening with few trials.
   BestCode best_on(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first = first_errors(camera, codes);
     const double least_m = *std::min_element(first.begin(), first.end());
@@ -104,7 +101,7 @@ class CodePool {
     return best;
   }
 
-  /// Returns true if the best code reaches the requested error; few trials decide clear cases.
+  /// Few trials decide clear cases.
   bool suffice_on(const Camera& camera, const Codes& codes) const {
     constexpr double far = 1.25;
     const double least_m = least_first_error_m(camera, codes);
@@ -113,14 +110,12 @@ class CodePool {
     return best_on(camera, codes).error_m <= options_.error_m;
   }
 
-  /// Returns the smallest error, by first_trials().
   double least_first_error_m(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first_m = first_errors(camera, codes);
     return *std::min_element(first_m.begin(), first_m.end());
   }
 
  private:
-  /// Adds the families and the standard codes of exclusive taps.
   void add_standard_codes(const Camera& camera) {
     DesignResult standard;
     add_baselines(camera, design_, {}, standard);
@@ -143,8 +138,7 @@ class CodePool {
 
   int first_trials() const { return std::max(1000, options_.trials / (options_.exact ? 10 : 25)); }
 
-  /// Returns the error of each code by first_trials(). Codes are evaluated in parallel, because so
-  /// small a number of trials uses only one thread.
+  /// Evaluates codes in parallel, because few trials use only one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
@@ -212,13 +206,12 @@ double excluded_below(const Camera& camera, CameraQuantity quantity,
 }
 
 constexpr double stride = 4.0;  ///< factor between designs
-/// The error of each design is random by a few percent.
+/// The error of each design varies by a few percent.
 constexpr int end_designs = 3;
-/// Returns 1 for lookups in the atlas, because repeated lookups find the same codes.
+/// Repeated lookups in the atlas find the same codes.
 int designs_at_end(const RequirementOptions& options) { return options.exact ? end_designs : 1; }
 
-/// Scales the quantity by strides, with a design at each, until the requested error is bracketed;
-/// then bisects.
+/// Scales the quantity by strides, with a design at each, then bisects.
 Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
                            const RequirementOptions& options, CodePool& pool,
                            const Progress& progress) {
@@ -239,7 +232,6 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
                          [&](double factor) { return pool.suffice_on(on(factor), codes); });
   };
 
-  // 1. Strides up or down until the error is bracketed.
   const bool upwards = !suffices(1.0);
   double low = 1.0, high = 1.0;
   bool bracketed = false;
@@ -276,7 +268,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
     return finish(*least);
   }
 
-  // 2. Bisection, with new designs at the result while they lower it.
+  // New designs at the result while they lower it.
   least = least_within(low, high);
   for (int round = 0; round < designs_at_end(options); ++round) {
     design_at(*least, 1, part++, round);

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Softmax of the entries first, first + stride, ... with derivatives, in place.
+/// Softmax of the entries first, first + stride, ..., with derivatives, in place.
 void softmax(const Eigen::VectorXd& logits, Eigen::Index first, Eigen::Index stride,
              Eigen::VectorXd& shares, Eigen::MatrixXd& derivatives) {
   double largest = -1e300, sum = 0.0;
@@ -27,7 +27,7 @@ void softmax(const Eigen::VectorXd& logits, Eigen::Index first, Eigen::Index str
       derivatives(i, j) = shares[i] * ((i == j ? 1.0 : 0.0) - shares[j]);
 }
 
-/// Removes short pulses, then joins pulses with short gaps.
+/// Removes short pulses before short gaps.
 std::vector<OnInterval> without_short_runs(std::vector<OnInterval> on, double shortest_run) {
   std::erase_if(on, [&](const OnInterval& i) { return i.fall - i.rise < shortest_run; });
   std::vector<OnInterval> merged;
@@ -122,7 +122,6 @@ Waveform RunLengths::waveform(const Eigen::VectorXd& parameters, double shortest
     interval.rise = wrap(interval.rise, 1.0);
     interval.fall = interval.rise + width;
   }
-  // Without a removed pulse the light must not exceed the peak.
   const double level = shortest_duty_ > 0.0 ? 1.0 / std::max(duty, shortest_duty_) : 1.0;
   return Waveform::binary(within_period(std::move(on)), level);
 }

@@ -9,21 +9,21 @@
 namespace tofsmith {
 
 /// A binary waveform as the start of its first run and its run lengths (on, off, ...), in
-/// unconstrained parameters: all values are valid.
+/// unconstrained parameters.
 ///
 /// Without a duty limit: run lengths are shares (a softmax) of the period.
 /// With a shortest duty: duty = shortest + (1 - shortest) t^2; on-runs share the duty and off-runs
 /// the rest.
 class RunLengths {
  public:
-  /// @param shortest_duty  minimum duty; 0: no limit
+  /// @param shortest_duty  0: no limit
   RunLengths(const Waveform& waveform, double shortest_duty);
 
   Eigen::Index parameter_count() const { return parameters_.size(); }
   const Eigen::VectorXd& parameters() const { return parameters_; }
 
-  /// Computes the switching times rise, fall, ... (2 P), not wrapped, and their derivatives
-  /// (2 P, parameters).
+  /// Computes the switching times rise, fall, ... (2 P), not wrapped, and their derivatives (2 P,
+  /// parameters).
   void edges(const Eigen::VectorXd& parameters, Eigen::VectorXd& times,
              Eigen::MatrixXd& derivatives) const;
 
@@ -32,7 +32,6 @@ class RunLengths {
   Waveform waveform(const Eigen::VectorXd& parameters, double shortest_run) const;
 
  private:
-  /// Run lengths (2 P) and their derivatives.
   void runs(const Eigen::VectorXd& parameters, Eigen::VectorXd& lengths,
             Eigen::MatrixXd& derivatives) const;
 

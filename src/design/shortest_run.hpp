@@ -9,8 +9,7 @@ namespace tofsmith {
 /// Returns the camera's shortest pulse or gap [periods], or 0.
 double shortest_run_periods(const Camera& camera);
 
-/// Returns true if all pulses and gaps are at least this long, up to rounding; always for sampled
-/// waveforms.
+/// Tolerates rounding errors; always true for sampled waveforms.
 bool keeps_shortest_run(const Waveform& waveform, double shortest_run);
 
 bool keeps_shortest_run(const CodeSet& code, const Camera& camera);

@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Returns the highest harmonic at which both arms together have a gain of at least 1/25, the end
-/// of the band in the paper (1/5 per arm); 0 without band limit.
+/// Returns the highest harmonic at which both arms together have a gain of at least 1/25 (1/5 per
+/// arm in the paper); 0 without band limit.
 int useful_harmonics(const Camera& camera);
 
 }  // namespace tofsmith

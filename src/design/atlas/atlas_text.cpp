@@ -12,9 +12,8 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/design.hpp"
 
-// File format: version, then for each code a line `code` with camera and errors, and for each
-// exposure a line `light` and lines `gate` with switching times (rise, fall, ...) in 1/100000 of
-// the period. Comments start with #.
+// File format: version; per code a line `code` with camera and errors; per exposure a line `light`
+// and lines `gate` with switching times (rise, fall, ...) in 1/100000 of the period.
 namespace tofsmith {
 namespace {
 
@@ -35,7 +34,6 @@ class AtlasLines {
  public:
   AtlasLines(std::string_view text, std::string_view file) : rest_(text), file_(file) {}
 
-  /// Advances to the next line with content. Returns false at the end.
   bool next() {
     do {
       if (rest_.empty()) {

@@ -48,7 +48,7 @@ AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace 
           std::clamp(place.log_bandwidth, low.log_bandwidth, high.log_bandwidth)};
 }
 
-/// Nearest entries first; all must have the same number of exposures.
+/// Nearest first. All must have the same number of exposures.
 std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> entries,
                                                const AtlasPlace& camera, int cameras) {
   const AtlasPlace place = clamped_to(entries, camera);
@@ -67,7 +67,7 @@ std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> en
 }
 
 Waveform fitted_light(const Waveform& light, double from_peak_factor, double to_peak_factor) {
-  constexpr double whole = 0.98;  // of the peak; lower levels are intentional and kept
+  constexpr double whole = 0.98;  // of the peak; lower levels are intentional
   const double level = light.level();
   const double wanted = level >= whole * from_peak_factor
                             ? to_peak_factor * level / from_peak_factor

@@ -9,14 +9,14 @@
 
 namespace tofsmith {
 
-/// Returns a string that is equal exactly for codes whose correlation functions are equal up to
-/// delay, time reversal and order of taps and exposures.
+/// Returns a key that is equal exactly for codes whose correlation functions are equal up to delay,
+/// time reversal and order of taps and exposures.
 std::string symmetry_key(const ChipCode& code);
 
 struct ScoredCode {
   ChipCode code;
   double score = 0.0;
-  double share = 0.0;  ///< fraction of the search completed at that time
+  double share = 0.0;
   std::string key;
 };
 
@@ -27,17 +27,15 @@ class BestCodes {
 
   /// Returns the worst kept score, or infinity if there is room.
   double limit() const;
-  /// @return true if the code is now the best
   bool offer(const ChipCode& code, double score, double share);
   void merge(const BestCodes& other);
   const std::vector<ScoredCode>& codes() const { return codes_; }
-  /// Returns every code that was the best when added.
   const std::vector<ScoredCode>& improvements() const { return improvements_; }
 
  private:
   bool offer(ScoredCode code);
   std::size_t count_;
-  std::vector<ScoredCode> codes_;  // best first
+  std::vector<ScoredCode> codes_;
   std::vector<ScoredCode> improvements_;
 };
 

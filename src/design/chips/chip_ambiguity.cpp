@@ -15,14 +15,14 @@ namespace tofsmith {
 
 namespace {
 
-/// Integer vector of one depth without the ambient component; unused entries are 0.
+/// Direction at one depth without the ambient component; unused entries are 0.
 using Direction = std::array<std::int64_t, 16>;
 
-/// Directions at the corners s in [0, n) of the correlation functions. For a reference tap r that
-/// is not always closed, the null space of the map
+/// Directions at the corners of the correlation functions. For a reference tap r that is not always
+/// closed, the null space of the map
 ///   q_i = kappa_r C_i - C_r kappa_i,  i != r,
-/// is the ambient vector kappa. So two depths can have equal measurements exactly if their q have
-/// the same direction.
+/// is the ambient vector kappa. Two depths can have equal measurements exactly if their q have the
+/// same direction.
 std::vector<Direction> corner_directions(const ChipCode& code) {
   std::vector<std::int64_t> open;
   for (const ChipWord word : code.demodulation) open.push_back(std::popcount(word));
@@ -30,18 +30,18 @@ std::vector<Direction> corner_directions(const ChipCode& code) {
       static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
   std::vector<Direction> corners(static_cast<std::size_t>(code.chips), Direction{});
   for (int s = 0; s < code.chips; ++s)
-    for (int i = 0; i < code.measurements(); ++i)  // zero for i = r
+    for (int i = 0; i < code.measurements(); ++i)
       corners[static_cast<std::size_t>(s)][static_cast<std::size_t>(i)] =
           open[static_cast<std::size_t>(reference)] * code.correlation(i, s) -
           code.correlation(reference, s) * open[static_cast<std::size_t>(i)];
   return corners;
 }
 
-/// Returns the relation sum_j x_j columns_j = 0, if unique up to scale, by fraction-free
-/// elimination (Bareiss).
+/// Returns the unique relation sum_j x_j columns_j = 0, if any, by fraction-free elimination
+/// (Bareiss).
 std::optional<std::array<std::int64_t, 4>> only_relation(std::span<const Direction> columns) {
   const std::size_t width = columns.size(), height = Direction().size();
-  std::array<Direction, 4> rows{};  // of the transposed matrix
+  std::array<Direction, 4> rows{};
   std::array<std::array<std::int64_t, 4>, 4> combination{};
   for (std::size_t j = 0; j < width; ++j) {
     rows[j] = columns[j];
@@ -70,8 +70,8 @@ std::optional<std::array<std::int64_t, 4>> only_relation(std::span<const Directi
   return combination[width - 1];
 }
 
-/// Returns true if sum_j x_j columns_j = 0 for some x >= 0, x != 0. One such x then has a support
-/// with a unique relation, so it is sufficient to test all supports.
+/// Returns true if sum_j x_j columns_j = 0 for some x >= 0, x != 0. Some such x has a support with
+/// a unique relation, so testing all supports is sufficient.
 bool have_positive_relation(std::span<const Direction> columns) {
   for (unsigned support = 1; support < 1U << columns.size(); ++support) {
     std::array<Direction, 4> chosen{};
@@ -93,13 +93,11 @@ Direction negative(Direction vector) {
   return vector;
 }
 
-/// Returns true if the direction is constant or vanishes between two adjacent corners.
 bool stands_still(const Direction& here, const Direction& next) {
   return have_positive_relation(std::array{here, next}) ||
          have_positive_relation(std::array{here, negative(next)});
 }
 
-/// Returns true if the path of the directions reverses at the middle of three corners.
 bool turns_back(const Direction& before, const Direction& here, const Direction& next) {
   return have_positive_relation(std::array{before, negative(next), here}) ||
          have_positive_relation(std::array{before, negative(next), negative(here)});
@@ -124,7 +122,7 @@ bool is_ambiguous(const ChipCode& code) {
     if (turns_back(corner(s), corner(s + 1), corner(s + 2))) return true;
   for (std::size_t s = 0; s < n; ++s)
     for (std::size_t u = s + 2; u < n; ++u) {
-      if (u + 1 - s == n) continue;  // adjacent across the end of the period
+      if (u + 1 - s == n) continue;
       if (have_positive_relation(
               std::array{corner(s), corner(s + 1), negative(corner(u)), negative(corner(u + 1))}))
         return true;

@@ -14,7 +14,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Joins runs of chips across the end of the period.
 Waveform chip_waveform(ChipWord word, int chips, double level) {
   if (word == 0) return Waveform::constant(0.0);
   if (word == all_chips(chips)) return Waveform::constant(level);

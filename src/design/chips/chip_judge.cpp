@@ -22,7 +22,6 @@ constexpr std::array<double, nodes_per_chip> node_position = {
 constexpr std::array<double, nodes_per_chip> node_weight = {
     0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
 
-/// Returns true if two whole-chip depths have identical measurements.
 bool repeats(const ChipCode& code) {
   std::array<std::array<int, max_chip_measurements>, max_chips> corners{};
   for (int s = 0; s < code.chips; ++s) {
@@ -222,7 +221,7 @@ double ChipJudge::proven_margin_sigma(const ChipCode& code) const {
 }
 
 void ChipJudge::ask_no_more_than(const std::vector<ChipCode>& codes) {
-  std::vector<double> asked;  // margins of the best standard code
+  std::vector<double> asked;
   double largest_share = 0.0;
   for (const ChipCode& code : codes) {
     if (largest_share == 1.0) return;
@@ -239,7 +238,6 @@ void ChipJudge::ask_no_more_than(const std::vector<ChipCode>& codes) {
     largest_share = share;
     asked = std::move(kept);
   }
-  // Without a usable standard code the requested margin remains.
   if (!asked.empty()) asked_sigma_ = std::move(asked);
 }
 

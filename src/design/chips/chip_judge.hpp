@@ -23,7 +23,7 @@ struct FisherMatrix {
 
 inline constexpr int nodes_per_chip = 4;
 
-/// Adds the Fisher matrices of one exposure at all nodes (4 n).
+/// Adds one exposure at all nodes (4 n).
 void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, const ChipLight& light,
                   FisherMatrix* nodes);
 
@@ -31,12 +31,11 @@ void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, cons
 double mean_depth_variance(const FisherMatrix* nodes, int chips,
                            double limit = std::numeric_limits<double>::infinity());
 
-/// Returns gamma of a code [chips^2]; stops above `limit`.
 double chip_gamma(const ChipCode& code, const ChipLight& light,
                   double limit = std::numeric_limits<double>::infinity());
 
 /// Returns the Fisher matrix of one tap at the first of two adjacent depths, with the largest
-/// weight 1 / variance between them (at the darker end).
+/// weight 1 / variance between them.
 FisherMatrix largest_tap_fisher(int correlation, int next, int open_chips,
                                 double electrons_per_chip, const ChipLight& light);
 
@@ -52,15 +51,15 @@ class ChipJudge {
 
   /// Returns the geometric mean of gamma over the operating points [chips^2].
   double score(const ChipCode& code) const;
-  /// As score(), but any value above `limit` may replace a larger one. `nodes` contains the Fisher
-  /// matrices (points x 4 n) of all exposures but the last one.
+  /// Returns score(), or any value above `limit` if the score is larger. `nodes` contains the
+  /// Fisher matrices (points x 4 n) of all exposures except the last.
   double score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
                          double limit) const;
   std::vector<FisherMatrix> nodes_of(const ChipCode& code, int exposures) const;
 
-  /// Returns true for unambiguous codes that keep the margin at every point; counts failures.
+  /// Returns true for unambiguous codes with sufficient margin at every point; counts failures.
   bool is_safe(const ChipCode& code, ChipSearchCounts& counts) const;
-  /// Returns the smallest ratio of margin to required margin, as a sampled upper bound.
+  /// Returns an upper bound of the smallest ratio of margin to required margin, by sampling.
   double sampled_margin_share(const ChipCode& code) const;
   /// Returns the proven margin at the point with the smallest such ratio [sigma].
   double proven_margin_sigma(const ChipCode& code) const;
@@ -70,7 +69,6 @@ class ChipJudge {
 
   /// Converts a score to an RMS error [m].
   double rms_m(double score) const;
-  /// Returns true if neither modulation nor taps are constant and duties follow the options.
   bool is_allowed(const ChipCode& code) const;
 
  private:

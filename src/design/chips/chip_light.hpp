@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// Electrons at one operating point, per chip: a tap that is open for d chips and receives light of
+/// Electrons per chip at one operating point. A tap that is open for d chips and receives light of
 /// level L during c chips has
 ///   mean      signal_e L c + ambient_e d
 ///   variance  mean + constant_e2.
@@ -16,14 +16,12 @@ struct ChipLight {
   double constant_e2 = 0.0;
   double peak_factor = 1.0;
   int chips = 0;
-  double chip_m = 0.0;  ///< depth per chip
+  double chip_m = 0.0;
   bool is_known = false;
 
-  /// @throws std::invalid_argument as require_plain()
   ChipLight(const Camera& camera, const OperatingPoint& point, int chips, int exposures,
             ChipMetric metric = ChipMetric::unknown_light);
 
-  /// Returns the signal electrons per chip.
   double electrons_of(int on_chips) const {
     return signal_e * chip_level(on_chips, chips, peak_factor);
   }
@@ -32,7 +30,6 @@ struct ChipLight {
 /// Returns the unsupported property of a valid camera, if any.
 std::optional<BrokenRule> why_not_plain(const Camera& camera);
 
-/// @throws std::invalid_argument for an invalid camera or as why_not_plain()
 void require_plain(const Camera& camera);
 
 }  // namespace tofsmith

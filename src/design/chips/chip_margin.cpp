@@ -14,11 +14,10 @@
 namespace tofsmith {
 
 namespace {
-/// Intervals of true depths are not bisected below this length [chips]; the proof then fails.
+/// The proof fails instead of bisecting depths below this length [chips].
 constexpr double shortest_stretch = 1e-7;
 }  // namespace
 
-/// Inner products weighted by 1 / variance, without the ambient component.
 struct ChipMargin::Whitening {
   int size;
   Values weight, weighted_open;
@@ -111,8 +110,8 @@ double ChipMargin::squared_distance(int chip, double place, const Stretch& alter
 }
 
 /// Lower bound of the squared distance of two intervals: with the largest variances, the distance
-/// from the line segment of the measurements to the cone of the alternative is a convex problem in
-/// three unknowns.
+/// from the segment of the measurements to the cone of the alternative is a convex problem in three
+/// unknowns.
 double ChipMargin::lower_bound(int chip, double begin, double end,
                                const Stretch& alternative) const {
   Values variance = variance_at(chip, begin);
@@ -151,8 +150,8 @@ double ChipMargin::nearest(int chip, double place) const {
   return least;
 }
 
-/// Returns true if the squared distance between the interval and `alternative_chip` is proven to be
-/// at least factor x least, by bisection. Smaller exact distances lower `least`.
+/// Returns true if the squared distance of the interval from `alternative_chip` is at least factor
+/// x least, proven by bisection. Smaller exact distances lower `least`.
 bool ChipMargin::clears(int chip, double begin, double end, int alternative_chip, double& least,
                         double factor) const {
   double bound = infinity;

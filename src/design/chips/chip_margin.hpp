@@ -20,12 +20,11 @@ class ChipMargin {
   bool reaches(double sigma) const;
   /// Returns a lower bound of the smallest distance, tight to 0.1 %; 0 below 1e-3.
   double proven_sigma() const;
-  /// Returns an upper bound of the smallest distance, from `per_chip` true depths per chip.
+  /// Returns an upper bound of the smallest distance, from `per_chip` depths per chip.
   double sampled_sigma(int per_chip, double stop_below_sigma = 0.0) const;
 
  private:
   using Values = std::array<double, max_chip_measurements>;
-  /// Part of a chip with alternative depths.
   struct Stretch {
     int chip;
     double begin, end;
@@ -52,9 +51,9 @@ class ChipMargin {
   int chips_, measurements_;
   double separation_chips_;
   double constant_e2_;
-  std::vector<Values> signal_e_;  // at the corners [0, n]
-  Values ambient_e_{};            // from ambient light
-  Values open_{};                 // direction of ambient light
+  std::vector<Values> signal_e_;
+  Values ambient_e_{};
+  Values open_{};
 };
 
 }  // namespace tofsmith

@@ -14,7 +14,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// Returns the bits of a mask at the position of its lanes.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t first_lane) {
   alignas(8) std::uint8_t bytes[8] = {};
@@ -25,7 +24,6 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t first_lane) 
   return bits << first_lane;
 }
 
-/// Taps a and b minus tap c: coordinates of a plane without ambient light.
 template <class D>
 struct Direction {
   hn::Vec<D> x, y;
@@ -73,7 +71,6 @@ void turning(const std::int16_t* counts, std::span<const ScanAssignment> assignm
 constexpr float limit_slack = 1.0001F;
 constexpr std::size_t entry_floats = scan_lanes, row_floats = fisher_entries * entry_floats;
 
-/// Sum over depths of 1 / zz, with one division per two terms.
 template <class D, class Matrices>
 HWY_INLINE hn::Vec<D> known_light_bound(D d, int chips, const Matrices& entry) {
   const auto tiny = hn::Set(d, 1e-30F);
@@ -88,11 +85,10 @@ HWY_INLINE hn::Vec<D> known_light_bound(D d, int chips, const Matrices& entry) {
   return sum;
 }
 
-/// Sum over depths of (m0 + m1 + m2 / 3) / det, rounded down: rounding errors are subtracted from
-/// the numerator and added to the denominator. Entries are sums of up to 8 products with errors
-/// below 10 u (u = 2^-24), relative to the root of the product of their diagonal entries; errors of
-/// minors are below 64 u and of the determinant below 256 u, relative to products of diagonal
-/// entries.
+/// Sum over depths of (m0 + m1 + m2 / 3) / det, rounded down. Entries are sums of up to 8 products
+/// with errors below 10 u (u = 2^-24), relative to the root of the product of their diagonal
+/// entries; errors of minors are below 64 u and of the determinant below 256 u, relative to
+/// products of diagonal entries.
 template <class D, class Matrices>
 HWY_INLINE hn::Vec<D> unknown_light_bound(D d, int chips, const Matrices& entry) {
   const auto minor_error = hn::Set(d, 128.0F / 16777216.0F);
@@ -117,7 +113,6 @@ HWY_INLINE hn::Vec<D> unknown_light_bound(D d, int chips, const Matrices& entry)
 }
 
 /// Returns the lanes whose bounds, multiplied over the points, do not exceed the limit or are NaN.
-/// Tests the cheaper bound first.
 template <class D, class EntriesOfPoint>
 HWY_INLINE std::uint32_t within_limit(D d, const InformationRows& rows, int chips, std::size_t lane,
                                       const EntriesOfPoint& entries) {

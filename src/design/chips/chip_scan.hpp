@@ -14,8 +14,8 @@ namespace tofsmith {
 /// Modulations that are processed in parallel.
 inline constexpr int scan_lanes = 32;
 
-/// Table rows of an assignment. A row holds one value for each modulation of a block; a word has
-/// `chips` + 1 consecutive rows for depths s, ..., s + chips.
+/// Table rows of an assignment. A row holds one value per modulation of a block; a word has
+/// consecutive rows for the depths s, ..., s + chips.
 struct ScanAssignment {
   std::uint32_t row[4];  ///< first row of each tap
 };
@@ -27,8 +27,7 @@ struct ScanAssignment {
 void find_turning(const std::int16_t* counts, std::span<const ScanAssignment> assignments,
                   int chips, std::uint32_t* turning);
 
-/// Entries of a Fisher matrix: zz, zs, ss, za, sa, aa. Rows of find_informed() contain one entry of
-/// all modulations.
+/// Entries zz, zs, ss, za, sa, aa of a Fisher matrix. A row contains one entry for all modulations.
 inline constexpr int fisher_entries = 6;
 
 /// Fisher matrices with the largest weights on each chip, and the limit of the score.
@@ -44,13 +43,12 @@ struct InformationRows {
 /// ambient light, at least
 ///   (m0 + m1 + m2 / 3) / det F,
 ///   m0 = ss aa - sa^2, m1 = zs aa - za sa, m2 = zz aa - za^2.
-/// Includes tolerances for rounding, so that no code within the limit is excluded.
+/// Tolerances for rounding ensure that no code within the limit is excluded.
 void find_informed(const InformationRows& information, std::span<const ScanAssignment> assignments,
                    int chips, int taps, std::uint32_t* informed);
 
 /// As find_informed() for pairs: adds the matrices of one exposure (points x chips x entries) to
-/// the matrices of each other exposure. For each point, the rows of a block are `chips` consecutive
-/// rows.
+/// the matrices of each other exposure.
 /// @param informed  one bit per other exposure, for each block
 void find_informed_pairs(const InformationRows& others, std::span<const float> first, int chips,
                          std::size_t blocks, std::uint32_t* informed);

@@ -64,7 +64,6 @@ class Annealing {
   const BestCodes& best() const { return best_; }
 
  private:
-  /// log RMS error plus a penalty for insufficient margin, which is omitted above `limit`.
   double cost(const ChipCode& code, double limit) const {
     const double score = judge_.score(code);
     if (!std::isfinite(score)) return infinity;
@@ -74,7 +73,7 @@ class Annealing {
   }
 
   void keep(double share, ChipSearchCounts& counts) {
-    const double score = std::exp(2.0 * cost_);  // without penalty
+    const double score = std::exp(2.0 * cost_);
     if (!(score < best_.limit()) || !asked_.insert(code_.text()).second) return;
     if (!judge_.is_safe(code_, counts)) return;
     ++counts.kept;
@@ -132,14 +131,13 @@ class Annealing {
   const ChipJudge& judge_;
   RandomStream random_;
   ChipCode code_;
-  std::unordered_set<std::string> asked_;  // safety already tested
+  std::unordered_set<std::string> asked_;
   BestCodes best_;
   double cost_;
 };
 
-/// Simulated annealing from the best of the given codes, with cost(). All results are safe; none is
-/// proven optimal.
-/// @note independent of the number of threads, because every start has its own random stream
+/// Simulated annealing from the best of the given codes. All results are safe; none is proven
+/// optimal. Independent of the number of threads, because every start has its own random stream.
 BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>& seeds,
                             const ChipSearchOptions& options, ChipSearchCounts& counts,
                             const Progress& progress) {
@@ -250,19 +248,16 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
                               .drain = camera.sensor.drain};
   ChipSearchResult result;
 
-  // 1. Standard codes determine the achievable margin and the starting points.
   ChipJudge judge(camera, options);
   std::vector<ChipCode> seeds = multi_phase_codes(rules.chips, rules.taps, options.exposures);
   std::erase_if(seeds, [&](const ChipCode& code) { return !judge.is_allowed(code); });
   judge.ask_no_more_than(seeds);
   result.log.margin_sigma = judge.asked_sigma();
 
-  // 2. Annealing finds good codes: the result, or the limit for an exhaustive search.
   const bool is_exhaustive = can_be_exhaustive(rules, options);
   ChipSearchOptions annealing = options;
   if (is_exhaustive) {
-    // One exposure is searched faster than annealed. For pairs, a limit 7 % higher takes 20 times
-    // as long, so fewer starts would save nothing.
+    // Fewer starts for pairs would save nothing, because a limit 7 % higher takes 20 times as long.
     annealing.annealing_starts = options.exposures == 1 ? 0 : 8;
     annealing.annealing_steps = 2000;
   }
@@ -270,7 +265,6 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
   ChipSearchCounts annealed;
   BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed, parts[0]);
 
-  // 3. Exhaustive search, if possible.
   if (is_exhaustive) {
     const ExhaustiveTask task{.judge = &judge,
                               .rules = rules,
@@ -289,7 +283,6 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
         "annealing.";
   }
 
-  // 4. Finalists with proven margins.
   for (const ScoredCode& scored : best.codes())
     result.finalists.push_back(finalist_of(scored, judge));
   for (const ScoredCode& scored : best.improvements())

@@ -12,7 +12,6 @@
 namespace tofsmith {
 namespace {
 
-/// A delay with optional time reversal.
 struct Motion {
   int shift;
   bool is_mirror;
@@ -22,8 +21,7 @@ struct Motion {
 };
 
 /// Lists the assignments whose first tap is a given word and has the smallest class of all taps.
-/// Every equivalence class has such a member: transform the tap with the smallest class to its
-/// representative, and sort the others.
+/// Every equivalence class has such a member.
 class FirstTapLister {
  public:
   FirstTapLister(const AssignmentRules& rules, const std::vector<ChipWord>& kind, ChipWord first)
@@ -38,7 +36,6 @@ class FirstTapLister {
   std::vector<TapAssignment> take() { return std::move(found_); }
 
  private:
-  /// The next tap must exceed the previous one.
   void choose(int tap, ChipWord free, ChipWord previous) {
     if (tap == rules_.taps) {
       if (!rules_.drain && free != 0) return;
@@ -47,7 +44,7 @@ class FirstTapLister {
     }
     const ChipWord first = current_.taps[0];
     const int duty = std::popcount(first);
-    // All subsets of the free chips, in descending order.
+    // Subsets of the free chips, in descending order.
     for (ChipWord word = free; word > previous; word = (word - 1) & free) {
       if (rules_.equal_duty && std::popcount(word) != duty) continue;
       if (kind_[word] < first) continue;
@@ -73,7 +70,7 @@ class FirstTapLister {
 
   bool stays_least(const Motion& motion, int leading) {
     std::array<ChipWord, max_assigned_taps> moved;
-    moved.fill(~ChipWord{0});  // sorts after all words
+    moved.fill(~ChipWord{0});
     std::size_t count = 0;
     for (int tap = 0; tap < rules_.taps; ++tap)
       if (tap != leading)
@@ -107,7 +104,6 @@ double raw_with_unequal_duties(int chips, int taps, bool drain) {
   return count;
 }
 
-/// Keeps codes of equal metric despite rounding.
 constexpr double rounding = 1.0 + 1e-9;
 
 }  // namespace
@@ -215,8 +211,8 @@ double exhaustive_size(const AssignmentRules& rules, int exposures) {
   for (int tap = 2; tap <= rules.taps; ++tap) reorderings *= tap;
   const double modulations = std::exp2(rules.chips) - 2;
   const double n = rules.chips, assignments = raw_tap_assignments(rules) / reorderings;
-  // Symmetries: independent delays of modulation and taps, and mirror images, of the first
-  // exposure; delays of the taps of others; the order of exposures.
+  // Symmetries: delays of modulation and taps, and mirror images, of the first exposure; delays of
+  // the taps of others; the order of exposures.
   const double first = modulations * assignments / (2 * n * n);
   return exposures == 1
              ? first

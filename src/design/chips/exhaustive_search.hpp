@@ -16,22 +16,22 @@ inline constexpr int max_assigned_taps = 4;
 
 struct TapAssignment {
   std::array<ChipWord, max_assigned_taps> taps{};
-  bool is_achiral = false;  ///< equals its time reversal up to delay and order of taps
+  bool is_achiral = false;
 };
 
 struct AssignmentRules {
   int chips = 9;
   int taps = 3;
-  bool equal_duty = true;    ///< same number of open chips for all taps
-  bool drain = true;         ///< chips may remain unassigned
-  bool up_to_mirror = true;  ///< one assignment per mirror pair
+  bool equal_duty = true;
+  bool drain = true;
+  bool up_to_mirror = true;
 };
 
 /// Lists one assignment per equivalence class under delay, order of taps and, if up_to_mirror, time
-/// reversal. No tap is empty. The order depends only on the rules.
+/// reversal. No tap is empty. The order is deterministic.
 std::vector<TapAssignment> tap_assignments(const AssignmentRules& rules);
 
-/// Returns their number without symmetries.
+/// Returns the number of assignments without symmetries.
 double raw_tap_assignments(const AssignmentRules& rules);
 
 /// Returns the smallest delay of every word (2^n).
@@ -58,19 +58,16 @@ ExhaustiveFinding search_single_exposures(const ExhaustiveTask& task, const Prog
 /// Searches pairs of exposures, pruned by a bound on the metric.
 ExhaustiveFinding search_exposure_pairs(const ExhaustiveTask& task, const Progress& progress);
 
-/// Estimates the number of codes without symmetric ones.
 double exhaustive_size(const AssignmentRules& rules, int exposures);
 
-/// Searches one item with its own counts and best codes.
 using SearchShare =
     std::function<void(std::int64_t item, BestCodes& best, ChipSearchCounts& counts)>;
 
-/// Processes items in growing rounds. Items of a round start with the best codes of the previous
-/// one, so the result does not depend on the number of threads.
+/// Processes items in growing rounds. A round starts with the best codes of the previous one, so
+/// the result does not depend on the number of threads.
 void search_in_rounds(std::int64_t items, std::int64_t items_at_once, ExhaustiveFinding& finding,
                       const SearchShare& share, const Progress& progress);
 
-/// Runs a search: `Search` lists items and searches them.
 /// @param listing  progress message while listing
 template <typename Search>
 ExhaustiveFinding search_all(const ExhaustiveTask& task, const char* listing,
@@ -88,11 +85,9 @@ ExhaustiveFinding search_all(const ExhaustiveTask& task, const char* listing,
   return finding;
 }
 
-/// Keeps a code if it is good; `nodes` are the Fisher matrices of its other exposures.
 void look_at(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
              const ExhaustiveTask& task, double share, BestCodes& best, ChipSearchCounts& counts);
 
-/// Writes a Fisher matrix for find_informed(), with distance `stride` between entries.
 void put_fisher(const FisherMatrix& matrix, float* first, int stride);
 
 double limit_of(const ExhaustiveTask& task, const BestCodes& best);

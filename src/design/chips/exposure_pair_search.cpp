@@ -20,30 +20,27 @@ struct Exposure {
   ChipWord light = 0;
   std::array<ChipWord, max_assigned_taps> taps{};
   std::int32_t orbit = 0;  ///< class up to delay and mirror image
-  bool is_first = false;   ///< representative of the class
+  bool is_first = false;
 };
 
-/// Key that is equal for equivalent exposures: the sorted correlation functions after a delay or
-/// mirror image.
+/// Key of equivalent exposures: the sorted correlation functions after a delay or mirror image.
 std::string functions_of(const Exposure& exposure, const AssignmentRules& rules, int shift,
                          bool is_mirror) {
   std::array<std::string, max_assigned_taps> rows;
   for (std::size_t tap = 0; tap < static_cast<std::size_t>(rules.taps); ++tap) {
-    // The duty determines the response to ambient light.
     rows[tap] += static_cast<char>(std::popcount(exposure.taps[tap]));
     for (int s = 0; s < rules.chips; ++s)
       rows[tap] += static_cast<char>(std::popcount(
           exposure.taps[tap] &
           delayed_chips(exposure.light, is_mirror ? shift - s : shift + s, rules.chips)));
   }
-  std::sort(rows.begin(), rows.end());  // unused ones are empty
+  std::sort(rows.begin(), rows.end());
   std::string all;
   for (const std::string& row : rows) all += row;
   return all;
 }
 
-/// A common delay of taps and modulation has no effect, so combine one assignment per class with
-/// all delays of all modulations.
+/// A common delay of taps and modulation has no effect.
 std::vector<Exposure> distinct_exposures(const AssignmentRules& rules) {
   AssignmentRules all = rules;
   all.up_to_mirror = false;
@@ -71,8 +68,7 @@ std::vector<Exposure> distinct_exposures(const AssignmentRules& rules) {
   return exposures;
 }
 
-/// Search over pairs of exposures: a representative of an orbit, and one of the same or a later
-/// orbit.
+/// Search over pairs of a representative of an orbit and a member of the same or a later orbit.
 class ExposurePairSearch {
  public:
   explicit ExposurePairSearch(const ExhaustiveTask& task)
@@ -113,7 +109,6 @@ class ExposurePairSearch {
   }
 
  private:
-  /// Upper bound of the Fisher matrix between depths s and s + 1 [chips].
   FisherMatrix information(const Exposure& exposure, int s, const ChipLight& light) const {
     FisherMatrix sum;
     const double electrons = light.electrons_of(std::popcount(exposure.light));

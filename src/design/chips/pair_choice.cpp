@@ -15,8 +15,6 @@ namespace {
 
 constexpr std::uint32_t random_choices = 8;
 
-/// Depth error selected by the camera, optionally at the best origin. Infinite if the pairs
-/// together do not determine depth.
 double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                       bool at_best_rotation) {
   if (why_no_depth(code, camera)) return std::numeric_limits<double>::infinity();
@@ -28,7 +26,6 @@ double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateO
   return geometric_mean_error_m(evaluate(code, camera, options), kind);
 }
 
-/// Changes single pairs until no change reduces the error.
 template <typename Error>
 PairChoice bettered(PairChoice best, const std::vector<Factorization>& factorizations,
                     const Error& error_of, const Progress& progress) {
@@ -85,7 +82,7 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
     return entry->second;
   };
 
-  // Start from several choices: individually good pairs need not be the best combination.
+  // Individually good pairs need not be the best combination.
   std::vector<PairChoice> starts{PairChoice(factorizations.size(), 0), {}};
   for (const Factorization& f : factorizations) starts[1].push_back(naive_index(f));
   for (std::uint32_t i = 0; i < random_choices; ++i) {

@@ -10,17 +10,13 @@
 
 namespace tofsmith {
 
-/// Returns why codes cannot be searched, or nothing: no chip clock, or too few taps for the default
-/// numbers of exposures.
 std::optional<BrokenRule> why_nothing_to_search(const Camera& camera, const DesignOptions& options);
 
-/// Returns the listed numbers of exposures, or else the suggested ones.
 std::vector<int> searchable_exposures(const Camera& camera, const DesignOptions& options);
 
 std::string searched_name(int exposures);
 
-/// Searches the best codes by their metric, with proof if exhaustive.
-/// @return empty if every code is ambiguous
+/// Searches the codes with the best metric; empty if every code is ambiguous.
 /// @throws std::invalid_argument as search_chip_codes(); Interrupted
 std::vector<Candidate> searched_candidates(const Camera& camera, int exposures,
                                            const DesignOptions& options, const Progress& progress);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t assignments_at_once = 4096;
 
-/// Table rows of the scan: every necklace used by a tap, over two periods, so that all delays have
+/// Table rows of the scan: every necklace used by a tap over two periods, so that every delay has
 /// consecutive rows.
 class ScanRows {
  public:
@@ -28,7 +28,6 @@ class ScanRows {
         is_used[necklace[assignment.taps[static_cast<std::size_t>(tap)]]] = 1;
     for (ChipWord word = 1; word < necklace.size(); ++word) {
       if (is_used[word] == 0) continue;
-      // At depth s, a tap that opens r chips later is the necklace at s - r.
       for (int delay = chips_ - 1; delay >= 0; --delay)
         row_[delayed_chips(word, delay, chips_)] =
             static_cast<std::uint32_t>(necklaces_.size()) * rows_of_word() +
@@ -45,8 +44,8 @@ class ScanRows {
 
   std::span<const ScanAssignment> scans() const { return scans_; }
 
-  /// Calls `set(value, necklace, light, s)` for a block of modulations; the `entries` values at
-  /// `value` have a stride of scan_lanes.
+  /// Calls `set(value, necklace, light, s)` for a block of modulations; entries at `value` have a
+  /// stride of scan_lanes.
   template <typename Number, typename Set>
   void fill(std::span<const ChipWord> lights, int entries, std::vector<Number>& table,
             const Set& set) const {
@@ -67,7 +66,6 @@ class ScanRows {
   std::vector<ScanAssignment> scans_;
 };
 
-/// Sorting by duty keeps rows in the cache.
 std::vector<TapAssignment> by_duty(std::vector<TapAssignment> assignments) {
   std::stable_sort(assignments.begin(), assignments.end(),
                    [](const TapAssignment& a, const TapAssignment& b) {
@@ -76,7 +74,6 @@ std::vector<TapAssignment> by_duty(std::vector<TapAssignment> assignments) {
   return assignments;
 }
 
-/// Search over blocks of modulations and all assignments.
 class SingleExposureSearch {
  public:
   explicit SingleExposureSearch(const ExhaustiveTask& task)
@@ -95,7 +92,7 @@ class SingleExposureSearch {
   ChipSearchCounts sizes() const {
     ChipSearchCounts counts;
     const std::vector<ChipWord> necklace = necklace_table(n_), all = modulation_necklaces(n_);
-    double mirrored = 0.0;  // up to delay and mirror image
+    double mirrored = 0.0;
     for (const ChipWord word : all)
       mirrored += word <= necklace[reversed_chips(word, n_)] ? 1.0 : 0.0;
     for (const TapAssignment& assignment : assignments_)
@@ -119,7 +116,6 @@ class SingleExposureSearch {
     return {n_, task_.rules.taps, {light}, {taps.begin(), taps.begin() + task_.rules.taps}};
   }
 
-  /// Calls `look(light, assignment)` for every bit found by `scan`.
   template <typename Scan, typename Look>
   void for_found(std::span<const ChipWord> lights, const Scan& scan, const Look& look) const {
     std::array<std::uint32_t, assignments_at_once> found{};
@@ -134,8 +130,8 @@ class SingleExposureSearch {
     }
   }
 
-  /// A complement rotates all directions by half a turn, so scan only modulations that are on for
-  /// up to half the period.
+  /// A complement rotates all directions by half a turn, so only modulations with at most half duty
+  /// are scanned.
   void search_turning(std::span<const ChipWord> lights, double share, BestCodes& best,
                       ChipSearchCounts& counts) const {
     std::vector<std::int16_t> table;

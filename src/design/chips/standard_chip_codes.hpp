@@ -9,9 +9,9 @@
 
 namespace tofsmith {
 
-/// Returns multi-phase square codes for exclusive taps: taps open in turn for equal times, with a
-/// period that divides the number of chips; light is on as long as one tap, or half of that period.
-/// All unambiguous combinations of periods.
+/// Returns all unambiguous multi-phase square codes for exclusive taps: taps open in turn for equal
+/// times, with a period that divides the number of chips; light is on as long as one tap, or half
+/// the period.
 std::vector<ChipCode> multi_phase_codes(int chips, int taps, int exposures);
 
 struct StandardCode {
@@ -24,7 +24,6 @@ struct StandardCode {
 ///   three-phase-square      one exposure, taps and light on for 1/3 of the period each
 ///   double-ramp-in-turn     three exposures of one tap: rising ramp, falling ramp, no light
 ///   coprime-three-phase     two exposures of three taps, periods of 1/3 and 1/4
-/// @param samples  a multiple of 36
 /// @throws std::invalid_argument if samples is not a multiple of 36
 std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples);
 

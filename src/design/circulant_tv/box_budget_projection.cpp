@@ -10,8 +10,8 @@ namespace tofsmith {
 namespace {
 
 struct Excess {
-  double value = 0;  // sum of clip(x - price), minus budget
-  int moving = 0;    // samples inside the box: minus the slope of value
+  double value = 0;
+  int moving = 0;
 };
 
 Excess excess_at(const Eigen::VectorXd& x, double price, double upper_bound, double budget) {

@@ -8,8 +8,7 @@
 namespace tofsmith {
 
 /// Projects `x` in place onto { 0 <= x <= upper_bound, sum x <= budget }:
-/// x <- clip(x - price, 0, upper_bound) with the smallest price >= 0 that meets the budget.
-/// @param upper_bound  > 0;  @param budget  >= 0, or none
+///   x <- clip(x - price, 0, upper_bound) with the smallest price >= 0 that meets the budget.
 /// @return the price; 0 if the budget is inactive
 double project_on_box_and_budget(Eigen::VectorXd& x, double upper_bound,
                                  const std::optional<double>& budget);

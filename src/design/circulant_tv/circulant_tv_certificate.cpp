@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-// Conditions for the dual path, rotated so that a jump (if any) precedes sample 0.
+// Conditions for the dual path, rotated so that any jump precedes sample 0.
 struct DualConditions {
   Eigen::VectorXd gradient;  // of the least-squares term
   Eigen::VectorXi bound;     // -1 at the lower, +1 at the upper bound, 0 inside
@@ -48,11 +48,9 @@ DualConditions conditions_at(const CirculantTvProblem& problem, const Eigen::Vec
   return conditions;
 }
 
-// Admissible values of the dual between two samples.
 struct DualInterval {
   double low, high;
 
-  // Clips to [floor, ceiling]; returns the distance if disjoint.
   double confine(double floor, double ceiling) {
     const double miss = std::max({0.0, floor - high, low - ceiling});
     low = std::clamp(low, floor, ceiling);
@@ -91,7 +89,6 @@ double violation_at(const DualConditions& conditions, double price) {
     DualInterval dual{at_jump, at_jump};
     return walk(conditions, price, dual);
   }
-  // Without jumps, the first lap finds the start and the second must reproduce it.
   DualInterval dual{-weight, weight};
   walk(conditions, price, dual);
   const DualInterval start = dual;
@@ -124,7 +121,6 @@ OptimalityCertificate certificate(const CirculantTvProblem& problem, const Eigen
   result.violation = violation(0);
   if (!budget_binds) return result;
 
-  // Above this price, every interval would be lowered.
   constexpr double inverse_golden_ratio = 0.61803398874989485;
   double low = 0;
   double high = conditions.gradient.cwiseAbs().maxCoeff() + 2 * conditions.weight;

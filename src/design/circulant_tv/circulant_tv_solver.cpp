@@ -15,7 +15,6 @@
 namespace tofsmith {
 namespace {
 
-// Moves with at least this share of the largest gain are made.
 constexpr double worthwhile_share = 0.15;
 // Rounds without progress: first make one move at a time, then stop.
 constexpr int rounds_before_caution = 4;
@@ -35,11 +34,11 @@ struct CirculantTvSolver::Workspace {
   SignalLimits limits;
   FaceMinimizer face;
   OptimalityScan scan;
-  Eigen::VectorXd sums;         // prefix sums of the gradient, from sums_origin
-  int sums_origin = 0;          // start of piece 0 at that time
-  Eigen::VectorXd priced_sums;  // with the price of the budget
-  bool by_transform = false;    // gradient by FFT, without accumulated error
-  double squares = 0;           // least-squares term, if by_transform
+  Eigen::VectorXd sums;  // prefix sums of the gradient, from sums_origin
+  int sums_origin = 0;
+  Eigen::VectorXd priced_sums;
+  bool by_transform = false;  // without accumulated error
+  double squares = 0;         // least-squares term, if by_transform
   int problem_samples;
 
   void prepare(const CirculantTvProblem& problem, const CirculantTvOptions& options);
@@ -104,7 +103,6 @@ CirculantTvResult CirculantTvSolver::Workspace::run(const CirculantTvOptions& op
   double total_decrease = 0;
   update_gradient();
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
-    // Optimize the values of the pieces, then search for better pieces.
     const double decrease = face.minimize(x, budget, limits);
     update_gradient();
     update_scan();
@@ -116,7 +114,6 @@ CirculantTvResult CirculantTvSolver::Workspace::run(const CirculantTvOptions& op
     if (violation() <= options.certificate_tolerance)
       return report(Termination::converged, iteration);
 
-    // Against rounding, use FFT gradients and single moves.
     total_decrease += decrease;
     idle_rounds = decrease > 1e-15 * total_decrease ? 0 : idle_rounds + 1;
     if (idle_rounds >= rounds_before_stall) return report(Termination::stalled, iteration);
@@ -156,7 +153,6 @@ void CirculantTvSolver::Workspace::update_slopes() {
 }
 
 void CirculantTvSolver::Workspace::update_scan() {
-  // The price of the budget acts like a constant gradient.
   priced_sums = sums;
   if (budget.multiplier != 0)
     for (int k = 0; k <= problem_samples; ++k) priced_sums[k] += budget.multiplier * k;
@@ -167,7 +163,7 @@ void CirculantTvSolver::Workspace::make_moves(bool one_at_a_time) {
   double best = 0;
   for (const IntervalMove& move : scan.moves) best = std::min(best, move.slope);
   const double min_slope = (one_at_a_time ? 1.0 : worthwhile_share) * best;
-  // In descending order, so that splits keep the remaining indices.
+  // Descending, so that splits keep the remaining indices.
   for (auto move = scan.moves.rbegin(); move != scan.moves.rend(); ++move)
     if (move->slope <= min_slope) x.split(move->piece, move->first, move->last, move->direction);
   update_slopes();

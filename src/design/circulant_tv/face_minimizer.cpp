@@ -22,7 +22,6 @@ double FaceMinimizer::minimize(PiecewiseConstant& x, BudgetState& budget,
                                const SignalLimits& limits) {
   double decrease = 0;
   int refinements = 0;
-  // Each step except refinements removes or fixes a piece, or switches the budget.
   const int max_steps = 8 * x.size() + 64;
   for (int step = 0; step < max_steps; ++step) {
     assemble(x, limits);
@@ -91,7 +90,7 @@ void FaceMinimizer::factorize() {
   scale_.resize(count);
   for (int a = 0; a < count; ++a)
     scale_[a] = hessian_(a, a) > 0 ? 1 / std::sqrt(hessian_(a, a)) : 1.0;
-  // Damp directions without curvature (band-limited kernels); limits or refinement stop them.
+  // Damp directions without curvature (band-limited kernels).
   for (double damping = 0;; damping = std::max(1e-15, 8 * damping)) {
     for (int a = 0; a < count; ++a) {
       for (int b = a; b < count; ++b) factor_(b, a) = hessian_(b, a) * scale_[a] * scale_[b];
@@ -181,8 +180,8 @@ double FaceMinimizer::residual(const PiecewiseConstant& x, const BudgetState& bu
   return largest;
 }
 
-// Only rounding errors can be corrected. The piece stays free even at a bound, because it
-// determines the price of the budget.
+// Corrects rounding errors only. The piece stays free even at a bound, because it determines the
+// price of the budget.
 void FaceMinimizer::settle_last_free_piece(PiecewiseConstant& x, int j, BudgetState& budget,
                                            const SignalLimits& limits) {
   const double length = x[j].length;

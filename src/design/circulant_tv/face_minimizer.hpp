@@ -21,15 +21,15 @@ struct BudgetState {
   double multiplier = 0;
 };
 
-/// Optimizes the free pieces. Jumps and their signs, fixed pieces and an active budget are kept
-/// until a step reaches a limit, which is then added.
+/// Optimizes the free pieces. Jumps with their signs, fixed pieces and an active budget are kept;
+/// limits that a step reaches are added.
 class FaceMinimizer {
  public:
   explicit FaceMinimizer(const LeastSquaresTerm& term) : term_(term) {}
 
   /// Moves `x`, with current slopes, to the minimum on its face and on smaller faces reached on the
-  /// way. Releases the budget if its multiplier becomes negative.
-  /// @return decrease of the objective
+  /// way. Releases the budget if its multiplier becomes negative. Returns the decrease of the
+  /// objective.
   double minimize(PiecewiseConstant& x, BudgetState& budget, const SignalLimits& limits);
 
   int newton_steps() const { return newton_steps_; }
@@ -57,14 +57,14 @@ class FaceMinimizer {
 
   const LeastSquaresTerm& term_;
   std::vector<int> free_;
-  Eigen::MatrixXd hessian_;     // lower triangle; never shrinks
-  Eigen::MatrixXd factor_;      // Cholesky factor at unit diagonal; never shrinks
-  Eigen::VectorXd scale_;       // 1 / sqrt(diagonal)
-  Eigen::VectorXd gradient_;    // of the objective
-  Eigen::VectorXd direction_;   // Newton step
-  Eigen::VectorXd pull_;        // Hessian^-1 lengths, for the budget
-  Eigen::VectorXd bend_;        // Hessian * direction
-  std::vector<double> motion_;  // of every piece
+  Eigen::MatrixXd hessian_;  // lower triangle; never shrinks
+  Eigen::MatrixXd factor_;   // Cholesky factor at unit diagonal; never shrinks
+  Eigen::VectorXd scale_;    // 1 / sqrt(diagonal)
+  Eigen::VectorXd gradient_;
+  Eigen::VectorXd direction_;
+  Eigen::VectorXd pull_;  // Hessian^-1 lengths, for the budget
+  Eigen::VectorXd bend_;  // Hessian * direction
+  std::vector<double> motion_;
   int newton_steps_ = 0;
 };
 

@@ -34,7 +34,6 @@ Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
     project_on_box_and_budget(next, problem.upper_bound, problem.budget);
     const Eigen::VectorXd move = next - x;
     if (move.cwiseAbs().maxCoeff() < still * problem.upper_bound) return next;
-    // Reset momentum that points uphill.
     if ((ahead - next).dot(move) > 0.0) momentum = 1.0;
     const double grown = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
     ahead = next + (momentum - 1.0) / grown * move;

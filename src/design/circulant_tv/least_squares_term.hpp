@@ -13,8 +13,8 @@ namespace tofsmith {
 /// Solves the subproblem without total variation (its weight is ignored):
 ///   minimize 1/2 |A x - b|^2  subject to  0 <= x <= upper_bound,  sum x <= budget
 /// by accelerated projected gradients. x keeps the components of `start` (N) that the data do not
-/// determine. For comparison with regularized designs.
-/// @return feasible (N); the objective does not exceed that of the projected start
+/// determine.
+/// @return feasible (N); the objective does not exceed the objective of the projected start
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start);
 
@@ -23,7 +23,6 @@ class CirculantOperator {
  public:
   explicit CirculantOperator(int samples) : transform_(samples) {}
 
-  /// Returns true if the kernel changed.
   bool set_kernel(const Eigen::VectorXd& kernel) {
     if (kernel_.size() == kernel.size() && kernel_ == kernel) return false;
     kernel_ = kernel;
@@ -53,7 +52,7 @@ class CirculantOperator {
 /// Let W be the zero-mean, doubly integrated autocorrelation R of the kernel: W[n + 1] - 2 W[n] +
 /// W[n - 1] = R[n] - mean R. A jump of height h at sample s adds h W[n - s] to the prefix sum G[n]
 /// = sum_{i < n} gradient[i], hence few pieces need no transform. W is computed by division of
-/// spectra, because summing twice is too inaccurate for small total-variation weights.
+/// spectra; summing twice would be too inaccurate.
 class LeastSquaresTerm {
  public:
   explicit LeastSquaresTerm(int samples);
@@ -68,12 +67,12 @@ class LeastSquaresTerm {
            (curve_[j0 - k0] - curve_[j0 - k1]);
   }
 
-  /// Computes prefix sums of the gradient around the ring, from the start of piece 0:
-  /// sums[k] (N + 1) is the sum over the first k samples, up to a constant. O(N J).
+  /// Computes prefix sums of the gradient around the ring, from the start of piece 0: sums[k] (N +
+  /// 1), up to a constant. O(N J).
   void prefix_gradient(const PiecewiseConstant& x, Eigen::VectorXd& sums) const;
 
   /// As prefix_gradient(), but by FFT: rounding errors are relative to the residual, not to x.
-  /// @return the value of the term
+  /// Returns the value of the term.
   double prefix_gradient_by_transform(const PiecewiseConstant& x, Eigen::VectorXd& sums);
 
  private:
@@ -81,14 +80,14 @@ class LeastSquaresTerm {
 
   int samples_;
   CirculantOperator operator_;
-  Eigen::VectorXcd integrator_;       // 1 / (exp(2 pi i k / N) - 1), 0 for k = 0
-  Eigen::VectorXcd target_spectrum_;  // of b
-  double mean_curvature_ = 0;         // mean of R
-  double mean_pull_ = 0;              // mean of A^T b
-  Eigen::VectorXd curve_;             // W, n in [-N, N] at index n + N
-  Eigen::VectorXd pull_;              // zero-mean prefix sums of A^T b, two periods
-  Eigen::VectorXd signal_;            // scratch
-  Eigen::VectorXcd half_;             // scratch
+  Eigen::VectorXcd integrator_;  // 1 / (exp(2 pi i k / N) - 1), 0 for k = 0
+  Eigen::VectorXcd target_spectrum_;
+  double mean_curvature_ = 0;  // mean of R
+  double mean_pull_ = 0;       // mean of A^T b
+  Eigen::VectorXd curve_;      // W, n in [-N, N] at index n + N
+  Eigen::VectorXd pull_;       // zero-mean prefix sums of A^T b, two periods
+  Eigen::VectorXd signal_;
+  Eigen::VectorXcd half_;
 };
 
 }  // namespace tofsmith

@@ -7,7 +7,7 @@
 namespace tofsmith {
 namespace {
 
-// Finds the interval of a piece with the smallest slope; sums[0..length] are its prefix sums.
+// Finds the interval with the smallest slope; sums[0..length] are the prefix sums of the piece.
 IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, double weight,
                        int direction) {
   const Piece& piece = x[j];
@@ -43,7 +43,7 @@ IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, do
   return best;
 }
 
-// For a constant ring: the complement of an interval across the origin does not cross it.
+// The complement of an interval across the origin does not cross it.
 IntervalMove best_move_on_ring(const PiecewiseConstant& x, const double* sums, double weight,
                                int direction) {
   const int samples = x.samples();
@@ -84,7 +84,6 @@ void scan_for_moves(const PiecewiseConstant& x, const Eigen::VectorXd& sums, dou
                                     : best_move_on_ring(x, sums.data(), weight, direction);
       scan.violation = std::max(scan.violation, -move.slope / weight);
       const bool whole = move.last - move.first + 1 == x[j].length;
-      // FaceMinimizer moves free pieces as a whole.
       if (whole && x[j].state == PieceState::free) continue;
       if (move.slope < best.slope) best = move;
     }

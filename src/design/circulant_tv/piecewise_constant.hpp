@@ -9,7 +9,6 @@ namespace tofsmith {
 
 enum class PieceState { at_lower, free, at_upper };
 
-/// Consecutive equal samples on the ring.
 struct Piece {
   int start = 0;   ///< first sample, in [0, N)
   int length = 0;  ///< may wrap from N - 1 to 0
@@ -26,8 +25,7 @@ class PiecewiseConstant {
   explicit PiecewiseConstant(int samples) : samples_(samples) { make_constant(0); }
 
   void make_constant(double value);
-  /// Sets the pieces from `x` (N). Differences below 1e-12 of the upper bound are no jumps; values
-  /// at or beyond a bound are fixed at it.
+  /// Sets the pieces from `x` (N). Differences below 1e-12 of the upper bound are no jumps.
   void take_pieces_of(const Eigen::VectorXd& x, double upper_bound);
 
   int samples() const { return samples_; }
@@ -41,18 +39,17 @@ class PiecewiseConstant {
   /// First sample after piece j, in [0, N].
   int end_of(int j) const { return size() > 1 ? pieces_[next(j)].start : pieces_[0].start; }
 
-  /// Number of pieces that differ from the previous one, at least 1; jumps can have zero height.
+  /// Counts pieces that differ from the previous one, at least 1.
   int distinct() const;
   double sum() const;
   double total_variation() const;
-  /// Slope of total variation if only piece j is raised: -2, 0 or 2.
+  /// Returns the slope of total variation if only piece j is raised: -2, 0 or 2.
   int variation_slope(int j) const;
   void write_to(Eigen::VectorXd& x) const;
 
-  /// Merges piece j with the previous one; fixed values have priority.
   void merge_with_previous(int j);
   /// Frees the samples [first, last] of piece j, counted from its start, to move in `direction` (+1
-  /// or -1). The rest keeps value and state. On a single piece the interval may wrap.
+  /// or -1). On a single piece the interval may wrap.
   void split(int j, int first, int last, int direction);
 
  private:

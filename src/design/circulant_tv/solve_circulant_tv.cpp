@@ -6,7 +6,6 @@
 namespace tofsmith {
 namespace {
 
-// Sufficient to find the pieces.
 constexpr int fallback_steps = 3000;
 
 }  // namespace

@@ -16,15 +16,13 @@ void TotalVariationProx::linear(const Eigen::VectorXd& y, double weight, Eigen::
   if (size <= 1 || weight == 0) return;
 
   // The derivative of the cost-to-go of x[n] is piecewise linear and increasing, with knots in
-  // [first, last] of a buffer that grows from the middle. Outside it is the line slope * x + offset
-  // of the left or right accumulators.
+  // [first, last]. Outside, it is the line slope * x + offset of the left or right accumulators.
   knots_.resize(2 * static_cast<std::size_t>(size));
   lower_.resize(static_cast<std::size_t>(size));
   upper_.resize(static_cast<std::size_t>(size));
   int first = size, last = size - 1;
 
-  // The next jump clips the derivative to [-weight, weight]: one new knot per side replaces the
-  // knots beyond.
+  // The next jump clips the derivative to [-weight, weight]: one new knot per side.
   double left_slope = 1, left_offset = -y[0];
   double right_slope = 1, right_offset = -y[0];
   for (int n = 0; n < size - 1; ++n) {
@@ -42,7 +40,6 @@ void TotalVariationProx::linear(const Eigen::VectorXd& y, double weight, Eigen::
     upper_[n] = (weight - right_offset) / right_slope;
     knots_[--first] = {lower_[n], left_slope, left_offset + weight};
     knots_[++last] = {upper_[n], -right_slope, weight - right_offset};
-    // Outside the derivative is -+weight; add x - y of the next sample.
     left_slope = right_slope = 1;
     left_offset = -weight - y[n + 1];
     right_offset = weight - y[n + 1];
@@ -72,7 +69,6 @@ void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, doubl
                                   Eigen::VectorXd& x) {
   require(weight >= 0, "weight", weight, "must be >= 0");
   if (y.size() <= 2 || weight == 0) {
-    // Two samples on a ring have two jumps between them.
     ring_dual = 0;
     linear(y, y.size() == 2 ? 2 * weight : weight, x);
     return;
@@ -81,8 +77,7 @@ void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, doubl
   double dual = std::clamp(ring_dual, -weight, weight);
   double gap = ring_gap(y, weight, dual, x);
 
-  // Bracket the root with growing steps. At an end of the range, a gap of the right sign is a true
-  // jump.
+  // At an end of the range, a gap of the right sign is a true jump.
   double other = dual, other_gap = gap;
   for (double step = 0.02 * weight; std::abs(gap) > negligible; step *= 6) {
     const double end = gap > 0 ? weight : -weight;
@@ -94,7 +89,7 @@ void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, doubl
     if ((gap > 0) != (other_gap > 0)) break;
   }
 
-  // Illinois algorithm. The gap is piecewise linear, so the iteration ends at the root.
+  // Illinois algorithm. The gap is piecewise linear.
   const double width = 4e-16 * weight;
   for (int iteration = 0; iteration < 100; ++iteration) {
     if (std::abs(gap) <= negligible || (gap > 0) == (other_gap > 0)) break;

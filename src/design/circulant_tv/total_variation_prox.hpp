@@ -13,14 +13,12 @@ namespace tofsmith {
 /// @see Johnson, "A dynamic programming algorithm for the fused lasso and L0-segmentation", 2013
 class TotalVariationProx {
  public:
-  /// Open chain: TV(x) = sum_{n < N - 1} |x[n + 1] - x[n]|.
-  /// @param weight  >= 0
+  /// Open chain: TV(x) = sum_{n < N - 1} |x[n + 1] - x[n]|, weight >= 0.
   void linear(const Eigen::VectorXd& y, double weight, Eigen::VectorXd& x);
 
   /// Closed ring. The dual variable u of the jump from the last to the first sample is added to the
-  /// ends of an open chain with opposite signs; x[0] - x[N - 1] decreases with u, which is found by
-  /// a root search.
-  /// @param ring_dual  initial u; on return its final value, a good start for a similar y
+  /// ends of an open chain with opposite signs; x[0] - x[N - 1] decreases with u.
+  /// @param ring_dual  initial and final u, a good start for a similar y
   void circular(const Eigen::VectorXd& y, double weight, double& ring_dual, Eigen::VectorXd& x);
 
  private:

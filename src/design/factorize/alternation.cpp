@@ -14,7 +14,6 @@ namespace {
 
 constexpr double smallest_rms = 1e-4;  // keeps the majorizer's weight positive
 
-/// Returns the optimal x for this kernel, or `current` if the solver fails.
 Eigen::VectorXd fit(CirculantTvSolver& solver, const CirculantTvProblem& problem,
                     const Eigen::VectorXd& current) {
   if (problem.total_variation_weight == 0.0) return least_squares_within_bounds(problem, current);

@@ -22,8 +22,8 @@ struct AlternationResult {
 ///
 /// With c the current rms, rms <= rms^2 / (2 c) + c / 2 converts each step to 1/2 |A x - b|^2 +
 /// lambda N c TV(x), which does not increase the objective.
-/// @param total_variation_weight  lambda >= 0; 0 omits total variation, for comparison: each step
-///   then starts from the previous waveforms, because the solution is not unique
+/// @param total_variation_weight  lambda >= 0; 0 omits total variation: each step then starts from
+///   the previous waveforms, because the solution is not unique
 AlternationResult alternate(const PairModel& model, SampledPair start,
                             double total_variation_weight, const FactorizeOptions& options,
                             CirculantTvSolver& solver);

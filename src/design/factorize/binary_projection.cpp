@@ -29,7 +29,6 @@ BinaryProjection project_to_binary(const PairModel& model, const SampledPair& re
   Eigen::VectorXcd demodulation = model.spectrum(best.pair.demodulation);
   best.residual_rms = model.residual_rms(modulation, demodulation);
 
-  // Keeps a trial of one arm and its spectrum if it reduces the residual.
   const auto keep_better = [&](Eigen::VectorXd trial, Eigen::VectorXd& kept,
                                Eigen::VectorXcd& spectrum) {
     Eigen::VectorXcd other = model.spectrum(trial);

@@ -23,8 +23,7 @@ struct BinaryProjection {
   double residual_rms;
 };
 
-/// Projects to the nearest feasible pair: each binary arm is thresholded at the best of 19 levels
-/// with the other arm fixed, twice.
+/// Thresholds each binary arm at the best of 19 levels with the other arm fixed, twice.
 BinaryProjection project_to_binary(const PairModel& model, const SampledPair& relaxed);
 
 }  // namespace tofsmith

@@ -41,7 +41,7 @@ void harmonics_of_edges(const Eigen::VectorXd& times, int highest, Eigen::Vector
 }
 
 /// Residuals Z[n] = D[n] conj(M[n]) H[n] - T[n], weighted by Parseval, and one for the duty of d,
-/// with the interface of Eigen's Levenberg-Marquardt.
+/// for Eigen's Levenberg-Marquardt.
 class HarmonicFit {
  public:
   using Scalar = double;
@@ -57,7 +57,6 @@ class HarmonicFit {
         shortest_run_(std::max(fading_run, model.shortest_run())) {
     const int samples = model.samples();
     const Eigen::VectorXcd response = model.transfer(samples / 2);
-    // Skip harmonics outside the bandwidth.
     highest_ = samples / 2;
     while (highest_ > 8 && std::abs(response[highest_]) < 1e-5) --highest_;
     transfer_ = response.head(highest_ + 1);
@@ -109,7 +108,7 @@ class HarmonicFit {
     Eigen::MatrixXcd m_derivatives, d_derivatives;
     harmonics_of_edges(m_times, highest_, m, m_derivatives);
     harmonics_of_edges(d_times, highest_, d, d_derivatives);
-    // Unit mean power: M = U / duty, where the duty depends on the edges.
+    // Unit mean power: M = U / duty.
     const double duty = m[0].real();
     const Eigen::RowVectorXcd duty_derivatives = m_derivatives.row(0);
     m /= duty;

@@ -8,9 +8,9 @@
 
 namespace tofsmith {
 
-/// Fits the harmonics of the target by moving the switching times of a binary pair (least squares).
-/// The number of edges does not increase. Light keeps its full energy (level = 1 / duty,
-/// duty >= 1 / p), and mean d stays near that of the target.
+/// Fits the harmonics of the target by moving the switching times of a binary pair (least squares),
+/// without additional edges. Light keeps its full energy (level = 1 / duty, duty >= 1 / p), and
+/// mean d stays near the mean of the target.
 /// @return none if a waveform is constant or not binary
 std::optional<WaveformPair> refine_edges(const PairModel& model, const WaveformPair& start);
 

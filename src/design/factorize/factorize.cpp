@@ -51,7 +51,6 @@ bool by_residual(const PairCandidate& a, const PairCandidate& b) {
   return a.residual_rms < b.residual_rms;
 }
 
-/// Optimizes the switching times of the best candidates, if that improves them.
 void refine_best(const PairModel& model, const FactorizeOptions& options,
                  std::vector<PairCandidate>& candidates, const Progress& progress) {
   const auto count = std::min<std::int64_t>(options.refined, std::ssize(candidates));
@@ -71,7 +70,7 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
   });
 }
 
-/// Removes repeats: waveforms with equal residuals are delayed versions of one another.
+/// Waveforms with equal residuals are delayed versions of one another.
 void drop_repeats(std::vector<PairCandidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), by_residual);
   const auto last = std::unique(
@@ -82,7 +81,7 @@ void drop_repeats(std::vector<PairCandidate>& candidates) {
   candidates.erase(last, candidates.end());
 }
 
-/// Removes pairs that violate the shortest pulse, unless all do. @return true if some remain
+/// Returns true if some pairs remain; keeps all if all pairs violate the shortest pulse.
 bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candidates) {
   const auto too_short = [&](const PairCandidate& c) {
     return !keeps_shortest_run(c.pair.modulation, model.shortest_run()) ||
@@ -132,7 +131,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   result.target_variation_rms =
       std::sqrt((target.samples.array() - target.samples.mean()).square().mean());
 
-  // 2. Alternate the convex steps from random starts, each with its best binary projection.
+  // Random starts, each with its best binary projection.
   std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
   const ProgressParts parts(progress, {60, 40});
   SharedProgress shared(parts[0], options.random_starts, "alternating convex steps");
@@ -146,12 +145,10 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   }
   report(parts[0], 1.0, "alternating convex steps");
 
-  // 3. Add structured pairs without alternation.
   if (options.structured_starts)
     for (auto&& one : structured_starts(model)) result.candidates.push_back(std::move(one));
   drop_repeats(result.candidates);
 
-  // 4. Optimize the switching times, then add the naive pair.
   if (options.refine_edges) refine_best(model, options, result.candidates, parts[1]);
   if (options.keep_naive)
     for (auto&& one : naive_start(model)) result.candidates.push_back(std::move(one));
@@ -159,7 +156,6 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   drop_repeats(result.candidates);
   report(progress, 1.0, "refining switching times");
 
-  // 5. Keep the best few, and always the naive pair.
   std::vector<PairCandidate> kept;
   for (PairCandidate& c : result.candidates)
     if (std::ssize(kept) < options.kept || c.start == "naive") kept.push_back(std::move(c));

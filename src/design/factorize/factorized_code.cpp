@@ -34,7 +34,6 @@ std::vector<int> factorizable_exposures(const Camera& camera, const DesignOption
 
 FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
 
-/// Finds unsupported targets before the search starts.
 std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& on) {
   if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
     return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
@@ -66,8 +65,7 @@ Eigen::MatrixXd target_table(const TargetSet& targets) {
   return table;
 }
 
-/// Reachability of a target depends on the pair with the smallest residual, not on the one
-/// with the smallest depth error.
+/// The pair with the smallest residual shows whether a target is reachable.
 std::string describe_residuals(const std::vector<MeasurementReport>& reports,
                                const std::vector<Factorization>& factorizations) {
   std::string residuals, smallest, unreachable;
@@ -137,9 +135,8 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
 Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
                                const DesignOptions& options, const Progress& progress) {
   const Camera camera = in_buckets(on);
-  const ProgressParts parts(progress, {40, 60});  // factorization, selection of pairs
+  const ProgressParts parts(progress, {40, 60});
   const auto begin = std::chrono::steady_clock::now();
-  // 1. Factorize each measurement.
   FactorizeOptions factorizing_options = options.factorize;
   factorizing_options.seed = options.seed;
   std::vector<Factorization> factorizations;
@@ -147,14 +144,12 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
   for (const CorrelationTarget& target : targets.measurements)
     factorizations.push_back(
         factorize(target, camera, factorizing_options, of_targets[factorizations.size()]));
-  // 2. Select the pairs by the depth error of the whole code.
   EvaluateOptions search;
   search.trials = options.search_trials;
   search.seed = search_seed(options);
   search.bounds = false;
   const PairChoice choice =
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
-  // 3. Assemble the code and report its residuals.
   CodeSet code = assemble(targets.name + "-factorized", factorizations, choice, camera);
   if (on.sensor.is_signed()) code = code.signed_of_buckets();
   Candidate candidate{.code = signed_by(std::move(code), "factorize", camera, options.seed),

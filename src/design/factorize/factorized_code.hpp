@@ -9,18 +9,15 @@
 
 namespace tofsmith {
 
-/// Returns why factorization is impossible, or nothing: a target that the camera does not support,
-/// or samples that cannot represent a Hamiltonian code.
+/// Returns why factorization is impossible, or nothing.
 std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options);
 
 /// Returns the custom target, or Hamiltonian ones with the requested numbers of exposures.
 std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options);
 
-/// Returns the ideal demodulations of the targets with one pulse each, if known and supported by
-/// the camera.
+/// Returns the ideal demodulations of the targets with one pulse each, if the camera supports them.
 std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera);
 
-/// Returns a code that approximates `targets`, not ranked yet.
 Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
                                const DesignOptions& options, const Progress& progress);
 

@@ -10,9 +10,8 @@
 
 namespace tofsmith {
 
-/// Model of both arms for waveforms that are constant within cells, and the residual to a target.
-/// Correlation functions are compared at the N bins, where the model is
-/// exact:
+/// Model of both arms for waveforms that are constant within cells, and the residual to a target at
+/// the N bins, where the model is exact:
 ///   chi[k] = D[k] conj(M[k]) G[k] / N,  G[k] = sum_j H(k + j N) sinc^2((k + j N) / N).
 class PairModel {
  public:
@@ -23,13 +22,12 @@ class PairModel {
   double peak_factor() const { return peak_factor_; }
   bool binary_modulation() const { return binary_modulation_; }
   bool binary_demodulation() const { return binary_demodulation_; }
-  /// Returns the shortest run of a binary arm [periods].
   double shortest_run() const { return shortest_run_; }
   const CorrelationTarget& target() const { return target_; }
-  /// Returns the target at the bins, as is and time-reversed (for the modulation step).
+  /// The target at the bins; reversed in time for the modulation step.
   const Eigen::VectorXd& target_samples() const { return target_.samples; }
   const Eigen::VectorXd& reversed_target_samples() const { return reversed_target_; }
-  /// Returns the response of both arms at harmonics [0, highest].
+  /// Returns the gain of both arms at harmonics [0, highest].
   Eigen::VectorXcd transfer(int highest) const { return camera_.transfer(highest); }
 
   /// Returns the unscaled half spectrum.
@@ -37,17 +35,16 @@ class PairModel {
 
   /// First column of the circulant matrix that maps demodulation to correlation samples.
   Eigen::VectorXd demodulation_kernel(const Eigen::VectorXd& modulation) const;
-  /// The same for modulation and time-reversed correlation samples.
+  /// First column for modulation and time-reversed correlation samples.
   Eigen::VectorXd modulation_kernel(const Eigen::VectorXd& demodulation) const;
 
   /// RMS residual over the bins, from half spectra.
   double residual_rms(const Eigen::VectorXcd& modulation,
                       const Eigen::VectorXcd& demodulation) const;
-  /// RMS residual over the bins, from samples.
   double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;
-  /// RMS residual over depth for any waveforms, with exact switching times and 8 points per bin;
-  /// the target is linear between bins. Uses the actual waveforms of generators; infinite if the
-  /// actual modulation is zero.
+  /// RMS residual over depth with exact switching times and 8 points per bin; the target is linear
+  /// between bins. Uses the actual waveforms of generators; infinite if the actual modulation is
+  /// zero.
   double residual_rms(const WaveformPair& pair) const;
 
  private:

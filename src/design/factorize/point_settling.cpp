@@ -13,9 +13,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int delays_per_point = 4;     // tried before rounding
-constexpr int max_settling_rounds = 8;  // passes over all switching times
-constexpr int fine_points = 4;          // per bin; finer grids are not rounded
+constexpr int delays_per_point = 4;
+constexpr int max_settling_rounds = 8;
+constexpr int fine_points = 4;  // per bin; finer grids are not rounded
 
 /// Points per period of a generator; 0 if rounding is negligible.
 int coarse_points(const std::optional<Generator>& generator, const PairModel& model) {
@@ -24,7 +24,6 @@ int coarse_points(const std::optional<Generator>& generator, const PairModel& mo
   return points < fine_points * model.samples() ? points : 0;
 }
 
-/// One arm, on or off at every point of its generator, or unrounded without a generator.
 struct RoundedArm {
   Waveform waveform;
   std::vector<char> on = {};  ///< empty: not rounded
@@ -41,7 +40,6 @@ struct RoundedArm {
 
   std::ptrdiff_t points_on() const { return std::count(on.begin(), on.end(), 1); }
 
-  /// Returns true if the waveform is not constant and light is within the peak.
   bool is_playable() const {
     const auto count = points_on();
     return count > 0 && count < std::ssize(on) &&
@@ -88,8 +86,7 @@ bool is_valid(const Settled& one, const PairModel& model) {
   return true;
 }
 
-/// Moves each switching time by one point in both directions if that reduces the residual.
-/// @return true if it was reduced
+/// Moves each switching time by one point if that reduces the residual; returns true if one moved.
 bool move_edges(RoundedArm Settled::*which, const PairModel& model, Settled& best) {
   bool is_better = false;
   const std::size_t points = (best.*which).on.size();

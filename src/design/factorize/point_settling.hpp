@@ -8,9 +8,9 @@
 
 namespace tofsmith {
 
-/// Rounds the switching times of a binary pair to points of the camera's generators, which then
-/// reproduce it exactly. Uses the best of several common delays, then moves single switching times
-/// while the residual decreases. Light keeps its full energy.
+/// Rounds the switching times of a binary pair to points of the camera's generators, with the best
+/// of several common delays, then moves single switching times while the residual decreases. Light
+/// keeps its full energy.
 /// @return none without edges, or if the generators are not coarse compared with the bins
 std::optional<WaveformPair> settle_on_points(const PairModel& model, const WaveformPair& pair);
 

@@ -15,15 +15,13 @@ struct AlternationStart {
   SampledPair pair;
 };
 
-/// Returns uniform random waveforms with full power, which depend only on seed, N and `index`.
 AlternationStart random_start(const PairModel& model, std::uint64_t seed, int index);
 
-/// Returns pairs of the thresholded target with single pulses and pulse trains of several duties.
-/// They are binary, so they need no projection.
+/// Returns binary pairs of the thresholded target with single pulses and pulse trains.
 std::vector<PairCandidate> structured_starts(const PairModel& model);
 
 /// Returns the target's ideal demodulation with one pulse of duty max(1/p, ideal); empty if unknown
-/// or not supported by the sensor.
+/// or not supported.
 std::vector<PairCandidate> naive_start(const PairModel& model);
 
 }  // namespace tofsmith

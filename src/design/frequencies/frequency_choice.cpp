@@ -28,7 +28,7 @@ std::vector<double> duties_of(const SquareLight& square) {
   return duties;
 }
 
-/// Returns n for a frequency of n times the fundamental; 0: not a multiple.
+/// Returns 0 if the frequency is no multiple.
 int multiple_of(double frequency_hz, double fundamental_hz) {
   constexpr double tolerance = 1e-6;
   const double ratio = frequency_hz / fundamental_hz;
@@ -36,7 +36,6 @@ int multiple_of(double frequency_hz, double fundamental_hz) {
   return std::abs(ratio - nearest) <= tolerance * nearest ? static_cast<int>(nearest) : 0;
 }
 
-/// Returns true if no pulse or gap of gates and light at a frequency is too short.
 bool keeps_shortest_pulse(double frequency_hz, const std::vector<double>& duties,
                           const Camera& camera) {
   if (!camera.sensor.shortest_pulse_s) return true;

@@ -18,21 +18,18 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::size_t estimated = 32;  ///< codes with the smallest estimates, which are tried
-constexpr std::size_t varied = 6;      ///< best of these, which are tried with more phases
-constexpr std::size_t finalists = 3;   ///< codes that are judged
+constexpr std::size_t estimated = 32;
+constexpr std::size_t varied = 6;  ///< codes that are tried with more phases
+constexpr std::size_t finalists = 3;
 constexpr int max_phases = 4;
 
-/// Evaluates codes by trials with the random numbers of searches.
 class Trials {
  public:
   Trials(const Camera& camera, const DesignOptions& options) : camera_(camera), options_(options) {}
 
-  /// Infinite for a code that the camera cannot use.
   double error_m(const SquareCode& code) const {
     return tried_error_m(to_code_set(code, camera_), camera_, options_);
   }
-  /// Returns the codes with their errors, the smallest first.
   std::vector<RatedCode> sorted(const std::vector<SquareCode>& codes) const {
     std::vector<RatedCode> tried;
     for (const SquareCode& code : codes) tried.push_back({code, error_m(code)});
@@ -55,8 +52,7 @@ bool have_same_frequencies(const SquareCode& a, const SquareCode& b) {
       [](const SquareTone& x, const SquareTone& y) { return x.frequency == y.frequency; });
 }
 
-/// Returns the code with more phases of one frequency or of all, within the allowed numbers of
-/// exposures.
+/// Adds phases to one frequency or to all, within the allowed numbers of exposures.
 std::vector<SquareCode> with_more_phases(const SquareCode& code, const FrequencyChoice& choice) {
   std::vector<SquareCode> all;
   const auto add = [&](const SquareCode& changed) {
@@ -77,7 +73,6 @@ std::vector<SquareCode> with_more_phases(const SquareCode& code, const Frequency
   return all;
 }
 
-/// Adds variants of the best codes with more phases.
 void try_more_phases(const Camera& camera, const FrequencyChoice& choice, const Trials& trials,
                      std::vector<RatedCode>& tried) {
   const std::size_t count = std::min(varied, tried.size());
@@ -91,15 +86,14 @@ void try_more_phases(const Camera& camera, const FrequencyChoice& choice, const 
   Trials::sort(tried);
 }
 
-/// Moves time between the frequencies of a code if trials find a smaller error.
 RatedCode with_tried_split(RatedCode its, const Trials& trials) {
   for (const double moved : {0.25, 0.1})
     improve_split(its, moved, [&](const SquareCode& code) { return trials.error_m(code); });
   return its;
 }
 
-/// Returns true if a frequency has at most twice the smallest time. The code without this frequency
-/// is then about as good.
+/// Returns true if a frequency has at most twice the smallest time. A code without it is about as
+/// good.
 bool has_idle_frequency(const SquareCode& code) {
   return std::any_of(code.tones.begin(), code.tones.end(), [](const SquareTone& tone) {
     return tone.share < 2.0 * min_exposure_share * tone.phases;
@@ -181,7 +175,7 @@ std::vector<std::string> binary_families(const Camera& camera, const DesignOptio
 }
 
 /// Returns the camera with the shortest unambiguous range that covers its working distance, for a
-/// fair comparison with codes at the fundamental frequency.
+/// fair comparison.
 Camera with_shortest_range(Camera camera, const DesignOptions& options) {
   constexpr int min_samples = 240;
   const int factor = frequency_choice(camera, options).max_repetitions;
@@ -210,7 +204,6 @@ void add_frequency_candidates(const Camera& camera, const DesignOptions& options
   leave_out_frequencies(camera, choice, result);
   const ProgressParts parts(progress, {50, 50});
 
-  // 1. Rank all sets of frequencies by the estimate.
   const FrequencySearch search = search_frequencies(camera, choice, estimated, parts[0]);
   if (search.best.empty()) require(nothing_found(camera, search, choice));
   std::vector<SquareCode> codes;
@@ -219,7 +212,6 @@ void add_frequency_candidates(const Camera& camera, const DesignOptions& options
   if (choice.time_shares.empty()) usual = rule_of_thumb(choice);
   if (usual) codes.push_back(*usual);
 
-  // 2. Rank the best sets by trials, with more phases and other splits.
   const Trials trials(camera, options);
   std::vector<RatedCode> tried = trials.sorted(codes);
   try_more_phases(camera, choice, trials, tried);

@@ -13,7 +13,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Parts of the time of a frequency that the descent moves to another one.
 constexpr std::array<double, 4> moved_shares = {0.4, 0.15, 0.05, 0.015};
 
 RatedCode with_free_split(RatedCode its, const SquareErrorEstimate& estimate) {
@@ -24,7 +23,6 @@ RatedCode with_free_split(RatedCode its, const SquareErrorEstimate& estimate) {
   return its;
 }
 
-/// Calls `visit` for every assignment of listed times whose sum is the total time.
 void for_each_listed_split(SquareCode& code, const std::vector<double>& time_shares,
                            std::size_t tone, double left,
                            const std::function<void(const SquareCode&)>& visit) {
@@ -54,12 +52,10 @@ RatedCode with_listed_split(SquareCode code, const std::vector<double>& time_sha
   return best;
 }
 
-/// The current best codes.
 class Best {
  public:
   explicit Best(std::size_t kept) : kept_(kept) {}
 
-  /// Upper limit of the error of further codes.
   double limit_m() const { return codes_.size() < kept_ ? infinity : codes_.back().error_m; }
   void add(RatedCode its) {
     if (!(its.error_m < limit_m())) return;
@@ -84,7 +80,7 @@ class Branch {
     add(code, first);
   }
 
-  std::vector<SquareCode> sets;  ///< that cover the working distance
+  std::vector<SquareCode> sets;
   std::int64_t all = 0, ambiguous = 0;
 
  private:
@@ -101,8 +97,8 @@ class Branch {
     code.tones.pop_back();
   }
 
-  /// Adds the code with the fewest exposures; if times are listed, with every allowed number of
-  /// exposures, because the sum of the times depends on it.
+  /// Adds the code with the fewest exposures; with listed times, every allowed number, because the
+  /// sum of the times depends on it.
   void add_exposures(const SquareCode& code) {
     for (const int exposures : choice_.exposures_of(static_cast<int>(code.tones.size()))) {
       sets.push_back(with_exposures(code, choice_, exposures));
@@ -113,7 +109,7 @@ class Branch {
   const FrequencyChoice& choice_;
 };
 
-/// Evaluates the sets of a branch in the order of their lower bounds.
+/// Evaluates the sets in the order of their lower bounds.
 void search_branch(const std::vector<SquareCode>& sets, const FrequencyChoice& choice,
                    const SquareErrorEstimate& estimate, Best& best, FrequencySearch& search) {
   constexpr std::size_t at_a_time = 64;

@@ -15,24 +15,22 @@
 
 namespace tofsmith {
 
-/// A code and its error, estimated or by trials [m].
 struct RatedCode {
   SquareCode code;
   double error_m = infinity;
 };
 
-/// Codes with the smallest estimated errors, and a summary of all sets of frequencies.
+/// Best codes, and a summary of all sets of frequencies.
 struct FrequencySearch {
-  std::vector<RatedCode> best;       ///< the smallest error first
+  std::vector<RatedCode> best;
   std::int64_t sets = 0;             ///< sets of frequencies, times duties
   std::int64_t ambiguous = 0;        ///< sets that repeat within the working distance
   std::int64_t pruned_by_bound = 0;  ///< sets that are not among the best for any split of time
 };
 
-/// Moves time from each frequency of a code to each other one, and keeps the moves that reduce the
-/// error. Exposures keep at least min_exposure_share.
-/// @param moved       fraction of the time of the first frequency that is moved
-/// @param error_m_of  returns the error of a SquareCode [m]
+/// Moves time between frequencies while the error decreases. Exposures keep at least
+/// min_exposure_share.
+/// @param moved  fraction of the time of the first frequency
 /// @return true if the error decreased
 template <typename ErrorOf>
 bool improve_split(RatedCode& its, double moved, const ErrorOf& error_m_of) {
@@ -53,17 +51,14 @@ bool improve_split(RatedCode& its, double moved, const ErrorOf& error_m_of) {
   return improves;
 }
 
-/// Splits the total time between the frequencies of a code for the smallest estimated error: by
-/// descent, or over all sums of listed times that equal the total.
+/// Splits the time for the smallest estimated error: by descent, or over all sums of listed times.
 RatedCode with_best_split(const SquareCode& code, const FrequencyChoice& choice,
                           const SquareErrorEstimate& estimate);
 
-/// Searches all sets of frequencies and duties for the smallest estimated errors, each set with the
-/// fewest exposures: by the estimate, more exposures of one frequency only add read noise.
-/// Skips branches whose lower bound exceeds the largest kept error, which does not change the
-/// result.
-/// @param kept  number of codes in `best`
-/// @note same result for any number of threads
+/// Searches all sets of frequencies and duties for the smallest estimated errors, each with the
+/// fewest exposures: by the estimate, more exposures of one frequency only add read noise. Skipping
+/// branches whose lower bound exceeds the largest kept error does not change the result, nor does
+/// the number of threads.
 FrequencySearch search_frequencies(const Camera& camera, const FrequencyChoice& choice,
                                    std::size_t kept, const Progress& progress);
 

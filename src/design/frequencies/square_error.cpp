@@ -19,11 +19,10 @@ constexpr int phases_tabulated = 512;
 constexpr int points_per_period = 16;  ///< of the highest frequency
 constexpr int highest_odd_harmonic = 9;
 
-/// Amplitude of harmonic h of a square wave that is on for a share of the period.
+/// Amplitude of harmonic h of a square wave.
 double harmonic_of_square(int h, double duty) { return std::sin(pi * h * duty) / (pi * h); }
 
-/// Ratio of a measurement to the correlation function of one gate: twice the contrast for mixers
-/// and for the difference of two taps.
+/// Ratio of a measurement to the correlation function of one gate.
 double measurement_gain(const Sensor& sensor) {
   return sensor.mixes_taps() ? 2.0 * sensor.modulation_contrast : 1.0;
 }

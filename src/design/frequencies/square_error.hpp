@@ -9,29 +9,26 @@
 
 namespace tofsmith {
 
-/// Closed-form estimate of the depth error of square-wave codes of one duty, from means over depth.
-/// Frequency f with s exposures of T/s seconds measures s values whose noise has the variance v_f.
-/// With the harmonics a_h of their correlation function, two depths u apart differ by
+/// Closed-form estimate of the depth error of square-wave codes, from means over depth. Frequency f
+/// with s exposures of T/s seconds measures s values whose noise has the variance v_f. With the
+/// harmonics a_h of their correlation function, two depths u apart differ by
 ///   w_f(u) = s (S T/s)^2 sum_h 2 |a_h|^2 2 (1 - cos 2 pi h f u).
 /// The correlation decoder confuses them with probability Q(d / 2), d = sum w_f / sqrt(sum w_f
-/// v_f), and the error near the true depth follows from the curvature of w_f at 0. The estimate is
+/// v_f); the error near the true depth follows from the curvature of w_f at 0. The estimate is
 ///   min(sqrt(2 / pi) sigma_z + sum over lobes of u 2 Q(d(u) / 2), R / 4),
 /// with one lobe per period of the highest frequency, at its most probable u, and the unambiguous
 /// range R of the code; geometric mean over the operating points.
 class SquareErrorEstimate {
  public:
-  /// @param highest_frequency  multiple of the fundamental
   SquareErrorEstimate(const Camera& camera, double duty, int highest_frequency);
 
-  /// Estimated error [m].
   double error_m(const SquareCode& code) const;
-  /// Lower bound of error_m() of the same code for every split of the time. Each frequency has all
-  /// of the time to distinguish lobes, and the best frequency has all of the time for the local
-  /// error. Assumes a decoder that weights measurements by their noise, whose error is never
-  /// larger.
+  /// Lower bound of error_m() for every split of the time: each frequency has all of the time to
+  /// distinguish lobes, and the best frequency for the local error. Assumes a decoder that weights
+  /// measurements by their noise, whose error is never larger.
   double lower_bound_m(const SquareCode& code) const;
-  /// The local part of lower_bound_m() of one frequency. The smallest value of several frequencies
-  /// is a lower bound for every set of them that repeats at most `max_repetitions` times.
+  /// Local part of lower_bound_m() of one frequency. The smallest value of several frequencies is a
+  /// lower bound for every set of them that repeats at most `max_repetitions` times.
   double local_bound_m(const SquareTone& tone, int max_repetitions) const;
 
  private:
@@ -39,12 +36,10 @@ class SquareErrorEstimate {
     double signal_e = 0.0;     ///< in the total time, of a fully open sensor
     double variance_e2 = 0.0;  ///< light and dark current in the total time, of one measurement
   };
-  /// Correlation function of one frequency.
   struct Spectrum {
     double curvature = 0.0;   ///< sum of 2 |a_h|^2 (2 pi h f)^2
     Eigen::ArrayXd distance;  ///< sum of 2 |a_h|^2 2 (1 - cos 2 pi h x) over x in [0, 1)
   };
-  /// Terms of one frequency in sums over measurements.
   struct Contribution {
     const Spectrum* spectrum = nullptr;
     double weight = 0.0, variance_e2 = 0.0;
@@ -54,7 +49,6 @@ class SquareErrorEstimate {
                                           bool all_of_the_time) const;
   template <typename ErrorOfPoint>
   double mean_m(const ErrorOfPoint& error_of_point) const;
-  /// Sum over lobes of u times the probability of confusing depths u apart, both ways [m].
   template <typename Distance2>
   double lobes_m(const SquareCode& code, const std::vector<Contribution>& tones,
                  const Distance2& distance2) const;
@@ -63,7 +57,7 @@ class SquareErrorEstimate {
 
   double range_m_ = 0.0, read_variance_e2_ = 0.0;
   std::vector<Point> points_;
-  std::vector<Spectrum> spectra_;  // by frequency
+  std::vector<Spectrum> spectra_;
 };
 
 }  // namespace tofsmith

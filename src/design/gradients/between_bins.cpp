@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Converts to periods; unused entries are 0.
+/// Unused entries are 0.
 std::array<double, harmonic_block> in_periods(std::span<const double> depth_bin, int samples) {
   std::array<double, harmonic_block> periods{};
   for (std::size_t p = 0; p < depth_bin.size(); ++p) periods[p] = wrap(depth_bin[p] / samples, 1.0);
@@ -113,7 +113,6 @@ void BetweenBins::fold(int points, const Visit& visit) const {
   for (int n = 0; n < shares_.size(); ++n) {
     const int k = n % points;
     if (2 * k <= points) visit(n, k, false);
-    // The negative harmonic, if in the half spectrum.
     if (2 * k >= points || (k == 0 && n > 0)) visit(n, (points - k) % points, true);
   }
 }

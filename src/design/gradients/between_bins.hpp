@@ -11,13 +11,13 @@
 
 namespace tofsmith {
 
-/// Exact correlation functions at any depth, from samples at N bins of waveforms constant within N
-/// cells: linear between bins without impulse responses, otherwise by harmonics (as ForwardModel).
+/// Exact correlation functions at any depth, from N samples of waveforms constant within N cells:
+/// linear between bins without impulse responses, otherwise by harmonics (as ForwardModel).
 class BetweenBins {
  public:
   BetweenBins(const Camera& camera, int samples);
 
-  /// Columns of a table (N, F), prepared for evaluation.
+  /// Columns of a table (N, F).
   struct Functions {
     HarmonicFunctions harmonics;
     Eigen::MatrixXd chords;  ///< (F, N); empty if harmonics are used
@@ -31,14 +31,11 @@ class BetweenBins {
   /// bin unless null.
   void evaluate(const Functions& functions, std::span<const double> depth_bin, double* values,
                 double* slopes) const;
-  /// Adds the gradient of sum weights[f][p] f(depth_bin[p]); weights (F, harmonic_block), zero if
-  /// unused.
+  /// Adds the gradient of sum weights[f][p] f(depth_bin[p]); weights (F, harmonic_block).
   void add(std::span<const double> depth_bin, const double* weights, Functions& gradient) const;
-  /// Returns the values at `finer` positions per bin, (finer N, F).
   Eigen::MatrixXd fine_table(const Functions& functions, int finer) const;
   /// Adjoint of fine_table().
   Functions pull_back_fine(const Eigen::MatrixXd& by_fine, int finer) const;
-  /// Converts a gradient w.r.t. the functions to one w.r.t. the table.
   Eigen::MatrixXd pull_back(const Functions& gradient) const;
 
  private:
@@ -47,7 +44,6 @@ class BetweenBins {
     double fraction;
   };
   Chord chord_at(double depth_bin) const;
-  /// Visits harmonics on a grid of `points` samples, with aliasing.
   template <typename Visit>
   void fold(int points, const Visit& visit) const;
 

@@ -10,7 +10,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Rejects properties that depend on the edges of waveforms.
 const Camera& without_what_has_no_gradient(const Camera& camera, int samples, int exposures) {
   camera.validate();
   require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
@@ -33,7 +32,6 @@ const Camera& without_what_has_no_gradient(const Camera& camera, int samples, in
   return camera;
 }
 
-/// Evaluates the functions of a table, (P, F).
 template <typename Store>
 void evaluate_blocks(const BetweenBins& between, const BetweenBins::Functions& functions,
                      std::span<const double> depth_bin, IndexRange range, bool with_slopes,
@@ -147,7 +145,6 @@ PixelGradient CodeGradients::pull_back_electrons(const MeasurementTable& table,
   PixelGradient gradient{zeros_like(table), Eigen::VectorXd::Zero(pixels),
                          Eigen::VectorXd::Zero(pixels), Eigen::VectorXd::Zero(pixels)};
 
-  // Contribution of a group of pixels to the gradient w.r.t. the table.
   struct Part {
     BetweenBins::Functions functions;
     Eigen::VectorXd by_ambient, by_shot_ambient;

@@ -11,7 +11,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Pads with zero rows to a multiple of depth_block.
 void round_up(Eigen::MatrixXd& table) {
   const Eigen::Index depths = table.rows();
   const Eigen::Index rows = (depths + depth_block - 1) / depth_block * depth_block;

@@ -20,9 +20,8 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A vector of depths at one light level: weights w = 1 / variance, and the component of the depth
-/// column of the Jacobian that is orthogonal (by w) to the other two,
-/// the signal and ambient columns:
+/// Vector of depths at one light level: weights w = 1 / variance, and the component of the depth
+/// column of the Jacobian that is orthogonal (by w) to the signal and ambient columns:
 ///   across = depth - signal_share signal - ambient_share ambient.
 class Elimination {
  public:
@@ -53,7 +52,6 @@ class Elimination {
       ss = hn::MulAdd(hn::Mul(weight, s), s, ss);
       dd = hn::MulAdd(weighed_d, depth, dd);
     }
-    // Eliminate ambient light (if visible), then the signal.
     const auto per_aa = inverse_or_zero(aa, hn::Zero(d));
     const auto signal_along = hn::Mul(as, per_aa), depth_along = hn::Mul(ad, per_aa);
     auto ss_across = hn::Zero(d), sd_across = hn::Zero(d);

@@ -13,16 +13,15 @@ namespace tofsmith {
 /// Depths per block; tables are padded to whole blocks.
 constexpr int depth_block = widest_vector / 2;
 
-/// Electrons of the measurements and of their shot noise, per unit of signal (depths, K) and of
-/// ambient light (K); slopes per period. As in CramerRaoBound.
+/// Electrons and their shot noise per unit of signal (depths, K) and of ambient light (K); slopes
+/// per period.
 struct DepthElectrons {
   Eigen::MatrixXd signal, slope, shot;
   Eigen::VectorXd ambient, shot_ambient;
 };
 
-/// Computes Cramer-Rao bounds of depth with unknown light levels, as DepthPart
-/// (simulate/shared/depth_information.hpp), for many depths: deviations [m] (depths, lights),
-/// infinite if depth cannot be separated.
+/// Computes Cramer-Rao bounds of depth with unknown light levels (see DepthPart): deviations [m]
+/// (depths, lights), infinite if depth cannot be separated.
 void eliminate_light(const DepthElectrons& electrons, const Eigen::VectorXd& constant_e2,
                      std::span<const OperatingPoint> lights, double range_m,
                      Eigen::MatrixXd& deviation_m);
@@ -30,7 +29,7 @@ void eliminate_light(const DepthElectrons& electrons, const Eigen::VectorXd& con
 /// Computes the gradient of sum by_deviation deviation_m: adds to `by_electrons`, overwrites
 /// `by_lights`. Infinite deviations do not contribute.
 ///
-/// sigma = range / |across|, and |across| is minimal over the shares of the other two columns:
+/// sigma = range / |across|, and |across| is minimal over the shares:
 ///   d |across|^2 / 2 = <across, w (d depth - share d signal - share d ambient)>
 ///                      - sum across^2 / (2 variance) d variance.
 void pull_back_elimination(const DepthElectrons& electrons, const Eigen::VectorXd& constant_e2,

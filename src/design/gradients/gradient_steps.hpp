@@ -14,7 +14,7 @@ struct CodeGradients::Steps {
   Steps(const Camera& its, int samples, int exposures);
 
   bool has_shot() const { return sampled.subtracts(); }
-  /// Functions of all measurements (K), then for differences of their total light (2 K).
+  /// Functions of all measurements (K), then of their total light for differences (2 K).
   BetweenBins::Functions functions_of(const MeasurementTable& table) const;
   void pull_back_functions(const BetweenBins::Functions& gradient,
                            MeasurementTable& by_table) const;
@@ -25,8 +25,7 @@ struct CodeGradients::Steps {
   int exposures;
 };
 
-/// Pixels whose gradients are summed together: whole blocks, at most 64 groups, for any number of
-/// threads.
+/// At most 64 groups of whole blocks, for any number of threads.
 std::int64_t pixels_in_a_group(std::int64_t pixels);
 
 }  // namespace tofsmith

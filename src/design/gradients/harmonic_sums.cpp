@@ -21,7 +21,6 @@ namespace {
 
 constexpr int tile = 16;  // harmonics in the L1 cache
 
-/// Cosines and sines of consecutive harmonics at a block of points.
 struct Turns {
   alignas(64) double cosine[tile * harmonic_block];
   alignas(64) double sine[tile * harmonic_block];
@@ -41,7 +40,6 @@ struct Turns {
     }
   }
 
-  /// Computes the next `count` harmonics, first from 1.
   HWY_INLINE void advance(int count) {
     const Doubles d;
     const int lanes = lanes_of(d);

@@ -12,7 +12,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Decodes pixels; one per thread.
 template <typename Value>
 class PixelDecoder {
  public:

@@ -16,7 +16,6 @@ Eigen::VectorXd cell_values(const WaveformSpace& space, const Eigen::VectorXd& s
   return cells;
 }
 
-/// Indices of the cells, largest value first.
 std::vector<int> ranked(const Eigen::VectorXd& cells) {
   std::vector<int> order(static_cast<std::size_t>(cells.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -52,7 +51,7 @@ SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int
   return SwitchedLabels::from_cells(cells);
 }
 
-/// Number of brightest cells that approximate the waveform best at uniform level.
+/// Number of brightest cells that approximate the waveform best.
 int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int min_on) {
   const auto total = static_cast<double>(order.size());
   int best = min_on;

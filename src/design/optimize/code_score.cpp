@@ -52,8 +52,8 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
 }
 
 /// Returns the linear error [bin], averaged over origins of depth within `window` of bin 0. The
-/// expected error hardly depends on the origin close to the best one. The average has a much
-/// smaller variance, because all errors near the origin contribute, not only errors across it.
+/// expected error hardly depends on the origin close to the best one, and the average has a much
+/// smaller variance.
 double linear_error_bin(double true_bin, double decoded_bin, int samples, double window) {
   const double difference = decoded_bin - true_bin;
   const double error = difference - samples * std::round(difference / samples);
@@ -65,7 +65,7 @@ double linear_error_bin(double true_bin, double decoded_bin, int samples, double
   return circular + separating / (2.0 * window) * (samples - 2.0 * circular);
 }
 
-/// Mean error [bin]; always circular for two-return decoding.
+/// Always circular for two-return decoding.
 double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
                       bool linear) {
   constexpr double window_periods = 1.0 / 120.0;
@@ -81,7 +81,6 @@ double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decode
   return sum / static_cast<double>(decoded_bin.size());
 }
 
-/// Errors at every rotation [bin].
 template <typename Errors>
 std::vector<double> sums_of(Errors errors, const TrialBatch& batch,
                             const std::vector<double>& decoded_bin) {
@@ -99,8 +98,7 @@ CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t see
                      std::uint64_t work_item)
     : problem_(&problem),
       judging_(draw_batches(problem, trials, problem.linear(), problem.depths, seed, work_item)) {
-  // Fewer trials are enough to find the rotation. Too few would rotate codes from their best
-  // origin.
+  // Too few trials would rotate codes away from their best origin.
   constexpr int enough = 1000;
   const int rotating_trials = std::min(trials, std::max(enough, trials / 4));
   if (problem.linear() || !problem.depths.is_uniform())

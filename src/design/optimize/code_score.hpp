@@ -16,8 +16,7 @@ struct CodeScore {
 };
 
 /// Evaluates codes by the error of the hard decoder, on common trials. For the linear error or
-/// weighted depths, one set of trials determines the best common rotation and another one the error
-/// there; for the linear error the latter is denser at the ends of the range.
+/// weighted depths, one set of trials determines the best rotation and another one the error there.
 class CodeJudge {
  public:
   /// @param trials  per light level
@@ -30,11 +29,10 @@ class CodeJudge {
   int best_rotation(const SampledCode& code) const;
 
   const DesignProblem* problem_;
-  std::vector<TrialBatch> judging_;   // per light level, shared by the variants
+  std::vector<TrialBatch> judging_;
   std::vector<TrialBatch> rotating_;  // uniform depths, for the rotation
 };
 
-/// Moves the origin of depth to the cell nearest to `rotation_bin`.
 WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
                            int rotation_bin);
 

@@ -10,15 +10,13 @@ namespace tofsmith {
 
 namespace {
 
-/// Room for loads that start one point ahead.
 int padded_stride(int samples) { return whole_vectors(samples + 1) + widest_vector; }
 
-/// g_i of DecodingCurve.
 Eigen::VectorXd relative_exposure(const SampledCamera& camera) {
   return camera.exposure_s() / camera.exposure_s().mean();
 }
 
-/// Unit vector along g o kappa, or zeros if ambient light is not estimated.
+/// Zero if ambient light is not estimated.
 Eigen::VectorXd ambient_direction(const SampledCamera& camera, const MeasurementTable& table) {
   const Eigen::VectorXd ambient = relative_exposure(camera).cwiseProduct(table.ambient_gain);
   const double length = ambient.norm();

@@ -11,7 +11,6 @@
 
 namespace tofsmith {
 
-/// Allocates on cache lines, for aligned vector loads.
 template <typename Value>
 struct CacheLineAllocator {
   using value_type = Value;
@@ -40,7 +39,6 @@ template <typename Value>
 struct DecodingCurveOf {
   DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table);
 
-  /// Component r, j in [0, N] plus padding.
   const Value* component(int r) const { return points.data() + r * stride; }
 
   int samples, measurements;
@@ -52,12 +50,10 @@ struct DecodingCurveOf {
 };
 using DecodingCurve = DecodingCurveOf<float>;
 
-/// Gradient w.r.t. a decoding curve, summed over trials.
 template <typename Value>
 struct CurveGradientOf {
   explicit CurveGradientOf(const DecodingCurveOf<Value>& curve);
   void clear();
-  /// Adds the gradient w.r.t. the table of the curve.
   void pull_back(const SampledCamera& camera, const MeasurementTable& table,
                  const DecodingCurveOf<Value>& curve, MeasurementTable& gradient) const;
 

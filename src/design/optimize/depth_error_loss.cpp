@@ -63,7 +63,6 @@ void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, 
   }
 }
 
-/// Electrons depend on the means, and on the variances through sigma e.
 void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double* normals,
                                        double weight) {
   const bool apart = reading_gradient_.shot_correlation.size() > 0;

@@ -11,19 +11,17 @@
 
 namespace tofsmith {
 
-/// Depth error of a code on a grid, and its gradient w.r.t. the correlation functions. Random
-/// measurements y_i = mu_i + sigma_i e_i are decoded by a soft decoder, so the error is
-/// differentiable:
-///   mu_i = T_i (S chi_i(z) + A kappa_i),
+/// Depth error of a code on a grid, and its gradient w.r.t. the correlation functions, including
+/// the dependence of the noise on the code. A soft decoder decodes random measurements
+///   y_i = mu_i + sigma_i e_i,  mu_i = T_i (S chi_i(z) + A kappa_i),
 ///   sigma_i^2 = T_i (S shot_i(z) + A shot_kappa_i) + constant.
-/// The gradient includes the dependence of the noise on the code. A second return adds S2 chi_i(z2)
-/// to S chi_i(z); z is decoded as the only return or as the first of two, depending on the batch.
-/// chi is linear between bins.
+/// A second return adds S2 chi_i(z2) to S chi_i(z); z is decoded as the only return or as the first
+/// of two, depending on the batch. chi is linear between bins.
 class DepthErrorLoss {
  public:
   DepthErrorLoss(const SampledCamera& camera, MeasurementTable table, DepthErrorKind kind);
 
-  /// Returns the mean variance over depths and measurements [e^2].
+  /// Mean variance over depths and measurements [e^2].
   double mean_variance_e2(const OperatingPoint& point) const;
 
   /// Returns the mean error of the soft decoder [bin].
@@ -36,7 +34,6 @@ class DepthErrorLoss {
   void decode(const OperatingPoint& point, const TrialBatch& batch,
               std::vector<double>& decoded_bin);
 
-  /// Returns the accumulated gradient of soft_error().
   MeasurementTable gradient() const;
 
  private:
@@ -50,14 +47,14 @@ class DepthErrorLoss {
     }
   };
   struct Reading {
-    std::vector<Place> places;  ///< direct and, optionally, later return
+    std::vector<Place> places;
     std::vector<float> electrons;
     std::vector<double> deviation_e;
   };
   Place place_at(double depth_periods, double signal_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
-  /// Created on first use; null if the batch is decoded as one return.
+  /// Null if the batch is decoded as one return.
   SoftTwoReturnDecoder* two_return_decoder(const TrialBatch& batch);
   double sum_errors(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
                     double weight, bool with_gradient);
@@ -69,7 +66,7 @@ class DepthErrorLoss {
   SoftDecoder decoder_;
   std::optional<SoftTwoReturnDecoder> two_returns_;
   CurveGradient curve_gradient_;
-  MeasurementTable reading_gradient_;  // w.r.t. the table, through the electrons
+  MeasurementTable reading_gradient_;
   Reading reading_;
   std::vector<float> by_electrons_;
 };

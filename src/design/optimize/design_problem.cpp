@@ -17,17 +17,15 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int min_samples = 96;  // for any length of the cells
+constexpr int min_samples = 96;
 constexpr int min_cells = 4;
 
-/// Returns true for lengths with a fast Fourier transform.
 bool factors_are_small(int count) {
   for (const int factor : {2, 3, 5})
     while (count % factor == 0) count /= factor;
   return count == 1;
 }
 
-/// Fraction of the peak that pulses of whole cells can use.
 double usable_peak(int cells, double peak_factor) {
   return cells / std::ceil(cells / peak_factor - 1e-9) / peak_factor;
 }
@@ -72,7 +70,7 @@ bool may_tell_two_returns(const Camera& camera, int exposures) {
   return (share_all ? exposures * (taps - 1) + 1 : exposures * taps) >= 6;
 }
 
-/// Moves second returns to a grid that is coarse enough to test all pairs of bins.
+/// Rounds second returns to a grid that is coarse enough to test all pairs of bins.
 MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
   constexpr int max_bins = 160;
   int step = (samples + max_bins - 1) / max_bins;
@@ -87,7 +85,6 @@ MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
   return later;
 }
 
-/// The operating points, and copies with second returns if these have a weight.
 std::vector<LightLevel> levels_of(const Camera& camera,
                                   const std::optional<OperatingMultipath>& later,
                                   double two_return_weight) {

@@ -15,7 +15,6 @@
 
 namespace tofsmith {
 
-/// Returns in every trial, and the number that the decoder assumes.
 enum class TrialReturns { one, two_taken_for_one, two };
 
 struct LightLevel {
@@ -24,38 +23,37 @@ struct LightLevel {
   double weight = 1.0;  ///< of the log error in the mean over all levels
 };
 
-/// Camera model of the optimizer: a grid and its training light levels.
 struct CameraVariant {
   SampledCamera camera;
-  /// The model for evaluating codes. Without band limit it has the grid of the camera, since more
-  /// bins reduce the errors of the decoder.
+  /// Model for evaluating codes. Without band limit it has the camera's grid, because more bins
+  /// reduce the errors of the decoder.
   SampledCamera judge;
   std::vector<LightLevel> levels;
 
   double total_weight() const;
-  /// Number of levels that are not decoded as two returns.
+  /// Levels that are not decoded as two returns.
   std::size_t usual_levels() const;
 };
 
-/// Optimization problem: minimize the error on the worst variant of a camera, by weighted geometric
-/// means over light levels.
+/// Minimizes the error on the worst variant of a camera, by weighted geometric means over light
+/// levels.
 struct DesignProblem {
   WaveformSpace space;
   std::vector<CameraVariant> variants;  ///< the camera itself first; never empty
   OperatingRange operating;             ///< kind of error and albedo
   DepthPrior depths;
-  double shortest_run_periods = 0.0;                ///< of binary waveforms
-  std::optional<MultipathTrials> later;             ///< second returns, if any
+  double shortest_run_periods = 0.0;
+  std::optional<MultipathTrials> later;
   std::optional<MultipathTrials> multipath_as_two;  ///< second returns decoded as two returns
   bool binary_modulation = true, binary_demodulation = true;
 
-  /// Second returns of the trials at a level, or null.
+  /// Null without second returns.
   const MultipathTrials* multipath_of(const LightLevel& level) const {
     if (level.returns == TrialReturns::one) return nullptr;
     return level.returns == TrialReturns::two ? &*multipath_as_two : &*later;
   }
   int measurements() const { return variants.front().camera.measurements(); }
-  /// Returns fewer trials for levels that are decoded as two returns, which is expensive.
+  /// Uses fewer trials for two-return decoding, which is expensive.
   static int trials_of(const LightLevel& level, int trials) {
     constexpr int min_trials = 8;
     return std::max(min_trials, level.returns == TrialReturns::two ? trials / 4 : trials);
@@ -63,12 +61,12 @@ struct DesignProblem {
   bool linear() const { return operating.error == DepthErrorKind::linear; }
 };
 
-/// Chooses the grid: the requested number of cells, or of shortest pulses per period, slightly
-/// reduced if a pulse at the peak then fills whole cells.
+/// Chooses the requested number of cells, or of shortest pulses per period, slightly reduced if a
+/// pulse at the peak then fills whole cells.
 WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 
-/// Returns the operating points; if more than 40, 6 signal x 6 ambient levels, spaced evenly in the
-/// logarithm of signal, and of ambient light above the floor of read noise.
+/// Returns the operating points, or 6 signal x 6 ambient levels for more than 40: spaced evenly in
+/// the logarithm of signal, and of ambient light above the floor of read noise.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
 /// Returns why codes of a valid camera cannot be optimized, or nothing: too few measurements,
@@ -78,7 +76,6 @@ std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposure
 
 /// With operating.multipath, adds levels with second returns, decoded as one return and, with
 /// enough measurements, as two.
-/// @param two_return_weight  OptimizeOptions::two_return_weight
 /// @throws std::invalid_argument as why_not_optimizable(), or if variants support different codes
 DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
                                   double two_return_weight = 0.0);

@@ -20,8 +20,8 @@ Eigen::Index sample_at(double time, int samples) {
 
 std::size_t before(std::size_t i, std::size_t count) { return (i + count - 1) % count; }
 
-/// Delaying an edge by t changes its sample by N t times the level; a longer pulse lowers the level
-/// of the whole waveform.
+/// A delay of an edge by t changes its sample by N t times the level; a longer pulse lowers the
+/// level.
 std::vector<double> pull_back_light(const SwitchedLabels& light, const Eigen::VectorXd& gradient,
                                     const Eigen::VectorXd& modulation) {
   const auto samples = static_cast<int>(gradient.size());
@@ -29,7 +29,7 @@ std::vector<double> pull_back_light(const SwitchedLabels& light, const Eigen::Ve
   const double by_level = gradient.dot(modulation) * level;  // by the level, per duty
   std::vector<double> result;
   for (std::size_t i = 0; i < light.runs(); ++i) {
-    const double longer = light.label[i] == 1 ? -1.0 : 1.0;  // a falling edge, when delayed
+    const double longer = light.label[i] == 1 ? -1.0 : 1.0;
     result.push_back(longer *
                      (samples * level * gradient[sample_at(light.at[i], samples)] - by_level));
   }
@@ -51,7 +51,7 @@ std::vector<double> pull_back_gates(const WaveformSpace& space, const SwitchedLa
   return result;
 }
 
-/// Lengthens short runs on both sides. @return true if all are long enough
+/// Returns true if all runs are long enough.
 bool lengthen_short_runs(SwitchedLabels& labels, double shortest) {
   constexpr int rounds = 20;
   const std::size_t count = labels.runs();
@@ -69,7 +69,6 @@ bool lengthen_short_runs(SwitchedLabels& labels, double shortest) {
   return false;
 }
 
-/// Lengthens all pulses equally until the light is within the peak.
 void lengthen_pulses(SwitchedLabels& light, double peak_factor) {
   const double missing = 1.0 / peak_factor - light.share(1);
   if (missing <= 0.0) return;

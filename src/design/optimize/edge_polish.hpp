@@ -12,8 +12,6 @@ namespace tofsmith {
 
 /// Minimizes the depth error over all switching times jointly by stochastic gradients. Number and
 /// order of edges, the shortest run and the peak are kept. Gates of equal duties are not moved.
-/// @param steps, trials_per_step  as in DescentSchedule
-/// @param progress  called at every step
 SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int steps,
                           int trials_per_step, std::uint64_t seed, std::uint64_t work_item,
                           SharedProgress* progress = nullptr);

@@ -34,8 +34,8 @@ bool separates_two_returns(const CodeSet& code, const Camera& camera) {
       make_decoding_table(ForwardModel(code, camera), camera));
 }
 
-/// Selects the best entries and, with operating multipath, the best few others for which two
-/// returns can be decoded.
+/// Returns the best entries and, with operating multipath, the best others whose two returns can be
+/// decoded.
 std::vector<PoolEntry> entries_to_finish(const DesignProblem& problem, const OptimizePool& pool,
                                          const Camera& camera, const PoolStage& stage,
                                          const Sharpness& sharpness) {
@@ -57,8 +57,8 @@ std::vector<PoolEntry> entries_to_finish(const DesignProblem& problem, const Opt
   return chosen;
 }
 
-/// A search with twice the default effort starts with all of the default search, and so on, so more
-/// effort never gives a worse code.
+/// Twice the effort repeats all of the default search first, so more effort never gives a worse
+/// code.
 std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   constexpr int starts_per_refined = 6;
   const OptimizeOptions usual;
@@ -81,8 +81,7 @@ SearchRecord record_of(const OptimizePool& pool) {
           .account = fmt::format("{} gradient steps", pool.steps())};
 }
 
-/// Returns the judge of finished codes. It has more trials than the pool, and other trials, which
-/// did not select the codes.
+/// Has more trials than the pool, and trials that did not select the codes.
 CodeJudge final_judge(const DesignProblem& problem, const OptimizeOptions& options) {
   constexpr int more = 4;
   OptimizeOptions precise = options;
@@ -92,11 +91,10 @@ CodeJudge final_judge(const DesignProblem& problem, const OptimizeOptions& optio
 
 struct FinishedCode {
   SwitchedCode code;
-  double log_error_bin = 0.0;  ///< by final_judge()
+  double log_error_bin = 0.0;
   std::string start;
 };
 
-/// Converts the best entries to feasible codes with optimized edges, best first.
 /// @param before  number of codes from earlier stages, for random numbers
 std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
                                          OptimizePool& pool, const Camera& camera,
@@ -128,9 +126,8 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
   return finished;
 }
 
-/// Returns the best finished code or, with operating multipath, all of them. Without multipath,
-/// judge() would choose by chance: with its number of trials, the standard error of linear errors
-/// is larger than the difference between finished codes.
+/// Returns the best code or, with operating multipath, all of them. Without multipath, judge()
+/// would choose by chance, because its standard error of linear errors exceeds the differences.
 std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool& pool,
                                      const Camera& camera, const OptimizeOptions& options,
                                      std::vector<FinishedCode> finished) {
@@ -163,11 +160,10 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
-  const Camera camera = in_buckets(variants.front());  // camera of the searched codes
+  const Camera camera = in_buckets(variants.front());
 
-  // For every stage:
-  // 1. Descend from many codes, from copies of the best codes, and again from the best codes.
-  // 2. Convert the best codes to feasible codes.
+  // Each stage descends from many codes, from copies of the best codes, and again from the best
+  // codes, which become feasible.
   OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
   const CodeJudge judge = final_judge(problem, options);
   const std::vector<PoolStage> stages = stages_of(options);
@@ -189,7 +185,6 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     std::move(made.begin(), made.end(), std::back_inserter(candidates));
   }
 
-  // 3. Add the record of the search.
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Candidate& c : candidates) {
@@ -201,7 +196,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   return candidates;
 }
 
-/// Search for analog arms. Codes for binary arms compete and provide one more start.
+/// Codes for binary arms compete and provide one more start.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
                                      const Progress& progress) {

@@ -33,13 +33,12 @@ void rotate_gates(const WaveformSpace& space, int exposure, int cells,
   for (int c = 0; c < space.cells; ++c) gates.row((c + cells) % space.cells) = before.row(c);
 }
 
-// Keys of random streams that differ between phases.
 enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
 constexpr std::size_t together = 10;  // descents between sorts of the pool
 constexpr std::size_t hops_together = 5;
 constexpr std::size_t max_pool = 24;
 constexpr double refinement_softness = 1.5;
-/// Codes whose error exceeds the smallest one by this logarithm are only judged by few trials.
+/// Codes whose log error exceeds the smallest by this value are only judged by few trials.
 constexpr double contending_log_ratio = 0.05;
 
 std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
@@ -181,8 +180,7 @@ void OptimizePool::record(double log_error_bin) {
   history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
 }
 
-/// Replaces entries by the results of descents, with the origin at the best rotation. Results that
-/// are clearly worse than the best are only judged by few trials.
+/// Replaces entries by the results of descents, at the best rotation.
 void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
                                std::uint64_t phase, std::size_t first_item,
                                SharedProgress& progress) const {

@@ -16,12 +16,11 @@
 
 namespace tofsmith {
 
-/// Stochastic gradient descent with steps scaled by running means of the gradient and of its
-/// square.
+/// Stochastic gradient descent with steps scaled by running means of the gradient and its square.
 /// @see Kingma and Ba, "Adam: a method for stochastic optimization", ICLR 2015
 class Adam {
  public:
-  /// Updates `values` against `gradient`; non-finite entries count as 0.
+  /// Non-finite gradients count as 0.
   void step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate);
 
  private:
@@ -30,7 +29,7 @@ class Adam {
   double mean_power_ = 1.0, square_power_ = 1.0;
 };
 
-/// Waveforms and decoder start soft and become sharper.
+/// Waveforms and decoder become sharper.
 struct DescentSchedule {
   int steps = 300;
   int trials_per_step = 360;  ///< over all light levels
@@ -42,7 +41,6 @@ struct DescentSchedule {
 };
 
 /// Returns parameters with a lower error; uses random streams (seed, work item, step).
-/// @param progress  called at every step
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress = nullptr);
@@ -55,15 +53,13 @@ struct PoolEntry {
 };
 
 /// Returns the indices of up to `count` entries, best first, with at most `of_each` from the same
-/// start, so that several local minima compete. Without this limit, most entries are from the best
-/// start.
+/// start. Without this limit, most entries are from the best start.
 std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
                                         std::ptrdiff_t of_each);
 
 /// Jumps out of a local minimum: softens the best entry of one of the best three starts, replaces
 /// one pair of waveforms (by a random pair or from another entry) or rotates its gates against its
-/// light, and adds noise.
-/// @param pool  best first, not empty
+/// light, and adds noise. `pool` is sorted and not empty.
 /// @return parameters and name of the start
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
               RandomStream& random);
@@ -71,31 +67,28 @@ PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
 /// Clips parameters to [-limit, limit], so that a descent can change them.
 WaveformParameters softened(WaveformParameters parameters, double limit);
 
-/// Trials per light level of a judge that ranks codes by OptimizeOptions::pool_trials.
 int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options);
 
-/// Work of a stage; starts and hops include earlier stages.
+/// Starts and hops include earlier stages.
 struct PoolStage {
   int starts = 0, hops = 0;
   int refinement_steps = 0;  ///< of this stage only
-  int refined = 0;           ///< number of entries that are continued and refined
+  int refined = 0;           ///< entries that are continued and refined
 };
 
-/// Codes from descents, best first, with the history of the search. Stages continue from one
-/// another.
+/// Codes from descents, best first, with the history of the search.
 class OptimizePool {
  public:
   OptimizePool(const DesignProblem& problem, const OptimizeOptions& options, double bin_m);
 
   void run_starts(const PoolStage& stage, std::span<const CodeSet> also, const Progress& progress);
-  /// Descends from the best entries and then from perturbed copies (hop()), until hops or patience
-  /// are used up.
+  /// Descends from the best entries and then from perturbed copies, until hops or patience are used
+  /// up.
   void run_hops(const PoolStage& stage, const Progress& progress);
   /// Descends from softened copies of the best entries; keeps the better of each.
   void refine(const PoolStage& stage, const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
-  /// Smallest error after every descent.
   const std::vector<SearchStep>& history() const { return history_; }
   std::int64_t steps() const { return steps_; }
   void add_steps(std::int64_t steps) { steps_ += steps; }
@@ -110,7 +103,7 @@ class OptimizePool {
   const DesignProblem* problem_;
   OptimizeOptions options_;
   double bin_m_;
-  CodeJudge quick_judge_;  ///< few trials; rejects codes that are clearly worse than the best
+  CodeJudge quick_judge_;  ///< few trials
   CodeJudge judge_;
   std::vector<PoolEntry> entries_;    ///< best first
   std::vector<PoolEntry> continued_;  ///< entries after the starts, which the first hops continue

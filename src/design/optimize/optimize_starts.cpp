@@ -50,7 +50,6 @@ void write_pulses(const WaveformSpace& space, int count, double duty, int exposu
       pulse_train(count, std::min(1.0, duty)).cell_averages(space.samples());
 }
 
-/// Opens the taps in turn; a single tap for half the time.
 void write_turns(const WaveformSpace& space, int frequency, double phase, int exposure,
                  SampledCode& code) {
   const int turns = std::max(2, space.taps), samples = space.samples();
@@ -61,7 +60,6 @@ void write_turns(const WaveformSpace& space, int frequency, double phase, int ex
   }
 }
 
-/// Opens the tap with the largest random smooth function.
 void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int exposure,
                         RandomStream& random, SampledCode& code) {
   const int choices = std::max(2, space.taps), samples = space.samples();
@@ -75,7 +73,7 @@ void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int e
   }
 }
 
-/// Turns on the light where a random smooth function is largest, for the shortest duty.
+/// On where a random smooth function is largest, for the shortest duty.
 void write_smooth_light(const WaveformSpace& space, int highest_frequency, int exposure,
                         RandomStream& random, SampledCode& code) {
   const int samples = space.samples();
@@ -116,7 +114,6 @@ std::vector<CodeSet> families_of(const WaveformSpace& space) {
   return codes;
 }
 
-/// Waveforms that stay soft start closer to the code.
 OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double noise,
                        RandomStream& random) {
   constexpr double nearer = 2.0;

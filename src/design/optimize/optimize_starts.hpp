@@ -18,14 +18,14 @@ struct OptimizeStart {
 };
 
 /// Returns start `index` of an endless list:
-///   - given codes and families (Hamiltonian, pulsed multi-frequency, Gray) that fit the space,
+///   - given codes and families that fit the space,
 ///   - frequency 1 with each higher useful frequency,
-///   - in turn: random mixtures of frequencies, the given codes and families with noise, and random
+///   - in turn: random mixtures of frequencies, given codes and families with noise, and random
 ///     smooth gates, with one pulse or with random light.
 OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
                              RandomStream& random);
 
-/// Returns a random pair for one exposure, as parameters (cells, 1) and (cells, columns).
+/// Random pair for one exposure, as parameters (cells, 1) and (cells, columns).
 WaveformParameters random_pair(const DesignProblem& problem, RandomStream& random);
 
 SampledCode sampled_on(const WaveformSpace& space, const CodeSet& code);

@@ -13,8 +13,8 @@ namespace tofsmith {
 
 namespace {
 
-/// With DesignOptions::robust, includes other bandwidths. Other perturbations affect the code or
-/// the taps, which gradients do not model.
+/// With DesignOptions::robust, includes other bandwidths. Gradients do not model other
+/// perturbations.
 std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& options) {
   std::vector<Camera> variants{camera};
   if (options.robust)

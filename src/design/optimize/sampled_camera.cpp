@@ -33,7 +33,6 @@ Eigen::MatrixXd mixing_matrix(int exposures, int taps, const Sensor& sensor) {
   return mixing;
 }
 
-/// Sensitivities of the taps relative to the mean of their pixel.
 Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
   Eigen::VectorXd sensitivity = Eigen::VectorXd::Ones(exposures * taps);
   for (int i = 0; i < exposures * taps; ++i)
@@ -46,8 +45,8 @@ Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
 bool sees_ambient(const Camera& camera, int exposures) {
   if (camera.sensor.readout != Readout::difference) return true;
   if (camera.sensor.tap_mismatch == 0.0) return false;
-  const double leak = 0.5 * std::abs(camera.sensor.tap_mismatch);  // at duty 1/2
-  // The longest exposure: light grows with time, noise with its root.
+  const double leak = 0.5 * std::abs(camera.sensor.tap_mismatch);
+  // Light grows with time, noise with its root.
   const std::vector<double>& each_s = camera.exposure_s.each_s;
   const double exposure_s = each_s.empty() ? camera.exposure_s.total_s / exposures
                                            : *std::max_element(each_s.begin(), each_s.end());
@@ -129,7 +128,6 @@ SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
   return measured;
 }
 
-/// Computes the light that causes the shot noise of a mixer.
 void SampledCamera::measure_squares(const SampledCode& code, Measured& measured) const {
   measured.weight.resize(samples(), exposures_);
   measured.square.resize(static_cast<std::size_t>(exposures_));
@@ -162,8 +160,8 @@ SampledCode SampledCamera::pull_back(const Measured& measured,
     const Eigen::VectorXcd& m = measured.modulation[static_cast<std::size_t>(e)];
     Eigen::VectorXcd by_modulation = Eigen::VectorXcd::Zero(transfer_.size());
     for (int i = e * taps_; i < (e + 1) * taps_; ++i) {
-      // chi = F^-1 (D conj(M) G / N). The adjoint w.r.t. d multiplies by M conj(G); w.r.t. m it
-      // takes conj(gradient) D G, because m is conjugated.
+      // chi = F^-1 (D conj(M) G / N). The adjoint w.r.t. d multiplies by M conj(G); w.r.t. m it is
+      // conj(gradient) D G.
       signal = by_tap.col(i);
       transform_.forward(signal, spectrum);
       const Eigen::VectorXcd& d = measured.demodulation[static_cast<std::size_t>(i)];

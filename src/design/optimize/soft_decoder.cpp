@@ -19,14 +19,12 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// As wide as Floats and Doubles.
 template <typename Value>
 using Tag = hn::CappedTag<Value, widest_vector * sizeof(float) / sizeof(Value)>;
 
 constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
 constexpr float smallest = 1e-30f;
 
-/// Computes beta_j = <y, p_j> for j in [0, N].
 template <typename Value>
 HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
                              const Value* HWY_RESTRICT electrons,
@@ -41,10 +39,9 @@ HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
   }
 }
 
-/// Finds the best point of every chord. With u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it is at
-/// t = v / (u + v) if both are > 0, otherwise at the better end. Scores are S_j, or -1 in the
-/// padding.
-/// @return the largest score
+/// Finds the best point of every chord. With u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it is at t
+/// = v / (u + v) if both are > 0, otherwise at the better end. Scores are S_j, or -1 in the
+/// padding; returns the largest.
 template <typename Value>
 HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
                               typename SoftDecoderOf<Value>::Scratch& scratch) {
@@ -86,7 +83,6 @@ HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Uses scratch.ratio.
 template <typename Value>
 HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
                         typename SoftDecoderOf<Value>::Scratch& scratch) {
@@ -135,8 +131,7 @@ HWY_INLINE V chord_error(D d, V place, Value true_bin, Value samples,
   return hn::Min(distance, hn::Sub(whole, distance));
 }
 
-/// Unnormalized weights of the chords and their errors. Writes {sum of weights, sum of weighted
-/// errors}.
+/// Unnormalized weights of the chords. Writes {sum of weights, sum of weighted errors}.
 template <typename Value>
 HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQuestion& question,
                              Value largest, typename SoftDecoderOf<Value>::Scratch& scratch,
@@ -165,8 +160,8 @@ HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQues
   sums[1] = sum_of_lanes(d, error_total);
 }
 
-/// Gradient of the expected error w.r.t. the matches b_j at both ends of every chord (scratch);
-/// adds the weighted gradient w.r.t. the squares and products of the curve.
+/// Gradient of the expected error w.r.t. the matches b_j at both ends of every chord; adds the
+/// weighted gradient w.r.t. the squares and products of the curve.
 template <typename Value>
 HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
                                      const SoftQuestion& question, Value weight,
@@ -233,7 +228,6 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
   scratch.by_next_match[0] = scratch.by_next_match[static_cast<std::size_t>(curve.samples)];
 }
 
-/// From the matches b_j = <y, p_j> to the points (weighted) and to y.
 template <typename Value>
 HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const Value* electrons,
                                       Value weight, CurveGradientOf<Value>& gradient,

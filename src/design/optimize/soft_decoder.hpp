@@ -32,7 +32,6 @@ class SoftDecoderOf {
                         const SoftQuestion& question, Value weight,
                         CurveGradientOf<Value>& gradient, Value* by_electrons);
 
-  /// One value per chord.
   struct Scratch {
     explicit Scratch(int stride);
     Aligned<Value> match, ratio, score, place, free, share, error, by_match, by_next_match;

@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 namespace {
 using Pairs = SoftTwoReturnDecoder::Pairs;
 
-/// Strengths and scores of all pairs; -1 in the padding. @return the largest score
+/// Computes strengths and scores of all pairs (-1 in the padding); returns the largest score.
 float score_all_pairs(Pairs& pairs) {
   constexpr float min_square = 1e-10f;      // of pairs whose points cancel
   constexpr float min_determinant = 1e-6f;  // relative; closer pairs are one return
@@ -67,7 +67,6 @@ float score_all_pairs(Pairs& pairs) {
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Unnormalized weights of all pairs and, per bin, their sums over delays.
 void weigh_all_pairs(float sharpness, float largest, Pairs& pairs) {
   const Floats d;
   const int lanes = lanes_of(d);
@@ -141,7 +140,6 @@ Eigen::MatrixXf points_on_grid(const DecodingCurve& curve, int step) {
   return points;
 }
 
-/// Two periods of the values, one per bin.
 void repeat(const Eigen::VectorXf& values, AlignedFloats& twice) {
   std::copy(values.begin(), values.end(), twice.begin());
   std::copy(values.begin(), values.end(), twice.begin() + values.size());
@@ -166,7 +164,7 @@ SoftTwoReturnDecoder::SoftTwoReturnDecoder(const DecodingCurve& curve, int step,
       points_(points_on_grid(curve, step)),
       pairs_(curve.samples / step, delays),
       by_points_(Eigen::MatrixXf::Zero(points_.rows(), points_.cols())) {
-  constexpr float min_square = 1e-10f;  // of a point without contrast
+  constexpr float min_square = 1e-10f;
   repeat((points_.rowwise().squaredNorm().array() + min_square).matrix(), pairs_.squares);
   const Eigen::MatrixXf gram = points_ * points_.transpose();
   for (int delay = delays.shortest; delay <= delays.longest; ++delay)

@@ -9,7 +9,6 @@
 
 namespace tofsmith {
 
-/// Delays of a second return that a decoder considers, in bins of its grid.
 struct DelayBins {
   int shortest = 1, longest = 2;
 };
@@ -26,14 +25,13 @@ class SoftTwoReturnDecoder {
 
   /// Returns the position of the direct return [bins of the curve], for electrons (R).
   double decode(const float* electrons);
-  /// Returns the expected circular |error| of the direct return [bins of the curve], for pairs with
-  /// probability exp(sharpness S_jk) / sum.
+  /// Returns the expected circular |error| of the direct return [bins of the curve]; probabilities
+  /// of pairs are exp(sharpness S_jk) / sum.
   double expected_error(const float* electrons, const SoftQuestion& question);
-  /// Accumulates `weight` times the gradient w.r.t. the curve for pull_back(), and writes the
-  /// unweighted gradient w.r.t. the electrons (R).
+  /// Returns the same error, accumulates `weight` times the gradient for pull_back(), and writes
+  /// the unweighted gradient w.r.t. the electrons (R).
   double expected_error(const float* electrons, const SoftQuestion& question, float weight,
                         float* by_electrons);
-  /// Adds the accumulated gradient.
   void pull_back(CurveGradient& gradient) const;
 
   /// One value per bin, over two periods, or one per pair, (delays, stride).
@@ -45,12 +43,12 @@ class SoftTwoReturnDecoder {
 
     int bins;
     DelayBins delays;
-    int stride;                                       ///< whole vectors
-    AlignedFloats squares, match;                     ///< |p_j|^2 and <y, p_j>, two periods
-    AlignedFloats products;                           ///< <p_j, p_k>, per pair
-    AlignedFloats strength, later, score, share;      ///< s1, s2, S, probability, per pair
-    AlignedFloats row, error;                         ///< per bin
-    AlignedFloats by_match, by_squares, by_products;  ///< gradients
+    int stride;  ///< whole vectors
+    AlignedFloats squares, match;
+    AlignedFloats products;                       ///< <p_j, p_k>, per pair
+    AlignedFloats strength, later, score, share;  ///< s1, s2, S, probability, per pair
+    AlignedFloats row, error;                     ///< per bin
+    AlignedFloats by_match, by_squares, by_products;
   };
 
  private:
@@ -60,7 +58,6 @@ class SoftTwoReturnDecoder {
   };
 
   void set_match(const float* electrons);
-  /// Weights of all pairs and the expected error.
   Shares weigh(const float* electrons, const SoftQuestion& question);
 
   int step_, curve_stride_;

@@ -10,7 +10,7 @@
 namespace tofsmith {
 
 namespace {
-constexpr double worst_case_sharpness = 20.0;  // per unit of log error
+constexpr double worst_case_sharpness = 20.0;
 }
 
 StochasticGradient::StochasticGradient(const DesignProblem& problem, int trials,

@@ -8,13 +8,11 @@
 
 namespace tofsmith {
 
-/// Stochastic gradient of the objective w.r.t. the waveforms, from new trials in every call. The
-/// objective is the smooth maximum over the camera variants of the mean log error over light
-/// levels. The weights of the levels follow from running means of their errors.
+/// Stochastic gradient w.r.t. the waveforms, from new trials in every call. The objective is the
+/// smooth maximum over camera variants of the mean log error over light levels.
 class StochasticGradient {
  public:
   /// @param trials  per call, in total
-  /// @param random  for stored noise
   StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
 
   /// @param decision_sharpness  per log likelihood

@@ -10,9 +10,8 @@
 
 namespace tofsmith {
 
-/// Labels over one period: label[i] applies from at[i] to the next switching time, cyclically.
-/// Times [periods] are ascending, within one period. Without times, label[0] applies always.
-/// Adjacent labels differ.
+/// label[i] applies from at[i] to the next switching time, cyclically. Times [periods] are
+/// ascending, within one period; without times, label[0] always applies. Adjacent labels differ.
 struct SwitchedLabels {
   std::vector<double> at;
   std::vector<int> label;
@@ -23,9 +22,7 @@ struct SwitchedLabels {
   /// End of run i, in (0, 2).
   double end(std::size_t i) const { return i + 1 < at.size() ? at[i + 1] : at[0] + 1.0; }
   double length(std::size_t i) const { return end(i) - at[i]; }
-  /// Fraction of the period with this label.
   double share(int wanted) const;
-  /// Returns a waveform that is on where the label is `wanted`.
   Waveform waveform(int wanted, double level) const;
 };
 
@@ -35,10 +32,8 @@ struct SwitchedCode {
   SampledCode sampled;                ///< of analog arms
 };
 
-/// Has unit mean power.
 Waveform light_waveform(const SwitchedLabels& light);
 
-/// Cell averages on the grid.
 SampledCode sampled_on(const WaveformSpace& space, const SwitchedCode& code);
 
 CodeSet code_set(const std::string& name, const WaveformSpace& space, const SwitchedCode& code,

@@ -9,7 +9,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double closest = 1e-4;  // to an end, in half periods
+constexpr double closest = 1e-4;
 const double decades = -std::log(closest);
 
 /// `quantile` in [0, 1).
@@ -18,7 +18,6 @@ double depth_near_end(double quantile, bool upper) {
   return upper ? std::nextafter(1.0, 0.0) * (1.0 - distance) : distance;
 }
 
-/// The decoder only has positions on the grid.
 void move_to(const TwoReturnGrid& grid, DepthTrial& trial) {
   const auto bin_of = [&](double periods) { return std::round(periods * grid.bins); };
   const double bin = bin_of(trial.depth_periods);
@@ -60,7 +59,6 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
   if (later) batch.two_returns = later->decoded_as_two;
   batch.trials.resize(static_cast<std::size_t>(count));
   if (batch.two_returns) ends_matter = false;  // always circular errors
-  // No wrap-around without depths near the ends.
   if (depths.density(0.0) == 0.0 && depths.density(1.0) == 0.0) ends_matter = false;
   const int uniform = ends_matter ? count / 2 : count;
   for (int t = 0; t < count; ++t) {

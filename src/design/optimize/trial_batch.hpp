@@ -20,12 +20,10 @@ struct DepthTrial {
   double later_delay_periods = 0.0;  ///< after the direct return, in [0, 1)
 };
 
-/// Stored standard normal numbers. Drawing windows is cheap, but windows overlap: for averaged
-/// gradients only, not for evaluating codes.
+/// Drawing windows is cheap, but windows overlap: for averaged gradients only.
 class NoiseStore {
  public:
   explicit NoiseStore(RandomStream& random);
-  /// Returns consecutive numbers from a random position.
   std::vector<double> window(std::size_t count, RandomStream& random) const;
 
  private:
@@ -35,7 +33,7 @@ class NoiseStore {
 /// Grid of two-return decoding; its bins divide the samples of the waveforms.
 struct TwoReturnGrid {
   int bins = 0;
-  DelayBins delays;  ///< considered by the decoder
+  DelayBins delays;
 };
 
 /// Depths and noise, drawn in advance so that codes and gradients share the same trials.
@@ -43,7 +41,7 @@ struct TrialBatch {
   int measurements = 0;
   std::vector<DepthTrial> trials;
   std::vector<double> normals;               ///< standard normal, (trials, measurements)
-  std::optional<TwoReturnGrid> two_returns;  ///< grid; none: decode as one return
+  std::optional<TwoReturnGrid> two_returns;  ///< none: decode as one return
 
   const double* normals_of(std::size_t trial) const {
     return normals.data() + trial * static_cast<std::size_t>(measurements);
@@ -57,8 +55,8 @@ struct MultipathTrials {
 };
 
 /// Draws depths from the prior, stratified. With ends_matter, half of them are near the ends of the
-/// range, with density 1 / distance, because a wrap costs the whole range there; ignored for
-/// two-return decoding.
+/// range, with density 1 / distance, because a wrap costs the whole range there; not for two-return
+/// decoding.
 /// @param store  source of noise; null: new numbers
 /// @param later  second returns; null: none
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,

@@ -14,7 +14,6 @@ namespace tofsmith {
 /// Limit of two-return errors, relative to the best initial code.
 class TwoReturnLimit {
  public:
-  /// @param max_loss  OptimizeOptions::max_two_return_loss
   explicit TwoReturnLimit(double max_loss) : max_loss_(max_loss) {}
 
   void add_given(const std::optional<OperatingMultipathReport>& report) {

@@ -9,7 +9,6 @@ namespace tofsmith {
 
 namespace {
 
-/// s(x) = 1 / (1 + exp(-x)).
 Eigen::ArrayXd logistic_of(const Eigen::ArrayXd& x) {
   return 1.0 / (1.0 + (-x.max(-500.0).min(500.0)).exp());
 }
@@ -58,7 +57,7 @@ Eigen::ArrayXd mean_in_cells(const Eigen::VectorXd& samples, int repeat) {
   return sum_in_cells(samples, repeat) / repeat;
 }
 
-/// Adjoint of logistic_of_mean(), given its values; lambda depends on x.
+/// Adjoint of logistic_of_mean(); lambda depends on x.
 Eigen::ArrayXd pull_back_of_mean(const Eigen::ArrayXd& value, double steepness,
                                  const Eigen::ArrayXd& gradient) {
   const Eigen::ArrayXd slope = value * (1.0 - value);
@@ -67,14 +66,12 @@ Eigen::ArrayXd pull_back_of_mean(const Eigen::ArrayXd& value, double steepness,
   return steepness * slope * (gradient - mean);
 }
 
-/// (cells, classes)
 Eigen::ArrayXXd softmax(const Eigen::ArrayXXd& logits) {
   Eigen::ArrayXXd shares = (logits.colwise() - logits.rowwise().maxCoeff()).exp();
   const Eigen::ArrayXd sum = shares.rowwise().sum();
   return shares.colwise() / sum;
 }
 
-/// The drain gets the remainder of the taps.
 Eigen::ArrayXXd class_shares(const WaveformSpace& space, const SampledCode& code, int e) {
   Eigen::ArrayXXd shares(space.cells, space.classes());
   for (int t = 0; t < space.taps; ++t)
@@ -150,7 +147,6 @@ WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code
 WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode& code,
                                    double scale) {
   const int columns = space.columns();
-  // Only differences of columns matter.
   const double gate_scale = columns == 1 ? scale : 0.5 * scale;
   WaveformParameters result{Eigen::MatrixXd(space.cells, space.exposures),
                             Eigen::MatrixXd(space.cells, space.exposures * columns)};

@@ -13,7 +13,7 @@ struct WaveformSpace {
   int repeat = 1;   ///< samples per cell
   int exposures = 0;
   int taps = 1;
-  /// Charge can be discarded; always possible for one tap, never for two buckets.
+  /// Charge can be discarded: always for one tap, never for two buckets.
   bool drain = false;
   double peak_factor = 15.0;
   bool equal_duties = false;  ///< both buckets of an exposure at duty 1/2
@@ -21,21 +21,19 @@ struct WaveformSpace {
   int samples() const { return cells * repeat; }
   /// Destinations of charge: taps, then the drain.
   int classes() const { return taps + (drain ? 1 : 0); }
-  /// Parameter columns per exposure; two classes need one.
   int columns() const { return classes() == 2 ? 1 : classes(); }
 
   friend bool operator==(const WaveformSpace&, const WaveformSpace&) = default;
 };
 
-/// Steepness of waveforms as a function of their parameters; large: nearly binary.
+/// Large values: nearly binary waveforms.
 struct Sharpness {
   double modulation = 1.0;
   double demodulation = 1.0;
 };
 
-/// Parameters of the waveforms of a code; all values are feasible.
-///   modulation    m = p s(k (phi - lambda)), s the logistic function, lambda such that mean m = 1;
-///                 the light may stay below its peak
+/// Parameters of waveforms; all values are feasible.
+///   modulation    m = p s(k (phi - lambda)), s the logistic function, lambda such that mean m = 1
 ///   demodulation  two classes: s(k theta); more: softmax(k theta) over the classes
 struct WaveformParameters {
   Eigen::MatrixXd modulation;    ///< phi (cells, E)
@@ -45,12 +43,11 @@ struct WaveformParameters {
 SampledCode render(const WaveformSpace& space, const WaveformParameters& parameters,
                    const Sharpness& sharpness);
 
-/// Converts a gradient w.r.t. the waveforms to one w.r.t. the parameters.
-/// @param code  render(space, parameters, sharpness)
+/// Converts a gradient w.r.t. the waveforms of render() to one w.r.t. the parameters.
 WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code,
                              const Sharpness& sharpness, const SampledCode& gradient);
 
-/// Approximates the code: +scale where on, -scale where off.
+/// +scale where on, -scale where off.
 WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode& code,
                                    double scale);
 

@@ -14,8 +14,8 @@ inline constexpr double dim_share = 0.1;
 
 Camera in_share_of_light(Camera camera, double share);
 
-/// Returns a note if the winner on a camera that reads rows is significantly worse than a standard
-/// code at a tenth of the smallest signal, and how to design for that light.
+/// Returns a note on how to design for dim light if the winner on a camera that reads rows is
+/// significantly worse than a standard code at a tenth of the smallest signal.
 std::optional<std::string> dim_light_note(const Camera& camera, const DesignResult& result,
                                           const DesignOptions& options);
 

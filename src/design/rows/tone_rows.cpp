@@ -34,12 +34,11 @@ constexpr int min_bins_per_period = 6;
 constexpr int drawn_sets = 400, bettered_sets = 12, steps_per_set = 60, judged_sets = 8;
 constexpr int rounds_of_light = 12;
 
-/// More side lobes matter in dimmer light. 1 % more error is accepted for 40 % less at a tenth of
+/// More side lobes matter in dimmer light: 1 % more error is accepted for 40 % less at a tenth of
 /// the light, up to 3 % in total.
 constexpr double dim_weight = 0.02, max_loss = 1.03;
 
-/// Monte Carlo trials in units of DesignOptions::search_trials, for all operating points together:
-/// first for all sets, then for the best.
+/// Monte Carlo trials in units of DesignOptions::search_trials, for all operating points together.
 constexpr int first_trials = 5, dim_trials = 2;
 constexpr std::int64_t most_trials = 4'000'000'000;  // limit of evaluate()
 struct FinalRound {
@@ -56,11 +55,9 @@ struct ToneCode {
   double foreseen_m = infinity;
   double dim_foreseen_m = infinity;  // at dim_share of the light
 
-  /// @param weight  of the error in dimmer light
   double score(double weight) const { return foreseen_m * std::pow(dim_foreseen_m, weight); }
 };
 
-/// Predicts errors of tone sets and finds their light.
 class ToneSearch {
  public:
   ToneSearch(const Camera& camera, int rows)
@@ -92,7 +89,6 @@ class ToneSearch {
 
   int tones() const { return (rows_ + 1) / 2; }
 
-  /// Draws tones around or below the best one.
   Tones draw(RandomStream& random) const {
     const double centre = -1.0 + 1.1 * random.uniform(), spread = 0.1 + 0.7 * random.uniform();
     std::set<int> drawn;
@@ -106,7 +102,7 @@ class ToneSearch {
     return tones_drawn;
   }
 
-  /// Moves one tone by a small or arbitrary step, unless the new one is taken.
+  /// Moves one tone, unless the new one is taken.
   Tones stepped(const Tones& from, RandomStream& random) const {
     Tones tones = from;
     const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(tones.size()));
@@ -201,11 +197,10 @@ class ToneSearch {
           is_on[static_cast<std::size_t>(n)] != 0 ? static_cast<double>(samples_) / on_bins_ : 0.0;
   }
 
-  /// Predicts geometric mean errors at nominal and dimmer light.
+  /// Geometric mean errors at nominal and dimmer light.
   void foresee(ToneCode& code) const {
     const double exposure_s = camera_.exposure_s.of(0, 1), range_m = camera_.range_m();
     const Sensor& sensor = camera_.sensor;
-    // Signal photons per bin, after both arms.
     Eigen::VectorXcd spectrum(transform_.coefficients());
     transform_.forward(code.light / code.light.sum(), spectrum);
     spectrum.array() *= response_.array();
@@ -252,7 +247,7 @@ class ToneSearch {
     code.dim_foreseen_m = mean_m(dim_);
   }
 
-  /// Derivative of the rows per period of depth, from their mean (K) at depth 0.
+  /// Derivative per period of depth, from the mean (K) at depth 0.
   Eigen::VectorXd slope_of(const Tones& tones, const Eigen::VectorXd& mean) const {
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_);
     for (int k = 0; k < rows_; ++k) {
@@ -263,7 +258,7 @@ class ToneSearch {
     return slope;
   }
 
-  /// Returns the sum over lobes of row_candidates() with (|u| R)^exponent [m^exponent].
+  /// Sum over lobes of row_candidates() with (|u| R)^exponent [m^exponent].
   double lobes(const Tones& tones, const Eigen::VectorXd& power, int exponent) const {
     // At u = j / points, 8 per period of the highest tone; minima by parabolas.
     const int points = std::min(samples_, 8 * tones.back());
@@ -282,7 +277,6 @@ class ToneSearch {
       if (here > before || here > after) continue;
       const double bend = before + after - 2 * here, tilt = after - before;
       const double least = bend > 0.0 ? std::max(0.0, here - tilt * tilt / (8 * bend)) : here;
-      // Both sides, with Q(x) = erfc(x / sqrt 2) / 2.
       error +=
           std::pow(camera_.range_m() * j / points, exponent) * std::erfc(0.5 * std::sqrt(least));
     }
@@ -295,7 +289,7 @@ class ToneSearch {
   }
 
   const Camera& camera_;
-  Camera dim_;  // camera_ in dimmer light
+  Camera dim_;
   int rows_, samples_, highest_;
   PeriodicTransform transform_;
   Eigen::VectorXcd response_;  // of both arms, all harmonics of the bins
@@ -308,7 +302,6 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
   std::stable_sort(codes.begin(), codes.end(), [weight](const ToneCode& a, const ToneCode& b) {
     return a.score(weight) < b.score(weight);
   });
-  // Keep only the best light of each set.
   std::vector<ToneCode> kept;
   for (ToneCode& code : codes) {
     if (static_cast<int>(kept.size()) == count) break;
@@ -320,7 +313,6 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
 }
 
 std::int64_t by_effort(double count, const DesignOptions& options) {
-  // Starts represent the effort.
   const double effort =
       static_cast<double>(options.optimize.starts) / static_cast<double>(OptimizeOptions().starts);
   return std::max<std::int64_t>(1, std::llround(count * effort));
@@ -402,7 +394,6 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   const ProgressParts parts(progress, {20, 40, 40});
   const std::uint64_t seed = search_seed(options);
 
-  // 1. Draw sets of tones, each with its light.
   std::vector<ToneCode> codes;
   const auto drawn = static_cast<int>(by_effort(drawn_sets, options)),
              bettered = static_cast<int>(by_effort(bettered_sets, options));
@@ -412,7 +403,6 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
     report(parts[0], static_cast<double>(i + 1) / drawn, "rows");
   }
 
-  // 2. Improve the best sets tone by tone, for nominal and for dimmer light.
   const std::vector<ToneCode> at_random = std::move(codes);
   codes.clear();
   for (std::uint32_t turn = 0; turn < 2; ++turn) {
@@ -434,7 +424,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   }
   keep_best(codes, 2 * judged_sets, dim_weight);
 
-  // 3. Select one set, with other random numbers than judge().
+  // Selects with other random numbers than judge().
   const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   CodeSet code = search.code_set(tones);
