@@ -43,8 +43,7 @@ fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-/// Prefix of the hidden files of processes with the same numbering. Other machines and containers
-/// may share the directory.
+/// Other machines and containers may share the directory.
 std::string hidden_prefix(const std::string& machine) {
   return fmt::format(".tofsmith-{:016x}-", fnv1a_64(machine));
 }

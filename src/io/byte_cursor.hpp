@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// Reads the bytes of a file sequentially. Errors contain the file's name and the byte offset.
+/// Reads bytes sequentially. Errors contain the file's name and the byte offset.
 class ByteCursor {
  public:
   ByteCursor(std::span<const std::byte> bytes, std::string_view file)
@@ -20,7 +20,7 @@ class ByteCursor {
   std::span<const std::byte> rest() const { return bytes_.subspan(position_); }
   bool at_end() const { return position_ == bytes_.size(); }
 
-  /// Returns the next `count` bytes. `what` names their content in error messages.
+  /// `what` names the bytes in error messages.
   std::span<const std::byte> take(std::size_t count, std::string_view what);
   std::string_view take_text(std::size_t count, std::string_view what);
   /// Returns the text before the next `end`, which is skipped.

@@ -8,7 +8,6 @@
 
 namespace tofsmith {
 
-/// Converts an IEEE half-precision float, without rounding.
 inline float float_of_half(std::uint16_t bits) { return half(half::FromBits, bits); }
 
 }  // namespace tofsmith

@@ -10,7 +10,6 @@
 
 namespace tofsmith {
 
-/// A file opened for reading. Errors contain its name.
 class InputFile {
  public:
   /// @throws IoError if it is missing, a directory or unreadable
@@ -19,12 +18,11 @@ class InputFile {
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&&) = delete;
 
-  /// Returns the size in bytes; none for a pipe.
+  /// Returns none for a pipe.
   std::optional<std::uint64_t> size() const { return size_; }
-  /// Reads from the end of the last read(). Returns less than requested only at the end of the
-  /// file.
+  /// Returns less than requested only at the end of the file.
   std::size_t read(std::span<std::byte> into);
-  /// Fills `into` from `offset`, independently of read(). @throws IoError if the file is too short
+  /// Independent of read(). @throws IoError if the file is too short
   void read_at(std::uint64_t offset, std::span<std::byte> into) const;
 
  private:

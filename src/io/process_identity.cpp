@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the content of a file of /proc, which has no size; "" if it is missing.
+/// Files of /proc have no size. Returns "" if the file is missing.
 std::string content_of(const std::string& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -28,7 +28,7 @@ std::string target_of(const char* link) {
   return error ? "" : target.string();
 }
 
-/// Returns the start time of a process in ticks since boot (22nd field); "" if there is none.
+/// In ticks since boot (22nd field); "" if there is no such process.
 std::string start_of(std::int64_t process) {
   const std::string stat = content_of(fmt::format("/proc/{}/stat", process));
   const std::size_t after_name = stat.rfind(')');  // the name may contain any character

@@ -7,19 +7,18 @@
 
 namespace tofsmith {
 
-/// Identity of a process among all processes that may share its files.
+/// Unique among all processes that may share files.
 struct ProcessIdentity {
-  /// Boot of the machine and namespace of its process numbers; "" if unknown. It differs between
-  /// containers even if they have the same host name.
+  /// Boot of the machine and namespace of its process numbers (differs between containers); "" if
+  /// unknown.
   std::string machine;
   std::int64_t number = 0;
-  std::string start;  ///< distinguishes processes that reuse a number; "" if unknown
+  std::string start;  ///< in case a number is reused; "" if unknown
 
   static ProcessIdentity own();
 };
 
-/// Returns true if a process has certainly ended. Processes of other machines, boots and namespaces
-/// are unknown.
+/// False for processes of other machines, boots and namespaces.
 bool is_surely_gone(const ProcessIdentity& process, const ProcessIdentity& own);
 
 }  // namespace tofsmith

@@ -27,8 +27,7 @@ Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_b
   const std::uint64_t announced = file.size().value_or(0);
   if (announced > max_bytes) refuse_size(path, fmt::format("{}", announced), max_bytes);
   Container content;
-  // Files of /proc have size 0, and pipes have none: read until the end, and request one byte more
-  // than expected to detect the end.
+  // Files of /proc have size 0, and pipes have none. One byte more than expected detects the end.
   std::size_t expected = static_cast<std::size_t>(announced) + 1;
   for (;;) {
     const std::size_t done = content.size();
@@ -42,7 +41,7 @@ Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_b
   }
 }
 
-/// Converts UTF-16 to UTF-8. Surrogates become question marks, as no table or setting needs them.
+/// Surrogates become question marks, because no table or setting needs them.
 /// @param low  offset of the low byte in each pair
 std::string utf8_of_utf16(std::string_view bytes, std::size_t low) {
   std::string text;

@@ -15,7 +15,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns the columns of a text without a first column of sample numbers or times.
+/// Omits a first column of sample numbers or times.
 Eigen::MatrixXd correlation_columns_of(const std::filesystem::path& path,
                                        std::vector<std::string>& notes) {
   const NumberTable table = read_number_table(path, {.min_columns = 2});

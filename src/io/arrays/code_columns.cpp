@@ -23,12 +23,11 @@
 namespace tofsmith {
 namespace {
 
-// Rounding errors of the Fourier transforms that created such files.
+// Allows for rounding errors of Fourier transforms.
 constexpr double transform_noise = 1e-9;
 constexpr Eigen::Index max_rows = 65536;  // as for cameras
 constexpr Eigen::Index max_columns = 4096;
 
-/// Array of the archive and its name in error messages.
 struct NamedMatrix {
   std::string place;
   Eigen::MatrixXd values;
@@ -53,7 +52,7 @@ void require_same_shape(const NamedMatrix& matrix, const NamedMatrix& other) {
                                           other.values.rows(), other.values.cols(), other.place));
 }
 
-/// Clamps values to [lowest, highest] within rounding errors and rejects all others.
+/// Clamps values within rounding errors and rejects all others.
 void limit(NamedMatrix& matrix, double lowest, double highest, std::string_view expected) {
   for (Eigen::Index n = 0; n < matrix.values.rows(); ++n)
     for (Eigen::Index i = 0; i < matrix.values.cols(); ++i) {
@@ -80,13 +79,12 @@ constexpr std::string_view gate_rule =
     "sensor.demodulation = \"signed\"";
 constexpr std::string_view weight_rule = "a weight in [-1, 1]";
 
-/// Demodulations, one per column: gains, or the weights of a mixer.
+/// Gains, or the weights of a mixer, one per column.
 struct Demodulations {
   std::vector<Waveform> gains;
   std::optional<Eigen::MatrixXd> weights = {};
 };
 
-/// Returns a code named after its file. @throws IoError if it is invalid
 CodeSet created(std::string_view file, Eigen::Index samples, int taps,
                 std::vector<Waveform> modulation, Demodulations demodulation) {
   if (samples < 2 || samples > max_rows)
@@ -102,7 +100,7 @@ CodeSet created(std::string_view file, Eigen::Index samples, int taps,
   }
 }
 
-/// Reads a matrix with time along the longer axis, which becomes the row axis.
+/// The longer axis is time and becomes the row axis.
 NamedMatrix read_columns(const std::filesystem::path& path) {
   const std::string place = path.string();
   NamedMatrix matrix{place, columns_of(read_npy(path), place)};
@@ -110,7 +108,6 @@ NamedMatrix read_columns(const std::filesystem::path& path) {
   return matrix;
 }
 
-/// Requires equal modulation for all taps of an exposure.
 void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eigen::Index first) {
   for (Eigen::Index n = 0; n < modulation.values.rows(); ++n) {
     const double value = modulation.values(n, column), expected = modulation.values(n, first);
@@ -131,7 +128,7 @@ CodeSet code_of_columns(std::string_view file, NamedMatrix modulation, NamedMatr
 
   const int exposures = exposures_of(modulation.values.cols(), layout, file);
   std::vector<Waveform> light, gains;
-  if (layout.is_signed) {  // one column of each per exposure
+  if (layout.is_signed) {
     for (Eigen::Index e = 0; e < modulation.values.cols(); ++e)
       light.push_back(waveform_of(modulation.values.col(e)));
     return created(file, modulation.values.rows(), 1, std::move(light),

@@ -13,11 +13,11 @@
 namespace tofsmith {
 namespace {
 
-// Rounding errors of the Fourier transforms that created such files, relative to the largest value.
+// Relative to the largest value: allows for rounding errors of Fourier transforms.
 constexpr double noise_share = 1e-9;
 constexpr Eigen::Index max_time_bins = 65536;  // as the samples of cameras
 
-/// Returns the common light of all rows from (N), (N, 1), (1, N) or several equal columns.
+/// Returns the common light of all rows: (N), (N, 1), (1, N) or equal columns.
 Eigen::VectorXd light_of(Eigen::MatrixXd light, const std::string& place) {
   if (light.rows() == 1) light.transposeInPlace();
   const double near = noise_share * light.cwiseAbs().maxCoeff();

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Visits every field with its array's name, including the fields of nested DepthErrorTerms.
+/// Includes the fields of nested DepthErrorTerms.
 template <typename Struct, typename Visit>
 void for_each_array(Struct& its, const std::string& prefix, const Visit& visit) {
   for_each_field(its, [&](const auto& field) {

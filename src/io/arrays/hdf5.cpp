@@ -17,8 +17,8 @@
 namespace tofsmith {
 namespace {
 
-/// The HDF5 library may be built without thread safety. The mutex is recursive because a rejected
-/// data set is closed while it is being opened.
+/// The HDF5 library may be built without thread safety. Recursive because a rejected data set is
+/// closed while it is being opened.
 std::recursive_mutex hdf5_mutex;
 
 class Handle {
@@ -41,8 +41,7 @@ class Handle {
   Close close_;
 };
 
-/// Suppresses error output of the library in its scope; errors are thrown with the library's
-/// message.
+/// Suppresses error output of the library in its scope.
 class Quiet {
  public:
   Quiet() {
@@ -164,7 +163,6 @@ std::string describe(const std::vector<Listed>& list) {
   return fmt::format("the data sets {}", fmt::join(words, ", "));
 }
 
-/// @throws IoError if the choice is ambiguous or does not exist
 std::string chosen_name(const std::vector<Listed>& list, const std::string& asked,
                         const std::string& file) {
   if (asked.empty() && list.size() == 1) return list.front().name;
@@ -207,7 +205,7 @@ void Dataset::read_box(const std::vector<hsize_t>& start, const std::vector<hsiz
     throw error(fmt::format("cannot be read: {}", last_words()));
 }
 
-/// Reads a range of items as a few boxes: whole slices of the slowest axis that fits the range.
+/// Reads a few boxes: whole slices of the slowest axis that fits the range.
 void Dataset::read_items(std::size_t first, std::span<std::byte> into) const {
   const std::lock_guard lock(hdf5_mutex);
   const Quiet quiet;
@@ -232,7 +230,7 @@ void Dataset::read_items(std::size_t first, std::span<std::byte> into) const {
   }
 }
 
-/// Returns the unpacked size of a chunk [bytes]; 0 if the data set is contiguous.
+/// Unpacked size [bytes]; 0 if the data set is contiguous.
 std::uint64_t chunk_bytes(hid_t dataset, const NpyShape& shape, std::size_t item) {
   const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
   if (H5Pget_layout(properties) != H5D_CHUNKED) return 0;
@@ -255,7 +253,7 @@ Handle open_file(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored))
     throw IoError(path.string(), "found no file; expected an HDF5 file");
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // closes open objects, too
+  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (file < 0)
     throw IoError(path.string(), fmt::format("cannot be read as an HDF5 file: {}", last_words()));

@@ -15,7 +15,7 @@
 namespace tofsmith {
 namespace {
 
-// Relative to the time step: allows for times written with few digits.
+// Relative to the time step, for times with few digits.
 constexpr double time_tolerance = 0.01;
 
 double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
@@ -37,7 +37,7 @@ double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
 void read_text(const std::filesystem::path& path, std::optional<double> time_step_s,
                ImpulseResponse& response) {
   const NumberTable table = read_number_table(path);
-  // Times are compared with a given step. This is not possible for sample numbers.
+  // Sample numbers cannot be compared with a given step.
   const SampleTimeOptions counted{.time_step_s = time_step_s};
   const TimedSamples samples = timed_samples_of(
       table, path.string(), counts_samples(table, 0) ? counted : SampleTimeOptions{});

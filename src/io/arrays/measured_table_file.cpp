@@ -27,7 +27,6 @@ bool can_be_table(Eigen::Index samples, Eigen::Index measurements) {
          measurements <= max_measurements;
 }
 
-/// Transposes the matrix to (N, K) if necessary.
 void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<TableAxes> axes,
           std::vector<std::string>& notes) {
   const Eigen::Index rows = matrix.rows(), columns = matrix.cols();
@@ -50,7 +49,7 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
         rows, columns, rows, columns));
 }
 
-/// Returns the largest difference between two samples, relative to the largest value.
+/// Relative to the largest value.
 double distance(const Eigen::MatrixXd& matrix, Eigen::Index a, Eigen::Index b) {
   const double largest = matrix.cwiseAbs().maxCoeff();
   return largest > 0.0 ? (matrix.row(a) - matrix.row(b)).cwiseAbs().maxCoeff() / largest : 0.0;
@@ -79,7 +78,7 @@ void drop_repeated_end(Eigen::MatrixXd& matrix, const std::string& place,
                   place, last, 100.0 / static_cast<double>(last)));
 }
 
-/// Returns a list with one number per column; empty if the archive has none.
+/// Returns one number per column; empty if the archive has none.
 Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const char* name,
                         Eigen::Index columns) {
   if (!archive.contains(name)) return {};
@@ -97,8 +96,7 @@ Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const
   return Eigen::Map<const Eigen::VectorXd>(values.data(), columns);
 }
 
-/// Returns a scalar of the archive; none if it is missing.
-/// @param is_valid, rule  validity of the number, and its description
+/// Returns none if the scalar is missing.
 template <typename Check>
 std::optional<double> number(const NpzReader& archive, const std::string& file, const char* name,
                              const Check& is_valid, std::string_view rule) {
@@ -123,8 +121,7 @@ std::optional<int> whole_number(const NpzReader& archive, const std::string& fil
   return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
-/// Returns the tap layout of calibrated functions: `taps` adjacent columns per exposure. An order
-/// given by the user must agree.
+/// `taps` adjacent columns per exposure; an order given by the user must agree.
 TapLayout layout_of(const NpzReader& archive, const std::string& file, const TapLayout& given) {
   const std::optional<int> taps = whole_number(archive, file, "taps");
   if (!taps) return given;
@@ -148,7 +145,7 @@ void note_unused(const NpzReader& archive, const std::string& file,
     notes.push_back(fmt::format("{}: not used: {}", file, fmt::join(unused, ", ")));
 }
 
-/// Sorts columns by exposure, with the taps of each adjacent.
+/// Sorts columns by exposure, with the taps of an exposure adjacent.
 void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::string& file) {
   if (layout.taps > 1 && table.columns() > layout.taps && !layout.order)
     throw IoError(

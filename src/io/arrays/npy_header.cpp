@@ -101,7 +101,7 @@ class HeaderLiteral {
     expect('(');
     while (peek() != ')') {
       shape.push_back(length());
-      // A tuple of one element needs a comma: (3,) is a tuple, (3) is a number.
+      // (3,) is a tuple, (3) is a number.
       if (peek() != ')' || shape.size() == 1) expect(',');
     }
     expect(')');
@@ -233,8 +233,7 @@ std::string serialize_npy_header(NpyType type, const NpyShape& shape) {
   std::string literal =
       fmt::format("{{'descr': '{}{}', 'fortran_order': False, 'shape': {}, }}",
                   entry.bytes == 1 ? '|' : '<', entry.code, describe_shape(shape));
-  // NumPy reserves 21 digits for the first axis, and pads the header to an aligned size with a
-  // newline.
+  // NumPy reserves 21 digits for the first axis, and pads the header to an aligned size.
   if (!shape.empty()) literal.append(21 - fmt::format("{}", shape[0]).size(), ' ');
   constexpr std::size_t alignment = 64, prefix = 10;
   literal.append(alignment - (prefix + literal.size() + 1) % alignment, ' ');
@@ -261,7 +260,7 @@ void restore_host_order(const NpyHeader& header, NpyArray& array) {
 }
 
 std::optional<std::size_t> npy_byte_count(NpyType type, const NpyShape& shape) {
-  // An array with a zero axis is empty, even if the product of the other axes overflows.
+  // The product of the other axes may overflow.
   if (std::find(shape.begin(), shape.end(), std::size_t{0}) != shape.end()) return 0;
   std::size_t count = item_size(type);
   for (const std::size_t length : shape)

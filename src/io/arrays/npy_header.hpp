@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-/// Properties of each NpyType, in its order.
+/// In the order of NpyType.
 struct NpyTypeEntry {
   NpyType type;
   std::string_view name;
@@ -36,34 +36,32 @@ inline constexpr std::array<NpyTypeEntry, 12> npy_types = {{
     {NpyType::float64, "float64", "f8", 8},
 }};
 
-/// Header of an NPY file.
 struct NpyHeader {
   NpyType type = NpyType::float64;
   bool foreign_byte_order = false;
   bool fortran_order = false;
   NpyShape shape;
-  std::size_t data_offset = 0;  ///< bytes from the start of the file
+  std::size_t data_offset = 0;  ///< from the start of the file
   std::size_t data_bytes = 0;
 };
 
-/// Maximum length of a header, which contains three short entries and padding [bytes].
+/// Maximum length of a header [bytes].
 inline constexpr std::size_t max_npy_header_bytes = 12 + 65536;
 
 /// @param start  first bytes of the file, up to max_npy_header_bytes
-/// @param file_bytes  size of the file, for comparison with the shape
-/// @throws IoError at a byte offset
+/// @throws IoError at a byte offset, also if the shape does not fit file_bytes
 NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_bytes,
                            std::string_view file);
 
-/// Returns a header whose length does not depend on that of the first axis, so that a growing array
-/// can update it in place.
+/// The length of the header does not depend on the first axis, so that a growing array can update
+/// it in place.
 std::string serialize_npy_header(NpyType type, const NpyShape& shape);
 
-/// Converts items from the order of the file to native byte order and C order, and booleans to 0
-/// and 1. The shape of the array may be a slice of that of the file.
+/// Converts items to native byte order and C order, and booleans to 0 and 1. The array may be a
+/// slice of the file.
 void restore_host_order(const NpyHeader& header, NpyArray& array);
 
-/// Returns the size of the items [bytes]; none if it exceeds the address space.
+/// Size of the items [bytes]; none if it exceeds the address space.
 std::optional<std::size_t> npy_byte_count(NpyType type, const NpyShape& shape);
 
 }  // namespace tofsmith

@@ -25,7 +25,7 @@
 namespace tofsmith {
 namespace {
 
-/// Interpretation of a text; delimiter ' ' means any blanks.
+/// Delimiter ' ' means any blanks.
 struct Dialect {
   char delimiter;
   char decimal;
@@ -33,7 +33,7 @@ struct Dialect {
 
 struct Cell {
   std::string_view text;
-  std::size_t column;  // in the line, counted from 1
+  std::size_t column;  // counted from 1
 };
 
 using Cells = std::vector<Cell>;
@@ -58,7 +58,7 @@ Cells cells_of(std::string_view line, char delimiter) {
   return cells;
 }
 
-/// Parses the number in a cell, which may be NaN or infinite.
+/// Accepts NaN and infinity.
 std::optional<double> number_of(std::string_view text, char decimal) {
   std::string copy;
   if (decimal == ',') {
@@ -77,14 +77,14 @@ std::optional<double> number_of(std::string_view text, char decimal) {
   return result.ec == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-/// Range [begin, end) of the cells of each row.
+/// [begin, end) in each row.
 struct Columns {
   std::size_t begin = 0, end = 0;
   std::size_t count() const { return end - begin; }
   auto operator<=>(const Columns&) const = default;
 };
 
-/// Returns the columns of a line that contains only numbers, optionally after empty cells.
+/// Returns the columns of a line of numbers, optionally after empty cells.
 std::optional<Columns> columns_of_row(const Cells& cells, char decimal) {
   Columns columns{0, cells.size()};
   while (columns.begin < columns.end && cells[columns.begin].text.empty()) ++columns.begin;
@@ -109,7 +109,7 @@ Columns most_frequent_columns(const std::vector<TextLine>& lines, Dialect dialec
   return best == counts.end() ? Columns{} : best->first;
 }
 
-/// Parses the numbers of a row. The cells to their left may contain a header that begins with text.
+/// Cells to the left may contain a header that begins with text.
 std::optional<std::vector<double>> row_of(const Cells& cells, Columns columns, char decimal) {
   if (cells.size() != columns.end || columns.count() == 0) return std::nullopt;
   const auto first = std::ranges::find_if(cells, [](const Cell& c) { return !c.text.empty(); });
@@ -129,7 +129,7 @@ std::optional<std::vector<double>> row_of(const Cells& cells, Columns columns, c
 struct Reading {
   Dialect dialect;
   Columns columns;
-  std::size_t first = 0;  // line of the first row
+  std::size_t first = 0;
   std::size_t rows = 0;
   bool complete = false;
 
@@ -174,7 +174,7 @@ constexpr std::string_view no_rows = "found no row of numbers; expected at least
                             reading.columns.end, first_line));
 }
 
-/// Returns true if "12,5" is two columns because the first numbers are integers with equal steps.
+/// Returns true if "12,5" is two columns, because the first numbers are integers with equal steps.
 bool first_column_counts(const std::vector<TextLine>& lines, const Reading& reading) {
   double last = 0.0, step = 0.0;
   for (std::size_t r = 0; r < reading.rows; ++r) {
@@ -187,7 +187,7 @@ bool first_column_counts(const std::vector<TextLine>& lines, const Reading& read
   return reading.rows >= 3;
 }
 
-/// Returns true for digits after a zero, "05", which can only follow a decimal comma.
+/// Digits after a zero, "05", can only follow a decimal comma.
 bool is_fraction(std::string_view text) {
   return text.size() > 1 && text[0] == '0' && std::ranges::all_of(text, is_digit);
 }
@@ -201,7 +201,7 @@ bool second_column_is_fraction(const std::vector<TextLine>& lines, const Reading
   return false;
 }
 
-/// Decides whether commas are delimiters or decimal marks if both are possible.
+/// Commas can be delimiters or decimal marks.
 Reading settle_commas(const std::vector<TextLine>& lines, const Reading& delimiters,
                       const Reading& decimals, std::string_view file) {
   const std::size_t names =
@@ -218,7 +218,6 @@ Reading settle_commas(const std::vector<TextLine>& lines, const Reading& delimit
                             trimmed(line.text), delimiters.columns.count()));
 }
 
-/// Returns all readings that the characters of the text allow.
 std::vector<Reading> readings_of(const std::vector<TextLine>& lines, std::string_view text,
                                  DecimalMark decimal) {
   const auto has = [&](char c) { return text.find(c) != std::string_view::npos; };
@@ -236,7 +235,6 @@ std::vector<Reading> readings_of(const std::vector<TextLine>& lines, std::string
   return readings;
 }
 
-/// Returns the only dialect in which the text is a table of numbers.
 Reading chosen_reading(const std::vector<TextLine>& lines, std::string_view text,
                        std::string_view file, const NumberTableOptions& options) {
   std::vector<Reading> readings = readings_of(lines, text, options.decimal);
@@ -286,7 +284,7 @@ void check_header(const std::vector<TextLine>& lines, const Reading& reading,
   }
 }
 
-/// Rejects several numbers with decimal commas, separated by commas: "2900,0000,2000,0756".
+/// Rejects numbers with decimal commas, separated by commas: "2900,0000,2000,0756".
 void refuse_split_fractions(const std::vector<TextLine>& lines, const Reading& reading,
                             std::string_view file) {
   if (reading.dialect.delimiter != ',' || reading.dialect.decimal != '.') return;
@@ -309,7 +307,7 @@ void refuse_split_fractions(const std::vector<TextLine>& lines, const Reading& r
                               trimmed(found->text)));
 }
 
-/// Returns the names of the columns in a line: text, empty, or channel numbers after the first.
+/// Names are text, empty, or channel numbers after the first.
 std::vector<std::string> names_in(const Cells& cells, const Reading& reading) {
   const Columns columns = reading.columns;
   if (cells.size() < columns.end) return {};
@@ -377,7 +375,7 @@ bool is_measured(double number) {
 NumberTable parse_number_table(std::string_view text, std::string_view file,
                                const NumberTableOptions& options) {
   std::vector<TextLine> lines = content_lines(text);
-  std::erase_if(lines, [](const TextLine& line) {  // empty rows of spreadsheets
+  std::erase_if(lines, [](const TextLine& line) {
     return line.text.find_first_not_of(" \t\r,;\"") == std::string_view::npos;
   });
   if (lines.empty()) throw IoError(file, no_rows);

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Names of the sampling interval in oscilloscope headers, as letters_and_digits().
+/// Names in oscilloscope headers, as letters_and_digits().
 constexpr std::array<std::string_view, 18> interval_names = {
     "increment",   "xincrement",       "xincr",          "xinc",         "xin",
     "tinc",        "tincrement",       "timeincrement",  "deltat",       "dt",
@@ -29,7 +29,7 @@ bool names_interval(std::string_view text) {
   return std::ranges::find(interval_names, word) != interval_names.end();
 }
 
-/// Parses a time such as "1e-10", "1e-10 s", "0,01uS" or "Analog:1e-10"; none: not a time > 0.
+/// Parses "1e-10", "1e-10 s", "0,01uS" or "Analog:1e-10"; none if not a time > 0.
 std::optional<double> interval_s_in(std::string_view text) {
   if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos)
     text.remove_prefix(colon + 1);
@@ -43,8 +43,7 @@ std::optional<double> interval_s_in(std::string_view text) {
   return time_s > 0.0 && is_measured(time_s) ? std::optional(time_s) : std::nullopt;
 }
 
-/// Finds the sampling interval in a header: "name = value" in a cell, or a value in the cell after
-/// or below the name.
+/// Finds "name = value" in a cell, or a value in the cell after or below the name.
 std::optional<double> stated_interval_s(const NumberTable& table) {
   const auto& header = table.header;
   for (std::size_t row = 0; row < header.size(); ++row)
@@ -77,7 +76,6 @@ bool increases(const Eigen::VectorXd& values) {
   return last >= 1 && (values.tail(last).array() > values.head(last).array()).all();
 }
 
-/// Returns the column of times or sample numbers, if any.
 std::optional<Index> time_column(const NumberTable& table, bool has_interval) {
   for (Index c = 0; c < table.values.cols(); ++c)
     if (is_named_time(table, c) && table.values.cols() > 1) return c;
@@ -105,7 +103,7 @@ Eigen::VectorXd equal_times(Index count, double step_s) {
 Eigen::VectorXd times_in_seconds(const NumberTable& table, Index column, const std::string& file,
                                  const SampleTimeOptions& options, std::optional<double> interval_s,
                                  std::vector<std::string>& notes) {
-  constexpr double shortest_step_s = 1e-15;  // below the resolution of any instrument
+  constexpr double shortest_step_s = 1e-15;
   constexpr double tolerance = 0.01;
   const Eigen::VectorXd times = table.values.col(column);
   const double span = times[times.size() - 1] - times[0];
@@ -137,7 +135,7 @@ double seconds_per_unit(std::string_view column_name) {
   for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\xb5"})  // UTF-8 and Latin-1
     if (const std::size_t at = lower.rfind(micro); at != std::string::npos)
       lower.replace(at, micro.size(), "u");
-  // The unit is the last word: in brackets or after an underscore.
+  // The unit is in brackets or after an underscore.
   while (!lower.empty() && !is_letter(lower.back())) lower.pop_back();
   std::size_t begin = lower.size();
   while (begin > 0 && is_letter_or_digit(lower[begin - 1])) --begin;

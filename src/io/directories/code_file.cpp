@@ -19,7 +19,7 @@ std::string near_family(const std::string& name) {
   for (const FamilyDescription& family : list_families()) known.push_back(family.example);
   std::string near = nearest_word(name, known);
   if (near.empty()) return "; `tofsmith codes` lists them";
-  // Keep the user's number, as only the word before it is wrong.
+  // Keep the user's number; only the word before it is wrong.
   const auto without_number = [](const std::string& word) {
     return word.substr(0, word.find_last_not_of("0123456789") + 1);
   };

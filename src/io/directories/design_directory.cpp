@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Returns the targets, histories and messages of a designed code, which only reports need.
+/// Only reports need these details.
 Json details_json(const Candidate& candidate) {
   Json details = {{"message", candidate.message}};
   if (candidate.search) details["search"] = fields_json(*candidate.search);
@@ -67,17 +67,16 @@ void read_details(const JsonReader& details, int samples, Candidate& candidate) 
       candidate.per_measurement[k].history.push_back(row_from_json<FactorizeIteration>(entry));
 }
 
-/// Returns the camera with measured responses as samples, independent of their files.
+/// Stores measured responses as samples, independent of their files.
 Camera self_contained(Camera camera) {
   camera.light.impulse_response.file.clear();
   camera.sensor.impulse_response.file.clear();
   return camera;
 }
 
-/// Returns a hash of all inputs that determine a designed code.
+/// Hash of all inputs that determine a designed code.
 std::string design_key(const Camera& camera, DesignOptions options) {
-  // Codes are evaluated again and named by their number of exposures, so these options do not
-  // matter.
+  // Irrelevant: codes are evaluated again and named by their number of exposures.
   options.trials = 0;
   options.outlier_threshold_m = 0.0;
   if (!options.exposures.empty()) options.exposures.assign(1, 0);  // = {0} makes GCC 14 warn
@@ -94,7 +93,7 @@ fs::path code_path(const fs::path& directory, const std::string& name) {
   return directory / "codes" / (file_name_of(name) + ".code.json");
 }
 
-/// Checks that a code has its file's name and fits the camera, as reports require.
+/// A code must have its file's name and fit the camera.
 void check_code(const Candidate& candidate, const std::string& name, const Camera& camera,
                 const fs::path& path) {
   const std::size_t reported = candidate.per_measurement.size();
@@ -140,11 +139,11 @@ Candidate finished_from_json(const JsonReader& json, const fs::path& path, const
   return candidate;
 }
 
-/// Reads finished candidates; none if they were designed from other inputs.
+/// Returns none if the candidates were designed from other inputs.
 std::vector<Candidate> read_finished(const fs::path& path, const std::string& key,
                                      const std::string& name, const Camera& camera) {
   const nlohmann::json document = read_json(path);
-  const std::string file = path.string();  // referenced by the reader
+  const std::string file = path.string();
   const JsonReader json(document, file);
   std::vector<Candidate> candidates;
   if (json.member("key").text() != key) return candidates;
@@ -169,7 +168,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
         try {
           return read_finished(path, key, name, camera);
         } catch (const IoError&) {
-          return {};  // damaged: design the code again and replace the file
+          return {};  // design the code again
         }
       },
       .save =
@@ -186,8 +185,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options, OutputPolicy policy) const {
   make_output_directory(path_ / "codes");
-  std::error_code
-      ignored;  // remove design.json first, so that incomplete directories are not read as designs
+  std::error_code ignored;  // incomplete directories must not be read as designs
   if (policy == OutputPolicy::overwrite) fs::remove(path_ / "design.json", ignored);
   write_file_atomically(path_ / "camera.toml", camera_to_toml(self_contained(camera)), policy);
   for (const Candidate& c : result.candidates)
@@ -196,7 +194,7 @@ void DesignDirectory::write(const Camera& camera, const DesignResult& result,
   for (const Candidate& c : result.candidates)
     if (c.is_designed()) details[c.code.name()] = details_json(c);
   write_file_atomically(path_ / "details.json", details.dump(1), policy);
-  // Written last, because its presence marks a complete design.
+  // Last, because its presence marks a complete design.
   write_file_atomically(path_ / "design.json", design_document(camera, result, options), policy);
 }
 

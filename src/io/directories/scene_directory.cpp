@@ -78,7 +78,6 @@ SceneImage read_truth(const fs::path& directory) {
   return truth;
 }
 
-/// Reads the plane from the file named by a member.
 Image<float> read_plane_file(const JsonReader& json, std::string_view member, std::string_view what,
                              const fs::path& directory, const SceneImage& truth) {
   const std::string file = json.member(member).text();
@@ -120,7 +119,7 @@ Json write_decoding(const SceneDecoding& decoding, const std::string& light,
 
 void write_scene_result(const fs::path& directory, const SceneResult& scene, OutputPolicy policy) {
   make_output_directory(directory);
-  std::error_code ignored;  // remove scene.json first, as its presence marks a complete scene
+  std::error_code ignored;  // its presence marks a complete scene
   if (policy == OutputPolicy::overwrite) fs::remove(directory / "scene.json", ignored);
   write_float_image(directory / "true_depth.npy", scene.truth.depth_m, "depth", policy);
   write_float_image(directory / "albedo.npy", scene.truth.albedo, "albedo", policy);

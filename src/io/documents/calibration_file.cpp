@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns true for a camera's name in a key: cameraMatrix1, D_cam0, left_camera_matrix.
+/// Recognizes cameraMatrix1, D_cam0, left_camera_matrix.
 bool names_a_camera(std::string_view part) {
   constexpr std::array<std::string_view, 7> words = {"left",  "right",  "depth", "ir",
                                                      "color", "colour", "rgb"};
@@ -26,7 +26,7 @@ bool names_a_camera(std::string_view part) {
   return !part.empty() && part.size() <= 2 && std::all_of(part.begin(), part.end(), is_digit);
 }
 
-/// Returns the camera's name before or after `base` in `key`; none: another key.
+/// Returns the camera's name before or after `base`; none for other keys.
 std::optional<std::string> name_beside(std::string_view key, std::string_view base) {
   if (key == base) return "";
   if (key.starts_with(base) && names_a_camera(key.substr(base.size())))
@@ -36,12 +36,12 @@ std::optional<std::string> name_beside(std::string_view key, std::string_view ba
   return std::nullopt;
 }
 
-/// Replaces syntax of OpenCV and others that YAML::Load() rejects; line numbers are kept.
+/// Replaces syntax of OpenCV and others that YAML::Load() rejects; keeps line numbers.
 std::string readable(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark
   while (text.ends_with('\0')) text.remove_suffix(1);  // at the end of Azure Kinect calibrations
   std::string yaml(text);
-  // Old versions of OpenCV write this line without the required `---`.
+  // Old versions of OpenCV write this without the required `---`.
   if (yaml.starts_with("%YAML")) yaml[0] = '#';
   if (yaml.find_first_not_of(" \t\r\n") == yaml.find('{'))  // JSON with tabs as indentation
     std::replace(yaml.begin(), yaml.end(), '\t', ' ');

@@ -13,28 +13,26 @@
 namespace tofsmith {
 
 /// One camera of a calibration file in YAML, JSON or OpenCV's XML. Keys are compared without case
-/// and underscores: "cameramatrix" finds camera_matrix and cameraMatrix. Files of several cameras
-/// either add a camera's name to its keys (cameraMatrix1, left_camera_matrix) or have a table for
-/// each. Members throw IoError "file:line:column: found ...; expected ...".
+/// and underscores. Files of several cameras either add a camera's name to its keys (cameraMatrix1,
+/// left_camera_matrix) or have a table for each. Members throw IoError "file:line:column: found
+/// ...; expected ...".
 class CalibrationFile {
  public:
-  /// Parses the whole file.
   CalibrationFile(std::string_view text, std::string_view name);
   /// Returns the camera whose keys are in a table, with its name in the keys or "".
   CalibrationFile camera(const YAML::Node& table, std::string_view name_in_keys) const;
 
   const YAML::Node& root() const { return root_; }
 
-  /// Returns the value of the first key that exists. Keys are in lower case without underscores.
+  /// Returns the value of the first existing key. Keys are in lower case without underscores.
   YAML::Node find(std::initializer_list<std::string_view> keys) const;
-  /// Returns the names of cameras in such keys in the order of the file; "" for keys without a
-  /// name.
+  /// Returns the camera names in such keys in the order of the file; "" for keys without a name.
   std::vector<std::string> names_in(std::initializer_list<std::string_view> keys) const;
 
-  /// Returns the numbers of a list, of nested lists, or of the `data` of a matrix.
+  /// Flattens nested lists and the `data` of a matrix.
   std::vector<double> numbers(const YAML::Node& node, std::string_view key) const;
   double number(const YAML::Node& node, std::string_view key) const;
-  /// Returns an integer of at most a million.
+  /// Accepts at most a million.
   int whole(const YAML::Node& node, std::string_view key) const;
 
   [[noreturn]] void fail(const YAML::Node& node, const std::string& problem) const;

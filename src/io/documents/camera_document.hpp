@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// Returns all fields of the camera with the keys of its TOML file, defaults filled in.
+/// Returns all fields with the keys of a camera file, defaults filled in.
 /// @throws std::invalid_argument if the camera is invalid
 nlohmann::ordered_json camera_document(const Camera& camera);
 

@@ -43,11 +43,10 @@ Json key_json(const KeyDescription& described, const Json& defaults) {
   return entry;
 }
 
-/// @param its  contains the default of every key
 template <typename Struct>
 std::string keys_json(Struct its) {
   KeyList list;
-  describe(list, its);  // creates all tables
+  describe(list, its);
   const Json defaults = described_json(its);
   Json keys = Json::array();
   for (const KeyDescription& described : list.keys) keys.push_back(key_json(described, defaults));

@@ -24,14 +24,13 @@ bool is_part_of_name(char c) { return is_letter_or_digit(c) || c == '_'; }
 std::string place_of_field(const std::string& field, const TableReader::Places& places,
                            const std::string& source_name) {
   std::string place = source_name;
-  for (const auto& [key, where] : places)  // sorted: longer keys follow their prefixes
+  for (const auto& [key, where] : places)
     if (field.starts_with(key) &&
         (field.size() == key.size() || !is_part_of_name(field[key.size()])))
       place = where;
   return place;
 }
 
-/// Reads the measured response named in a table, if any.
 /// @param name  the table: "light.impulse_response"
 void load_response(const std::string& name, const FieldReader& reader,
                    const TableReader::Places& places, ImpulseResponse& response) {
@@ -43,7 +42,6 @@ void load_response(const std::string& name, const FieldReader& reader,
   response = read_impulse_response(file->second, time_step_s);
 }
 
-/// Reads the lens calibration named by the camera, if any.
 void load_lens(const FieldReader& reader, const TomlDocument& document, std::optional<Lens>& lens) {
   const auto file = reader.files().find("lens.calibration");
   if (file == reader.files().end()) return;

@@ -25,7 +25,7 @@ constexpr int max_harmonic = 2048;    // as for families
 constexpr int max_measurements = 64;  // limit of decoders
 constexpr double tolerance = 1e-9;    // as for CodeSet
 
-/// Writes the nonzero harmonics as [n, Re c_n, Im c_n].
+/// Writes nonzero harmonics as [n, Re c_n, Im c_n].
 OrderedJson cosines_to_json(const Eigen::VectorXcd& coefficients) {
   OrderedJson harmonics = OrderedJson::array();
   for (Eigen::Index n = 1; n < coefficients.size(); ++n)
@@ -116,8 +116,7 @@ Waveform read_waveform(const JsonReader& json, int samples, double highest) {
   kind.mistyped("\"binary\", \"sampled\" or \"cosines\"");
 }
 
-/// Reads the drive of a mixer: (w + 1) / 2 for sampled weights w; binary: 1 while the weight is 1,
-/// else 0.
+/// Reads the drive of a mixer: (w + 1) / 2 for sampled weights w; 1 or 0 for binary weights.
 Waveform read_drive(const JsonReader& json, int samples) {
   const JsonReader kind = json.member("kind");
   if (kind.text() == "sampled")
@@ -175,7 +174,7 @@ CodeSet with_shares(const JsonReader& json, const CodeSet& code) {
   }
 }
 
-/// Returns the waveform to which a field of CodeSet::create() refers ("demodulation 3 minimum").
+/// Returns the waveform named by a field of CodeSet::create() ("demodulation 3 minimum").
 JsonReader place_of_field(const JsonReader& json, std::string_view field) {
   for (const std::string_view list : {"modulation", "demodulation"}) {
     if (!field.starts_with(list)) continue;

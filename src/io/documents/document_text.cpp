@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-/// Converts a byte offset to "file:line:column", line and column counted from 1.
+/// Returns "file:line:column", counted from 1.
 std::string place_of(std::string_view text, std::size_t byte, std::string_view file) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;
@@ -19,7 +19,6 @@ std::string place_of(std::string_view text, std::size_t byte, std::string_view f
   return fmt::format("{}:{}:{}", file, line, before.size() - line_start + 1);
 }
 
-/// Returns the library's message without its code and position.
 std::string_view problem_of(std::string_view message) {
   const std::size_t place = message.find("column ");
   const std::size_t colon = place == std::string_view::npos ? place : message.find(": ", place);
@@ -64,8 +63,8 @@ std::string indented(const Json& value, const std::string& indent) {
   return fmt::format("{}{}\n{}{}", list ? '[' : '{', text, indent, list ? ']' : '}');
 }
 
-/// Formats a value to the right of "key =". Numbers, strings and lists in JSON are valid TOML,
-/// except for the DEL character.
+/// Formats the right side of "key =". Numbers, strings and lists in JSON are valid TOML, except for
+/// DEL.
 std::string toml_value(const Json& value) {
   if (value.is_object()) {
     std::string text;
@@ -90,7 +89,7 @@ nlohmann::json parse_json(std::string_view text, std::string_view file) {
                                       deepest));
     return true;
   };
-  // The parser would treat a zero byte as the end of the text.
+  // The parser would end at a zero byte.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     throw IoError(place_of(text, zero, file), "found a zero byte; expected a JSON document");
   try {

@@ -18,8 +18,7 @@ namespace tofsmith {
 
 namespace {
 
-// Names of each value in files of OpenCV and its users, of ROS and of Kalibr, as
-// letters_and_digits().
+// Spellings of OpenCV and its users, ROS and Kalibr, as letters_and_digits().
 using Names = std::initializer_list<std::string_view>;
 const Names matrix_names = {"cameramatrix", "intrinsicmatrix", "intrinsics", "intrinsic", "k", "m",
                             "mtx"};
@@ -35,7 +34,7 @@ const Names width_names = {"imagewidth", "width"};
 const Names height_names = {"imageheight", "height"};
 const Names size_names = {"imagesize", "resolution", "size"};
 
-/// One camera of a file, with the name by which users select it; "" for a single camera.
+/// The name is "" for a single camera.
 struct NamedCamera {
   std::string name;
   CalibrationFile file;
@@ -87,7 +86,7 @@ void check_pinhole(const CalibrationFile& file) {
                                   word));
 }
 
-/// Reads the nine numbers of a matrix, or Kalibr's fx fy cx cy.
+/// Nine numbers of a matrix, or Kalibr's fx fy cx cy.
 void read_matrix(const CalibrationFile& file, Lens& lens) {
   const YAML::Node node = file.find(matrix_names);
   if (!node) file.fail("found no camera_matrix, or K; expected the nine numbers of a pinhole");
@@ -104,7 +103,7 @@ void read_matrix(const CalibrationFile& file, Lens& lens) {
   lens.fx_px = k[0], lens.cx_px = k[2], lens.fy_px = k[4], lens.cy_px = k[5];
 }
 
-/// Returns the model of the file, if any. Kalibr's radtan is OpenCV's model with four coefficients.
+/// Kalibr's radtan is OpenCV's model with four coefficients.
 std::optional<DistortionModel> model_of(const CalibrationFile& file) {
   if (const YAML::Node node = file.find({"distortionmodel"})) {
     const std::string word = letters_and_digits(node.Scalar());
@@ -148,7 +147,7 @@ void read_distortion(const CalibrationFile& file, std::optional<DistortionModel>
   lens.distortion = std::move(distortion);
 }
 
-/// Reads width and height; ROS writes 0 for unknown sizes.
+/// ROS writes 0 for unknown sizes.
 void read_size(const CalibrationFile& file, Lens& lens) {
   lens.width_px = whole(file, width_names);
   lens.height_px = whole(file, height_names);
@@ -161,7 +160,7 @@ void read_size(const CalibrationFile& file, Lens& lens) {
     lens.width_px = lens.height_px = std::nullopt;
 }
 
-/// Rejects binned and cropped images, as pixel coordinates refer to whole images.
+/// Pixel coordinates refer to whole images.
 void check_whole_images(const CalibrationFile& file) {
   for (const char* key : {"binning_x", "binning_y"})
     if (const YAML::Node node = file.find({letters_and_digits(key)});
@@ -174,8 +173,7 @@ void check_whole_images(const CalibrationFile& file) {
       file.fail(offset, fmt::format("roi.{}: expected 0: images that are not cropped", key));
 }
 
-/// Lists the cameras of an Azure Kinect by the end of their location: D0 (the depth camera) and
-/// PV0.
+/// Names cameras by the end of their location: D0 (the depth camera) and PV0.
 std::vector<NamedCamera> azure_kinect_cameras(const CalibrationFile& file, const YAML::Node& list) {
   std::vector<NamedCamera> cameras;
   for (const YAML::Node& camera : list) {
@@ -194,9 +192,8 @@ YAML::Node required(const CalibrationFile& file, const YAML::Node& table, const 
   return table[key];
 }
 
-/// Reads the factory calibration of an Azure Kinect. Lengths are relative to the width and height
-/// of the sensor, measured from its corner. @see Azure Kinect Sensor SDK,
-/// src/calibration/calibration.c
+/// Lengths are relative to width and height of the sensor, from its corner.
+/// @see Azure Kinect Sensor SDK, src/calibration/calibration.c
 Lens read_azure_kinect(const CalibrationFile& file) {
   const YAML::Node intrinsics = required(file, file.root(), "Intrinsics");
   const YAML::Node list = required(file, intrinsics, "ModelParameters");

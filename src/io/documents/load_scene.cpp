@@ -40,7 +40,6 @@ SceneKind kind_of(const std::string& scene) {
   return is_mesh_file(scene) ? SceneKind::mesh : SceneKind::depth_image;
 }
 
-/// @throws InvalidArgument
 void check_fields_fit(const SceneSource& source, SceneKind kind) {
   check_fields(source);
   require(kind == SceneKind::depth_image || source.image.empty(), "image", source.image,
@@ -57,14 +56,13 @@ void check_fields_fit(const SceneSource& source, SceneKind kind) {
                                            : "a scene file specifies its size in [view]");
 }
 
-/// Returns a side of the images of a lens: as specified, or with the optical axis in the middle.
+/// The side as specified, or for an optical axis in the middle.
 int side_of_lens(std::optional<int> stated, double axis_px, int fallback) {
   constexpr double max_side = 16384;
   const double side = std::round(2.0 * axis_px + 1.0);
   return stated.value_or(side >= 1.0 && side <= max_side ? static_cast<int>(side) : fallback);
 }
 
-/// Returns a built-in scene or a mesh as seen by the camera's lens.
 StagedScene staged_scene(const SceneSource& source, SceneKind kind,
                          const std::optional<Lens>& lens) {
   if (kind == SceneKind::scene_file) return read_scene_toml(source.scene);

@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Reads x/z and y/z of the rays of all pixels, row by row; NaN for pixels without a ray.
+/// Returns x/z and y/z of all pixels, row by row; NaN for pixels without a ray.
 std::vector<Eigen::Vector2d> read_ray_map(const std::filesystem::path& path, int height,
                                           int width) {
   if (path.extension() != ".npy")

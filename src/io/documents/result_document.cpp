@@ -16,7 +16,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Returns the zncc errors and the ratios of the errors of `report` to them.
 Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
   const auto over = [](const Estimate& error, const Estimate& other) {
     return error.value / other.value;

@@ -31,7 +31,7 @@ void read_share(TableReader& table, std::string_view key, double& number) {
     table.fail(key, fmt::format("found {}; expected a number in [0, 1]", number));
 }
 
-/// Reads a file named in the scene. Errors are reported at the position of its name.
+/// Reports errors at the position of the file's name.
 template <typename Read>
 auto read_named_file(TableReader& table, std::string_view key, Read&& read) {
   std::string name;
@@ -169,7 +169,7 @@ void read_view(TableReader& table, PinholeView& view) {
   }
 }
 
-/// Returns the axes of a camera that looks at a point, with level rows: the world's y axis is down.
+/// Level rows: the world's y axis is down.
 Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d across = Eigen::Vector3d::UnitY().cross(direction);
   if (!(direction.norm() > 0.0))
@@ -183,7 +183,7 @@ Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& d
   return axes;
 }
 
-/// Default rotation centre of a shape: its middle.
+/// Default rotation centre.
 Eigen::Vector3d middle_of(const Plane& plane) { return plane.point; }
 Eigen::Vector3d middle_of(const Box& box) { return box.centre; }
 Eigen::Vector3d middle_of(const Sphere& sphere) { return sphere.centre; }

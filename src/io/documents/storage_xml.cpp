@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view spaces = " \t\r\n";
 
-/// Words and child elements of an element as YAML, without brackets.
+/// Content of an element as YAML, without brackets.
 struct Content {
   std::string yaml;
   int words = 0, elements = 0;
@@ -59,7 +59,7 @@ class StorageXml {
  public:
   StorageXml(std::string_view text, std::string_view name) : text_(text), name_(name) {}
 
-  /// Reads the content of an element up to its end, or of the document if the name is empty.
+  /// Reads up to the end of the element, or of the document if the name is empty.
   Content content(std::string_view name, int depth) {
     constexpr int max_depth = 64;
     if (depth > max_depth) fail(fmt::format("expected at most {} nested elements", max_depth));
@@ -82,7 +82,7 @@ class StorageXml {
   }
 
  private:
-  /// Returns the text between the current `<` and the next `end`, and skips `end`.
+  /// Returns the text before the next `end`, which is skipped.
   std::string_view until(std::string_view end) {
     const std::size_t found = text_.find(end, at_);
     if (found == std::string_view::npos) fail(fmt::format("found <; expected {} after it", end));

@@ -18,7 +18,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns grey values, or the luminance of RGB values; alpha is ignored.
+/// Alpha is ignored.
 Image<float> luminance(int height, int width, int channels, std::span<const float> values) {
   Image<float> image(height, width);
   for (std::size_t i = 0; i < image.size(); ++i) {

@@ -15,14 +15,12 @@ namespace tofsmith {
 /// @throws IoError unless the array contains floats of shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
-/// Returns the array (H, W) of an image.
 NpyArray array_from_image(const Image<float>& image);
 
-/// Returns `name` if the archive has such an array, else the name of the only array.
-/// @throws IoError if there is neither
+/// @throws IoError if the archive has several arrays and none with this name
 std::string name_called_or_only(const NpzReader& archive, std::string_view name,
                                 std::string_view file);
-/// Reads the array `name`, or the only one. @throws IoError if there is neither
+/// @throws IoError as name_called_or_only()
 NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
                               std::string_view file);
 

@@ -40,7 +40,6 @@ Image<float> depth_from_png(const PngImage& png, const std::string& file) {
 constexpr const char* array_of_kind = "depth_is_z";
 constexpr const char* exr_attribute_of_kind = "depthKind";
 
-/// Returns the kind named by a word in a file; none for other words.
 std::optional<DepthKind> kind_of_word(std::string_view word) {
   constexpr auto words = words_of(DepthKind{});
   const auto found = std::ranges::find(words, word);

@@ -8,11 +8,10 @@
 
 namespace tofsmith {
 
-// Fields of files that state whether depth is radial or z. stored_depth_kind() reads them.
+// Depth is radial or z. stored_depth_kind() reads these fields.
 
-/// Adds the array with the kind of `depth` to the arrays of an .npz.
 void add_depth_kind(DepthKind kind, NpzArrays& arrays);
-/// Returns the attribute of an .exr with the kind of its channel Z.
+/// Returns the attribute with the kind of the channel Z.
 ExrText exr_text_of(DepthKind kind);
 
 }  // namespace tofsmith

@@ -59,7 +59,7 @@ void note_data_window(ByteCursor value, Layout& layout, std::string_view file) {
   check_image_size(file, layout.height, layout.width);
 }
 
-/// @return size of the channel list [bytes]
+/// Returns the size of the channel list [bytes].
 std::uint64_t note_channels(ByteCursor value, Layout& layout) {
   const std::size_t begin = value.position();
   constexpr std::uint32_t half_type = 1, float_type = 2;
@@ -92,7 +92,7 @@ void note_tiles(ByteCursor value, Layout& layout) {
                            layout.tile_height, layout.tile_width, max_image_side));
 }
 
-/// Checks the number of tiles, each of which has an 8-byte entry in the offset table.
+/// Each tile has an 8-byte entry in the offset table.
 void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
   if (layout.tile_width == 0) return;
   const std::uint64_t across = (layout.width - 1) / layout.tile_width + 1;
@@ -103,8 +103,8 @@ void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCu
                     down, across));
 }
 
-/// Checks the unpacked size. Small constant images reach any compression ratio, so the ratio is
-/// checked for large images only; its limit is that of a constant image in large DWA blocks.
+/// Small constant images reach any compression ratio, so it is limited for large images only, to
+/// the ratio of a constant image in large DWA blocks.
 void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
   constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, max_ratio = 65536,
                           max_bytes = std::uint64_t{1} << 30;
@@ -120,8 +120,8 @@ void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const Byt
                     layout.channels, layout.height, layout.width, file_bytes));
 }
 
-/// The library ignores the size of an attribute and reads as much as its type needs. A wrong size
-/// would make it interpret arbitrary bytes as sizes.
+/// The library ignores the size of an attribute; a wrong size would make it interpret arbitrary
+/// bytes as sizes.
 void check_attribute_size(ByteCursor value, std::string_view type, std::uint64_t size) {
   struct Known {
     std::string_view type;
@@ -150,8 +150,7 @@ void check_attribute_size(ByteCursor value, std::string_view type, std::uint64_t
     value.fail(fmt::format("found {} bytes of type '{}'; expected {}", size, type, expected));
 }
 
-/// Checks the header of an OpenEXR file before the OpenEXR library reads it, because the library
-/// allocates memory for any sizes in a damaged header.
+/// The OpenEXR library allocates memory for any sizes in a damaged header.
 /// @throws IoError at a byte offset if parse_exr() does not support the file
 void check_exr_layout(std::span<const std::byte> content, std::string_view file) {
   ByteCursor cursor(content, file);
@@ -250,7 +249,6 @@ void check(const ExrPlanes& planes) {
   }
 }
 
-/// Checks and opens an image, and returns the result of `read`.
 template <typename Read>
 auto read_from(std::span<const std::byte> content, std::string_view file, const Read& read) {
   check_exr_layout(content, file);

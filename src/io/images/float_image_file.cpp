@@ -15,16 +15,15 @@
 namespace tofsmith {
 namespace {
 
-// OpenEXR's convention for distance along the viewing axis; other channels have the name of the
-// image.
+// OpenEXR's convention for distance along the viewing axis.
 std::string exr_channel(std::string_view name) { return name == "depth" ? "Z" : std::string(name); }
 
-/// Compares bits, so that NaN equals NaN.
+/// NaN equals NaN.
 bool same_pixels(const Image<float>& a, const Image<float>& b) {
   return std::memcmp(a.pixels.data(), b.pixels.data(), a.size() * sizeof(float)) == 0;
 }
 
-/// Selects the depth plane. Renderers use several names, or write depth to R, G and B.
+/// Renderers use several names for depth, or write it to R, G and B.
 Image<float> only_plane(ExrPlanes planes, std::string_view name, const std::string& file) {
   for (const std::string& usual : {std::string(name), std::string("Z"), std::string("Y")})
     if (const auto found = planes.find(usual); found != planes.end())

@@ -11,19 +11,18 @@
 
 namespace tofsmith {
 
-/// Returns true if the extension is that of a grey image: .png, .tif, .tiff or .pgm.
+/// Recognizes .png, .tif, .tiff and .pgm.
 bool is_grey_image(const std::filesystem::path& path);
 
-/// Reads an image with one number per pixel, shape (H, W), in the type of the file: unsigned
-/// integers of 8 or 16 bits; in TIFF also signed integers, 32 bits and floats.
+/// Reads one number per pixel, (H, W), in the type of the file: unsigned integers of 8 or 16 bits;
+/// in TIFF also signed integers, 32 bits and floats.
 /// @throws IoError if the file is damaged, has colours, several pages or an unsupported encoding
 NpyArray read_grey_image(const std::filesystem::path& path);
 
-/// Reads a PGM, binary (P5) or text (P2), as uint8 if its maximum value is at most 255, else
-/// uint16.
+/// Reads binary (P5) or text (P2); uint8 if the maximum value is at most 255, else uint16.
 NpyArray parse_pgm(std::span<const std::byte> content, std::string_view file);
 
-/// Reads a single-page grey TIFF in strips or tiles, uncompressed or with PackBits, LZW or Deflate.
+/// Reads a single page in strips or tiles, uncompressed or with PackBits, LZW or Deflate.
 /// @see TIFF 6.0 specification
 NpyArray parse_tiff(std::span<const std::byte> content, std::string_view file);
 

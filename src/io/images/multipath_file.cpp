@@ -25,7 +25,7 @@ std::vector<double> list(const NpzReader& file, const std::filesystem::path& pat
   return array.to_doubles();
 }
 
-/// Subtracts the background, estimated as the median.
+/// Estimates the background as the median.
 void subtract_median(std::vector<double>& light) {
   const double median = median_of(light);
   for (double& bin : light) bin = std::max(bin - median, 0.0);

@@ -11,7 +11,6 @@
 
 namespace tofsmith {
 
-/// Returns true for the white space between words of PGM and PFM files.
 inline bool is_space(std::byte byte) {
   const char c = std::to_integer<char>(byte);
   return c == ' ' || c == '\n' || c == '\r' || c == '\t';
@@ -38,7 +37,6 @@ inline std::string_view take_word(ByteCursor& cursor, std::string_view what) {
   return word;
 }
 
-/// @throws IoError if the next word is not a number of this type
 template <typename Number>
 Number take_number(ByteCursor& cursor, std::string_view what) {
   const std::string_view word = take_word(cursor, what);

@@ -12,29 +12,27 @@
 
 namespace tofsmith {
 
-/// Float image, (H, W, C), last axis fastest, top row first (files have the bottom row first).
+/// (H, W, C), last axis fastest, top row first (files have the bottom row first).
 struct PfmImage {
   int height = 0;
   int width = 0;
   int channels = 1;  ///< 1 grey, 3 RGB
-  /// Absolute scale in the header. It is not applied, as programs disagree on its meaning.
+  /// Absolute scale in the header; not applied, because programs disagree on its meaning.
   double scale = 1.0;
   std::vector<float> values;
 };
 
-/// Reads a PFM of either byte order.
 /// @param file  name for error messages
 /// @throws IoError if the header is malformed, the length of the data differs from it, or the image
-///         exceeds the limits of image_limits.hpp
+///   exceeds the limits of image_limits.hpp
 PfmImage parse_pfm(std::span<const std::byte> content, std::string_view file);
 PfmImage read_pfm(const std::filesystem::path& path);
 
 enum class PfmByteOrder { little_endian, big_endian };
 
-/// @throws std::invalid_argument if a member is outside its documented range
+/// @throws std::invalid_argument if a member is out of range
 std::vector<std::byte> serialize_pfm(const PfmImage& image,
                                      PfmByteOrder order = PfmByteOrder::little_endian);
-/// @throws IoError as AtomicFile
 void write_pfm(const std::filesystem::path& path, const PfmImage& image, OutputPolicy policy);
 
 }  // namespace tofsmith

@@ -13,7 +13,7 @@
 namespace tofsmith {
 namespace {
 
-/// P5: one byte per number, or two in big-endian order.
+/// One byte per number, or two in big-endian order.
 void take_binary(ByteCursor& cursor, NpyArray& image) {
   const auto found = cursor.rest();
   if (found.size() != image.bytes().size())

@@ -15,8 +15,7 @@
 namespace tofsmith {
 namespace {
 
-// libpng permits its error callback to throw. The exception passes through libpng's C frames, and
-// the destructors here free its memory.
+// libpng permits its error callback to throw; destructors here free its memory.
 [[noreturn]] void throw_error(png_structp png, png_const_charp message) {
   throw IoError(*static_cast<const std::string*>(png_get_error_ptr(png)),
                 fmt::format("damaged PNG: {}", message));
@@ -64,7 +63,7 @@ class PngFile {
 using PngReader = PngFile<true>;
 using PngWriter = PngFile<false>;
 
-/// Deflate compresses by a factor of at most 1032, so a small file cannot contain a large image.
+/// Deflate compresses by a factor of at most 1032.
 void check_unpacked_size(std::size_t unpacked, std::size_t packed, std::string_view file) {
   if (unpacked / 1032 > packed)
     throw IoError(file, fmt::format("the image needs {} bytes; expected at most what a file of {} "

@@ -16,17 +16,15 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the bytes of a file before and after its frames.
 std::uint64_t bytes_around_frames(const RawFormat& format) {
   return static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
 }
 
-/// Returns the bytes of the frames in a file of `found` bytes.
+/// Bytes of the frames in a file of `found` bytes.
 std::uint64_t bytes_of_frames(std::uint64_t found, const RawFormat& format) {
   return found - std::min(found, bytes_around_frames(format));
 }
 
-/// Describes a wrong length of a file.
 std::string length_problem(std::uint64_t found, const RawFormat& format) {
   const std::uint64_t around = bytes_around_frames(format), frame = format.frame_bytes(),
                       data = bytes_of_frames(found, format), complete = data / frame;
@@ -63,8 +61,7 @@ int frames_in(std::uint64_t found, const RawFormat& format, const std::string& f
   return static_cast<int>(frames);
 }
 
-/// Combination of flips and rotation: a quarter turn exchanges rows and columns; then each may be
-/// reversed.
+/// A quarter turn exchanges rows and columns; then each may be reversed.
 struct Orientation {
   bool transposed, reversed_rows, reversed_columns;  ///< of the scene
 
@@ -75,7 +72,6 @@ struct Orientation {
                          (f.rotate_deg == 90 || f.rotate_deg == 180)) {}
 };
 
-/// Position of a pixel of the scene in an image of the file.
 struct FilePlace {
   int row, column;
 
@@ -101,7 +97,7 @@ bool is_negated(const RawFormat& f, const FilePlace& place) {
          (f.negate_from_column > 0 && place.column >= f.negate_from_column);
 }
 
-/// Describes each byte order and alignment with which all numbers of a row fit into their bits.
+/// Describes the byte orders and alignments with which all numbers of a row fit into their bits.
 std::string fitting_changes(const RawFormat& format, std::span<const std::byte> row) {
   std::string changes;
   for (const bool big_endian : {format.big_endian, !format.big_endian})
@@ -117,7 +113,6 @@ std::string fitting_changes(const RawFormat& format, std::span<const std::byte> 
   return changes.empty() ? "check bits, byte_order and align" : changes + " would fit this row";
 }
 
-/// Describes a number that exceeds its bits.
 std::string oversized_problem(const RawFormat& format, const OversizedNumber& number,
                               std::span<const std::byte> row) {
   const bool high = format.align == RawAlignment::high;
@@ -136,7 +131,7 @@ class Measure {
         is_unsigned_(f.numbers == RawNumbers::integers && !f.is_signed),
         black_level_(f.black_level == 0.0 && is_unsigned_ ? marking.unsigned_black_level
                                                           : f.black_level) {
-    // A sign and a magnitude have no number -2^n: the lowest one is -(2^n - 1).
+    // A sign and a magnitude have no number -2^n.
     if (f.sign_encoding == SignEncoding::sign_magnitude && marking.signed_max)
       lowest_ = -*marking.signed_max;
   }
@@ -151,7 +146,7 @@ class Measure {
   const RawMarking& marking_;
   bool is_unsigned_;
   double black_level_;
-  double lowest_ = std::numeric_limits<double>::quiet_NaN();  ///< NaN: equals no number
+  double lowest_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace
@@ -189,7 +184,6 @@ std::size_t RawDumpReader::block_row_bytes() const {
              : 0;
 }
 
-/// Reads row `row` of an image in the file.
 void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
                                   std::vector<std::byte>& bytes,
                                   std::vector<double>& numbers) const {
@@ -221,8 +215,7 @@ void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
   unpack_numbers(f, bytes, first_bit, numbers);
 }
 
-/// Reads rows of the scene as (rows, W, K) numbers of the file. If a quarter turn exchanges rows
-/// and columns, all rows of the file are read.
+/// Reads rows of the scene as (rows, W, K). A quarter turn requires all rows of the file.
 void RawDumpReader::read_block(int frame, int first_row, int rows, Block& block) const {
   const RawFormat& f = format_;
   const Orientation o(f);
@@ -230,7 +223,6 @@ void RawDumpReader::read_block(int frame, int first_row, int rows, Block& block)
   block.pixels.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) *
                       static_cast<std::size_t>(kept));
   const bool side_by_side = f.layout == RawOrder::interleaved;
-  // A line is the part of the scene in one row of the file.
   const int lines = o.transposed ? width : rows, length = o.transposed ? rows : width;
   for (int line = 0; line < lines; ++line) {
     const FilePlace first =

@@ -14,31 +14,29 @@
 
 namespace tofsmith {
 
-/// Reads rows from the frames of a dump. Needs memory for these rows only.
+/// Reads rows of a dump; needs memory for these rows only.
 class RawDumpReader {
  public:
   /// @throws IoError if the file cannot be read or its length does not match the format
   /// @param marking  replaces numbers of the file that are not measurements
   RawDumpReader(const std::filesystem::path& path, RawFormat format, RawMarking marking = {});
-  /// Reads from bytes in memory, which must have the length of the format's frames and stay at the
-  /// same address. Their content may change between calls.
+  /// Reads from memory with the length of the format's frames. The address must stay valid; the
+  /// content may change between calls.
   RawDumpReader(std::span<const std::byte> bytes, RawFormat format, RawMarking marking = {});
 
   const RawFormat& format() const { return format_; }
   int frames() const { return frames_; }
 
-  /// Reads rows first_row to first_row + rows - 1 of the scene, (rows, W, K) numbers with the
-  /// measurements of a pixel adjacent and in order. Rotation, signs, black level and differences
-  /// are applied.
+  /// Reads rows first_row to first_row + rows - 1 of the scene, (rows, W, K), with the measurements
+  /// of a pixel adjacent and in order. Applies rotation, signs, black level and differences.
   /// @throws IoError if the file cannot be read or became shorter, or if a number exceeds its bits
   template <typename Number>
   void read_rows(int frame, int first_row, int rows, Number* numbers) const;
 
-  /// Additional memory per row of a read [bytes]; 0 if the rows are read one by one.
+  /// Additional memory per row [bytes]; 0 if rows are read one by one.
   std::size_t block_row_bytes() const;
 
  private:
-  /// Rows of the scene, and memory for a row of the file.
   struct Block {
     std::vector<double> pixels, numbers;
     std::vector<std::byte> bytes;

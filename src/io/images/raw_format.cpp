@@ -22,7 +22,7 @@ bool is_bit_stream(RawPacking packing) {
   return packing == RawPacking::lsb_first || packing == RawPacking::msb_first;
 }
 
-/// Number of values in a MIPI group, which consists of whole bytes.
+/// A MIPI group consists of whole bytes.
 int mipi_group(int bits) { return bits == 12 ? 2 : 4; }
 
 int bits_per_number(const RawFormat& format) {

@@ -15,7 +15,7 @@ namespace tofsmith {
 namespace {
 
 /// For a wrong key ending in "_bytes", lists all such keys, because the most similar one is often
-/// not the intended one.
+/// wrong.
 void refuse_unknown_gaps(const TomlDocument& document, RawFormat format) {
   KeyNames known;
   describe(known, format);

@@ -45,7 +45,6 @@ NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions&
   return archive.read(name, options.max_in_memory);
 }
 
-/// Rejects a data set name for a file with one unnamed array.
 void refuse_dataset(const std::filesystem::path& path, const RawReadOptions& options) {
   if (options.dataset.empty()) return;
   throw IoError(path.string(), fmt::format("found a file with one unnamed array; expected .npz or "
@@ -58,8 +57,8 @@ std::uint64_t bytes_of(const NpyReader& reader) {
                          std::uint64_t{item_size(reader.type())}, std::multiplies<>());
 }
 
-/// Returns the type for decoding: types of RawView unchanged, others as the smallest type that can
-/// represent them (64-bit integers up to 2^53).
+/// Types of RawView are unchanged; others become the smallest type that can represent them (64-bit
+/// integers up to 2^53).
 NpyType decoded_type(NpyType stored) {
   switch (stored) {
     case NpyType::uint8:
@@ -82,7 +81,7 @@ NpyArray in_type(NpyArray array, NpyType type) {
   return NpyArray::of<double>(array.shape(), array.to_doubles());
 }
 
-/// Converts (H, W) and (F, H, W) to the planar shape with one measurement.
+/// Adds missing axes to (H, W) and (F, H, W).
 NpyShape with_measurements(const NpyShape& shape, const std::string& file) {
   if (shape.size() == 2) return {1, shape[0], shape[1]};
   if (shape.size() == 3) return {shape[0], 1, shape[1], shape[2]};
@@ -322,7 +321,7 @@ RawView RawFramesReader::rows_of_parts(int frame, int first_row, int rows,
   return view;
 }
 
-/// @param rows_of_a_plane  rows between the images of two measurements, for planar layout
+/// @param rows_of_a_plane  rows between the images of two measurements
 RawView RawFramesReader::view_of(const std::byte* data, int rows, int rows_of_a_plane) const {
   const auto view = [&](const auto* numbers) {
     const bool planar = layout_ == RawLayout::planar;

@@ -78,7 +78,7 @@ std::optional<NumberRange> range_of(const RawFormat& format) {
                                   numbers, key, marker, rule));
 }
 
-/// @param range   of integers; none: floats
+/// @param range  of integers; none: floats
 /// @param digits  bits of a float's mantissa
 void check_markers(const RawMarkers& markers, const std::optional<NumberRange>& range, int digits,
                    std::string_view numbers, const std::string& file) {

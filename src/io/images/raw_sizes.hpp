@@ -9,20 +9,18 @@
 
 namespace tofsmith {
 
-/// Checks type and shape of an array and returns its sizes without values.
+/// Checks type and shape, and returns the sizes without values.
 /// @throws IoError if the type or shape is not one of raw frames, or K differs from the code's
 RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
                             const std::string& file);
 
-/// @throws IoError if the number of measurements of a dump differs from the code's
+/// @throws IoError if the measurements of a dump differ from the code's
 void check_measurements(const RawFormat& format, int expected, const std::string& file);
 
-/// Returns true for unsigned integer types.
 bool is_unsigned(NpyType type);
 
 /// @throws IoError if the file's type cannot represent a marker
 void check_markers(const RawMarkers& markers, NpyType type, const std::string& file);
-/// @throws IoError if the dump's format cannot represent a marker
 void check_markers(const RawMarkers& markers, const RawFormat& format, const std::string& file);
 
 }  // namespace tofsmith

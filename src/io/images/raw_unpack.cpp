@@ -12,7 +12,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Decodes the number in a word of `bits` bits.
 double counted(std::uint64_t word, const RawFormat& format) {
   if (!format.is_signed) return static_cast<double>(word);
   const int sign = format.sign_bit_index();
@@ -23,7 +22,6 @@ double counted(std::uint64_t word, const RawFormat& format) {
                                  : rest - (std::int64_t{1} << sign));
 }
 
-/// Loads a value in the byte order of the file.
 template <typename Value>
 Value load(const std::byte* from, bool big_endian) {
   if (!big_endian) return load_little_endian<Value>(from);
@@ -37,8 +35,7 @@ int container_bits_of(const RawFormat& format) {
   return format.bits <= 8 ? 8 : format.bits <= 16 ? 16 : 32;
 }
 
-/// Returns true if the unused bits of a container are zero or, above a signed number, copies of its
-/// sign.
+/// Returns true if unused bits are zero or, above a signed number, copies of its sign.
 bool fits(const RawFormat& format, std::uint64_t container, int container_bits) {
   const int unused = container_bits - format.bits;
   if (format.align == RawAlignment::high) return (container & mask_of(unused)) == 0;
@@ -86,8 +83,8 @@ void unpack_halves(const RawFormat& format, const std::byte* from, std::span<dou
   }
 }
 
-/// Unpacks groups of 4 (RAW10, RAW14) or 2 (RAW12) numbers: their high bytes, followed by their low
-/// bits, lowest for the first number.
+/// Unpacks groups of 4 (RAW10, RAW14) or 2 (RAW12) numbers: their high bytes, then their low bits,
+/// lowest for the first number.
 void unpack_mipi(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
   const std::size_t group = format.bits == 12 ? 2 : 4;
   const int low_bits = format.bits - 8;

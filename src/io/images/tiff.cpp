@@ -21,7 +21,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Tags and values are defined by the TIFF 6.0 specification.
+// See the TIFF 6.0 specification.
 enum class Tag : std::uint16_t {
   image_width = 256,
   image_length = 257,
@@ -62,7 +62,7 @@ std::vector<std::byte> unpack_bits(Bytes packed, std::size_t size) {
 /// LZW, Section 13. @return at most `size` bytes plus the rest of the last string
 std::vector<std::byte> unpack_lzw(Bytes packed, std::size_t size) {
   constexpr unsigned clear = 256, end = 257, first = 258, most = 4096;
-  // A string is a range of the output: the previous string and the next byte.
+  // A string is a range of the output.
   std::array<std::size_t, most> start{}, length{};
   std::vector<std::byte> out;
   std::size_t at = 0, last_start = 0, last_length = 0;
@@ -119,7 +119,6 @@ std::optional<NpyType> type_of(unsigned format, unsigned bits) {
   return std::nullopt;
 }
 
-/// Undoes horizontal differencing.
 template <typename Number>
 void add_up(std::span<std::byte> bytes, std::size_t row_numbers) {
   for (std::size_t i = 0; i * sizeof(Number) < bytes.size(); ++i) {
@@ -139,7 +138,6 @@ class TiffImage {
   NpyArray numbers() const;
 
  private:
-  /// Tiles, or strips of whole rows.
   struct Blocks {
     bool tiled = false;
     std::size_t width = 0, height = 0;

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Embree 3 (Debian 12) and 4 (Debian 13) have different functions for ray packets. CMake also
-// prefers version 4.
+// Embree 3 and 4 have different functions for ray packets.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -12,7 +11,7 @@
 
 namespace tofsmith {
 
-/// Finds the nearest hit of each active ray (-1; inactive: 0) in a packet of similar rays.
+/// Active rays are -1, inactive ones 0.
 inline void intersect_coherent(const int* active, RTCScene scene, RTCRayHit8& packet) {
 #if RTC_VERSION_MAJOR >= 4
   RTCIntersectArguments arguments;

@@ -20,7 +20,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Rounding errors of Embree, relative to the mesh's size.
+/// Rounding errors, relative to the mesh's size.
 constexpr double single_precision = 1e-6;
 
 void throw_on_error(RTCDevice device, const char* what) {
@@ -63,8 +63,8 @@ MeshCaster::MeshCaster(const Mesh& mesh, EmbreeDevice device)
   if (facets_.empty()) return;
   centre_ = bounds.center();
   radius_m_ = 0.5 * bounds.diagonal().norm() * (1 + single_precision);
-  // Built by one thread, because the order of a parallel build would affect which of two triangles
-  // a ray along their common edge hits.
+  // One thread, because the order of a parallel build would affect which of two triangles a ray
+  // along their common edge hits.
   tbb::task_arena(1).execute([&] { build(); });
 }
 
@@ -104,7 +104,7 @@ Hit MeshCaster::hit_facet(const Facet& facet, const Ray& ray, double share_b,
   double distance_m = -facet.normal.dot(from_corner) / facet.normal.dot(ray.direction);
   Eigen::Vector3d on_plane = from_corner + distance_m * ray.direction;
   double weight_b = facet.gradient_b.dot(on_plane), weight_c = facet.gradient_c.dot(on_plane);
-  // True also for NaN, which results from a triangle seen exactly edge-on.
+  // True also for NaN: a triangle seen exactly edge-on.
   const bool grazed = !(weight_b >= -single_precision && weight_c >= -single_precision &&
                         weight_b + weight_c <= 1 + single_precision);
   if (grazed) weight_b = share_b, weight_c = share_c;
@@ -112,8 +112,7 @@ Hit MeshCaster::hit_facet(const Facet& facet, const Ray& ray, double share_b,
   weight_c = std::clamp(weight_c, 0.0, 1 - weight_b);
   const Eigen::Vector3d weights(1 - weight_b - weight_c, weight_b, weight_c);
   if (grazed) {
-    // For grazing rays, the intersection with the plane may be far from the triangle: use the
-    // triangle.
+    // For grazing rays, the intersection with the plane may be far from the triangle.
     const auto [a, b, c] = corners_in_world(*mesh_, facet.triangle);
     const Eigen::Vector3d point = weights[0] * a + weights[1] * b + weights[2] * c;
     distance_m = ray.direction.dot(point - ray.origin);
@@ -170,7 +169,7 @@ void MeshCaster::trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
         if (hit.distance_m < nearest[lane].hit.distance_m) nearest[lane] = {hit, shape};
         continue;
       }
-      // The ray starts on this triangle or slightly behind it: continue the search.
+      // The ray starts on this triangle or slightly behind it.
       bundle.ray.tnear[lane] = bundle.ray.tfar[lane] + static_cast<float>(single_precision);
       bundle.ray.tfar[lane] = std::numeric_limits<float>::infinity();
       bundle.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
@@ -182,7 +181,7 @@ void MeshCaster::trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
 
 MeshSearchMaker embree_search() {
   return [device = EmbreeDevice()](const Mesh& mesh) mutable -> std::unique_ptr<const MeshSearch> {
-    if (!device) device = new_embree_device();  // only needed by scenes with meshes
+    if (!device) device = new_embree_device();  // created on first use
     return std::make_unique<MeshCaster>(mesh, device);
   };
 }

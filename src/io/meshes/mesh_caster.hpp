@@ -28,9 +28,9 @@ EmbreeDevice new_embree_device();
 
 /// Intersects packets of rays with one mesh.
 ///
-/// Embree works in single precision. To keep its accuracy independent of the position of mesh and
-/// camera, coordinates are relative to the mesh's centre, in units of its size, and rays start
-/// where they reach its bounding sphere. Embree only selects the triangle.
+/// Embree works in single precision and only selects the triangle. Coordinates are relative to the
+/// mesh's centre, in units of its size, and rays start where they reach its bounding sphere, so
+/// that the accuracy does not depend on the position of mesh and camera.
 class MeshCaster : public MeshSearch {
  public:
   /// @param mesh  must outlive the caster
@@ -40,7 +40,7 @@ class MeshCaster : public MeshSearch {
              std::int32_t shape) const override;
 
  private:
-  /// Triangle in world coordinates; the weights of corners b and c are gradient . (point - corner).
+  /// World coordinates; the weights of corners b and c are gradient . (point - corner).
   struct Facet {
     Eigen::Vector3d corner, normal, gradient_b, gradient_c;
     std::uint32_t triangle;
@@ -52,7 +52,7 @@ class MeshCaster : public MeshSearch {
   const Mesh* mesh_;
   std::vector<Facet> facets_;  ///< without triangles of zero area
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  double radius_m_ = 0.0;  ///< of a sphere about centre_ that encloses the mesh
+  double radius_m_ = 0.0;  ///< of the bounding sphere about centre_
   EmbreeScene scene_;
 };
 

@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-/// Removes the next line from a text. A backslash at the end of a line continues it.
+/// A backslash at the end of a line continues it.
 std::string next_line(std::string_view& text, int& lines) {
   std::string line;
   for (bool more = true; more && !text.empty();) {
@@ -77,7 +77,7 @@ class ObjReader {
     throw IoError(fmt::format("{}:{}", file_, line_), problem);
   }
 
-  /// Reads at least `least` numbers of a line and stores as many as fit into `first`.
+  /// Requires at least `least` numbers and stores as many as fit into `first`.
   template <std::size_t n>
   void read_numbers(std::string_view rest, std::string_view what, std::size_t least,
                     std::array<float, n>& first) const {
@@ -105,8 +105,8 @@ class ObjReader {
     read_numbers(rest, "texture coordinate", 1, soup_.textures.emplace_back());
   }
 
-  /// Parses one index of a corner "7/3/-1" and returns it counted from 0. Negative indices count
-  /// back from the last element.
+  /// Parses one index of a corner "7/3/-1". Returns it counted from 0; negative indices count back
+  /// from the last element.
   std::uint32_t take_index(std::string_view& corner, std::string_view what, std::int64_t so_far,
                            std::int64_t all) const {
     std::int64_t index = 0;

@@ -21,7 +21,6 @@ namespace {
 
 bool is_integer(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
 
-/// Returns true for an integer in the range of PLY's integer types.
 bool is_index(double number) {
   return number >= -0x1p31 && number < 0x1p32 && number == std::floor(number);
 }
@@ -31,7 +30,7 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 struct Property {
   std::string name;
   PlyType type = PlyType::float32;
-  std::optional<PlyType> count;  ///< type of the count of a list; none: not a list
+  std::optional<PlyType> count;  ///< of the count of a list; none: not a list
 };
 
 struct Element {
@@ -45,7 +44,6 @@ struct Header {
   std::vector<Element> elements;
 };
 
-/// Reads the header of a PLY file with any elements and lists.
 class HeaderReader {
  public:
   explicit HeaderReader(ByteCursor& cursor) : cursor_(cursor) {}

@@ -14,12 +14,11 @@ namespace tofsmith {
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::size_t ply_item_size(PlyType type);
-/// Returns the number at `item`, stored in little-endian order.
+/// Reads little-endian order.
 double ply_number(const std::byte* item, PlyType type);
-/// Returns the type named "uchar", "float32" etc.; none for other words.
+/// Returns the type named "uchar", "float32" etc., if any.
 std::optional<PlyType> ply_type_of(std::string_view word);
 
-/// Splits a line into words separated by blanks.
 std::vector<std::string_view> words_of_ply(std::string_view line);
 std::vector<std::string_view> words_of_ply_line(ByteCursor& cursor);
 

@@ -60,7 +60,7 @@ std::string pcd_header(const PointCloud& cloud, int height, int width) {
       names, sizes, types, counts, width, height, cloud.points_m.size());
 }
 
-/// Serializes the header and, for every point, x, y, z, the scalars and the colour.
+/// Writes x, y, z, the scalars and the colour of every point after the header.
 std::vector<std::byte> with_points(const std::string& header, const PointCloud& cloud) {
   const std::size_t row_bytes =
       sizeof(float) * (3 + cloud.scalars.size()) + (cloud.colours.empty() ? 0 : 3);

@@ -15,7 +15,7 @@ double turn_of(const Point& a, const Point& b, const Point& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Projects a polygon along its (Newell) normal, counterclockwise.
+/// Projects along the (Newell) normal, counterclockwise.
 std::vector<Point> flattened(std::span<const std::array<float, 3>> corners) {
   const auto at = [&](std::size_t i) -> Eigen::Vector3d {
     const auto& p = corners[i % corners.size()];

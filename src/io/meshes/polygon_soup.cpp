@@ -71,7 +71,7 @@ class Collector {
     const auto& p = soup_.positions[soup_.position_of[corner]];
     const std::array<float, 2> uv =
         with_texture_ ? soup_.textures[soup_.texture_of[corner]] : std::array<float, 2>{};
-    // Adding 0 converts -0 to 0, so that both have the same bytes.
+    // Adding 0 converts -0 to 0.
     const Corner key{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f, uv[0] + 0.0f, uv[1] + 0.0f};
     const auto [known, is_new] =
         vertex_of_.emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));

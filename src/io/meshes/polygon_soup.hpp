@@ -14,38 +14,35 @@
 
 namespace tofsmith {
 
-/// Polygons of a mesh file.
 struct PolygonSoup {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<float, 2>> textures;
-  std::vector<std::uint32_t> position_of;  ///< index of each corner's position
-  std::vector<std::uint32_t> texture_of;  ///< index of each corner's texture coordinates, or `none`
-  std::vector<std::size_t> face_end;      ///< index of the first corner after each polygon
+  std::vector<std::uint32_t> position_of;  ///< per corner
+  std::vector<std::uint32_t> texture_of;   ///< per corner; `none` without texture coordinates
+  std::vector<std::size_t> face_end;       ///< first corner after each polygon
 };
 
-// Readers of mesh files. All throw IoError with the line or byte, the value found and the value
-// expected. Their memory is a small multiple of the file's size.
+// Readers throw IoError with the line or byte, the value found and the value expected. Their memory
+// is a small multiple of the file's size.
 
-/// Reads vertices with at least three finite numbers, and faces with at least three corners, whose
-/// indices must refer to existing vertices, texture coordinates and normals. Other lines are
-/// skipped.
+/// Requires vertices with at least three finite numbers, and faces with at least three corners and
+/// existing indices. Skips other lines.
 PolygonSoup parse_obj(std::string_view text, std::string_view file);
 
-/// Reads any elements and lists, text or binary in either byte order, with exactly the announced
-/// rows.
+/// Reads any elements and lists, text or binary in either byte order.
 PolygonSoup parse_ply_mesh(std::span<const std::byte> content, std::string_view file);
 
-/// Reads a binary file with the announced number of triangles, or text that ends with endsolid.
+/// Reads a binary file, or text that ends with endsolid.
 PolygonSoup parse_stl(std::span<const std::byte> content, std::string_view file);
 
-/// Triangulates polygons and merges corners with equal position and texture coordinates, which are
-/// kept if all corners have them.
+/// Triangulates polygons and merges equal corners. Texture coordinates are kept if all corners have
+/// them.
 /// @throws IoError if there are no polygons, positions are not finite, or indices are out of range
 TriangleMesh triangles_of(const PolygonSoup& soup, std::string_view file);
 
-/// Removes the next word from a line and returns it; "" at the end of the line.
+/// Returns "" at the end of the line.
 std::string_view next_word(std::string_view& line);
 
 }  // namespace tofsmith

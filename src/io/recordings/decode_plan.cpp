@@ -25,7 +25,7 @@ bool finds_multipath(const DepthDecoder& decoder) {
   return decoder.method() == DecodeMethod::two_return || decoder.method() == DecodeMethod::tail;
 }
 
-/// Reads one map and checks it separately, so that errors name its file.
+/// Checks the map separately, so that errors name its file.
 void load_map(const std::filesystem::path& path, const char* name, int height, int width,
               Image<float> PixelMaps::*map, PixelMaps& maps) {
   if (path.empty()) return;
@@ -39,7 +39,6 @@ void load_map(const std::filesystem::path& path, const char* name, int height, i
   maps.*map = std::move(alone.*map);
 }
 
-/// Returns true if some pixels of a lens may have no ray.
 bool has_blind_pixels(const Lens& lens) {
   return !lens.rays.empty() || (lens.distortion && lens.distortion->max_radius);
 }
@@ -54,7 +53,6 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
       offset_m += static_cast<float>(request.offset_m);
   }
   if (request.lens && has_blind_pixels(*request.lens)) {
-    // Mark pixels without a ray as dead.
     if (maps.delay_offset_m.empty()) maps.delay_offset_m = Image<float>(height, width, 0.0f);
     const PixelRays rays = rays_of(request.lens, view_of(request.lens, width, height));
     for (int row = 0; row < height; ++row)
@@ -66,7 +64,6 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
   return maps;
 }
 
-/// Rejects options that are not valid with sliding windows.
 void check_sliding(const DecodeRequest& request) {
   constexpr const char* rule = "is not valid with sliding, which uses single exposures";
   require(request.average == 1, "average", request.average, rule);

@@ -12,40 +12,38 @@
 
 namespace tofsmith {
 
-/// Checks everything in a request that needs no file. @throws std::invalid_argument
+/// Checks everything that needs no file. @throws std::invalid_argument
 void check_request(const DecodeRequest& request, const DepthDecoder& decoder);
 
-/// Returns the view of the frames. @param source  name of the recording, for errors
+/// @param source  name of the recording, for errors
 /// @throws IoError if the lens is for images of another size, or its distortion folds back inside
-///         them
+///   them
 PinholeView view_of_frames(const DecodeRequest& request, const std::string& source, int width,
                            int height);
 
-/// Returns the resampling that removes the distortion; none if not requested or without distortion.
+/// Returns none without distortion, or if not requested.
 std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const PinholeView& view);
 
-/// Returns the planes to write, without duplicates.
+/// Returns the planes without duplicates.
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request,
                                           const DepthDecoder& decoder);
 
-/// Returns the spatial filter of the request, if any.
 std::optional<Filter> filter_of(const DecodeRequest& request, const DecodingTable& table);
 
-/// Exposures of a sliding window; 0 if whole frames are decoded, as with a single exposure.
+/// Exposures of a sliding window; 0 if whole frames are decoded.
 int sliding_exposures(const DecodeRequest& request, const DecodingTable& table);
 
 /// @param filter  from filter_of(); must outlive the result
 Preparation preparation_of(const DecodeRequest& request, const DecodingTable& table,
                            const std::optional<Filter>& filter);
 
-/// Corrections of the decoded planes.
 /// @param source  name of the recording, for errors
 /// @throws IoError if maps cannot be read or do not fit, or frames are not of the size of the
-///         table's depth correction
+///   table's depth correction
 PlaneCorrections corrections_of(const DecodeRequest& request, const DecodingTable& table,
                                 const std::string& source, int height, int width);
 
-/// Decodes the next band of the frames to its position in the planes. Returns false after the last.
+/// Decodes the next band to its position in the planes. Returns false after the last.
 bool decode_next(PreparedFrames& input, const PlaneCorrections& corrections, const Band& band,
                  const DecodeTarget& target, DepthImage& planes, const Progress& progress);
 

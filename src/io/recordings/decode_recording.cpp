@@ -79,7 +79,7 @@ DecodeTarget target_of(const DecodeRequest& request, const DepthDecoder& decoder
           .undistortion = undistortion_of(request, view)};
 }
 
-/// Rejects outputs that are input files, even with OutputPolicy::overwrite.
+/// Applies even with OutputPolicy::overwrite.
 void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& target) {
   std::vector<std::string> inputs = request.other_inputs;
   for (const std::filesystem::path& path :
@@ -94,7 +94,7 @@ double bytes_of_planes(const DecodeTarget& target, int rows) {
   return static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width * rows;
 }
 
-/// Memory of all buffers; `row` is for each row that is read and decoded at a time.
+/// `row` is memory for each row that is read and decoded at a time.
 FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& target,
                           const Preparation& preparation,
                           const std::vector<std::unique_ptr<FramePipeline>>& pipelines) {
@@ -118,7 +118,7 @@ FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& tar
   return {.whole = all.whole + all.row * height, .row = 0.0};
 }
 
-/// Returns the number of rows to read and decode at a time so that all buffers fit into the memory.
+/// Returns the number of rows for which all buffers fit into the memory.
 /// @throws IoError if a frame in this format, a frame with filters, or a single row needs more
 int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
                    const Preparation& preparation, double memory_bytes) {
@@ -137,7 +137,7 @@ int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
                 ? "without filters, mixed and undistort, frames are decoded in bands of rows; "
                 : "",
             target.in_rows() ? "" : "; .npy is written row by row, with --stack for every plane"));
-  // Larger bands are no faster: new memory costs more than another call.
+  // Larger bands are not faster.
   constexpr double comfortable_bytes = 32e6;
   const double rows = row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : height;
   return std::clamp(static_cast<int>(rows), 1, height);
@@ -153,7 +153,7 @@ class Pace {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  /// Returns the progress of one band. @param pixels  number of pixels decoded before
+  /// @param pixels  number of pixels decoded before
   Progress of_band(const Band& band, std::int64_t pixels) const {
     if (!progress_) return {};
     const std::int64_t frame_pixels = std::int64_t{target_.view.height} * target_.view.width;
@@ -180,7 +180,6 @@ class Pace {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Adds a note if the noise of a filtered frame differs from the prediction of the camera.
 void add_noise_note(FramePipeline& pipeline, const Band& band, DecodedRecording& result) {
   const FrameSteps& steps = pipeline.steps();
   if (const auto ratio = measured_noise_ratio(*steps.filter, pipeline.measured()))
@@ -188,7 +187,6 @@ void add_noise_note(FramePipeline& pipeline, const Band& band, DecodedRecording&
       result.notes.push_back(*note);
 }
 
-/// Decodes the frames of the target.
 void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
                    const std::vector<std::unique_ptr<FramePipeline>>& pipelines,
                    const PlaneCorrections& corrections, DecodeOutput& output,
@@ -247,7 +245,6 @@ StatusCounts DecodedRecording::total() const {
 
 void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
                       const Progress& progress, DecodedRecording& result) {
-  // Report all errors in the request before the first frame is decoded.
   result = {};
   const DepthDecoder& decoder = backend.decoder();
   check_request(request, decoder);

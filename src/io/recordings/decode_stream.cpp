@@ -22,8 +22,8 @@ namespace {
 
 constexpr const char* stream_name = "the stream";
 
-/// Returns the number of bytes of a frame after which each of its exposures is complete. Only
-/// planar frames have exposures that are complete before the frame.
+/// Returns the number of bytes after which each exposure of a frame is complete; only planar frames
+/// have several.
 std::vector<std::size_t> exposure_ends(const RawFormat& format, int exposures) {
   const auto frame = static_cast<std::size_t>(format.frame_bytes());
   std::vector<std::size_t> ends(static_cast<std::size_t>(exposures), frame);
@@ -45,11 +45,10 @@ std::vector<std::size_t> exposure_ends(const RawFormat& format, int exposures) {
   return ends;
 }
 
-/// Frames of a stream in sequence.
 class StreamFrames {
  public:
-  /// @param exposures  number per frame; next() returns the frame once for each exposure, when it
-  ///                   is complete up to this exposure. 1: whole frames
+  /// @param exposures  next() returns each frame once per exposure, when it is complete up to this
+  ///   exposure; 1: whole frames
   StreamFrames(const ReadStream& read, RawFormat format, const RawMarking& marking, int exposures)
       : read_(read),
         header_(static_cast<std::size_t>(format.header_bytes)),
@@ -61,8 +60,7 @@ class StreamFrames {
     frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format), marking);
   }
 
-  /// Returns the raw numbers of the next frame or exposure, valid until the next call; none after
-  /// the last.
+  /// Returns the next frame or exposure, valid until the next call; none after the last.
   /// @throws IoError if the stream ends within a frame
   std::optional<RawView> next() {
     if (const std::size_t found = read_(header_); found < header_.size()) fail(found, header_);
@@ -90,7 +88,7 @@ class StreamFrames {
     const auto row =
         static_cast<std::size_t>(width) * static_cast<std::size_t>(f.output_measurements());
     values.resize(static_cast<std::size_t>(height) * row);
-    // Every block of rows of a transposed image needs all rows of the file.
+    // A block of rows of a transposed image needs all rows of the file.
     parallel_for_blocks(height, f.is_transposed() ? height : 16, [&](IndexRange rows) {
       const auto first = static_cast<int>(rows.begin);
       frame_->read_rows(0, first, static_cast<int>(rows.end) - first,
@@ -114,8 +112,8 @@ class StreamFrames {
   std::size_t trailer_bytes_;
   std::vector<std::byte> bytes_;
   std::vector<std::size_t> ends_;  // of exposures, in bytes_
-  std::size_t exposure_ = 0;       // next exposure
-  std::size_t at_ = 0;             // number of bytes of the frame that have been read
+  std::size_t exposure_ = 0;
+  std::size_t at_ = 0;  // bytes of the frame that have been read
   RawView view_;
   std::unique_ptr<RawDumpReader> frame_;
   std::vector<float> floats_;
@@ -123,7 +121,6 @@ class StreamFrames {
   std::int64_t frames_ = 0;
 };
 
-/// Returns the request with the checks and defaults for streams.
 DecodeRequest checked(DecodeRequest request, const DepthDecoder& decoder) {
   require(!request.raw_format.empty(), "raw_format", "none",
           "must be a file that describes the frames of the stream");
@@ -176,7 +173,7 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
   for (;;) {
     report(progress, 0.0, fmt::format("frame {}", result.frames));
     const ProgressParts parts(progress, {0.0, 1.0});  // the length of a stream is unknown
-    // The frame number is limited to int, which only a temporal filter uses.
+    // Only a temporal filter uses the frame number, which is limited to int.
     const auto frame = static_cast<int>(
         std::min<std::int64_t>(result.frames, std::numeric_limits<int>::max() / 2));
     if (!decode_next(input, corrections, {frame, 0, height}, target, planes, parts[0])) break;

@@ -38,8 +38,7 @@ NpzArrays arrays(const DepthImage& decoded, const std::vector<DecodedPlane>& pla
   return result;
 }
 
-/// Returns the points of pixels with status ok, or of all pixels with depth.
-/// @param organized  include all other pixels as NaN
+/// @param organized  include pixels without points as NaN
 PointCloud cloud(const DepthImage& decoded, const std::vector<DecodedPlane>& planes,
                  const PixelRays& pixel_rays, bool all_points, bool organized) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -78,21 +77,20 @@ std::filesystem::path with_suffix(std::filesystem::path path, const std::string&
   return path;
 }
 
-/// Returns the file for a plane of a stack: name.npy for depth, name-PLANE.npy for others.
+/// name.npy for depth, name-PLANE.npy for others.
 std::filesystem::path stack_path(const std::filesystem::path& path, DecodedPlane plane) {
   return plane == DecodedPlane::depth ? path : with_suffix(path, "-" + std::string(name_of(plane)));
 }
 
-/// Returns the temporary memory of write_planes(), in addition to the planes [bytes per pixel]; an
-/// upper limit for all formats except .npy.
+/// Temporary memory of write_planes(), in addition to the planes [bytes per pixel]; an upper limit
+/// except for .npy.
 std::size_t writing_bytes_per_pixel(std::string_view extension,
                                     const std::vector<DecodedPlane>& planes) {
   const std::size_t held = bytes_per_pixel(planes), depth = sizeof(float);
   if (extension == ".npz") return held;  // copies as arrays
-  // The list of kept pixels, and the points with their scalars twice: as lists and as a file.
+  // Kept pixels, and the points with their scalars as lists and as a file.
   if (extension == ".ply" || extension == ".pcd")
     return sizeof(std::size_t) + 2 * (3 + planes.size()) * sizeof(float);
-  // Float channels, and a file of at most the same size.
   if (extension == ".exr") return 2 * planes.size() * sizeof(float);
   return 2 * depth;  // .pfm, .png: converted, and the file
 }

@@ -13,19 +13,17 @@
 
 namespace tofsmith {
 
-/// Memory of one pixel in these planes [bytes].
 std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes);
 
-/// Resamples all planes to the ideal pinhole camera. @param as_z  the depth is z, not radial
+/// @param as_z  the depth is z, not radial
 void undistort(DepthImage& image, const Undistortion& undistortion, bool as_z);
 
-/// Returns a plane as floats; statuses as their codes.
+/// Statuses become their codes.
 Image<float> floats_of(const DepthImage& image, DecodedPlane plane);
-/// Returns the first rows of a plane in its own type.
 std::span<const std::byte> items_of(const DepthImage& image, DecodedPlane plane, int rows);
 
-/// Converts radial distance to z-depth in place.
-/// @param depth_m    rows with the width of the view
+/// Converts radial distance in place.
+/// @param depth_m  rows with the width of the view
 /// @param first_row  index in the view
 void turn_into_z(float* depth_m, int first_row, int rows, const PixelRays& pixel_rays);
 

@@ -20,8 +20,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns a note if ambient light is assumed to be equal although the duties of the columns
-/// differ.
+/// Returns a note if ambient light is assumed equal although the duties of the columns differ.
 std::optional<std::string> duty_note(const std::string& path, const MeasuredTable& measured) {
   constexpr double usual_spread = 0.02;
   const Eigen::VectorXd mean = ambient_gain_of(measured.correlation, MeasuredAmbient::mean);
@@ -34,7 +33,6 @@ std::optional<std::string> duty_note(const std::string& path, const MeasuredTabl
       path);
 }
 
-/// Rejects options of measured tables for a code.
 void refuse_table_options(const std::string& code, const DecodingTableOptions& options) {
   const char* const field = options.range_m          ? "range_m"
                             : options.ambient        ? "ambient"
@@ -48,7 +46,7 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
                     field, code));
 }
 
-/// Applies the order of exposures and the direction of delay to a table.
+/// Applies the order of exposures and the direction of delay.
 void apply(const DecodingTableOptions& options, MeasuredTable& measured) {
   if (!options.order.empty()) {
     const int side = measured.taps, exposures = measured.columns() / side;
@@ -92,7 +90,7 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   }
 }
 
-/// Returns a note if a table rotates too far from row to row for interpolation.
+/// Returns a note if rows are too far apart for interpolation.
 std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measured) {
   constexpr double fine_deg = 10.0;
   const double turn_deg = furthest_turn_rad(table) * 180.0 / std::numbers::pi;
@@ -106,7 +104,7 @@ std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measu
       is_measured ? " delays" : "");
 }
 
-/// Returns the camera with the user's order and direction of delay.
+/// Applies the user's order and direction of delay.
 Camera with_playback(Camera camera, const DecodingTableOptions& options) {
   if (options.order.empty() && !options.reversed) return camera;
   Playback playback = camera.playback.value_or(Playback());

@@ -23,7 +23,7 @@ namespace {
 
 using Order = std::vector<int>;
 
-/// Raw numbers of some pixels, with the measurements of a pixel adjacent.
+/// The measurements of a pixel are adjacent.
 struct PixelSample {
   std::vector<float> numbers;
   int measurements = 0;
@@ -33,8 +33,7 @@ struct PixelSample {
   int pixels() const { return static_cast<int>(numbers.size()) / measurements; }
 };
 
-/// Returns the difference of the largest and the smallest measurement of a pixel [e]; 0 if a number
-/// is clipped or not finite.
+/// Largest minus smallest measurement [e]; 0 if a number is clipped or not finite.
 double contrast(const float* numbers, const DecodingTable& table) {
   const SaturationLevels levels(table);
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -49,8 +48,8 @@ double contrast(const float* numbers, const DecodingTable& table) {
   return high - low;
 }
 
-/// Returns the pixels with the most contrast in evenly spaced rows. A wrong order of exposures
-/// shows most clearly in them.
+/// Returns the pixels with the most contrast in evenly spaced rows, because they show a wrong order
+/// best.
 PixelSample sample_of(const RawFramesReader& reader, int frame, const DecodingTable& table) {
   constexpr int max_rows = 64;
   constexpr std::size_t max_read = 1 << 14, max_kept = 512;
@@ -84,8 +83,7 @@ PixelSample sample_of(const RawFramesReader& reader, int frame, const DecodingTa
   return sample;
 }
 
-/// Returns the square root of the median chi-square per degree of freedom, which is the ratio of
-/// the deviations from the code to the noise. Infinite without degrees of freedom.
+/// Square root of the median chi-square per degree of freedom; infinite without degrees of freedom.
 double residual_of(const Decoder& decoder, const PixelSample& sample) {
   const int pixels = sample.pixels();
   std::vector<float> residual(static_cast<std::size_t>(pixels));
@@ -98,7 +96,6 @@ double residual_of(const Decoder& decoder, const PixelSample& sample) {
   DecodedView decoded;
   decoded.residual = residual.data();
   decoder.decode(view, decoded);
-  // Pixels without a depth in this order do not fit it.
   for (float& value : residual)
     if (std::isnan(value)) value = std::numeric_limits<float>::infinity();
   const auto middle = residual.begin() + pixels / 2;
@@ -106,7 +103,7 @@ double residual_of(const Decoder& decoder, const PixelSample& sample) {
   return std::sqrt(static_cast<double>(*middle));
 }
 
-/// Returns the sample with exposure q[i] of the recording as its i-th exposure.
+/// Exposure q[i] of the recording becomes the i-th exposure.
 PixelSample reordered(const PixelSample& sample, const Order& q) {
   const int taps = sample.measurements / static_cast<int>(q.size());
   PixelSample result = sample;
@@ -118,7 +115,6 @@ PixelSample reordered(const PixelSample& sample, const Order& q) {
   return result;
 }
 
-/// Returns 0 ... n - 1.
 Order ascending(int n) {
   Order order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
@@ -141,8 +137,8 @@ std::vector<Order> some_permutations(int n) {
   return {order, Order(order.rbegin(), order.rend())};
 }
 
-/// Orders in which a driver may deliver exposures: frequencies exchanged, phases exchanged within
-/// each frequency, or phase after phase instead of frequency after frequency.
+/// Orders of a driver: frequencies exchanged, phases exchanged within each frequency, or phase
+/// after phase.
 std::set<Order> plausible_orders(int exposures) {
   constexpr int max_all = 6;
   if (exposures <= max_all) {
@@ -167,7 +163,7 @@ std::set<Order> plausible_orders(int exposures) {
   return orders;
 }
 
-/// 16-bit numbers with their bytes exchanged; none if the numbers are not 16-bit integers.
+/// Returns none if the numbers are not 16-bit integers.
 std::optional<PixelSample> with_swapped_bytes(const PixelSample& sample) {
   PixelSample result = sample;
   const bool is_signed = std::ranges::any_of(sample.numbers, [](float n) { return n < 0.0f; });
@@ -184,13 +180,12 @@ std::optional<PixelSample> with_swapped_bytes(const PixelSample& sample) {
   return is_wide ? std::optional(result) : std::nullopt;
 }
 
-/// A change of options, and the residual with it.
 struct Alternative {
   double residual;
   std::string text;
 };
 
-/// Returns the option that results in the order q of the recorded exposures.
+/// Returns the option for the order q of the recorded exposures.
 std::string option_text(const Order& recorded, const Order& q) {
   Order order(q.size());
   for (std::size_t i = 0; i < q.size(); ++i) order[static_cast<std::size_t>(q[i])] = recorded[i];

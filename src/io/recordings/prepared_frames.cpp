@@ -18,8 +18,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the whole frames that windows of exposures need: with a temporal filter, all windows up
-/// to the last.
+/// A temporal filter needs all windows up to the last.
 std::vector<Band> bands_of_windows(const Preparation& preparation,
                                    const std::vector<Band>& windows) {
   if (windows.empty()) return {};
@@ -29,7 +28,6 @@ std::vector<Band> bands_of_windows(const Preparation& preparation,
   return bands_of(first / exposures, last_exposure / exposures + 1, rows, rows);
 }
 
-/// Returns the number of recorded frames that are averaged in output frame `index`.
 int frames_of_mean(const Preparation& preparation, int recorded, int index) {
   return std::min(preparation.group(), recorded - index * preparation.group());
 }
@@ -58,7 +56,6 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
   std::vector<Band> needed;
   const std::optional<TimeFilterOptions>& time_filter = preparation.steps.time_filter;
   if (time_filter && !bands.empty()) {
-    // Whole frames: all up to the last, including look-ahead.
     const int last =
         std::min(preparation.frames_of(recorded), bands.back().frame + 1 + time_filter->look_ahead);
     needed = bands_of(0, last, bands.front().rows, bands.front().rows);
@@ -109,7 +106,6 @@ PreparedFrames::PreparedFrames(Input input, const Preparation& preparation,
   if (!preparation.stray_kernel.empty()) stray_light_.emplace(preparation.stray_kernel);
 }
 
-/// Reads the next band unchanged.
 std::optional<RawView> PreparedFrames::read() {
   std::optional<RawView> raw = input_();
   if (raw && stray_light_) {
@@ -124,7 +120,6 @@ std::optional<RawView> PreparedFrames::read() {
   return raw;
 }
 
-/// Merges the next frames of all exposures.
 std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
   const std::size_t frames = preparation_.hdr.size();
   exposed_.resize(frames);
@@ -149,8 +144,7 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
   return merged_.view();
 }
 
-/// Returns the numbers of window `index`, which must follow the window of the last call; none after
-/// the last.
+/// Returns none after the last. `index` must follow the last call.
 std::optional<RawView> PreparedFrames::window(int index) {
   const int exposures = preparation_.sliding;
   int missing = window_ ? 1 : exposures + index % exposures;
@@ -165,8 +159,7 @@ std::optional<RawView> PreparedFrames::window(int index) {
   return window_->view();
 }
 
-/// Reads and submits the bands of frame `frame`. @return whether a frame is ready; none after the
-/// last
+/// Returns whether a frame is ready; none after the last.
 std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& progress) {
   if (!preparation_.hdr.empty()) {
     const std::optional<RawView> merged = bracketed(progress);
@@ -189,8 +182,7 @@ std::optional<bool> PreparedFrames::submit_group(int frame, const Progress& prog
   return frames > 0 ? std::optional(is_ready) : std::nullopt;
 }
 
-/// Submits frames until the temporal filter returns frame `frame`: it may need later frames, and
-/// earlier ones that are not decoded.
+/// The temporal filter may need later frames, and earlier ones that are not decoded.
 bool PreparedFrames::next_in_time(int frame, const Progress& progress) {
   const int ahead = preparation_.steps.time_filter->look_ahead;
   const int coming = std::min(ahead, std::max(recorded_ - 1 - frame, 0)) + frame + 1 - frames_read_;

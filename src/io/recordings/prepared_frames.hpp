@@ -17,7 +17,7 @@
 
 namespace tofsmith {
 
-/// Steps before and after the FramePipeline for recorded frames.
+/// Steps before and after the FramePipeline.
 struct Preparation {
   FrameSteps steps;
   bool find_mixed = false;    ///< after decoding, in whole frames
@@ -26,38 +26,34 @@ struct Preparation {
   std::vector<double> hdr;    ///< exposures of frames that are merged; empty: none
   int sliding = 0;            ///< exposures of a sliding window; 0: whole frames are decoded
 
-  /// With sliding windows, the input returns each frame once per exposure, complete up to that
-  /// exposure.
+  /// With sliding windows, the input returns each frame once per exposure, complete up to it.
   bool exposures_arrive = false;
 
   bool needs_frames() const {
     return steps.time_filter || steps.filter || find_mixed || undistort || !stray_kernel.empty() ||
            sliding > 0;
   }
-  /// Returns the number of decoded frames for `recorded` frames.
   int frames_of(int recorded) const {
     return sliding > 0 ? windows_of(recorded, sliding) : (recorded + group() - 1) / group();
   }
-  /// Returns the first recorded frame from which frame `index` is decoded.
   int first_recorded(int index) const { return sliding > 0 ? index / sliding : index * group(); }
-  /// Number of frames that are submitted to the pipeline for `recorded` frames.
+  /// Frames that are submitted to the pipeline for `recorded` frames.
   int submitted_of(int recorded) const {
     return hdr.empty() && sliding == 0 ? recorded : frames_of(recorded);
   }
-  /// Number of pipelines. A time filter needs one for each group of windows that share no exposure.
+  /// A time filter needs one pipeline for each group of windows that share no exposure.
   int pipelines() const { return sliding > 0 && steps.time_filter ? sliding : 1; }
-  /// Returns the number of recorded frames per submitted frame.
+  /// Recorded frames per submitted frame.
   int group() const { return hdr.empty() ? steps.average : static_cast<int>(hdr.size()); }
-  /// Memory in addition to the rows that are read and to the pipeline.
+  /// Memory in addition to rows and pipeline.
   FrameMemory memory(int height, int width, int measurements) const;
 };
 
-/// Creates the pipelines of a preparation.
 std::vector<std::unique_ptr<FramePipeline>> prepare_pipelines(const FrameBackend& backend,
                                                               const Preparation& preparation,
                                                               int height, int width);
 
-/// Returns the bands to read for the requested frames of a recording with `recorded` frames.
+/// Bands to read for the requested frames.
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands);
 
@@ -65,19 +61,18 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
 /// with exposures merged.
 class PreparedFrames {
  public:
-  /// Returns the raw numbers of the next band, valid until the next call; none after the last.
+  /// Returns the next band, valid until the next call; none after the last.
   using Input = std::function<std::optional<RawView>()>;
 
-  /// @param input     returns bands_to_read(); whole frames if there is a filter. With a temporal
-  ///                  filter, also all frames before the first and the look-ahead after the last
-  /// @param pipelines  from prepare_pipelines(), used in turn; must outlive this object
-  /// @param recorded   number of recorded frames; for a stream the largest int
+  /// @param input  returns bands_to_read(); whole frames if there is a filter, with a temporal
+  ///   filter also all frames before the first and the look-ahead after the last
+  /// @param pipelines  used in turn; must outlive this object
+  /// @param recorded  number of recorded frames; for a stream the largest int
   PreparedFrames(Input input, const Preparation& preparation,
                  const std::vector<std::unique_ptr<FramePipeline>>& pipelines, int recorded);
 
-  /// Pipeline of the band that is ready.
   FramePipeline& pipeline() const { return *pipelines_[current_]; }
-  /// Approximate time of next() and of filtering, relative to decoding without filters.
+  /// Approximate time, relative to decoding without filters.
   double effort() const {
     const auto& time_filter = preparation_.steps.time_filter;
     const int comparisons = time_filter ? 1 + time_filter->look_ahead : 0;
@@ -112,7 +107,7 @@ class PreparedFrames {
   bool has_ended_ = false;
   std::optional<SlidingWindow> window_;
   std::optional<RawView> newest_;  // frame whose exposures the window uses
-  int next_exposure_ = 0;          // of the newest frame
+  int next_exposure_ = 0;
 };
 
 }  // namespace tofsmith

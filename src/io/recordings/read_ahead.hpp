@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Rows first_row to first_row + rows - 1 of a frame.
+/// Rows first_row to first_row + rows - 1.
 struct Band {
   int frame = 0;
   int first_row = 0;
@@ -22,8 +22,7 @@ struct Band {
 /// Returns bands of at most `rows` rows that cover the frames first to last - 1 from top to bottom.
 std::vector<Band> bands_of(int first, int last, int height, int rows);
 
-/// Returns the bands of a recording one after another, and reads the next one in the background.
-/// Needs memory for two bands.
+/// Reads the next band in the background. Needs memory for two bands.
 class ReadAhead {
  public:
   /// @param reader  must outlive this object
@@ -32,7 +31,7 @@ class ReadAhead {
   ReadAhead& operator=(const ReadAhead&) = delete;
 
   const std::vector<Band>& bands() const { return bands_; }
-  /// Returns the raw numbers of the next band, valid until the next call; none after the last.
+  /// Returns the next band, valid until the next call; none after the last.
   /// @throws IoError as RawFramesReader::read_rows()
   std::optional<RawView> next();
 
@@ -41,7 +40,7 @@ class ReadAhead {
 
   const RawFramesReader& reader_;
   std::vector<Band> bands_;
-  std::size_t started_ = 0;  // number of bands whose reading has started
+  std::size_t started_ = 0;
   std::array<std::vector<std::byte>, 2> buffers_;
   std::future<RawView> coming_;  // last member: destroyed before the buffers
 };

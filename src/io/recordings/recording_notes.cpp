@@ -13,7 +13,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the most likely cause of pixels without depth.
 std::string_view likely_cause(PixelStatus status) {
   switch (status) {
     case PixelStatus::invalid:

@@ -16,13 +16,13 @@ std::optional<std::string> electrons_note(const RawFramesReader& reader,
 /// constant.
 std::optional<std::string> repeated_offset_note(const DecodingTable& table,
                                                 const Image<float>& offset_m);
-/// Note if no pixel of any frame has a depth: number of pixels per status, and what to check.
+/// Note if no pixel of any frame has a depth.
 std::optional<std::string> no_depth_note(const StatusCounts& statuses);
-/// Warning if more than 10 % of the pixels of all frames are inconsistent, with likely causes.
+/// Warning if more than 10 % of the pixels of all frames are inconsistent.
 std::optional<std::string> inconsistent_note(const StatusCounts& statuses);
-/// Warning if the noise of a filtered frame is more than 1.5 times the prediction of the camera, or
-/// less than 1 / 1.5 of it.
-/// @param ratio     measured divided by predicted standard deviation
+/// Warning if the noise of a filtered frame differs from the prediction of the camera by a factor
+/// above 1.5.
+/// @param ratio  measured divided by predicted standard deviation
 /// @param averaged  DecodeRequest::averaged
 std::optional<std::string> noise_note(double ratio, int frame, double averaged);
 

@@ -13,7 +13,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Copies `count` measurements of every pixel, starting with `first`.
 template <typename Number>
 void copy_measurements(const RawView& frame, int first, int count, std::vector<Number>& numbers) {
   const std::int64_t measurements = frame.measurements;

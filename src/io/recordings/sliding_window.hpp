@@ -16,13 +16,12 @@ constexpr int windows_of(int frames, int exposures) { return (frames - 1) * expo
 /// The latest recording of each exposure of a code, in the order of the code.
 class SlidingWindow {
  public:
-  /// @param exposures  number per frame
   explicit SlidingWindow(int exposures) : exposures_(exposures) {}
 
-  /// Replaces one exposure of the window by the same exposure of a frame. All frames must have the
-  /// same size and type. All exposures must have been taken before view().
+  /// Replaces one exposure. All frames must have the same size and type. All exposures must have
+  /// been taken before view().
   void take(const RawView& frame, int exposure);
-  /// Returns the numbers of the window, valid until the next take().
+  /// Valid until the next take().
   RawView view() const;
 
  private:

@@ -11,14 +11,14 @@
 
 namespace tofsmith {
 
-/// Resamples images of a lens with distortion to the ideal pinhole. Each pixel has the values of
-/// the source pixel nearest to its ray, so that depths are not mixed.
+/// Resamples images to the ideal pinhole. Each pixel has the values of the source pixel nearest to
+/// its ray, so that depths are not mixed.
 class Undistortion {
  public:
   /// @throws std::invalid_argument as PinholeView::validate()
   explicit Undistortion(const PinholeView& view);
 
-  /// Returns the memory, including one plane during resampling [bytes].
+  /// Memory, including one plane during resampling [bytes].
   std::size_t bytes() const;
 
   /// @param none  value of pixels that the image does not cover
@@ -28,7 +28,7 @@ class Undistortion {
     for (std::size_t i = 0; i < source_.size(); ++i)
       plane.pixels[i] = source_[i] < 0 ? none : from[static_cast<std::size_t>(source_[i])];
   }
-  /// Converts radial distances after apply(), so that depth along the axis does not change.
+  /// Converts radial distances after apply(), so that z does not change.
   void turn_radial(Image<float>& depth_m) const;
 
  private:

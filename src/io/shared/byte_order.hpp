@@ -12,10 +12,8 @@ namespace tofsmith {
 
 inline constexpr bool host_is_little_endian = std::endian::native == std::endian::little;
 
-/// Reverses the bytes of each item of `item_size` bytes.
 void swap_byte_order(std::span<std::byte> bytes, std::size_t item_size);
 
-/// Loads a little-endian value from unaligned memory.
 template <typename Value>
 Value load_little_endian(const std::byte* from) {
   std::byte raw[sizeof(Value)];
@@ -26,7 +24,6 @@ Value load_little_endian(const std::byte* from) {
   return value;
 }
 
-/// Stores a little-endian value to unaligned memory.
 template <typename Value>
 void store_little_endian(Value value, std::byte* to) {
   std::memcpy(to, &value, sizeof(Value));

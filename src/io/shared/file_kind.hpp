@@ -9,10 +9,10 @@
 
 namespace tofsmith {
 
-/// Returns the extension in lower case, with its dot; "" if there is none.
+/// Includes the dot; "" if there is no extension.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Returns the extension in lower case if it is one of `known`.
+/// Returns the lower-case extension.
 /// @throws IoError naming the file and listing `known`
 std::string known_extension(const std::filesystem::path& path,
                             std::initializer_list<std::string_view> known);

@@ -16,12 +16,12 @@ namespace tofsmith {
 
 nlohmann::ordered_json estimate_json(const Estimate& estimate);
 
-/// Adds a field to an object. An estimate "x_m" is written as "x_m" and its standard error
-/// "x_se_m". Absent optional values are omitted.
+/// An estimate "x_m" is written as "x_m" and its standard error "x_se_m". Absent optional values
+/// are omitted.
 template <typename Value>
 void write_field(nlohmann::ordered_json& object, const Field<Value>& field);
 
-/// Writes all fields except those with one of the marks `but`.
+/// Omits fields with one of the marks `but`.
 template <typename Struct>
 nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(FieldMark::apart)) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
@@ -31,7 +31,6 @@ nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(Fie
   return object;
 }
 
-/// Returns the numbers of a struct as a list.
 template <typename Struct>
 nlohmann::ordered_json row_json(const Struct& its) {
   nlohmann::ordered_json row = nlohmann::ordered_json::array();
@@ -40,7 +39,7 @@ nlohmann::ordered_json row_json(const Struct& its) {
 }
 
 /// Inverse of fields_json(), without FieldMark::apart fields.
-/// @throws IoError naming file and member if it is missing or outside the range of the field
+/// @throws IoError naming file and member if it is missing or out of range
 template <typename Struct>
 Struct fields_from_json(const JsonReader& json);
 template <typename Struct>
@@ -48,7 +47,7 @@ Struct row_from_json(const JsonReader& json);
 
 namespace detail {
 
-/// Reads a number in a range; null is infinity if the range includes infinity.
+/// Null is infinity if the range includes infinity.
 double read_number(const JsonReader& json, const Range& range);
 int read_integer(const JsonReader& json, const Range& range);
 void read_estimate(const JsonReader& object, const Field<Estimate>& field);
@@ -173,7 +172,7 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
   } else if constexpr (std::is_enum_v<Type>) {
     object[name] = name_of(field.value);
   } else if constexpr (std::is_same_v<Type, double>) {
-    // A bound of 0 means that there is no bound.
+    // 0 means that there is no bound.
     if (field.is(FieldMark::bound) && field.is(FieldMark::may_be_null) && field.value == 0.0)
       object[name] = nullptr;
     else

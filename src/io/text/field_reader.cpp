@@ -25,8 +25,7 @@ void FieldReader::visit(const Key& key, const Value& value) {
                  [&](const InputPath& input) {
                    table().value(key.name, input.path);
                    if (input.path.empty()) return;
-                   // Absolute, so that the struct can be written to another directory and read
-                   // back.
+                   // Absolute, so that the struct can be read back from another directory.
                    const auto path =
                        std::filesystem::absolute(table().resolve(key.name, input.path));
                    input.path = path.lexically_normal().string();
@@ -41,7 +40,7 @@ bool FieldReader::wants(const Key& key, bool /*is_there*/) { return table().cont
 
 bool FieldReader::enter_part(const Key& /*key*/, std::span<const std::string> names,
                              bool /*is_there*/) {
-  // Checks all names, so that each becomes known as a suggestion for misspelled keys.
+  // Check all names, so that each becomes known as a suggestion for misspelled keys.
   return std::count_if(names.begin(), names.end(),
                        [&](const auto& name) { return table().contains(name); }) > 0;
 }

@@ -12,15 +12,13 @@
 
 namespace tofsmith {
 
-/// Reads described structs from a TOML document. Values of missing keys are unchanged. Errors are
-/// as in TableReader.
+/// Missing keys leave values unchanged. Errors are as in TableReader.
 class FieldReader : public FieldVisitor {
  public:
   /// @param table  must outlive the reader, and must be finished by the caller
   explicit FieldReader(TableReader& table) : outer_(table) {}
 
-  /// Absolute paths of files named in the document, by the full name of the key, such as
-  /// "lens.rays".
+  /// Absolute paths by the full name of the key, such as "lens.rays".
   const std::map<std::string, std::filesystem::path>& files() const { return files_; }
 
  protected:
@@ -35,7 +33,7 @@ class FieldReader : public FieldVisitor {
   TableReader& table() { return inner_.empty() ? outer_ : inner_.back(); }
 
   TableReader& outer_;
-  std::list<TableReader> inner_;  ///< tables that were entered, the current one last
+  std::list<TableReader> inner_;  ///< entered tables, the current one last
   std::map<std::string, std::filesystem::path> files_;
 };
 

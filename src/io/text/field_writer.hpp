@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Writes described structs as a JSON object, in the order of the description. Absent values and
-/// empty tables are omitted. NaN and infinity in lists of raw numbers are written as words.
+/// Writes the fields in order. Absent values and empty tables are omitted. NaN and infinity in
+/// lists of raw numbers are written as words.
 class FieldWriter : public FieldVisitor {
  public:
   const nlohmann::ordered_json& document() const { return tables_.front(); }

@@ -15,25 +15,24 @@ namespace tofsmith {
 /// ...; expected ...".
 class JsonReader {
  public:
-  /// Reads a document. Both arguments must outlive the reader. @param file  name in error messages
+  /// Both arguments must outlive the reader. @param file  name in error messages
   JsonReader(const nlohmann::json& document, std::string_view file);
 
   double number() const;
-  /// Returns a number in [low, high], with a tolerance.
+  /// Requires a number in [low, high].
   double number(double low, double high, double tolerance) const;
   bool is_null() const { return value_->is_null(); }
   bool boolean() const;
   int integer(int low, int high) const;
   std::uint64_t unsigned_integer() const;
   std::string text() const;
-  /// Returns the value as a JSON document.
   std::string dump() const { return value_->dump(); }
 
-  /// Returns the elements of a list. @param count  required number; `because` explains it in errors
+  /// @param count  required number; `because` explains it in errors
   std::vector<JsonReader> elements() const;
   std::vector<JsonReader> elements(std::size_t count, std::string_view because) const;
 
-  /// Rejects other members of an object, with the most similar known one.
+  /// Rejects other members; suggests the most similar known one.
   void only(std::initializer_list<std::string_view> members) const;
   JsonReader member(std::string_view name) const;
   std::optional<JsonReader> optional_member(std::string_view name) const;

@@ -22,7 +22,7 @@
 namespace tofsmith {
 namespace {
 
-/// JSON's quoting of valid text is also valid in TOML.
+/// JSON's quoting is valid in TOML.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -55,7 +55,7 @@ std::string one_line(const toml::node& node) {
   return out.str();
 }
 
-/// Describes a setting by its beginning if it is long.
+/// Describes long settings by their beginning.
 std::string describe_setting(std::string_view setting) {
   constexpr std::size_t longest = 160;
   if (setting.size() <= longest) return fmt::format("setting '{}'", setting);
@@ -64,8 +64,7 @@ std::string describe_setting(std::string_view setting) {
   return fmt::format("setting '{}..'", setting.substr(0, end));
 }
 
-/// Overrides the keys of `base` by the keys of `change`. Nodes are moved, because copies lose their
-/// position.
+/// Keys of `change` override. Nodes are moved, because copies lose their position.
 void lay_over(toml::table& base, toml::table&& change) {
   for (auto&& [key, node] : change) {
     toml::table* inner = node.as_table();
@@ -74,13 +73,12 @@ void lay_over(toml::table& base, toml::table&& change) {
       lay_over(*below, std::move(*inner));
       continue;
     }
-    base.erase(key.str());  // also erases the key, which stores the old position
+    base.erase(key.str());  // also erases the key, with its old position
     node.visit([&, k = key](auto& value) { base.insert_or_assign(k, std::move(value)); });
   }
 }
 
-/// Rejects keys with very many parts. Each part of a dotted key nests one table deeper, and tables
-/// are traversed recursively.
+/// Each part of a dotted key nests one table deeper, and tables are traversed recursively.
 void refuse_long_keys(std::string_view text, std::string_view source_name) {
   constexpr int max_parts = 32;
   int line = 1, parts = 1;
@@ -120,7 +118,7 @@ toml::table parse_setting(const std::string& setting) {
   }
 }
 
-/// Returns the key of a setting that ends with the equals sign, "sensor.full_well_e=".
+/// Returns the key of "sensor.full_well_e=".
 std::optional<std::string> key_left_out(std::string_view setting) {
   const std::size_t end = setting.find_last_not_of(" \t");
   if (end == std::string_view::npos || setting[end] != '=') return std::nullopt;
@@ -131,7 +129,6 @@ std::optional<std::string> key_left_out(std::string_view setting) {
   return std::string(before.substr(first, last - first + 1));
 }
 
-/// Removes a dotted key from the tables that contain it.
 void leave_out(toml::table& root, std::string_view key, std::string_view setting) {
   toml::table* table = &root;
   for (std::string_view rest = key;;) {

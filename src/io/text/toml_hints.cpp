@@ -31,7 +31,7 @@ bool is_binary(std::string_view text) {
   });
 }
 
-/// Returns true for words and file names, but not for numbers.
+/// Accepts words and file names, but not numbers.
 bool is_word(std::string_view text) {
   return !text.empty() && !is_digit(text.front()) &&
          std::all_of(text.begin(), text.end(), [](char c) {
@@ -68,7 +68,7 @@ std::optional<std::string> with_quotes(const std::string& setting) {
   if (begin == std::string::npos) return std::nullopt;
   const std::string value = setting.substr(begin);
   std::string_view word = value;
-  take_number(word);  // 20 of "20 MHz"
+  take_number(word);
   if (!is_word(trimmed(word))) return std::nullopt;
   return fmt::format("{}\"{}\"", setting.substr(0, begin), value);
 }

@@ -9,16 +9,15 @@
 
 namespace tofsmith {
 
-/// Returns the likely cause of a syntax error in a line of TOML, as "; ...": a binary file, a
-/// decimal comma, or a unit or a word without quotes. "" if the cause is unknown.
+/// Returns the likely cause of a syntax error, as "; ...": a binary file, a decimal comma, or a
+/// unit or a word without quotes; "" if unknown.
 std::string toml_hint(std::string_view text, std::size_t line);
 
-/// Returns `key = word` as `key = "word"`; none if the value is not a single word or number with a
+/// Returns `key = "word"` for `key = word`; none if the value is not a single word or number with a
 /// unit.
 std::optional<std::string> with_quotes(const std::string& setting);
 
-/// Returns the suggestion of a similar known key for an unknown one, with its unit if the two keys
-/// have different units.
+/// Suggests a known key, with its unit if the two keys have different units.
 std::string key_suggestion(std::string_view unknown, std::string_view near);
 
 }  // namespace tofsmith

@@ -15,39 +15,37 @@ namespace tofsmith {
 Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
                        std::optional<TapOrder> order);
 
-/// Returns the number of exposures in the columns.
 /// @throws IoError if the number of columns is not a multiple of the taps, or the order is required
-///         but missing
+///   but missing
 int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file);
 
-/// Returns true if the first row of a text names columns of waveforms, as in the output of
-/// `tofsmith codes -o NAME.csv`.
+/// Recognizes the output of `tofsmith codes -o NAME.csv` by its column names.
 bool holds_code_columns(const std::filesystem::path& path);
 
-/// Reads a code from such a text: one row per time sample, columns modulation_1 ... modulation_E
-/// and demodulation_1 ... demodulation_K, with the taps of an exposure adjacent. Columns with two
-/// levels become binary, as in parse_code_npz().
+/// Reads one row per time sample: columns modulation_1 ... modulation_E and demodulation_1 ...
+/// demodulation_K, with the taps of an exposure adjacent. Columns with two levels become binary, as
+/// in parse_code_npz().
 /// @throws IoError naming the file for other names or numbers of columns and for invalid values
 CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_signed);
 
-/// Minimum number of samples per period, as for cameras.
+/// Per period, as for cameras.
 inline constexpr Eigen::Index min_samples = 8;
 
-/// Reads the matrix of correlation functions without transposing it, from text (number_table.hpp),
-/// a NumPy array (.npy), or the array `corrfs` of an archive (.npz).
+/// Reads correlation functions without transposing them, from text (number_table.hpp), .npy, or the
+/// array `corrfs` of an .npz.
 /// @param notes  receives notes on the interpretation of a text
 /// @throws IoError naming the position of a value that is not finite, or for other shapes
 Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path,
                                       std::vector<std::string>& notes);
 
-/// Converts an array of shape (rows, columns) to a matrix.
+/// Converts an array of shape (rows, columns).
 /// @param place  name in error messages, such as "code.npz: modfs"
 /// @throws IoError for other numbers of axes, empty axes, or values that are not finite
 Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place);
-/// Converts an array with one axis (a single column) or two.
+/// Accepts one axis (a single column) or two.
 Eigen::MatrixXd columns_of(NpyArray array, std::string_view place);
 
-/// Converts a matrix to a float64 array of shape (rows, columns).
+/// Returns a float64 array of shape (rows, columns).
 NpyArray array_of(const Eigen::MatrixXd& matrix);
 
 }  // namespace tofsmith

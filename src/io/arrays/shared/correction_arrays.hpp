@@ -11,13 +11,13 @@
 
 namespace tofsmith {
 
-/// Prefix of the arrays of a depth correction: correction_height, correction_known_field_m.
+/// Prefix of arrays such as correction_height.
 inline constexpr std::string_view correction_prefix = "correction_";
 
 /// Adds one array per field of the correction.
 void add_correction(const DepthCorrection& correction, NpzArrays& arrays);
 
-/// Reads the depth correction of an archive; none if it has none.
+/// Returns none if the archive has no depth correction.
 /// @throws IoError naming file and array if it is missing, invalid or of another shape
 std::optional<DepthCorrection> correction_of(const NpzReader& archive, const std::string& file);
 

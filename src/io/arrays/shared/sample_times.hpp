@@ -12,28 +12,26 @@
 
 namespace tofsmith {
 
-/// Properties of a record that its table may not contain.
+/// Properties that a table may not contain.
 struct SampleTimeOptions {
   std::optional<double> time_step_s;  ///< if set, times in the table are ignored
-  std::optional<double> time_unit_s;  ///< unit of a column of times whose name has none
+  std::optional<double> time_unit_s;  ///< of a column of times without unit
   std::string column;                 ///< name or number of the column of values
 };
 
-/// A recorded signal.
 struct TimedSamples {
   Eigen::VectorXd values;
   Eigen::VectorXd time_s;  ///< one per value; empty if the table has no times
   std::vector<std::string> notes;
 };
 
-/// Finds values and times in a table: a column of times, or values only or next to a sample counter
-/// with the sampling interval in the header.
-/// @throws IoError if the column of values is ambiguous, or the sampling interval of a counter
-///         missing
+/// Finds values and times in a table: a column of times, or values with the sampling interval in
+/// the header.
+/// @throws IoError if the column of values is ambiguous, or the interval of a counter missing
 TimedSamples timed_samples_of(const NumberTable& table, const std::string& file,
                               const SampleTimeOptions& options);
 
-/// Returns true if a column has no unit of time and increases by 1 from row to row.
+/// Returns true if a column has no unit of time and increases by 1 per row.
 bool counts_samples(const NumberTable& table, Eigen::Index column);
 
 /// Returns true if the name of a column is "time" or has a unit of time.

@@ -9,10 +9,10 @@
 
 namespace tofsmith {
 
-/// Returns a lens with the keys of a camera file.
+/// Uses the keys of a camera file.
 nlohmann::ordered_json lens_document(const Lens& lens);
 
-/// Inverse of lens_document(), without checking values. @throws IoError naming file and member
+/// Does not check values. @throws IoError naming file and member
 Lens lens_from_json(const JsonReader& lens);
 
 }  // namespace tofsmith

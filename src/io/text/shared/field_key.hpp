@@ -19,8 +19,7 @@ inline void append_key(std::string& key, const Waveform& waveform) {
     fmt::format_to(std::back_inserter(key), ";{}", sample);
 }
 
-/// Appends a value as unambiguous text: all fields of a struct by name, except
-/// FieldMark::from_above. Finished work is looked up by the result.
+/// Appends all fields by name, except FieldMark::from_above, as a key of finished work.
 template <typename Value>
 void append_key(std::string& key, const Value& value) {
   if constexpr (HasFields<const Value>) {

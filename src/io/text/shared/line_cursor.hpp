@@ -10,18 +10,18 @@
 
 namespace tofsmith {
 
-/// Reads the lines of a text with any line endings. Errors contain file and line.
+/// Accepts any line endings. Errors contain file and line.
 class LineCursor {
  public:
   LineCursor(std::string_view text, std::string_view file) : text_(text), file_(file) {}
 
   bool at_end() const { return position_ >= text_.size(); }
-  /// Returns the next line without its end and surrounding blanks.
+  /// Returns the next line without surrounding blanks.
   /// @throws IoError at the end of the text
   std::string_view next();
-  /// Rejects anything but blank lines at the current position.
+  /// Rejects anything but blank lines.
   void expect_end();
-  /// Returns the offset of the first line that was not read.
+  /// Offset of the first line that was not read.
   std::size_t position() const { return position_; }
 
   /// @throws IoError "file:line: problem" for the line last returned by next()
@@ -34,20 +34,17 @@ class LineCursor {
   int line_ = 0;
 };
 
-/// A line of a text, without its end.
 struct TextLine {
   std::size_t number;  ///< counted from 1
   std::string_view text;
 };
 
-/// Returns the lines of a text except empty ones and comments, which begin with '#'. Skips a byte
-/// order mark.
+/// Skips empty lines, comments, which begin with '#', and a byte order mark.
 std::vector<TextLine> content_lines(std::string_view text);
 
-/// Returns the text without surrounding blanks.
 std::string_view trimmed(std::string_view text);
 
-/// Parses a text as a finite number, ignoring surrounding blanks.
+/// Ignores surrounding blanks.
 std::optional<double> finite_number_in(std::string_view text);
 
 }  // namespace tofsmith

@@ -21,13 +21,12 @@
 
 namespace tofsmith {
 
-/// Returns the value of a TOML node.
 SettingValue toml_value_of(const toml::node& node, std::string place);
 
-/// Returns a number in TOML syntax; integers without a fraction.
+/// Integers are written without a fraction.
 SettingValue toml_value_of(double number, std::string place);
 
-/// Returns the content of a line: a number, or else a string.
+/// Returns a number, or else a string.
 SettingValue toml_value_of_line(const std::string& line, std::string place);
 
 /// A TOML file with settings applied, which stores the position of each value.
@@ -37,9 +36,8 @@ class TomlDocument {
   /// @throws IoError "file:line:column: ..." at the first syntax error
   TomlDocument(std::string_view text, std::string_view source_name);
 
-  /// Applies one setting `key.key = value`. A word that is not a TOML value is a string, so that
-  /// shells need no second pair of quotes. A table in braces replaces the existing one; otherwise
-  /// other keys of a table are kept. `key.key =` without a value removes the key.
+  /// Applies one setting `key.key = value`. A word that is not a TOML value is a string. A table in
+  /// braces replaces the existing one; `key.key =` without a value removes the key.
   /// @throws IoError for invalid syntax, or if there is no key to remove
   void apply(const std::string& setting);
 
@@ -47,8 +45,7 @@ class TomlDocument {
   const std::string& source_name() const { return source_name_; }
   /// Returns "file:line:column", or "setting 'light.peak_factor=5'".
   std::string place_of(const toml::source_region& region) const;
-  /// Returns the base of relative paths in a value: the file's directory, or the current directory
-  /// for a setting.
+  /// Base of relative paths: the file's directory, or the current directory for a setting.
   std::filesystem::path directory_of(const toml::source_region& region) const;
 
  private:
@@ -58,58 +55,53 @@ class TomlDocument {
   toml::table root_;
 };
 
-/// Reads the fields of one table of a TOML document. Missing fields keep their values. finish()
-/// rejects keys that were not read.
+/// Reads the fields of one table. Missing fields keep their values. finish() rejects keys that were
+/// not read.
 ///
 /// Every member throws IoError with file:line:column, the key, the value found and the value
 /// expected.
 class TableReader {
  public:
-  /// Positions of all values read, by full key such as "light.peak_factor".
+  /// Positions by full key, such as "light.peak_factor".
   using Places = std::map<std::string, std::string>;
 
-  /// Reads the root table. Both arguments must outlive the reader.
+  /// Both arguments must outlive the reader.
   TableReader(const TomlDocument& document, Places& places);
 
   void value(std::string_view key, bool& target);
   void value(std::string_view key, int& target);
   void value(std::string_view key, double& target);
   void value(std::string_view key, std::string& target);
-  /// A list of numbers.
   void value(std::string_view key, std::vector<double>& target);
-  /// A list of integers.
   void value(std::string_view key, std::vector<int>& target);
-  /// A list of texts.
   void value(std::string_view key, std::vector<std::string>& target);
-  /// An integer >= 0 of at most 63 bits.
+  /// Requires an integer >= 0 of at most 63 bits.
   void value(std::string_view key, std::uint64_t& target);
-  /// A list of values of any kind.
   void value(std::string_view key, std::vector<SettingValue>& target);
-  /// A list of exactly three numbers.
+  /// Requires exactly three numbers.
   void value(std::string_view key, Eigen::Vector3d& target);
-  /// A list of exactly two numbers.
+  /// Requires exactly two numbers.
   void value(std::string_view key, std::array<double, 2>& target);
   template <typename Value>
   void value(std::string_view key, std::optional<Value>& target) {
     if (contains(key)) value(key, target.emplace());
   }
 
-  /// Returns the index of the word in a fixed set; none if the key is missing.
+  /// Returns the index of the word; none if the key is missing.
   std::optional<std::size_t> word(std::string_view key, std::span<const std::string_view> words);
   template <typename Enum, std::size_t Count>
   void choice(std::string_view key, Enum& target, const EnumWords<Enum, Count>& words) {
     if (const auto index = word(key, words.all())) target = static_cast<Enum>(*index);
   }
 
-  /// Reads raw numbers, which may be NaN or infinite: nan, inf, -inf, or these words in quotes.
+  /// Accepts NaN and infinity: nan, inf, -inf, or these words in quotes.
   void raw_numbers(std::string_view key, std::vector<double>& target);
 
-  /// Reads a number, or a list of numbers.
   void number_or_list(std::string_view key, double& number, std::vector<double>& list);
-  /// Reads a number, or `word`; then `is_word` is true.
+  /// `is_word` becomes true for `word`.
   void number_or_word(std::string_view key, double& number, std::string_view word, bool& is_word);
 
-  /// Reads a nested table if it exists: `fields(TableReader&, Value&)`.
+  /// Calls `fields(TableReader&, Value&)` if the table exists.
   template <typename Value, typename Fields>
   void table(std::string_view key, Value& target, Fields&& fields) {
     if (auto inner = enter(key)) {
@@ -122,10 +114,8 @@ class TableReader {
     if (contains(key)) table(key, target.emplace(), fields);
   }
 
-  /// Returns the nested table, if it exists.
   std::optional<TableReader> enter(std::string_view key);
-  /// Reads every table of a list [[key]]: `fields(TableReader&)`. They are named key[0], key[1],
-  /// ...
+  /// Calls `fields(TableReader&)` for every table of a list [[key]], named key[0], key[1], ...
   template <typename Fields>
   void tables(std::string_view key, Fields&& fields) {
     for (TableReader& inner : enter_each(key)) {
@@ -134,7 +124,7 @@ class TableReader {
     }
   }
 
-  /// Requires the next field. @param example  a value for the error message
+  /// @param example  a value for the error message
   TableReader& required(std::string_view key, std::string_view example);
   /// As required(), but finish() throws, after it has looked for unknown keys.
   void required_at_end(std::string_view key, std::string_view example);
@@ -143,13 +133,13 @@ class TableReader {
   void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
 
   bool contains(std::string_view key);
-  /// Returns the key with its tables, such as "light.peak_factor".
+  /// Includes the tables: "light.peak_factor".
   std::string full(std::string_view key) const { return prefix_ + std::string(key); }
-  /// Returns the position of the value of `key`, or of the table if the key is missing.
+  /// Position of the value, or of the table if the key is missing.
   std::string place_of(std::string_view key) const;
-  /// Returns the path in `key`, relative to the file that contains it.
+  /// Resolves a path relative to the file that contains the key.
   std::filesystem::path resolve(std::string_view key, const std::string& path) const;
-  /// @throws IoError about the value of `key`, or about the table if the key is missing
+  /// @throws IoError at place_of(key)
   [[noreturn]] void fail(std::string_view key, std::string_view problem) const;
   /// Rejects keys that were not read, with the most similar known one; then reports a missing key.
   void finish() const;
