@@ -18,7 +18,6 @@ namespace {
 
 constexpr int curve_points = 240;  // per plotted period
 
-/// Returns the steps of a waveform, independent of a grid.
 Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
                const LineStyle& style) {
   const StepFunction steps = waveform.steps();
@@ -30,16 +29,15 @@ Series stepped(const std::string& name, const Waveform& waveform, double period_
   return series;
 }
 
-/// Returns `points` equidistant values in [0, end), e.g. the x values of a period.
+/// Returns `points` equidistant values in [0, end).
 std::vector<double> axis_values(int points, double end) {
   std::vector<double> values(static_cast<std::size_t>(points));
   for (int j = 0; j < points; ++j) values[static_cast<std::size_t>(j)] = end * j / points;
   return values;
 }
 
-/// Returns a waveform over one period [ns], from its switching times: "as designed" (dotted, only
-/// if a generator changes it), "waveform" as generated (thin if there is an impulse response), and
-/// "after the impulse response".
+/// Returns one period [ns]: "as designed" (dotted, only if a generator changes it), "waveform"
+/// (thin if there is an impulse response) and "after the impulse response".
 std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style) {
@@ -63,14 +61,13 @@ std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
   return series;
 }
 
-/// Converts the drives x of a mixer to weights 2 x - 1.
+/// Converts drives x to weights 2 x - 1.
 std::vector<Series> weight_series(std::vector<Series> drive) {
   for (Series& series : drive)
     for (auto& value : series.y) value = 2 * value - 1;
   return drive;
 }
 
-/// One period of a correlation function versus depth.
 Series correlation_series(std::string name, const Eigen::VectorXd& values, double range_m,
                           const LineStyle& style) {
   return {.name = std::move(name),
@@ -80,7 +77,6 @@ Series correlation_series(std::string name, const Eigen::VectorXd& values, doubl
           .style = style};
 }
 
-/// Columns of the grid: modulation, demodulation, correlation function.
 std::vector<PanelColumn> waveform_columns(bool is_signed) {
   return {{.title = "Modulation",
            .x = {.label = "time", .unit = "ns"},
@@ -124,7 +120,7 @@ std::string generator_text(const std::optional<Generator>& generator, double fre
                      generator->points_per_period(frequency_hz));
 }
 
-/// Returns true if the second bucket of each exposure is open exactly while the first is not.
+/// Returns true if the second bucket is open exactly while the first is not.
 bool has_complementary_buckets(const CodeSet& code) {
   if (code.taps() != 2 || code.is_rows()) return false;
   const Eigen::MatrixXd gains = code.demodulation_samples();

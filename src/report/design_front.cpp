@@ -19,8 +19,7 @@ namespace {
 
 constexpr double max_outlier_rate = 0.1;
 
-/// Indices of the light levels at which the code has few outliers, or of all levels if there are
-/// none.
+/// Light levels with few outliers, or all levels if there are none.
 std::vector<std::size_t> usable_levels(const DepthErrorReport& error) {
   std::vector<std::size_t> usable, all;
   for (std::size_t i = 0; i < error.points.size(); ++i) {
@@ -30,7 +29,7 @@ std::vector<std::size_t> usable_levels(const DepthErrorReport& error) {
   return usable.empty() ? all : usable;
 }
 
-/// Geometric mean of the depth error over some light levels [mm].
+/// Geometric mean over some light levels [mm].
 double error_mm(const DepthErrorReport& error, const std::vector<std::size_t>& levels,
                 DepthErrorMeasure measure) {
   double sum = 0.0;
@@ -41,7 +40,7 @@ double error_mm(const DepthErrorReport& error, const std::vector<std::size_t>& l
   return 1e3 * std::exp(sum / static_cast<double>(levels.size()));
 }
 
-/// The best code, the best standard code of every family, and sinusoid-k4, by increasing error.
+/// The best code, the best standard code of every family, and sinusoid-k4, by error.
 std::vector<const Candidate*> compared(const DesignResult& result, DepthErrorMeasure measure) {
   std::vector<const Candidate*> codes{&result.winner()};
   std::set<std::string> families;
@@ -110,7 +109,7 @@ std::vector<DepthErrorRow> rows_of(const std::vector<const Candidate*>& codes) {
   return rows;
 }
 
-/// A file of a design directory with a note, in the order of use.
+/// A file of a design directory, listed in the order of use.
 struct KnownFile {
   const char* name;
   const char* note;

@@ -12,15 +12,14 @@
 
 namespace tofsmith {
 
-/// First screen of the report of a design: the best code compared with the standard codes, error
-/// versus light, waveforms, a scene before and after, and the files with commands that use them.
+/// First screen of the report of a design: the best code and standard codes, error versus light,
+/// waveforms, a scene, and the files with commands.
 /// @param files  names in the directory of the report
 Section design_front(const Camera& camera, const DesignResult& result,
                      const std::optional<SceneResult>& scene,
                      const std::vector<std::string>& files);
 
-/// Target correlation functions (N, K) of a candidate, rotated to its origin of depth; empty if it
-/// has no target.
+/// Targets (N, K) of a candidate, rotated to its origin of depth; empty without target.
 Eigen::MatrixXd rotated_target(const Candidate& candidate);
 
 }  // namespace tofsmith

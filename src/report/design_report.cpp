@@ -25,7 +25,7 @@ std::string ratio(const Estimate& error, const Estimate& other) {
   return fmt::format("{:.4f}", error.value / other.value);
 }
 
-/// Errors of the candidates with single and with second returns, by increasing weighted error.
+/// Errors with single and with second returns, by increasing weighted error.
 Section operating_multipath_section(const OperatingMultipath& returns, const DesignResult& result,
                                     DepthErrorKind kind) {
   using Weighed = std::pair<double, const Candidate*>;
@@ -93,7 +93,6 @@ Table residual_table(const DesignResult& result) {
 
 constexpr std::size_t fewest_steps = 4;  // fewer points give no meaningful curve
 
-/// Residuals versus iterations of every designed measurement.
 void add_convergence(const DesignResult& result, Section& section) {
   for (const Candidate& c : result.candidates) {
     ColourAssignment colours;
@@ -121,7 +120,6 @@ void add_convergence(const DesignResult& result, Section& section) {
   }
 }
 
-/// Smallest error of every search versus work.
 void add_search_progress(const DesignResult& result, Section& section) {
   ColourAssignment colours;
   for (const Candidate& c : result.candidates) {
@@ -141,7 +139,6 @@ void add_search_progress(const DesignResult& result, Section& section) {
   }
 }
 
-/// Results of the searches for every measurement and code, with convergence plots.
 Section search_section(const DesignResult& result) {
   Section section{.title = "Designed codes"};
   Table found = residual_table(result);
@@ -156,7 +153,7 @@ Section search_section(const DesignResult& result) {
   return section;
 }
 
-/// Explains why the best code won. A table, because cells show user-defined names verbatim.
+/// A table, because cells show user-defined names verbatim.
 Table explanation(const DesignResult& result, DepthErrorKind kind) {
   std::vector<const char*> questions{"How does it compare?"};
   if (!result.winner().code.is_rows()) questions.push_back("Why this number of exposures?");
@@ -187,7 +184,7 @@ Section candidates_section(const Camera& camera, const DesignResult& result) {
   return depth_error_section(camera, rows, result.best, false);
 }
 
-/// Waveforms of the designed codes except the best, which is on the first screen.
+/// Omits the best code, which is on the first screen.
 Section waveform_section(const Camera& camera, const DesignResult& result) {
   Section section{.title = "Waveforms of the other designed codes"};
   for (const Candidate& c : result.candidates) {

@@ -19,14 +19,13 @@ namespace {
 
 using Bound = double PointDepthError::*;
 
-/// Ratio of the circular error to a bound; NaN where the bound is not finite and positive.
+/// NaN where the bound is not finite and positive.
 double times_bound(const PointDepthError& point, Bound bound) {
   const double bound_m = point.*bound, error_m = point.circular_mde_m.value;
   const bool is_defined = bound_m > 0.0 && std::isfinite(bound_m) && error_m > 0.0;
   return is_defined ? error_m / bound_m : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Geometric mean over the points where the ratio is defined.
 std::string mean_times_bound(const DepthErrorReport& error, Bound bound) {
   double log_sum = 0.0;
   int count = 0;
@@ -39,7 +38,7 @@ std::string mean_times_bound(const DepthErrorReport& error, Bound bound) {
   return count > 0 ? fmt::format("{:.2f}", std::exp(log_sum / count)) : "no bound";
 }
 
-/// At most `most` codes in this order; if there are more, only the best of every family and method.
+/// At most `most` codes in this order; if there are more, the best of every family and method.
 std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
                                        const std::vector<std::size_t>& order, std::size_t most) {
   std::vector<DepthErrorRow> shown;
@@ -129,7 +128,6 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
   return table;
 }
 
-/// Maps of the error of each code over signal and ambient light.
 Figure error_maps(const OperatingRange& range, const std::vector<DepthErrorRow>& codes) {
   CategoryAxis x{.label = "ambient", .unit = "e/s"}, y{.label = "signal", .unit = "e/s"};
   for (const double a : range.ambient_e_per_s) x.ticks.push_back(level_text(a));

@@ -15,10 +15,9 @@ namespace tofsmith {
 struct DepthErrorRow {
   const DepthErrorReport* error = nullptr;
   std::string method;
-  std::optional<Estimate> ratio = {};  ///< error relative to the best code
+  std::optional<Estimate> ratio = {};
 };
 
-/// Tables and maps of depth errors and bounds.
 /// @param best  index of the best code
 /// @param with_curves  include error_by_signal()
 Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,

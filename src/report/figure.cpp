@@ -32,7 +32,7 @@ const char* name_of(Mark mark) {
   return names[static_cast<std::size_t>(mark)];
 }
 
-/// Returns the numbers, or {count, from, to} for many equidistant ones.
+/// Returns {count, from, to} for many equidistant numbers.
 Json places_json(const std::vector<double>& x, const std::optional<double>& period) {
   constexpr std::size_t many = 32;
   const double step = x.size() > 1 ? x[1] - x[0] : 0.0;
@@ -82,7 +82,6 @@ Json category_axis(const CategoryAxis& axis) {
 }  // namespace
 
 LineStyle ColourAssignment::style(const std::string& name) {
-  // Blue, vermillion, bluish green, reddish purple, orange, sky blue, black.
   static constexpr std::array palette = {
       "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
   };

@@ -21,7 +21,7 @@
 namespace tofsmith::figure_json {
 namespace {
 
-/// Range of the finite values; low > high if there are none.
+/// low > high if no value is finite.
 ValueRange finite_range(std::span<const float> values) {
   ValueRange range{infinity, -infinity};
   for (const float value : values) {
@@ -47,7 +47,7 @@ std::string base64(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
-/// Stores the low bytes of all words before the high bytes, which improves the compression.
+/// Stores low bytes before high bytes, which improves the compression.
 std::vector<std::uint8_t> deflated(std::span<const std::uint16_t> words) {
   std::vector<std::uint8_t> planes;
   planes.reserve(2 * words.size());

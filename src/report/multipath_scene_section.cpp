@@ -71,7 +71,6 @@ Figure returns_figure(const MultipathScene& scene) {
                       {.label = "returns", .range = ValueRange{0.0, 3.0}});
 }
 
-/// Top view of the middle row, x versus z.
 Figure plan_figure(const MultipathScene& scene, const Image<float>& truth_m) {
   const int row = scene.view.height / 2;
   ColourAssignment colours;

@@ -40,7 +40,7 @@ std::string light_of(const MultipathCell& cell, const char* kind) {
   return fmt::format("{} r = {:.3g}, {:.3g} m", kind, cell.ratio, cell.delay_m);
 }
 
-/// Distinct values in order of their first use.
+/// Values in order of their first use.
 std::vector<double> distinct(const std::vector<MultipathCell>& cells,
                              double MultipathCell::*member) {
   std::vector<double> values;
@@ -49,7 +49,6 @@ std::vector<double> distinct(const std::vector<MultipathCell>& cells,
   return values;
 }
 
-/// One panel per code and signal; nothing if no value is finite.
 void add_maps(FigureText text, const std::vector<MultipathErrorReport>& codes, Cells cells,
               const ColourScale& colours, const std::function<double(const MultipathCell&)>& value,
               Section& section) {

@@ -65,14 +65,13 @@ Json block_json(const Figure& figure) {
   return json;
 }
 
-/// The id of a figure or table; empty for other blocks.
+/// Empty for blocks without id.
 std::string id_of(const Block& block) {
   if (const auto* figure = std::get_if<Figure>(&block)) return figure->text().id;
   if (const auto* table = std::get_if<Table>(&block)) return table->id;
   return "";
 }
 
-/// Escapes JSON for a script element, or text for an HTML element.
 std::string escaped(std::string_view text, std::string_view less_than) {
   std::string result;
   for (const char c : text) {

@@ -17,7 +17,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Lower cutoff frequency of the two arms; 0 if unknown (measured responses).
+/// 0 if unknown (measured responses).
 double cutoff_hz(const Camera& camera) {
   double least_hz = infinity;
   for (const ImpulseResponse* response :
@@ -27,7 +27,7 @@ double cutoff_hz(const Camera& camera) {
   return std::isfinite(least_hz) ? least_hz : 0.0;
 }
 
-/// Value of a quantity of a camera with its unit; empty if only the factor is known.
+/// Empty if only the factor is known.
 std::string amount_text(const Camera& camera, CameraQuantity quantity) {
   switch (quantity) {
     case CameraQuantity::bandwidth:
@@ -113,7 +113,6 @@ std::string levels_text(const std::vector<double>& levels) {
   return fmt::format("{} to {} e/s ({} levels)", level_text(low), level_text(high), levels.size());
 }
 
-/// Distances at which a white surface gives the camera's signal levels.
 std::string white_distance_text(const Camera& camera) {
   const auto [low, high] = std::ranges::minmax(camera.operating.signal_e_per_s);
   const auto metres = [&](double signal) {

@@ -13,7 +13,6 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// Errors of both decoders on one camera.
 Row row(const std::string& code, const std::string& camera, const Estimate& nominal_m,
         const Estimate& calibrated_m, const Estimate& uncalibrated_m) {
   const auto ratio = [&](const Estimate& error_m) {

@@ -50,8 +50,7 @@ std::string title_of(const SceneDecoding& decoding) {
   return title + " mm";
 }
 
-/// Depth and error of every code at one light level. With a filter, a slider separates unfiltered
-/// depth (left) from filtered depth (right).
+/// With a filter, a slider separates unfiltered depth (left) from filtered depth (right).
 Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
   std::vector<ValueImage> images;
   double scale_m = 0.0;

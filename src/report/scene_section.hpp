@@ -12,22 +12,20 @@
 
 namespace tofsmith {
 
-/// Depth maps, error maps, a table of errors and a point cloud.
 /// @param best_code  code of the point cloud
 Section scene_section(const SceneResult& scene, const Camera& camera, const std::string& best_code);
 
-/// The scene at the middle light level, decoded with a standard code and the best code; none if
-/// either is missing.
+/// The scene at the middle light level with a standard code and the best code; none if either is
+/// missing.
 std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera& camera,
                                           const std::string& best_code);
 
-/// Smallest and largest true depth, with a margin.
+/// Range of true depths, with a margin.
 ValueRange depth_range(const SceneImage& truth, const Camera& camera);
 
-/// Decoded minus true depth; white means correct, colours are clipped at the limit.
+/// Decoded minus true depth; colours are clipped at the limit.
 ImageReference error_reference(const SceneImage& truth, const Camera& camera, double limit_mm);
 
-/// Points of all pixels in front of the camera, coloured by depth.
 ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m);
 
 }  // namespace tofsmith

@@ -33,7 +33,7 @@ std::vector<Eigen::Index> selection_sample(std::int64_t count, std::int64_t want
   return chosen;
 }
 
-/// Indices of the points to draw: finite points, thinned to `max_points`.
+/// Finite points, thinned to `max_points`.
 std::vector<Eigen::Index> shown_points(const ColouredPoints& cloud, int max_points,
                                        std::int64_t& finite_points) {
   std::vector<Eigen::Index> finite;

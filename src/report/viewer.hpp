@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// The viewer as an HTML page with the placeholders @TITLE@ and @DOCUMENT@, made by viewer/pack.py.
+/// HTML page with the placeholders @TITLE@ and @DOCUMENT@, made by viewer/pack.py.
 std::string_view viewer_page();
 
 }  // namespace tofsmith

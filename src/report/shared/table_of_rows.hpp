@@ -13,8 +13,7 @@
 
 namespace tofsmith {
 
-/// Converts rows of texts, headings first, to a table. Columns are numeric unless listed in
-/// `text_columns`.
+/// Headings come first. Columns are numeric unless listed in `text_columns`.
 inline Table table_of_rows(std::string id, std::string caption,
                            const std::vector<std::vector<std::string>>& rows,
                            std::initializer_list<std::size_t> text_columns) {
