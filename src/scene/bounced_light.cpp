@@ -17,13 +17,12 @@ namespace tofsmith {
 
 namespace {
 
-/// Offset of ray origins from their surface, relative to the distance from the camera.
+/// Offset of ray origins, relative to the distance from the camera.
 constexpr double lift = 4e-5;
-/// Occluders that are closer to a point than this, relative to the point's distance, are ignored.
+/// Minimum distance of occluders, relative to the distance of the point.
 constexpr double shadow_slack = 1e-5;
 constexpr double min_cosine = 1e-6;
 
-/// Light from one direction.
 struct Bounce {
   double delay_m = 0.0;  ///< relative to the direct return
   double ratio = 0.0;
@@ -33,7 +32,6 @@ bool comes_before(const Bounce& a, const Bounce& b) {
   return a.delay_m < b.delay_m || (a.delay_m == b.delay_m && a.ratio < b.ratio);
 }
 
-/// Data of a pixel's surface point.
 struct SeenPoint {
   Eigen::Vector3d place, normal;  ///< the normal points to the camera
   double distance_m = 0.0;
@@ -80,7 +78,6 @@ std::optional<Bounce> BounceGatherer::bounce(const SeenPoint& seen, const Ray& r
   const Eigen::Vector3d from_light = place - light_;
   const double distance_m = from_light.norm();
   const double along = hit.normal.dot(from_light) / distance_m;
-  // The lit side must be the side seen from x1.
   if (!(along * hit.normal.dot(ray.direction) > 0.0) || !std::isfinite(distance_m))
     return std::nullopt;
   const std::optional<Hit> first = caster_.nearest({light_, from_light / distance_m});
@@ -117,7 +114,7 @@ std::vector<MultipathReturn> BounceGatherer::merged(const std::vector<Bounce>& b
                                                     float direct_m) const {
   std::vector<MultipathReturn> returns;
   double bin = -1.0;
-  Bounce sum;  // of the current bin; delay_m is weighted by light
+  Bounce sum;  // of the current bin, weighted by light
   const auto close_bin = [&] {
     if (sum.ratio > 0.0)
       returns.push_back(
@@ -144,7 +141,7 @@ std::vector<MultipathReturn> BounceGatherer::gather(int row, int column) const {
                                          static_cast<std::uint64_t>(column));
   std::vector<Bounce> found = bounces(*seen, random);
   if (std::isfinite(options_.range_m))
-    for (Bounce& b : found)  // slightly less, so that rounded distances stay below the range
+    for (Bounce& b : found)  // rounded distances must stay below the range
       b.delay_m = std::min(std::fmod(b.delay_m, options_.range_m), options_.range_m * (1 - 1e-5));
   std::sort(found.begin(), found.end(), comes_before);
   return merged(found, static_cast<float>(seen->distance_m));

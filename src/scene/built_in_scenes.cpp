@@ -18,14 +18,14 @@ namespace tofsmith {
 namespace {
 
 struct Finger {
-  Eigen::Vector3d knuckle;            ///< [m]
+  Eigen::Vector3d knuckle;
   double spread_rad;                  ///< angle from the middle of the hand, towards +x
   std::array<double, 3> phalanges_m;  ///< lengths, from the knuckle
   double radius_m;                    ///< at the knuckle; tapers
   std::array<double, 3> curl_rad;     ///< of each joint, towards the palm
 };
 
-// Dimensions of an adult hand, rounded to millimetres.
+// Adult hand, rounded to millimetres.
 const std::array<Finger, 4> fingers = {{
     {{-0.033, 0.083, 0.000}, -0.13, {0.041, 0.025, 0.019}, 0.0100, {0.10, 0.16, 0.12}},
     {{-0.010, 0.089, -0.002}, -0.02, {0.044, 0.029, 0.020}, 0.0102, {0.08, 0.12, 0.10}},
@@ -57,7 +57,7 @@ class HandBuilder {
   }
 
   void add_palm() {
-    // A fan of bones from the wrist to the knuckles and to points between them.
+    // Bones from the wrist to the knuckles and between them.
     constexpr int fan = 9;
     for (int i = 0; i < fan; ++i) {
       const double place = 3.0 * i / (fan - 1);
@@ -99,8 +99,8 @@ class HandBuilder {
   std::vector<Shape> shapes_;
 };
 
-/// Returns an open right hand with its forearm, made of capsules. The wrist is the origin of the
-/// hand's axes: x towards the little finger, y towards the finger tips, z out of the palm.
+/// Returns an open right hand with its forearm, made of capsules. Axes from the wrist: x towards
+/// the little finger, y towards the finger tips, z out of the palm.
 std::vector<Shape> open_hand(const Eigen::Isometry3d& hand_to_world, const Texture& skin) {
   HandBuilder hand(hand_to_world, skin);
   hand.add_palm();
@@ -141,15 +141,15 @@ StagedScene books(int width, int height) {
           .view = PinholeView::centred(width, height, 42 * degrees)};
 }
 
-/// Panels of a volleyball: six groups of three strips, one group around each half-axis.
+/// Six groups of three strips, one group around each half-axis.
 double panel_albedo(const Eigen::Vector3d& direction) {
   constexpr std::array<double, 3> strips = {0.85, 0.45, 0.70};
   constexpr double seam_albedo = 0.20, seam_width = 0.035;
   Eigen::Index axis = 0;
   const double largest = direction.cwiseAbs().maxCoeff(&axis);
-  const double across = direction[(axis + 1) % 3] / largest;  // [-1, 1]
+  const double across = direction[(axis + 1) % 3] / largest;
   const double along = direction[(axis + 2) % 3] / largest;
-  const double strip = 1.5 * (across + 1);  // [0, 3]
+  const double strip = 1.5 * (across + 1);
   const bool on_seam =
       std::abs(strip - std::round(strip)) < 1.5 * seam_width || 1 - std::abs(along) < seam_width;
   return on_seam ? seam_albedo : strips[static_cast<std::size_t>(std::min(2.0, strip))];
@@ -161,13 +161,12 @@ Texture volleyball(double radius_m) {
                   .period_m = 2 * std::numbers::pi * radius_m,
                   .image = Image<float>(512, 1024)};
   Image<float>& image = texture.image;
-  // Rotated to show a corner of the panels.
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(25 * degrees, Eigen::Vector3d::UnitX()) *
                                 Eigen::AngleAxisd(35 * degrees, Eigen::Vector3d::UnitY()))
                                    .toRotationMatrix();
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {
-      // Rows run opposite to the second coordinate, the latitude; the image repeats.
+      // Rows run opposite to the second coordinate, the latitude.
       const double longitude_rad = 2 * std::numbers::pi * (column + 0.5) / image.width;
       double latitude_rad = -std::numbers::pi * (row + 0.5) / image.height;
       if (latitude_rad < -0.5 * std::numbers::pi) latitude_rad += std::numbers::pi;
@@ -192,7 +191,6 @@ StagedScene wall(int width, int height) {
           .view = PinholeView::centred(width, height, 40 * degrees)};
 }
 
-/// Two walls that meet in a vertical edge in the middle of the image.
 StagedScene corner(int width, int height) {
   const auto half = [](double side) {
     return Plane{.point = {0, 0, 3}, .normal = {side, 0, -1}, .texture = uniform(0.70)};
@@ -208,7 +206,7 @@ StagedScene room(int width, int height) {
 }
 
 StagedScene hand(int width, int height) {
-  // The hand's y axis points up, the camera's down; the palm leans back and is slightly turned.
+  // The hand's y axis points up, the camera's down.
   Eigen::Isometry3d hand_to_world = Eigen::Isometry3d::Identity();
   hand_to_world.translate(Eigen::Vector3d(0.012, 0.075, 0.50));
   hand_to_world.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));

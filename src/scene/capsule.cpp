@@ -30,7 +30,7 @@ std::optional<Hit> intersect(const Capsule& capsule, const Ray& ray) {
   const auto along = [&](double t) {
     return axis.dot(ray.origin + t * ray.direction - capsule.start);
   };
-  // Accept a hit only on the part that it belongs to: the side between the ends, a cap beyond.
+  // Accept a hit only on its part: the side between the ends, a cap beyond.
   const auto try_part = [&](double b, double discriminant, auto&& belongs) {
     double lowest = 0.0;
     while (const auto t = nearest_root(b, discriminant, lowest)) {
@@ -42,7 +42,6 @@ std::optional<Hit> intersect(const Capsule& capsule, const Ray& ray) {
     }
   };
 
-  // The side: components of ray and offset perpendicular to the axis.
   const Eigen::Vector3d offset = ray.origin - capsule.start;
   const Eigen::Vector3d across = ray.direction - axis.dot(ray.direction) * axis;
   const Eigen::Vector3d aside = offset - axis.dot(offset) * axis;

@@ -78,7 +78,7 @@ bool holds(const Mesh& mesh, const Eigen::Vector3d& point) {
   for (const Eigen::Vector3d& vertex : mesh.triangles.vertices)
     bounds.extend(mesh.mesh_to_world * (mesh.scale_m * vertex));
   if (!bounds.contains(point) || !is_closed(mesh.triangles)) return false;
-  // Three generic directions: if one of them hits an edge, it is outvoted.
+  // Three directions: one that hits an edge is outvoted.
   int votes = 0;
   for (const Eigen::Vector3d& direction :
        {Eigen::Vector3d(0.6131, 0.2417, 0.7520), Eigen::Vector3d(-0.3719, 0.8923, 0.2551),

@@ -42,8 +42,8 @@ StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int h
 
   const Eigen::AlignedBox3d box = box_of(triangles);
 
-  // Use the largest distance that any vertex requires to be within the middle part of the image,
-  // and keep every vertex in front of the camera.
+  // Smallest distance at which every vertex is in the middle part of the image and in front of the
+  // camera.
   const double half_width = 0.5 * filled * width / scene.view.fx_px;
   const double half_height = 0.5 * filled * height / scene.view.fy_px;
   const double half_diagonal_m = 0.5 * scale_m * box.diagonal().norm();

@@ -46,7 +46,7 @@ Eigen::Vector3d at_unit_z(const PinholeView& view, int row, int column) {
   return {place.x(), place.y(), 1.0};
 }
 
-/// Checks the border pixels only, because every other pixel is between one of them and the axis.
+/// Border pixels only: other pixels are between them and the axis.
 void check_no_fold(const PinholeView& view) {
   const auto check = [&](int row, int column) {
     const Eigen::Vector2d place = place_of(view, row, column);

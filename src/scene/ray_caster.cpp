@@ -99,7 +99,7 @@ SeenScene RayCaster::see(const PixelRays& pixel_rays,
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Hit& hit = nearest[lane].hit;
         const auto depth_m = static_cast<float>(hit.distance_m);
-        // The distance to a plane seen edge-on may overflow; treat it as no return.
+        // The distance to a plane seen edge-on may overflow.
         if (nearest[lane].shape < 0 || !std::isfinite(depth_m) || !(depth_m > 0.0f)) continue;
         const int column = begin + static_cast<int>(lane);
         seen.image.depth_m(row, column) = depth_m;

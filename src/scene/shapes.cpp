@@ -15,7 +15,7 @@
 namespace tofsmith {
 namespace {
 
-/// Returns two unit vectors that span the plane perpendicular to `normal`.
+/// Unit vectors perpendicular to `normal`.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> axes_across(const Eigen::Vector3d& normal) {
   Eigen::Index smallest = 0;
   normal.cwiseAbs().minCoeff(&smallest);
@@ -139,8 +139,7 @@ std::optional<Hit> intersect(const Box& box, const Ray& ray) {
 std::optional<Hit> intersect(const Sphere& sphere, const Ray& ray) {
   const Eigen::Vector3d to_centre = sphere.centre - ray.origin;
   const double along = to_centre.dot(ray.direction);
-  // A cross product gives the distance of the centre from the ray without cancellation for far
-  // spheres.
+  // A cross product avoids cancellation for far spheres.
   const double aside = to_centre.cross(ray.direction).norm();
   if (aside > sphere.radius_m) return std::nullopt;
   const double half_chord =

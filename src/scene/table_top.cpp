@@ -26,7 +26,6 @@ StagedScene table_top_scene(int width, int height) {
   using Pattern = Texture::Pattern;
   StagedScene scene;
   scene.shapes = {
-      // The table ends before the wall.
       Box{.centre = {0.0, 0.03, 1.6},
           .size_m = {2.6, 0.06, 2.4},
           .texture = {Pattern::stripes, 0.55, 0.45, 0.12}},
@@ -41,7 +40,6 @@ StagedScene table_top_scene(int width, int height) {
              .texture = {Pattern::checker, 0.95, 0.60, 0.20 * std::numbers::pi / 6}},
   };
   scene.view = PinholeView::centred(width, height, std::numbers::pi / 3);
-  // Above the table, looking slightly down.
   scene.camera_to_world =
       Eigen::Translation3d(0.0, -0.55, 0.0) * Eigen::AngleAxisd(-0.20, Eigen::Vector3d::UnitX());
   return scene;

@@ -6,10 +6,10 @@
 
 namespace tofsmith {
 
-/// Returns the demo scene, after the table-top scene and the ball of the paper: three upright books
-/// on a table, 20 cm apart in depth, the leftmost dark; a wall 2 m behind the first book; a ball of
-/// radius 20 cm in front, about 1.2 m away. Distances are about 1 to 4 m.
-/// @param width, height  resolution of the pinhole camera, > 0; the view is 60 degrees wide
+/// Returns the demo scene, after the paper: three upright books on a table, 20 cm apart in depth; a
+/// wall 2 m behind the first book; a ball of radius 20 cm about 1.2 m away. Distances are about 1
+/// to 4 m.
+/// @param width, height  > 0; the view is 60 degrees wide
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 6
 StagedScene table_top_scene(int width = 320, int height = 240);
 
