@@ -18,7 +18,7 @@ template <typename Errors>
 std::vector<std::vector<double>> sums_by_rotation(const DepthTrials& trials,
                                                   std::span<const TrialRound> rounds,
                                                   const Errors& none, const Progress& progress) {
-  constexpr std::int64_t runs_at_once = 64;  // each stores N sums
+  constexpr std::int64_t runs_at_once = 64;
   const std::vector<Errors> of_round = trials.sum(
       rounds, none,
       [](Errors& errors, const TrialBlock& block) {
@@ -37,7 +37,7 @@ BestRotation best_rotation(const CodeSet& code, const Camera& on, const Evaluate
                            const Progress& progress) {
   Camera camera = judged_camera(on);
   const DepthPrior prior(camera);
-  camera.operating.depths.reset();  // trials are drawn uniformly and serve all rotations
+  camera.operating.depths.reset();  // uniform depths serve all rotations
   camera.operating.working_distance_m.reset();
   const ForwardModel model(code, camera);
   const DepthTrials trials(model, camera, options);
@@ -62,8 +62,7 @@ BestRotation best_rotation(const CodeSet& code, const Camera& on, const Evaluate
   for (int r = 0; r < std::ssize(log_sum); ++r)
     if (!plays_alike_rotated(camera, trials.samples(), r))
       log_sum[static_cast<std::size_t>(r)] = std::numeric_limits<double>::infinity();
-  // After a rotation, rounding errors may make a narrow pulse vanish on the points of the
-  // generator.
+  // After a rotation, rounding errors may remove a narrow pulse on the points of the generator.
   for (;;) {
     best.rotation_bin = best_of_rotations(log_sum);
     if (best.rotation_bin == 0 || !why_not_playable(code.rotated(best.rotation_bin), camera))

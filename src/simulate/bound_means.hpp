@@ -14,8 +14,8 @@ namespace tofsmith {
 /// Ratio of mean absolute value to standard deviation of a normal deviation.
 inline double mae_per_sigma() { return std::sqrt(2.0 / std::numbers::pi); }
 
-/// Removes high harmonics of a transfer function that are rounding errors in the response's second
-/// derivative, but keeps enough harmonics to sample results.
+/// Removes harmonics that are rounding errors in the response's second derivative, but keeps enough
+/// of them to sample results.
 inline Eigen::VectorXcd without_rounding(const Eigen::VectorXcd& transfer) {
   constexpr Eigen::Index least_kept = 256;
   constexpr double rounding = 1e-7;  // relative to the largest
@@ -39,7 +39,7 @@ double mean_over_albedo(double largest, Mae&& mae) {
     const double x = (i + 0.5) / nodes;  // albedo = x^2, d albedo = 2 x dx
     sum += 2.0 * x * std::min(largest, mae(x * x));
   }
-  // The midpoint rule integrates 2 x exactly, so that a constant error is preserved.
+  // The midpoint rule integrates 2 x exactly.
   return sum / nodes;
 }
 

@@ -72,7 +72,6 @@ double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
 
 namespace {
 
-/// Returns the number of cells per period over which depth is averaged.
 int cells_of(const ForwardModel& model, std::optional<int> per_bin) {
   if (!per_bin)
     per_bin = model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
@@ -108,7 +107,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
   const Eigen::VectorXd tap_ambient = model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain());
   ambient_ = model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
   shot_ambient_ = sums * tap_ambient;
-  // In differences of buckets, ambient light cancels up to rounding; set the remainder to 0.
+  // Ambient light cancels in differences of buckets up to rounding.
   ambient_ = (ambient_.array().abs() > 1e-9 * shot_ambient_.array()).select(ambient_, 0.0);
   constant_variance_e2_ += sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
 }
@@ -133,7 +132,7 @@ HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)
 }
 
 double HistogramBound::mae_m(const OperatingPoint& point) const {
-  constexpr double min_e = 1e-9;  // a bin without light carries no information
+  constexpr double min_e = 1e-9;
   Eigen::VectorXd sigma_m(light_.cols());
   for (Eigen::Index j = 0; j < light_.cols(); ++j) {
     const Eigen::ArrayXd weight = (point.signal_e_per_s * light_.col(j).array() +
@@ -152,7 +151,7 @@ double HistogramBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
                           [&](double albedo) { return mae_m(dimmed(point, albedo)); });
 }
 
-/// For rows, using L^-1 of their covariance L L^T.
+/// Uses L^-1 of the covariance L L^T of the rows.
 Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian_of_rows(
     Eigen::Index depth, const OperatingPoint& point) const {
   const Eigen::Index K = ambient_.size();

@@ -31,7 +31,6 @@ RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSe
   const LensBlur blur = camera.blur.value_or(LensBlur());
   if (blur.kind == LensBlur::Kind::none && light.stray_light.empty())
     return captured_frames(source, nullptr, options.frames, progress);
-  // An image has one ray per pixel, regardless of the lens settings.
   CollectedLight blurred(scene.height(), scene.width(), source.tap_values());
   add_light(source, blur, 1, {0, source.tap_values()}, blurred);
   scatter_light(light.stray_light, options.ambient_e_per_s, blurred);

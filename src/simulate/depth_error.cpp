@@ -12,7 +12,6 @@
 namespace tofsmith {
 namespace {
 
-/// Returns a bound at an operating point of the camera, including its albedo.
 template <typename Bound>
 double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoint& point) {
   if (camera.operating.uniform_albedo) return bound.mae_uniform_albedo_m(point);

@@ -14,8 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-/// First block of random words for albedo, apart from normals (blocks from 0) and Poisson counts
-/// (from 2^30).
+/// Separate from the blocks of normals (from 0) and Poisson counts (from 2^30).
 constexpr std::uint32_t albedo_block = 1u << 29;
 
 EvaluateOptions with_even_trials(EvaluateOptions options) {
@@ -25,7 +24,7 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
   return options;
 }
 
-/// Maps uniformly drawn depths to the quantiles of a prior.
+/// Maps uniform depths to the quantiles of a prior.
 void move_depths(const TrialModel& model, const DepthPrior& prior, bool on_bins, int trials,
                  TrialTile& tile) {
   const double samples = model.samples();
@@ -39,7 +38,7 @@ void move_depths(const TrialModel& model, const DepthPrior& prior, bool on_bins,
   }
 }
 
-/// Total number of trials; an estimate if trials continue until a target is met.
+/// An estimate if trials continue until a target is met.
 std::int64_t all_trials(const EvaluateOptions& options, std::size_t points) {
   return static_cast<std::int64_t>(points) *
          (options.target_standard_error > 0.0 ? options.max_trials : options.trials);
@@ -102,13 +101,13 @@ std::vector<TrialRound> DepthTrials::first_rounds() const {
 
 TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTile& tile) const {
   const auto count = static_cast<int>(trials.end - trials.begin);
-  const int drawn = whole_vectors(count);  // surplus trials are ignored
+  const int drawn = whole_vectors(count);
   const TrialStreams streams{options_.seed, round.point,
                              static_cast<std::uint32_t>(round.first + trials.begin)};
   tile.pixels.pixels = count;
 
   const bool on_bins = options_.depth == DepthSampling::bins;
-  // 1. Draw a depth in the trial's slice, and light.
+  // Depth in the trial's slice, and light.
   draw_words(streams, 0, drawn, tile.words);
   place_depths(model_,
                {.first = trials.begin,
@@ -116,7 +115,7 @@ TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTil
                 .on_bins = on_bins && depths_.is_uniform()},
                drawn, tile);
   if (!depths_.is_uniform()) move_depths(model_, depths_, on_bins, drawn, tile);
-  // 2. Draw noise in the decoder's plane or of every measurement; 3. decode.
+  // Noise in the decoder's plane or of every measurement.
   if (draws_in_plane()) {
     const PlaneNoise& noise = plane_noise_[round.point];
     draw_normals(streams, noise.rank, drawn, tile);
@@ -133,7 +132,6 @@ TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTil
   return {{tile.true_bin, size}, {tile.decoded_bin, size}};
 }
 
-/// Draws rows of normals from the words of block 0 on.
 void DepthTrials::draw_normals(const TrialStreams& streams, int count, int trials,
                                TrialTile& tile) const {
   for (int pair = 0; 2 * pair < count; ++pair) {
@@ -157,7 +155,6 @@ void DepthTrials::draw_signal(const TrialStreams& streams, std::size_t point, in
     tile.signal[i] = static_cast<float>((tile.words[i] + 0.5) * 0x1p-32 * signal_e_per_s);
 }
 
-/// Draws electrons of both signs for every number of a mixer.
 void DepthTrials::draw_signed(const TrialStreams& streams, int trials, TrialTile& tile) const {
   const int numbers = model_.taps();
   for (int k = 0; k < numbers; ++k) {

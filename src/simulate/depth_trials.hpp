@@ -17,27 +17,26 @@
 
 namespace tofsmith {
 
-/// True and decoded positions [bin], in [0, N), of an even number of consecutive trials.
+/// True and decoded positions [bin], in [0, N), of an even number of trials.
 struct TrialBlock {
   std::span<const double> true_bin;
   std::span<const double> decoded_bin;
 };
 
-/// Trials first to first + trials - 1 of an operating point, one in each of `trials` slices of the
-/// range with equal probability.
+/// Trials first to first + trials - 1 of an operating point, one in each of `trials` equally
+/// probable slices of the range.
 struct TrialRound {
   std::size_t point = 0;
   std::int64_t first = 0;
   std::int64_t trials = 0;  ///< even
 };
 
-/// The Monte Carlo loop of all depth errors: draws depth and noise, and decodes. Random numbers of
-/// a trial depend only on the seed, its point and its number. A tile of trials fits into the
-/// innermost caches.
+/// The Monte Carlo loop of all depth errors. Random numbers of a trial depend only on the seed, its
+/// point and its number.
 class DepthTrials {
  public:
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
-  /// Decodes with the table that a decoder assumes, with the same measurements and samples.
+  /// Decodes with the table that a decoder assumes.
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options,
               DecodingTable believed);
   /// Simulates a table at one light level.
@@ -47,21 +46,18 @@ class DepthTrials {
   int samples() const { return model_.samples(); }
   int measurements() const { return model_.measurements(); }
   const std::vector<OperatingPoint>& points() const { return points_; }
-  /// Returns true if noise is drawn in the decoder's plane, not per measurement.
   bool draws_in_plane() const { return !plane_noise_.empty(); }
 
-  /// Returns the first round of trials for every point.
   std::vector<TrialRound> first_rounds() const;
 
-  /// Accumulates all trials of each round by `add(sums, block)` on all threads. Blocks are added
-  /// within runs of trials, and runs are merged in order by `merge(other)`, independent of the
-  /// threads.
+  /// Accumulates all trials of each round by `add(sums, block)` on all threads. Runs of trials are
+  /// merged in order by `merge(other)`, independent of the threads.
   /// @param runs_at_once  number of sums in memory
   template <typename Sums, typename Add>
   std::vector<Sums> sum(std::span<const TrialRound> rounds, const Sums& none, const Add& add,
                         const Progress& progress, std::int64_t runs_at_once = 512) const;
 
-  /// Runs trials [begin, end) of a round: an even number, at most trials_per_tile.
+  /// Requires an even number of trials, at most trials_per_tile.
   TrialBlock run(const TrialRound& round, IndexRange trials, TrialTile& tile) const;
 
  private:
@@ -80,10 +76,10 @@ class DepthTrials {
   DepthPrior depths_;
   std::vector<OperatingPoint> points_;
   TrialModel model_;
-  std::optional<RowTrials> rows_;  // if the sensor outputs rows
+  std::optional<RowTrials> rows_;
   DecodingTable believed_;
   TrialDecoder decoder_;
-  std::vector<PlaneNoise> plane_noise_;  // per point; empty if not exact
+  std::vector<PlaneNoise> plane_noise_;
   std::vector<std::vector<float>> mean_floor_e_, shot_floor_e2_, max_e_;  // per point: (taps)
 };
 

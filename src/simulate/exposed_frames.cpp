@@ -9,7 +9,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Exposes the pixels of a row to collected light. @param raw  (W, K)
+/// @param raw  (W, K)
 void expose_row(const RowCapture& source, const CollectedLight& collected, int frame,
                 std::int64_t row, float* raw) {
   const auto taps = static_cast<std::ptrdiff_t>(source.tap_values());

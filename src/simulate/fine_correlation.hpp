@@ -8,39 +8,37 @@
 
 namespace tofsmith {
 
-/// chi of all tap values, tabulated much finer than bins with linear interpolation; evaluated once
-/// per pixel or trial in simulations.
+/// chi of all tap values, tabulated much finer than bins with linear interpolation.
 ///
 /// The interpolation error is at most max|chi''| / (8 points^2), and |slope change| / (4 points) in
-/// a cell with a corner of chi (no error if corners are at table points, as for ideal codes). At 10
-/// f0 and N = 240 it is below 2e-5: less than 0.02 mm at a range of 10 m, and 1/256 of the error of
-/// a decoder's chords between bins.
+/// a cell with a corner of chi (none if corners are at table points). At 10 f0 and N = 240 it is
+/// below 2e-5, or 0.02 mm at a range of 10 m.
 class FineCorrelation {
  public:
   static constexpr int least_points_per_bin = 16;
 
-  /// Uses the number of points from ForwardModel::straight_points_per_bin().
+  /// Uses ForwardModel::straight_points_per_bin().
   explicit FineCorrelation(const ForwardModel& model);
-  /// @param points_per_bin  table points per bin, >= 1
+  /// @param points_per_bin  >= 1
   FineCorrelation(const ForwardModel& model, int points_per_bin);
-  /// As above for any table of tap values, (points, tap values).
+  /// Accepts any table of tap values, (points, tap values).
   FineCorrelation(const Eigen::MatrixXd& table, int points_per_bin);
 
   int tap_values() const { return tap_values_; }
-  /// Rows of the table in one period.
+  /// Per period.
   int points() const { return points_; }
   double points_per_bin() const { return points_per_bin_; }
-  /// Rows of the table, with the first repeated at the end, (points + 1, tap values). For rows of
-  /// an exposure there is one column, of time bin 0; bin n equals bin 0 at a depth n bins nearer.
+  /// The table with the first row repeated, (points + 1, tap values). For rows of an exposure there
+  /// is one column, of time bin 0; bin n equals bin 0 at a depth n bins nearer.
   const std::vector<double>& table() const { return table_; }
-  /// Computes chi at a depth in [0, N]. @param chi  (tap values)
+  /// @param depth_bin  in [0, N]; @param chi  (tap values)
   void at(double depth_bin, double* chi) const;
 
  private:
   int tap_values_;
   int points_;
   double points_per_bin_;
-  bool is_time_bin_ = false;  // one column
+  bool is_time_bin_ = false;
   std::vector<double> table_;
 };
 

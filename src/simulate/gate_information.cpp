@@ -14,12 +14,12 @@ namespace tofsmith {
 namespace {
 
 constexpr int min_points = 4096;
-/// Relative size of values that omitted harmonics may cause where the response is 0.
+/// Relative values that omitted harmonics may cause where the response is 0.
 constexpr double rounding = 1e-7;
 constexpr int cells = 64;
 
 /// x and the largest integral of d times a derivative of the light at x, as corners of a concave
-/// polygon from (0, 0) to (all light, 0) that is nowhere too low.
+/// polygon that is nowhere too low.
 struct Profile {
   std::vector<double> passed{0.0}, largest{0.0};
 
@@ -29,9 +29,8 @@ struct Profile {
   }
 };
 
-/// Gates open where derivative / light is largest. Points are binned by this ratio instead of
-/// sorted. Gates that are open down to the edge of a bin are exact; in between, the curve bends
-/// from the ratio of one edge to that of the next, below both tangents.
+/// Gates open where derivative / light is largest. Points are binned by this ratio, not sorted.
+/// Gates open down to the edge of a bin are exact; in between, the curve is below both tangents.
 Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative) {
   constexpr int half = 512;  // bins per sign
   const double width = 1.0 / static_cast<double>(light.size());
@@ -73,8 +72,7 @@ Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative
   return profile;
 }
 
-/// Returns the largest value at increasing x, for gates and their complements, whose derivatives
-/// differ only in sign.
+/// Returns the largest value of gates and their complements, whose derivatives differ only in sign.
 std::vector<double> largest_at(const Profile& profile, const std::vector<double>& x) {
   const auto at = [&](double passed) {
     const auto right = std::upper_bound(profile.passed.begin(), profile.passed.end(), passed);
@@ -118,7 +116,6 @@ double GateInformation::at_any_depth(double signal_e, double ambient_e, double o
   double largest = 0.0;
   for (std::size_t i = 1; i < profile.passed.size(); ++i) {
     const double slope = profile.largest[i], passed = profile.passed[i];
-    // The complementary gate has the same slope.
     for (const double x : {passed, profile.passed.back() - passed})
       if (x + other_e2 > 0.0) largest = std::max(largest, slope * slope / (x + other_e2));
   }
@@ -130,7 +127,6 @@ double GateInformation::mean_over_depths(double signal_e, double ambient_e, doub
   const Eigen::ArrayXd light = signal_e * response_ + ambient_e;
   const Profile slopes = profile_of(light, signal_e * slope_);
   const Profile curvatures = profile_of(light, signal_e * curvature_);
-  // Cells of x, narrow at few electrons, where noise is small.
   const double all = slopes.passed.back();
   std::vector<double> middle, width, weight;
   for (int j = 0; j < cells; ++j) {
@@ -157,7 +153,7 @@ double GateInformation::mean_over_depths(double signal_e, double ambient_e, doub
     }
     return gained / taken;
   };
-  // The mean changes little between cells: search every `step`-th one, then all around the largest.
+  // The mean changes little: search every `step`-th cell, then around the largest.
   constexpr std::size_t step = 4;
   double largest = 0.0;
   std::size_t best_a = 0, best_b = cells;

@@ -18,9 +18,8 @@ namespace tofsmith {
 namespace {
 
 constexpr double smallest_radius_px = 0.01, largest_radius_px = 64.0;
-constexpr double step = 0.02;  // relative, between radii
+constexpr double step = 0.02;
 
-/// Integral of the normal distribution function with standard deviation sigma.
 double distribution_integral(double x, double sigma) {
   const double u = x / sigma;
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -32,7 +31,7 @@ void scale_to_sum_1(std::vector<double>& weights) {
   for (double& weight : weights) weight /= sum;
 }
 
-/// Area of the part of the disc with x <= a and y <= b.
+/// Part of the disc with x <= a and y <= b.
 double area_below(double radius, double a, double b) {
   a = std::clamp(a, -radius, radius);
   b = std::clamp(b, -radius, radius);
@@ -114,7 +113,7 @@ DiscKernels::DiscKernels(const LensBlur& blur, int samples, std::span<const floa
         steps_[static_cast<std::size_t>(its - first_step_)].push_back(
             disc_kernel(radius_px, (row + 0.5) / samples - 0.5, (column + 0.5) / samples - 0.5));
   });
-  // Measured from its own pixel's centre, a disc extends at most half a pixel beyond its radius.
+  // Relative to its own pixel's centre, a disc extends at most half a pixel beyond its radius.
   for (const auto& kernels : steps_)
     if (!kernels.empty()) reach_ = std::max(reach_, kernels.front().reach);
 }

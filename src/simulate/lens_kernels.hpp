@@ -9,19 +9,19 @@
 
 namespace tofsmith {
 
-/// Weights of rays in a pixel along one axis. There are `samples` equidistant rays per pixel, and
-/// each represents the light of its part of the pixel, spread by a Gaussian:
+/// Weights of rays in a pixel along one axis. Each of `samples` equidistant rays represents the
+/// light of its part of the pixel, spread by a Gaussian:
 ///   w_j = integral over part j of [Phi((1/2 - s) / sigma) - Phi((-1/2 - s) / sigma)] ds,
-/// with s from the pixel's centre [px]. A scene that is constant over each part is blurred exactly.
+/// with s from the pixel's centre [px]. Exact for scenes that are constant over each part.
 struct AxisKernel {
-  int reach = 0;                ///< number of relevant rays beyond each side of the pixel
+  int reach = 0;                ///< relevant rays beyond each side of the pixel
   std::vector<double> weights;  ///< of rays -reach to samples - 1 + reach; sum 1
 
   /// @param sigma_px  0: only the rays of the pixel
   AxisKernel(double sigma_px, int samples);
 };
 
-/// Distribution of the light of a disc over the pixels around that of its ray.
+/// Distribution of a disc over the pixels around its ray.
 struct DiscKernel {
   int reach = 0;                ///< pixels to either side
   std::vector<double> weights;  ///< (2 reach + 1)^2, row by row; sum 1
@@ -33,17 +33,16 @@ struct DiscKernel {
   }
 };
 
-/// Area of the part of a disc about the origin within [x0, x1] x [y0, y1].
+/// Area of the disc about the origin within [x0, x1] x [y0, y1].
 double disc_area(double radius, double x0, double x1, double y0, double y1);
 
-/// Discs of confusion for all distances in a scene, with radii rounded to steps of 2 %.
+/// Discs of confusion, with radii rounded to steps of 2 %.
 class DiscKernels {
  public:
   /// @throws std::invalid_argument if a disc exceeds the largest supported radius
   DiscKernels(const LensBlur& blur, int samples, std::span<const float> distances_m);
 
-  /// Returns the kernel of a ray, by its distance [m] (NaN: infinite) and its position among the
-  /// rays of its pixel.
+  /// Returns the kernel by distance [m] (NaN: infinite) and position among the rays of a pixel.
   const DiscKernel& of(float distance_m, int row, int column) const;
   int reach() const { return reach_; }  ///< maximum [px]
 

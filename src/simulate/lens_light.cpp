@@ -17,10 +17,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Minimum weight of a ray that counts as seen by a pixel, relative to the largest.
+/// Smallest relative weight of a ray that a pixel sees.
 constexpr double seen_share = 0.02;
 
-/// Continues the indices of a line beyond its ends by reflection.
+/// Continues indices by reflection.
 int mirrored(int i, int size) {
   const int period = 2 * size;
   const int place = ((i % period) + period) % period;
@@ -29,8 +29,8 @@ int mirrored(int i, int size) {
 
 int floor_division(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-/// Rows of pixels that accumulate the light of rows of rays. Channels are the tap values of the
-/// range, and ambient light if it varies.
+/// Accumulates the light of rows of rays. Channels are the tap values of the range, and ambient
+/// light if it varies.
 class Band {
  public:
   Band(const RowCapture& rays, int samples, TapRange range, int first_row, int rows)
@@ -49,7 +49,6 @@ class Band {
         work_(static_cast<std::size_t>(rays.tap_values())),
         light_(work_.size()) {}
 
-  /// Computes the light of each ray of a row.
   void read_rays(int row) {
     if (row == row_read_) return;
     row_read_ = row;
@@ -61,7 +60,7 @@ class Band {
     }
   }
 
-  /// Adds a row of rays with the same kernel for both axes; `row` may be outside the image.
+  /// Uses one kernel for both axes; `row` may be outside the image.
   void add_row(int row, const AxisKernel& kernel) {
     const int ray_row = mirrored(row, rays_.scene().height());
     read_rays(ray_row);
@@ -80,7 +79,7 @@ class Band {
     }
   }
 
-  /// Adds a row of rays with a disc per ray.
+  /// Uses a disc per ray.
   void add_row(int row, const DiscKernels& kernels) {
     const int ray_row = mirrored(row, rays_.scene().height());
     read_rays(ray_row);
@@ -141,7 +140,6 @@ class Band {
     if (far_m > far_m_(row, column)) far_m_(row, column) = far_m;
   }
 
-  /// Sums the current row of rays over pixels along the row.
   void gather_row(int ray_row, const AxisKernel& kernel) {
     gathered_.assign(values(width_), 0.0);
     gathered_near_m_.assign(static_cast<std::size_t>(width_),
@@ -179,11 +177,11 @@ class Band {
   std::vector<double> work_, light_;
 };
 
-/// Processes all bands; each needs `reach_rays` rows of rays above and below.
+/// Each band needs `reach_rays` rows of rays above and below.
 template <typename Kernel>
 void add_by(const Kernel& kernel, int reach_rays, const RowCapture& rays, int samples,
             TapRange range, CollectedLight& light) {
-  // Rows near the border of two bands are read twice, so bands are taller if the kernels are large.
+  // Bands are taller for large kernels, because they read rows near their border twice.
   const int rows_of_band = std::max(8, 2 * reach_rays / samples);
   parallel_for_blocks(light.height, rows_of_band, [&](IndexRange rows) {
     const int first = static_cast<int>(rows.begin), end = static_cast<int>(rows.end);
@@ -232,7 +230,6 @@ void scatter_light(const Image<float>& kernel, double ambient_e_per_s, Collected
     for (std::size_t i = 0; i < plane.size(); ++i)
       plane.pixels[i] = static_cast<float>(values[i * stride]);
     const Image<float> seen = stray.scatter(plane);
-    // Rounding errors of the transforms may be negative; light is not.
     for (std::size_t i = 0; i < plane.size(); ++i)
       values[i * stride] = std::max(0.0, static_cast<double>(seen.pixels[i]));
   };

@@ -11,22 +11,20 @@ struct TapRange {
   int first = 0, count = 0;
 };
 
-/// Adds the light of rays, blurred by the lens: every pixel is a weighted sum of the rays around
-/// it. The image is continued by reflection, so that no light is lost and uniform light remains
-/// uniform. Ambient light is added with tap value 0, distances with every tap value.
+/// Adds the light of rays, blurred by the lens. The image is continued by reflection, so that no
+/// light is lost and uniform light remains uniform. Ambient light is added with tap value 0,
+/// distances with every tap value. Deterministic.
 /// @param rays  `samples` x `samples` per pixel
 /// @throws std::invalid_argument if the size of their image does not match, or as DiscKernels
-/// @note same bits for any number of threads
 void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRange range,
                CollectedLight& light);
 
 /// Applies StrayLight::scatter() to each tap value and to ambient light.
-/// @param kernel             of StrayLight; empty: no change
+/// @param kernel  of StrayLight; empty: no change
 /// @param ambient_e_per_s  used if `light` has no ambient light
 /// @throws std::invalid_argument as StrayLight
 void scatter_light(const Image<float>& kernel, double ambient_e_per_s, CollectedLight& light);
 
-/// Returns raw frames of this size, all 0.
 RawFrames empty_frames(int frames, int height, int width, int measurements);
 
 }  // namespace tofsmith

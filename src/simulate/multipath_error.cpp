@@ -30,7 +30,6 @@ struct CellLight {
   bool is_tail = false;
 };
 
-/// Draws and decodes the trials of cells.
 class CellTrials {
  public:
   CellTrials(const CodeSet& code, const Camera& camera, const MultipathErrorOptions& options)

@@ -17,7 +17,6 @@ namespace {
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array delay_edges_m = {0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 1e9};
 
-/// Sums the multipath light of each pixel.
 void sum_multipath_light(MultipathScene& scene, const MultipathReturns& returns) {
   scene.multipath_ratio = {scene.truth.height(), scene.truth.width(), no_value};
   scene.multipath_delay_m = scene.multipath_ratio;

@@ -13,10 +13,9 @@ namespace tofsmith {
 namespace {
 
 Sensor validated(const Sensor& sensor) {
-  // Reuse the camera's checks; all other settings of a default camera are valid.
   Camera camera;
   camera.sensor = sensor;
-  camera.sensor.generator.reset();  // depends on the frequency and causes no noise
+  camera.sensor.generator.reset();  // no effect on noise
   camera.operating = default_operating_range();
   camera.validate();
   return sensor;

@@ -24,19 +24,17 @@ struct NoiseParts {
 ///              Gaussian of the same mean and variance, mu + sigma_r^2; both may be negative;
 ///   2. clip     at full_well_e, if it is set;
 ///   3. convert  round(electrons / gain_e_per_dn + black_level_dn), clipped to [0, 2^bits - 1], if
-///              adc_bits is set; otherwise the raw number is electrons;
+///              adc_bits is set;
 ///   4. read     every tap, or the difference of each pair of buckets.
-/// For a mixer, the difference of its two taps is drawn, clipped on both sides, converted and read:
-/// see draw_difference(). For rows, every time bin is drawn without read noise, which is added to
-/// the rows.
+/// The difference of the two taps of a mixer is drawn, clipped on both sides, converted and read.
+/// For rows, every time bin is drawn without read noise, which is added to the rows.
 class PixelNoise {
  public:
-  /// @throws std::invalid_argument if noise, read noise, full well or ADC settings are invalid
   explicit PixelNoise(const Sensor& sensor);
 
-  /// Step 1: returns electrons with noise. @param expected_e  >= 0
+  /// Step 1. @param expected_e  >= 0
   double draw_electrons(double expected_e, RandomStream& random) const;
-  /// As above without read noise.
+  /// Omits read noise.
   double draw_count(double expected_e, RandomStream& random) const;
   /// Draws the signal of a mixer from the expected electrons of its two taps, with mean a - b,
   /// variance a + b, and read noise. If neither is negative, both are Poisson, which is exact for
@@ -44,23 +42,21 @@ class PixelNoise {
   /// Poisson electrons of size s = (a + b) / (a - b) each; similarly if a < 0.
   double draw_difference(double a, double b, RandomStream& random) const;
   double read_noise_e() const { return parts_.read_noise_e; }
-  /// Steps 2 and 3: the raw number of one tap, [e] or [DN].
+  /// Steps 2 and 3 for one tap: [e] or [DN].
   double convert(double electrons) const;
-  /// Step 4: converts the raw numbers of a pixel's taps to measurements.
-  /// @param raw  (tap values) in, (measurements) out, in place
+  /// Step 4 in place.
+  /// @param raw  (tap values) in, (measurements) out
   void read_out(double* raw, int tap_values) const;
-  /// Number of measurements for a number of tap values.
   int measurements(int tap_values) const { return parts_.subtracts ? tap_values / 2 : tap_values; }
 
  private:
   NoiseParts parts_;
 };
 
-/// Poisson electrons of a mixer: expected numbers of both signs, and size of each electron.
+/// Poisson electrons of a mixer: expected numbers of both signs, and size of each.
 struct SignedElectrons {
   double plus = 0.0, minus = 0.0, size = 1.0;
 
-  /// Returns electrons of a mean and variance, see PixelNoise::draw_difference().
   static SignedElectrons of(double mean, double variance) {
     if (std::abs(mean) <= variance) return {0.5 * (variance + mean), 0.5 * (variance - mean), 1.0};
     const double size = std::max(variance, 0.0) / std::abs(mean);

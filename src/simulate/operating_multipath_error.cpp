@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Trials of one operating point as a frame of one row, and their direct depths.
+/// Trials of one operating point as one row, with their direct depths.
 struct TrialFrame {
   RawFrames raw;
   std::vector<double> true_m;
@@ -56,7 +56,7 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera,
   return frame;
 }
 
-/// @param depth_of  decodes a frame, with progress
+/// @param depth_of  decodes a frame
 template <typename DepthOf>
 OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera,
                                  const OperatingMultipath& later, const EvaluateOptions& options,
@@ -71,7 +71,7 @@ OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera
     const Image<float> depth_m = depth_of(frame.raw, parts[p]);
     RunningStatistics linear, circular;
     for (std::size_t t = 0; t < frame.true_m.size(); ++t) {
-      // For a pixel without decoded depth any value is equally good.
+      // Any value is equally good for a pixel without decoded depth.
       const double decoded_m = std::isnan(depth_m.pixels[t]) ? 0.0 : depth_m.pixels[t];
       linear.add(std::abs(decoded_m - frame.true_m[t]));
       circular.add(std::abs(circular_difference(decoded_m, frame.true_m[t], range_m)));
@@ -83,7 +83,6 @@ OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera
   return {geometric_mean_of(linear_m), geometric_mean_of(circular_m)};
 }
 
-/// Common inputs of all decoders.
 struct OperatingMultipathTrials {
   OperatingMultipathTrials(const CodeSet& code, const Camera& on, const OperatingMultipath& met,
                            const EvaluateOptions& how)

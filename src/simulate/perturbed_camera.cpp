@@ -13,7 +13,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Multiplies every frequency of the response by `factor`.
 ImpulseResponse with_bandwidth(ImpulseResponse response, double factor) {
   response.f_max_hz *= factor;
   response.cutoff_hz *= factor;
@@ -72,10 +71,9 @@ PerturbedCamera with_droop(const Camera& camera, double droop) {
   return perturbed;
 }
 
-/// Returns true if measurements may differ in sensitivity; rows do not.
+/// Rows do not differ in sensitivity.
 bool has_taps(const Camera& camera) { return camera.sensor.readout != Readout::rows; }
 
-/// Applies all perturbations at once.
 PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& options) {
   PerturbedCamera perturbed{"all together", camera};
   if (options.bandwidth > 0.0)
@@ -93,7 +91,7 @@ PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& o
   return perturbed;
 }
 
-/// Returns samples, also for a sum of cosines, which clipping turns into another waveform.
+/// A sum of cosines is also sampled, because clipping turns it into another waveform.
 Eigen::VectorXd sampled_values(const Waveform& waveform) {
   if (waveform.is_sampled()) return waveform.samples();
   return waveform.cell_averages(static_cast<int>(waveform.steps().values.size()));
@@ -104,7 +102,7 @@ Waveform with_depth_of_modulation(const Waveform& modulation, double factor) {
   const double mean = modulation.mean(), peak = modulation.peak();
   if (mean <= 0.0 || peak <= mean) return modulation;
   const double depth = (factor * peak - mean) / (peak - mean);
-  if (depth <= 0.0) return modulation.scaled(0.0, factor);  // dimmed
+  if (depth <= 0.0) return modulation.scaled(0.0, factor);
   if (!modulation.is_sampled() && depth <= 1.0)
     return modulation.scaled(mean - depth * mean, depth);
   const Eigen::VectorXd samples =
@@ -120,7 +118,7 @@ Waveform with_peak(const Waveform& modulation, double peak) {
                           modulation.level() * peak);
 }
 
-/// Rounds switching times to a clock; preserves the average power of light.
+/// Rounds switching times; preserves the average power of light.
 Waveform on_clock(const Waveform& waveform, double clock_s, const Camera& camera) {
   if (clock_s == 0.0) return waveform;
   return generated(waveform, {.sample_rate_hz = 1.0 / clock_s, .amplitude_bits = 24},
@@ -136,13 +134,12 @@ Waveform within_power(const Waveform& modulation) {
                                   : modulation.scaled(0.0, 1.0 / mean);
 }
 
-/// Converts sampled waveforms to the code's number of samples.
 Waveform on_samples(const Waveform& waveform, int samples) {
   if (!waveform.is_sampled() || waveform.samples().size() == samples) return waveform;
   return Waveform::sampled(waveform.cell_averages(samples));
 }
 
-/// Decays as exp(-t / s) from every rise; returns means over `samples` cells.
+/// Decays as exp(-t / s) from every rise; means over `samples` cells.
 Waveform with_droop(const Waveform& modulation, double droop, int samples) {
   if (droop == 0.0 || !modulation.is_binary() || modulation.on_intervals().empty())
     return modulation;
@@ -195,7 +192,7 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
     modulation.push_back(
         on_samples(with_droop(m, perturbed.droop, code.samples()), code.samples()));
   }
-  if (code.is_rows())  // rows are sums of counts, which the light's clock does not affect
+  if (code.is_rows())  // sums of counts do not depend on the light's clock
     return CodeSet::create_rows(code.name(), std::move(modulation.front()),
                                 code.demodulation_samples());
   for (int i = 0; i < code.measurements(); ++i)

@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Simulates one pixel at a time: expected electrons, noise and read-out.
+/// Simulates expected electrons, noise and read-out of one pixel at a time.
 class PixelCapture {
  public:
   PixelCapture(const ForwardModel& model, const Camera& camera);
@@ -24,12 +24,12 @@ class PixelCapture {
 
   /// @param depth_m  wraps at the range; NaN: no return, requires signal_e_per_s = 0
   /// @param work  (tap values), overwritten
-  /// @param raw   (measurements), overwritten
+  /// @param raw  (measurements), overwritten
   void operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
                   RandomStream& random, std::vector<double>& work, float* raw) const;
 
-  /// As above in two steps, for several returns: add_light() adds S chi of one return to `light`
-  /// (tap values), and expose() exposes the sensor to the sum.
+  /// For several returns: add_light() adds S chi of one return to `light` (tap values), and
+  /// expose() exposes the sensor to the sum.
   void add_light(const FineCorrelation& correlation, double depth_m, double signal_e_per_s,
                  std::vector<double>& work, std::vector<double>& light) const;
   void add_light(double depth_m, double signal_e_per_s, std::vector<double>& work,
@@ -47,7 +47,7 @@ class PixelCapture {
   FineCorrelation correlation_;
   PixelNoise noise_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // per tap value
-  std::optional<Eigen::MatrixXd> rows_;        // (K, N), if the sensor outputs rows
+  std::optional<Eigen::MatrixXd> rows_;        // (K, N), for rows
 };
 
 }  // namespace tofsmith

@@ -14,9 +14,8 @@
 namespace tofsmith {
 namespace {
 
-/// Largest kappa (1 - kappa) / (b kappa + c) of a tap. The duties of an exposure's taps add to at
-/// most 1, or to exactly 1 without a drain; the expression is concave in kappa, so equal duties are
-/// best.
+/// Largest kappa (1 - kappa) / (b kappa + c) of a tap. Duties of an exposure add to at most 1, or
+/// to exactly 1 without a drain; the expression is concave in kappa, so equal duties are best.
 double largest_gated(double b, double c, int taps, bool may_be_shorter) {
   if (may_be_shorter && c == 0.0) return 1.0 / b;  // limit of gates of vanishing length
   const double best = c / (std::sqrt(c * c + b * c) + c);
@@ -24,7 +23,7 @@ double largest_gated(double b, double c, int taps, bool may_be_shorter) {
   return kappa * (1.0 - kappa) / (b * kappa + c);
 }
 
-/// Sums a quantity over exposures, computing it once for consecutive exposures of equal length.
+/// Computes the quantity once for consecutive exposures of equal length.
 template <typename OfExposure>
 double sum_over(const std::vector<double>& exposure_s, OfExposure&& of_exposure) {
   double sum = 0.0, last_s = 0.0, last = 0.0;
@@ -62,14 +61,14 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
   const Eigen::VectorXcd transfer =
       without_rounding(camera.transfer(harmonics_kept(camera.samples)));
   photons_.emplace(transfer, may_ring);
-  // Analog weights of a mixer can weight photons by arrival time, which no gate can.
+  // Analog weights of a mixer can weight photons by arrival time.
   const bool weighs = camera.sensor.is_signed() && !camera.sensor.binary;
   if (!has_rows_ && !may_ring && !weighs) gates_.emplace(transfer);
   transfer_power_ = transfer.tail(transfer.size() - 1).cwiseAbs2();
 }
 
-/// Largest sum over exposures and taps of T_e^2 S^2 |M|^2 (mean of d^2 - kappa^2) / variance: the
-/// taps' maximum for one harmonic, to be multiplied by its |H|^2.
+/// Largest sum over exposures and taps of T_e^2 S^2 |M|^2 (mean of d^2 - kappa^2) / variance, to be
+/// multiplied by |H|^2 of one harmonic.
 double ReceiverBound::gathered(const OperatingPoint& point) const {
   const double p = peak_factor_;
   const double largest_harmonic =
@@ -91,7 +90,7 @@ double ReceiverBound::gathered(const OperatingPoint& point) const {
 
 double ReceiverBound::tap_information(const OperatingPoint& point) const {
   if (!photons_ || has_rows_) return infinity;
-  // This limits the mean over all depths; the limits from photons hold at each depth.
+  // Limits the mean over all depths; the limits from photons hold at each depth.
   return max_density_ * photons_->largest_slope_power() * gathered(point);
 }
 
@@ -121,7 +120,6 @@ double ReceiverBound::gate_information(const OperatingPoint& point) const {
 }
 
 double ReceiverBound::information(const OperatingPoint& point) const {
-  // For uniform depths, the mean over depths never exceeds the largest.
   return std::min({tap_information(point), recorded_information(point, max_density_ > 1.0),
                    gate_information(point)});
 }

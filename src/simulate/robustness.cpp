@@ -26,7 +26,6 @@ std::vector<double> correlation_changes(const ForwardModel& nominal, const Forwa
 
 const Estimate& larger(const Estimate& a, const Estimate& b) { return b.value > a.value ? b : a; }
 
-/// Evaluates cameras with the common settings of a report.
 class Judge {
  public:
   Judge(DepthErrorKind kind, const RobustnessOptions& options)

@@ -39,7 +39,6 @@ void RowCapture::see(const SceneImage& scene, const SceneLight& light, const For
         points_per_bin);
 }
 
-/// Adds S chi of all returns of a pixel.
 void RowCapture::add_all_light(int row, int column, std::vector<double>& work,
                                std::vector<double>& light) const {
   const double depth_m = scene_->depth_m(row, column);

@@ -13,13 +13,12 @@
 
 namespace tofsmith {
 
-/// Captures a scene row by row. The scene must outlive this object.
+/// The scene must outlive this object.
 class RowCapture {
  public:
   /// @throws std::invalid_argument if scene or options are invalid
   RowCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
              const CaptureOptions& options);
-  /// @param light  validated; must outlive this object
   RowCapture(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
              const Camera& camera, const CaptureOptions& options);
 
@@ -31,18 +30,16 @@ class RowCapture {
   int measurements() const { return pixel_.measurements(); }
   int tap_values() const { return pixel_.tap_values(); }
   const SceneImage& scene() const { return *scene_; }
-  /// Raw measurements of one row of one frame, (W, K).
+  /// Returns one row of one frame, (W, K).
   void row(int frame, int row, float* raw) const;
 
-  // The same in two steps, for pixels that receive the light of several rays.
+  // In two steps, for pixels that receive the light of several rays.
 
-  /// Computes S chi of every tap value, for all returns at a position in the scene.
+  /// Computes S chi of every tap value, for all returns.
   /// @param work, light  (tap values), overwritten
   void light_at(int row, int column, std::vector<double>& work, std::vector<double>& light) const;
   double ambient_e_per_s(int row, int column) const;
-  /// Ambient light if it is uniform.
   double ambient_e_per_s() const { return options_.ambient_e_per_s; }
-  /// Computes the raw measurements of a pixel.
   /// @param pixel  index in the frame
   /// @param light  overwritten
   void expose(int frame, std::uint64_t pixel, double ambient_e_per_s, std::vector<double>& light,
@@ -57,7 +54,7 @@ class RowCapture {
   double bin_m_;
   CaptureOptions options_;
   PixelCapture pixel_;
-  std::optional<FineCorrelation> tail_, transient_;  // if common to all pixels
+  std::optional<FineCorrelation> tail_, transient_;
 };
 
 /// Light on the pixels of a frame before noise [e/s], and the distances of its sources.
@@ -66,19 +63,18 @@ struct CollectedLight {
   int tap_values = 0;
   std::vector<double> taps;     ///< (H, W, tap values): S chi
   std::vector<double> ambient;  ///< (H, W); empty: uniform
-  Image<float> near_m, far_m;   ///< range of the contributing distances; NaN: none
+  Image<float> near_m, far_m;   ///< of contributing distances; NaN: none
 
   CollectedLight(int height_, int width_, int tap_values_);
 };
 
-/// Exposes one frame on all threads.
 /// @param light  null: the direct light of the source's scene, one ray per pixel
-/// @param raw    (H, W, K)
+/// @param raw  (H, W, K)
 /// @param shared  advances by 1 per row
 void expose_frame(const RowCapture& source, const CollectedLight* light, int frame, float* raw,
                   SharedProgress& shared);
 
-/// Exposes the first `frames` frames under the same light, each with independent noise.
+/// Exposes frames under the same light, each with independent noise.
 /// @throws Interrupted if `progress` cancels
 RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int frames,
                           const Progress& progress);

@@ -11,8 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Adds noise with a given covariance, by its Cholesky factor. Pivoting is needed because rows may
-/// be linearly dependent.
+/// Pivoting is needed because rows may be linearly dependent.
 void add_row_noise(Eigen::MatrixXd& covariance, const double* normals, double* value) {
   const Eigen::Index count = covariance.rows();
   std::array<Eigen::Index, max_measurements> order;

@@ -9,9 +9,8 @@
 
 namespace tofsmith {
 
-/// Measurements in trials of rows of one exposure. Poisson noise is drawn for every time bin and
-/// weighted by the rows; normal noise has the covariance at that depth and light. Light and
-/// covariance are interpolated linearly between 16 points per bin.
+/// Measurements of rows of one exposure. Poisson noise is drawn for every time bin and weighted by
+/// the rows; normal noise has the covariance at that depth and light.
 class RowTrials {
  public:
   static constexpr int points_per_bin = 16;  // same as in TrialModel
@@ -24,8 +23,7 @@ class RowTrials {
   void draw(const TrialStreams& streams, double ambient_e_per_s, int trials, TrialTile& tile) const;
 
  private:
-  /// Returns electrons and variances of ambient light and dark current, in the layout of
-  /// of_signal_.
+  /// Electrons and variances of ambient light and dark current, in the layout of of_signal_.
   std::vector<double> beside_signal(double ambient_e_per_s) const;
   void draw_poisson_rows(const TrialStreams& streams, double ambient_e_per_s, int trials,
                          TrialTile& tile) const;

@@ -21,7 +21,7 @@ double share(std::int64_t part, std::int64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Crops and bins the view to the sensor area that an Azure Kinect uses for this image size.
+/// Crops and bins to the sensor area that an Azure Kinect uses for this image size.
 /// @see Azure Kinect Sensor SDK, src/transformation/mode_specific_calibration.c
 void take_azure_kinect_mode(PinholeView& view) {
   struct Mode {
@@ -32,7 +32,6 @@ void take_azure_kinect_mode(PinholeView& view) {
     if (view.width != width || view.height != height) continue;
     view.fx_px /= binning;
     view.fy_px /= binning;
-    // Pixel coordinates count from the centre of the first pixel.
     view.cx_px = (view.cx_px + 0.5) / binning - 0.5 - first_column;
     view.cy_px = (view.cy_px + 0.5) / binning - 0.5 - first_row;
   }

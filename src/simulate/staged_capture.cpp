@@ -14,7 +14,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Repeats every pixel n x n times.
 Image<float> repeated(const Image<float>& image, int n) {
   Image<float> result(n * image.height, n * image.width);
   for (int row = 0; row < result.height; ++row)
@@ -23,7 +22,7 @@ Image<float> repeated(const Image<float>& image, int n) {
   return result;
 }
 
-/// Casts rays. @param pixel_rays  of the scene's view, with each pixel divided samples x samples
+/// @param pixel_rays  with each pixel divided samples x samples
 SceneImage rays_of(const RayCaster& caster, const PixelRays& pixel_rays, const StagedScene& scene,
                    const StagedSetup& setup, int samples) {
   SceneImage rays = caster.see(pixel_rays, scene.camera_to_world).image;
@@ -39,11 +38,10 @@ SceneLight light_of(const StagedScene& scene, const SceneImage& rays, const Stag
   return setup.light(divided, rays);
 }
 
-/// Casts rays at a scene at any time. The rays of pixels and the search structures of static meshes
-/// are computed once.
+/// Computes the rays of pixels and the search structures of static meshes once.
 class MovingView {
  public:
-  /// @param samples  number of rays per pixel along each axis
+  /// @param samples  rays per pixel along each axis
   MovingView(const StagedScene& scene, const StagedSetup& setup, int samples)
       : scene_(scene),
         setup_(setup),
@@ -53,11 +51,9 @@ class MovingView {
     if (scene.shapes_are_still()) still_.emplace(scene.shapes, setup.search_of);
   }
 
-  /// Casts rays through all parts of pixels.
   SceneImage rays_at(const StagedScene& now) const {
     return samples_ == 1 ? centres_at(now) : see(parts_, now, samples_);
   }
-  /// Casts rays through the centres of pixels.
   SceneImage centres_at(const StagedScene& now) const { return see(centres_, now, 1); }
   StagedScene at(double time_s) const { return scene_.at(time_s); }
 
@@ -74,7 +70,7 @@ class MovingView {
   std::optional<RayCaster> still_;
 };
 
-/// Captures each exposure, with all its taps, from the scene at the middle of the exposure.
+/// Captures each exposure from the scene at its middle.
 StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, const Camera& camera,
                              const CaptureOptions& options, const StagedSetup& setup,
                              const Progress& progress) {

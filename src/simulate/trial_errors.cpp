@@ -16,7 +16,7 @@ Estimate mean_of_sum(double sum, double squared_differences, std::int64_t trials
   return {sum * per_trial, std::sqrt(squared_differences) * per_trial};
 }
 
-/// Returns the root of a mean of squares, with its standard error to first order.
+/// The standard error is of first order.
 Estimate root_mean_square(const PairSums& sums, std::int64_t trials, double scale) {
   const Estimate mean = mean_of_sum(sums.of_squares(), sums.squared_product, trials, 1.0);
   if (!(mean.value > 0.0)) return {};
@@ -31,7 +31,6 @@ DepthErrorMean mean_over_points(const std::vector<PointDepthError>& points,
   return {geometric_mean_of(errors), mean_of(errors)};
 }
 
-/// Decides the number of trials of each point, round by round.
 class AdaptiveTrials {
  public:
   AdaptiveTrials(const Camera& camera, const EvaluateOptions& options)
@@ -43,7 +42,7 @@ class AdaptiveTrials {
            error.standard_error <= options_.target_standard_error * error.value;
   }
 
-  /// Returns the number of trials to add to a point that misses the target; 0 at the maximum.
+  /// Returns 0 at the maximum.
   std::int64_t more_trials(const ErrorSums& sums) const {
     constexpr double margin = 1.1, min_growth = 1.5, max_growth = 16.0;
     const auto made = static_cast<double>(sums.trials);
@@ -64,11 +63,9 @@ class AdaptiveTrials {
                                                              : sums.circular(camera_.bin_m());
   }
 
-  /// A few trials may contain no wrap and thus underestimate the variance. For uniform depths, a
-  /// fraction (circular error) / (2 range) wraps at each end, with an error of about the range
-  /// each: the linear error is about twice the circular one, and its variance about (circular
-  /// error) x range. If the ends are w times as frequent, the factors are 1 + w for the error and w
-  /// for the variance.
+  /// A few trials may contain no wrap and thus underestimate the variance. For uniform depths, the
+  /// linear error is about twice the circular error, and its variance about (circular error) x
+  /// range. If the ends are w times as frequent, the factors are 1 + w and w.
   std::int64_t foreseen_trials(const ErrorSums& sums) const {
     if (camera_.operating.error != DepthErrorKind::linear) return 0;
     const double circular_m = sums.circular(camera_.bin_m()).value;
@@ -86,7 +83,7 @@ class AdaptiveTrials {
   const EvaluateOptions& options_;
 };
 
-/// Adds rounds of trials until the target is met. @return number of points that miss it
+/// Returns the number of points that miss the target.
 int refine(const DepthTrials& trials, const AdaptiveTrials& plan, double threshold_bin,
            const Progress& progress, std::vector<ErrorSums>& of_point) {
   for (Progress left = progress;;) {

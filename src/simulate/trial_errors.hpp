@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Sums of errors over pairs of trials in neighbouring slices, for means of errors and of their
-/// squares, with the variance of both (collapsed strata).
+/// Sums over pairs of trials in neighbouring slices, for means of errors and of their squares, with
+/// the variance of both (collapsed strata).
 struct ErrorSums {
   TileSums sums;
   std::int64_t trials = 0;
@@ -20,11 +20,11 @@ struct ErrorSums {
   Estimate outlier_rate() const;
 };
 
-/// Sums the errors of every round; outliers are circular errors beyond the threshold.
+/// Outliers are circular errors beyond the threshold.
 std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
                                   double threshold_bin, const Progress& progress);
 
-/// Returns depth errors at every point of the trials, and their means; bounds are 0.
+/// Returns depth errors without bounds.
 /// @param code, camera  of the trials
 DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, const Camera& camera,
                               const EvaluateOptions& options, const Progress& progress);

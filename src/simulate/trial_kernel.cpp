@@ -50,7 +50,7 @@ void place(const DepthSlices& slices, double rows, double rows_per_bin, int tria
   }
 }
 
-/// Records of a chunk of trials, as rows of pixels_per_chunk.
+/// A chunk of trials, as rows of pixels_per_chunk.
 struct RecordChunk {
   alignas(64) std::uint32_t start[pixels_per_chunk];
   alignas(64) float fields[4 * max_measurements * pixels_per_chunk];
@@ -69,8 +69,8 @@ struct RecordChunk {
   }
 };
 
-/// Adds L times normals, with the covariance c = L L^T stored row by row; directions without
-/// variance are skipped.
+/// Adds L times normals, with the covariance c = L L^T stored row by row; skips directions without
+/// variance.
 template <int Rank>
 HWY_INLINE void add_noise(int rank, Vector* c, const float* normals, Vector* q) {
   const Floats d;
@@ -94,7 +94,7 @@ HWY_INLINE void add_noise(int rank, Vector* c, const float* normals, Vector* q) 
   }
 }
 
-/// `Rank` 0: the rank is known only at run time.
+/// `Rank` 0: known only at run time.
 template <int Rank>
 void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile) {
   constexpr int max_rank = Rank > 0 ? Rank : max_measurements;
@@ -150,7 +150,7 @@ void plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTi
   }
 }
 
-/// For a mixer: means of its numbers, followed by their shot noise.
+/// For a mixer: means, followed by their shot noise.
 void expect(const TrialModel& model, const float* mean_floor_e, const float* shot_floor_e2,
             int trials, TrialTile& tile) {
   const Floats d;
@@ -213,7 +213,7 @@ void read_out(const TapConversion& sensor, const float* max_e, int taps, int tri
     }
 }
 
-/// PairSums with one pair per lane.
+/// One pair per lane.
 struct PairVectors {
   DoubleVector sum, squared_difference, squared_sum, squared_product;
 

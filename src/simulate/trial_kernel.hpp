@@ -14,15 +14,13 @@ namespace tofsmith {
 
 static_assert(trials_per_tile == pixels_per_tile);
 
-/// Positions of the depths of consecutive trials: trial n of a round is in the n-th of equal slices
-/// of the range.
+/// Trial n of a round is in the n-th of equal slices of the range.
 struct DepthSlices {
-  std::int64_t first = 0;     ///< number of a tile's first trial within the round
+  std::int64_t first = 0;     ///< of a tile's first trial within the round
   double rows_per_trial = 0;  ///< length of a slice, in rows of the records
   bool on_bins = false;       ///< rounded down to a bin
 };
 
-/// Workspace for a tile of trials, in rows of trials_per_tile.
 struct TrialTile {
   alignas(64) std::uint32_t words[4 * trials_per_tile];
   alignas(64) float normals[max_measurements * trials_per_tile];
@@ -48,26 +46,24 @@ struct PlaneNoise {
   std::vector<float> floor;                        // same layout as products
 };
 
-/// Fills row, share and true_bin from the words of block 0: the lowest bytes of words 1 and 3 give
-/// a 16-bit position in the slice.
+/// Fills row, share and true_bin: the lowest bytes of words 1 and 3 of block 0 give a 16-bit
+/// position in the slice.
 void place_depths(const TrialModel& model, const DepthSlices& slices, int trials, TrialTile& tile);
 
 /// Fills pixels.plane from row, share, signal and `rank` rows of normals.
 void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile);
 
-/// Fills taps with expected electrons; for a mixer followed by as many rows of their shot noise
-/// [e^2].
+/// Fills taps with expected electrons; for a mixer followed by their shot noise [e^2].
 void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e,
                       const std::vector<float>& shot_floor_e2, int trials, TrialTile& tile);
 
 /// Adds normal noise to expected electrons, or read noise to Poisson counts; then clips and
 /// converts.
-/// @param max_e  limits of electrons before read-out, to [0, max_e], for a mixer [-max_e, max_e]
-///               (taps); empty: no limit
+/// @param max_e  limit of electrons before read-out, for a mixer of both signs (taps); empty: none
 void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,
                    TrialTile& tile);
 
-/// Sums over pairs a, b of neighbours 2 i, 2 i + 1 in trials sorted by depth slice.
+/// Sums over pairs a, b of trials 2 i, 2 i + 1, sorted by depth slice.
 struct PairSums {
   double sum = 0.0;                 ///< of a + b
   double squared_difference = 0.0;  ///< of (a - b)^2
@@ -79,7 +75,6 @@ struct PairSums {
   double of_squares() const { return 0.5 * (squared_difference + squared_sum); }
 };
 
-/// Sums of errors, and of outliers (mean only).
 struct TileSums {
   PairSums linear, circular;
   double outliers = 0.0, outlier_squared_difference = 0.0;

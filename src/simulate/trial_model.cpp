@@ -43,7 +43,7 @@ TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
                      : Eigen::MatrixXd::Identity(model.tap_values(), model.tap_values())) {}
 
 /// @param sums  combines the tap values that are drawn together: identity, or the numbers of a
-///              mixer
+///   mixer
 TrialModel::TrialModel(const ForwardModel& model, const Camera& camera, const Eigen::MatrixXd& sums)
     : taps_(static_cast<int>(sums.rows())),
       samples_(model.samples()),

@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// Conversion of a tap's electrons to a raw number, see PixelNoise.
+/// See PixelNoise.
 struct TapConversion {
   bool is_poisson = false;
   bool has_adc = false;
@@ -33,11 +33,11 @@ struct TapConversion {
 /// shot noise; each number of a mixer counts as a tap here.
 class TrialModel {
  public:
-  /// From a code on a camera, with at least 16 rows per bin.
+  /// Uses at least 16 rows per bin.
   TrialModel(const ForwardModel& model, const Camera& camera);
-  /// From rows, for the depths only; RowTrials draws the measurements.
+  /// For the depths of rows only; RowTrials draws the measurements.
   explicit TrialModel(const ForwardModel& model);
-  /// Simulates a table: normal noise, chords between its rows.
+  /// Normal noise, chords between the rows of a table.
   explicit TrialModel(const DecodingTable& table);
 
   int taps() const { return taps_; }
@@ -46,15 +46,14 @@ class TrialModel {
   int rows_per_bin() const { return rows_per_bin_; }
   int rows() const { return samples_ * rows_per_bin_; }
   bool has_own_shot_noise() const { return has_own_shot_noise_; }
-  /// x (taps), its change to the next row (taps), and the same for x' if it differs from x.
+  /// x (taps), its change to the next row (taps), and both for x' if it differs from x.
   const RecordTable& records() const { return records_; }
   const TapConversion& conversion() const { return conversion_; }
-  /// Returns true if raw numbers are affine in normal electrons, so that the noise of any
-  /// projection is normal.
+  /// Returns true if raw numbers are affine in normal electrons; noise of any projection is then
+  /// normal.
   bool is_linear() const;
 
-  /// Raw numbers as a function of electrons if is_linear(): raw_per_e (K, taps) and raw_at_zero
-  /// (K).
+  /// If is_linear(): raw_per_e (K, taps) and raw_at_zero (K).
   const Eigen::MatrixXd& raw_per_e() const { return raw_per_e_; }
   const Eigen::VectorXd& raw_at_zero() const { return raw_at_zero_; }
   /// A a + d (taps).

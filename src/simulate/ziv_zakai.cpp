@@ -12,13 +12,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Shifts h in (0, 1/2): centres and widths of cells.
+/// Shifts h in (0, 1/2).
 struct Shifts {
   Eigen::ArrayXd middle, width;
 };
 
-/// Fine where delays with slope power `slope` are hard to distinguish, and everywhere finer than
-/// the highest harmonic.
+/// Fine where delays are hard to distinguish, and finer than the highest harmonic.
 Shifts shifts_for(double slope, Eigen::Index highest) {
   constexpr Eigen::Index near_cells = 48;
   constexpr double distinct_at = 8.0;  // in standard deviations
@@ -44,21 +43,19 @@ double confusion(double squared_distance) {
   return 0.5 * std::erfc(std::sqrt(squared_distance / 8.0));
 }
 
-/// Derivative of confusion().
 double confusion_slope(double squared_distance) {
   constexpr double least = 1e-12;  // avoids the singularity at 0
   const double x = std::max(squared_distance, least);
   return -std::exp(-x / 8.0) / (4.0 * std::sqrt(2.0 * pi * x));
 }
 
-/// Integral of confusion() over 0 < h < 1/2 for squared distances h^2 information.
+/// Integral over 0 < h < 1/2 for squared distances h^2 information.
 double confused_by_information(double information) {
   const double root = std::sqrt(information), end = root / 4.0;  // of half the distance
   const double density_fall = -std::expm1(-0.5 * end * end) / std::sqrt(2.0 * pi);
   return 2.0 / root * (end * confusion(4.0 * end * end) + density_fall);
 }
 
-/// Number of harmonics before the negligible remainder.
 Eigen::Index last_that_matters(const Eigen::VectorXd& power) {
   constexpr Eigen::Index most = 96;
   constexpr double share = 1e-4;  // relative to the largest
@@ -70,7 +67,7 @@ Eigen::Index last_that_matters(const Eigen::VectorXd& power) {
 }  // namespace
 
 double ziv_zakai_mae(const Eigen::VectorXd& power, double information) {
-  // Harmonics beyond `kept` share one column that is an upper limit for each of them.
+  // Harmonics beyond `kept` share one column, an upper limit for each of them.
   const Eigen::Index kept = last_that_matters(power), more = power.size() - kept;
   const Eigen::ArrayXd harmonic = Eigen::ArrayXd::LinSpaced(kept, 1.0, static_cast<double>(kept));
   double slope_power = power.size() > 0 && kept == 0 ? 0.0 : information;
@@ -89,7 +86,7 @@ double ziv_zakai_mae(const Eigen::VectorXd& power, double information) {
   if (more > 0) distance.col(kept).setConstant(4.0 * power.tail(more).maxCoeff());
 
   // Exponentiated gradient descent. The sum is convex in the shares, so its tangent plane at any of
-  // them is a lower bound everywhere; the highest such bound is used.
+  // them is a lower bound everywhere.
   constexpr int max_steps = 200;
   constexpr double tolerance = 2e-3;
   const Eigen::Index columns = distance.cols();

@@ -12,8 +12,7 @@ namespace tofsmith {
 /// Ziv-Zakai bound on the mean circular error, in periods, of any estimator of a delay that is
 /// uniform over the period and observed with normal noise:
 ///   mean |error| >= integral over 0 < h < 1/2 of the mean over u of P(u, u + h),
-/// with P the smallest probability of confusing two equally likely delays. It is 1/4 without
-/// signal, and sqrt(2 / pi) sigma if only close delays are confused.
+/// with P the smallest probability of confusing two equally likely delays.
 ///
 /// By convexity P >= Q(root of the mean squared distance / 2). The mean squared distance of delays
 /// h apart, in standard deviations, is at most the smaller of
@@ -25,8 +24,8 @@ namespace tofsmith {
 /// @see docs/bounds.md; J. Ziv, M. Zakai, IEEE Trans. Inf. Theory 15 (1969) 386
 double ziv_zakai_mae(const Eigen::VectorXd& power, double information);
 
-/// Error [m] for a given information: the Ziv-Zakai bound if depths are uniform, else range sqrt(2
-/// / pi) / sqrt(information).
+/// Error [m]: the Ziv-Zakai bound if depths are uniform, else range sqrt(2 / pi) /
+/// sqrt(information).
 /// @param max_density  of depths, relative to uniform
 inline double mae_of_information_m(double information, double range_m, double max_density) {
   return range_m * (max_density > 1.0 ? mae_per_sigma() / std::sqrt(information)

@@ -11,8 +11,8 @@
 
 namespace tofsmith {
 
-/// Bounds at the operating points of a camera that depend only on the exposures of a code and their
-/// shares of the time; computed once for all codes. Not thread-safe.
+/// Bounds that depend only on the exposures of a code and their shares of the time; computed once
+/// for all codes. Not thread-safe.
 class CameraBounds {
  public:
   struct Level {
@@ -22,7 +22,7 @@ class CameraBounds {
   /// @param camera  as for evaluate(), with albedo and neighbours; must outlive this object
   explicit CameraBounds(const Camera& camera) : camera_(camera) {}
 
-  /// Returns bounds in the order of camera.operating.points(); the receiver's is 0 for rows.
+  /// In the order of camera.operating.points(); the receiver's bound is 0 for rows.
   const std::vector<Level>& of(const CodeSet& code);
 
  private:
@@ -30,7 +30,7 @@ class CameraBounds {
   std::map<std::pair<int, std::vector<double>>, std::vector<Level>> levels_;  // and shares
 };
 
-/// As evaluate(), with bounds shared between codes; returns the same values.
+/// Shares bounds between codes; same values as evaluate().
 /// @param bounds  for the same camera
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                           CameraBounds& bounds, const Progress& progress);

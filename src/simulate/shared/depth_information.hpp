@@ -8,11 +8,11 @@
 
 namespace tofsmith {
 
-/// Number of depths per bin in a Cramer-Rao bound.
+/// Depths per bin in a Cramer-Rao bound.
 constexpr int cells_per_bin = 4;
-constexpr double min_e2 = 1e-9;  // minimum variance; avoids 0 / 0 without light and noise
+constexpr double min_e2 = 1e-9;  // avoids 0 / 0 without light and noise
 
-/// Computes values at the centre of cells, from a table of twice as many points, and the slope over
+/// Returns values at the centre of cells, from a table of twice as many points, and the slope over
 /// each cell.
 inline void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
                                Eigen::MatrixXd& slope) {
@@ -25,7 +25,7 @@ inline void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& mid
   }
 }
 
-/// The adjoint of middles_and_slopes(): returns the gradient with respect to the fine table.
+/// Adjoint of middles_and_slopes().
 inline Eigen::MatrixXd pull_back_middles_and_slopes(const Eigen::MatrixXd& by_middle,
                                                     const Eigen::MatrixXd& by_slope) {
   const Eigen::Index cells = by_middle.rows();
@@ -40,7 +40,7 @@ inline Eigen::MatrixXd pull_back_middles_and_slopes(const Eigen::MatrixXd& by_mi
 /// Component of the depth column of a whitened Jacobian that is orthogonal to the other two:
 ///   across = by_depth - signal_share by_signal - ambient_share by_ambient,
 ///   [F^-1]_zz = 1 / |across|^2.
-/// Well-defined even if ambient light and signal cannot be separated and the matrix is singular.
+/// Well-defined even if the matrix is singular.
 template <typename Vector>
 struct DepthPart {
   DepthPart(Vector by_depth, Vector by_signal, Vector by_ambient) {
@@ -57,7 +57,7 @@ struct DepthPart {
     across = by_depth;
   }
 
-  /// Smallest standard deviation [m]; infinite if depth cannot be separated from the other columns.
+  /// [m]; infinite if depth cannot be separated from the other columns.
   double deviation_m(double range_m) const { return length > 0.0 ? range_m / length : infinity; }
 
   Vector across;
@@ -65,16 +65,14 @@ struct DepthPart {
   double signal_share, ambient_share;
 
  private:
-  /// Removes the component of `vector` along `direction` (unit length or zero).
-  /// @return the removed component
+  /// Returns the removed component along `direction` (unit length or zero).
   static double take_out(Vector& vector, const Vector& direction) {
     const double along = vector.dot(direction);
     vector -= along * direction;
     return along;
   }
 
-  /// Normalizes a vector, or sets it to zero if only rounding error remains.
-  /// @return scale factor
+  /// Sets the vector to zero if only rounding error remains. Returns the scale factor.
   static double normalize_or_drop(Vector& vector, double original_norm) {
     const double norm = vector.norm();
     if (norm > 1e-10 * original_norm && norm > 0.0) {

@@ -12,9 +12,8 @@
 
 namespace tofsmith {
 
-/// Sum of linear errors [bin] at every rotation for uniform depths, as a step function of the
-/// rotation that is stored by its jumps: jumps[r] is the increase from rotation r - 1 to r;
-/// jumps[0] is the sum at rotation 0.
+/// Sum of linear errors [bin] at every rotation for uniform depths, stored by its jumps: jumps[r]
+/// is the increase from rotation r - 1 to r; jumps[0] is the sum at rotation 0.
 class ErrorByRotation {
  public:
   explicit ErrorByRotation(int samples) : jumps_(static_cast<std::size_t>(samples) + 1, 0.0) {}
@@ -34,7 +33,6 @@ class ErrorByRotation {
   void merge(const ErrorByRotation& other) {
     for (std::size_t r = 0; r < jumps_.size(); ++r) jumps_[r] += other.jumps_[r];
   }
-  /// Sums at rotations 0 to N - 1.
   std::vector<double> sums() const {
     std::vector<double> result(jumps_.begin(), jumps_.end() - 1);
     for (std::size_t r = 1; r < result.size(); ++r) result[r] += result[r - 1];
@@ -46,9 +44,8 @@ class ErrorByRotation {
 };
 
 /// Sum of errors [bin] at every rotation for non-uniform depths, from trials with uniform depths:
-/// each trial is weighted by the frequency of the bin that contains its depth, relative to the
-/// origin. For the linear error, a trial counts its circular error, plus the difference where the
-/// origin separates the shorter arc.
+/// each trial is weighted by the frequency of its depth relative to the origin. The linear error is
+/// the circular error, plus the difference where the origin separates the shorter arc.
 class WeighedErrorByRotation {
  public:
   WeighedErrorByRotation(const DepthPrior& prior, DepthErrorKind kind, int samples)
@@ -77,7 +74,6 @@ class WeighedErrorByRotation {
     circular_ += other.circular_;
     parted_ += other.parted_;
   }
-  /// Sums at rotations 0 to N - 1.
   std::vector<double> sums() const {
     const Eigen::VectorXd all = parted_ + circular_correlation(circular_, weight_);
     std::vector<double> result(static_cast<std::size_t>(all.size()));
@@ -89,18 +85,17 @@ class WeighedErrorByRotation {
  private:
   Eigen::VectorXd weight_;  // per bin, mean 1
   bool is_linear_;
-  Eigen::VectorXd circular_;  // circular error of the trials in each bin, without weights
+  Eigen::VectorXd circular_;  // in each bin, without weights
   Eigen::VectorXd parted_;    // additional error at each rotation
 };
 
-/// Returns the best origin of depth: the first rotation with the smallest error. Used wherever an
-/// origin is selected; `errors` may be a monotone function of the errors.
+/// Returns the first rotation with the smallest error; `errors` may be a monotone function of the
+/// errors.
 inline int best_of_rotations(const std::vector<double>& errors) {
   return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
 }
 
-/// Smooths the errors of all rotations over their neighbours, cyclically. Rotations share their
-/// trials; with few trials the minimum of the unsmoothed values is due to noise.
+/// Smooths cyclically, because with few trials the minimum is due to noise.
 inline std::vector<double> smoothed_over_rotations(const std::vector<double>& errors) {
   constexpr std::array<double, 5> weights = {1.0, 2.0, 3.0, 2.0, 1.0};
   const std::size_t count = errors.size();
