@@ -11,23 +11,22 @@
 
 namespace tofsmith {
 
-/// Axes with a common index: an axis with its linked axes, or all axes of a zipped group.
+/// Axes with a common index.
 using AxisDigit = std::vector<std::size_t>;
 
-/// An axis or a group of axes. Its digits form a number whose last digit varies fastest.
+/// Digits form a number whose last digit varies fastest.
 struct AxisBlock {
   std::vector<AxisDigit> digits;
   std::int64_t size = 1;  ///< at most 2^62
 };
 
-/// Returns the blocks by combination: blocks within a list advance together; the lists form a
-/// product whose last one varies fastest.
+/// Blocks within a list advance together; the lists form a product whose last one varies fastest.
 std::vector<std::vector<AxisBlock>> axis_blocks(const SweepSpec& spec);
 
-/// Returns the product a b, at most 2^62.
+/// Limits the product to 2^62.
 std::int64_t counted_product(std::int64_t a, std::int64_t b);
 
-/// Returns the name of a block in errors: "axis samples", "group optics".
+/// Returns "axis samples" or "group optics", for errors.
 std::string name_of(const SweepSpec& spec, const AxisBlock& block);
 
 }  // namespace tofsmith

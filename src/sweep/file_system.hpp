@@ -8,12 +8,12 @@
 
 namespace tofsmith {
 
-/// Returns the name of a file system that other machines can write to, such as "NFS", from its
-/// number in statfs(); "" for local file systems. Write-ahead logs require shared memory between
-/// their users and therefore fail on network file systems.
+/// Returns the name of a network file system, such as "NFS", from its number in statfs(); "" for
+/// local file systems. Write-ahead logs fail on network file systems, because they require shared
+/// memory.
 std::string network_file_system(std::uint32_t magic);
 
-/// As above, for the location of `path`, which need not exist.
+/// `path` need not exist.
 std::string network_file_system_at(const std::filesystem::path& path);
 
 }  // namespace tofsmith

@@ -16,11 +16,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the result to store for an item.
 std::string computed(const WorkItem& item, const Progress& progress) {
   if (!item.design)
     return item_result_json(evaluate(*item.code, item.camera, item.options, progress));
-  // Standard codes with three or more taps also compete, with other numbers of exposures.
+  // Standard codes with three or more taps compete with other numbers of exposures.
   const DesignResult result = design(item.camera, *item.design, progress);
   const int exposures = item.design->exposures.front();
   for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.measure()))

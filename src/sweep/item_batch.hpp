@@ -13,8 +13,7 @@
 
 namespace tofsmith {
 
-/// Computes items on all threads in the background, so that the calling thread can store outcomes
-/// as they arrive. The destructor stops the work.
+/// Computes items on all threads in the background. The destructor stops the work.
 class ItemBatch {
  public:
   ItemBatch(const WorkList& list, std::vector<ClaimedItem> items);
@@ -22,13 +21,13 @@ class ItemBatch {
   ItemBatch(const ItemBatch&) = delete;
   ItemBatch& operator=(const ItemBatch&) = delete;
 
-  /// Waits up to `max_wait` for outcomes. @return the new ones
+  /// Returns new outcomes after at most `max_wait`.
   std::vector<ItemOutcome> wait(std::chrono::milliseconds max_wait);
-  /// Returns true when the work has ended; wait() may still return outcomes.
+  /// True when the work has ended; wait() may still return outcomes.
   bool is_done() const { return done_; }
-  /// Stops the work. @return outcomes that wait() has not returned
+  /// Returns the outcomes that wait() has not returned.
   std::vector<ItemOutcome> stop();
-  /// Progress of a batch of one item, in [0, 1]; 0 for larger batches.
+  /// Progress in [0, 1] of a batch of one item; 0 for larger batches.
   double fraction() const { return fraction_; }
 
  private:
@@ -42,7 +41,7 @@ class ItemBatch {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<ItemOutcome> outcomes_;
-  std::thread thread_;  // last, because it uses all other members
+  std::thread thread_;  // last, because it uses all members
 };
 
 }  // namespace tofsmith

@@ -22,7 +22,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Appends the bits of the number, because every digit of a switching time matters.
+/// Appends bits, because every digit of a switching time matters.
 void append(std::string& text, double number) {
   fmt::format_to(std::back_inserter(text), "{:x} ", std::bit_cast<std::uint64_t>(number));
 }
@@ -42,14 +42,13 @@ void append(std::string& text, const Waveform& waveform) {
   text += '\n';
 }
 
-/// Returns the camera without name and light levels, with its responses as samples regardless of
-/// their source.
+/// Omits name and light levels; responses become samples regardless of their source.
 std::string camera_text(const Camera& camera) {
   Camera plain = camera;
   plain.name = "camera";
   plain.operating = paper_operating_range();
   for (ImpulseResponse* response : {&plain.light.impulse_response, &plain.sensor.impulse_response})
-    if (!response->samples.empty()) response->file.clear();  // the samples are written instead
+    if (!response->samples.empty()) response->file.clear();
   return camera_to_json(plain);
 }
 
@@ -59,8 +58,7 @@ void append(std::string& text, std::string_view name, std::span<const double> nu
   text += '\n';
 }
 
-/// Returns the fields of EvaluateOptions that differ from their defaults, except for the fields
-/// that item_key() always includes.
+/// Options that differ from their defaults, except for the fields that item_key() always includes.
 std::string other_options(const EvaluateOptions& options) {
   static constexpr std::array<std::string_view, 7> always = {
       "trials",    "seed",           "outlier_threshold_m",

@@ -10,13 +10,12 @@
 
 namespace tofsmith {
 
-/// Returns a hash of a camera and a code, without names and light levels.
+/// Hash of camera and code without names and light levels.
 std::string setup_key(const Camera& camera, const CodeSet& code);
-/// As above for a camera that a code is designed for.
 /// @param effort  of the options
 std::string setup_key(const Camera& camera, const DesignOptions& options, double effort);
 
-/// Returns WorkItem::key for the arguments of evaluate().
+/// Returns WorkItem::key.
 /// @param setup  setup_key()
 std::string item_key(std::string_view setup, const OperatingRange& light,
                      const EvaluateOptions& options);

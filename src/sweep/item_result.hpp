@@ -11,8 +11,7 @@
 
 namespace tofsmith {
 
-/// Returns a depth error as stored: one line of JSON without the code's name, which does not affect
-/// it.
+/// Returns one line of JSON without the code's name.
 /// @param designed  the code, if it was designed for the item
 std::string item_result_json(const DepthErrorReport& report, const CodeSet* designed = nullptr);
 
@@ -21,7 +20,6 @@ struct ItemResult {
   std::optional<CodeSet> designed;
 };
 
-/// Parses a stored result.
 /// @param code  name of the code
 /// @param file  the store, for errors
 /// @throws IoError naming file and member

@@ -17,7 +17,7 @@ std::uint64_t key_number(std::string_view key) {
 
 std::vector<std::int64_t> key_order(std::span<const std::string> keys) {
   struct Entry {
-    std::uint64_t number;  // decides nearly all comparisons without reading the key
+    std::uint64_t number;  // decides nearly all comparisons
     std::int64_t place;
   };
   const auto key_of = [&](const Entry& entry) -> const std::string& {

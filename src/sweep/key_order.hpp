@@ -10,11 +10,10 @@
 
 namespace tofsmith {
 
-/// Returns the positions of all distinct keys, sorted by key; the first position if a key is
-/// repeated. This is the order of the store, so that it is accessed sequentially.
+/// Returns the first positions of all distinct keys, sorted by key as in the store.
 std::vector<std::int64_t> key_order(std::span<const std::string> keys);
 
-/// Returns the first 16 hexadecimal digits of a key as a number.
+/// Returns the first 16 hexadecimal digits.
 std::uint64_t key_number(std::string_view key);
 
 }  // namespace tofsmith

@@ -9,13 +9,12 @@ namespace tofsmith {
 
 namespace {
 
-/// Maps running items to pending.
+/// Running items become pending.
 std::string_view settled(ItemStatus status) {
   if (status == ItemStatus::finished) return "finished";
   return status == ItemStatus::failed ? "failed" : "pending";
 }
 
-/// Copies the items of the parts.
 class Merger {
  public:
   explicit Merger(SqliteDatabase& into)
@@ -42,7 +41,7 @@ class Merger {
         throw IoError(path.string(),
                       fmt::format("item {} ({}) has a different result in a previous store", key,
                                   item.settings));
-      // If both are finished, keep the faster one, so that the order of the parts does not matter.
+      // Keep the faster one of two finished items, so that the order of the parts does not matter.
       is_better = is && (!was_finished || item.seconds < find_.number(2));
       find_.reset();
     }
@@ -74,7 +73,7 @@ void SweepStore::merge(const std::filesystem::path& path,
       throw IoError(part.string(), fmt::format("was computed on {}, but the previous stores on {}",
                                                store.target(), target));
   }
-  // A rollback journal leaves a single file, which may be on a network file system.
+  // A rollback journal leaves a single file, possibly on a network file system.
   SqliteDatabase into = open_store_file(path, target, "any");
   SqliteTransaction transaction(into);
   Merger merger(into);

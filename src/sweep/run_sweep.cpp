@@ -19,11 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Long enough not to disturb the computing threads, short enough for the user.
 constexpr std::chrono::milliseconds max_wait(50);
 
-/// Number of items to claim: `batch_s` of work at the speed of the previous batch, and fewer near
-/// the end, so that processes that share a store finish together.
+/// Number of items for `batch_s` of work at the previous speed, and fewer near the end, so that
+/// processes that share a store finish together.
 class BatchSize {
  public:
   explicit BatchSize(double batch_s) : batch_s_(batch_s) {}
@@ -38,10 +37,9 @@ class BatchSize {
 
  private:
   double batch_s_;
-  double each_s_ = 1e6;  // unknown; the first batch has one item
+  double each_s_ = 1e6;  // unknown: the first batch has one item
 };
 
-/// Adds outcomes to the store and to the result.
 void keep(const std::vector<ItemOutcome>& outcomes, SweepQueue& queue, SweepRun& run) {
   queue.finish(outcomes);
   for (const ItemOutcome& outcome : outcomes) {
@@ -86,7 +84,7 @@ SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, Swee
     ItemBatch batch(list, std::move(items));
     try {
       for (bool is_done = false; !is_done;) {
-        is_done = batch.is_done();  // checked before wait(), so that it returns the last outcomes
+        is_done = batch.is_done();  // before wait(), which then returns the last outcomes
         keep(batch.wait(max_wait), queue, run);
         report(progress,
                (static_cast<double>(queue.settled()) + batch.fraction()) /

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int patience_ms = 60'000;
 
-/// Advice for the user.
 std::string_view advice(int code) {
   switch (code) {
     case SQLITE_FULL:

@@ -14,21 +14,21 @@ namespace tofsmith {
 
 class SqliteStatement;
 
-/// A connection to an SQLite database; not thread-safe. Every member throws IoError with the file
-/// and the messages of SQLite and the system.
+/// A connection to an SQLite database; not thread-safe. Members throw IoError with the file and the
+/// messages of SQLite and the system.
 class SqliteDatabase {
  public:
   enum class Access { read, write };
 
-  /// Opens a file; Access::write creates it if missing. Waits for other processes.
+  /// Access::write creates a missing file. Waits for other processes.
   SqliteDatabase(const std::filesystem::path& path, Access access);
 
-  /// Runs statements and ignores their rows.
+  /// Ignores rows.
   void execute(const std::string& statements);
-  /// Runs statements and returns SQLite's code instead of throwing.
+  /// Returns SQLite's code instead of throwing.
   int try_execute(const std::string& statements);
   SqliteStatement prepare(std::string_view statement);
-  /// First column of the first row as text; "" if there are no rows.
+  /// First column of the first row; "" without rows.
   std::string text_of(std::string_view query);
 
   /// @throws IoError with SQLite's last error
@@ -42,17 +42,15 @@ class SqliteDatabase {
   std::unique_ptr<sqlite3, Close> connection_;
 };
 
-/// A prepared statement. Parameters count from 1 and columns from 0, as in SQLite.
+/// Parameters count from 1 and columns from 0, as in SQLite.
 class SqliteStatement {
  public:
   SqliteStatement& bind(int parameter, std::string_view text);
   SqliteStatement& bind(int parameter, std::int64_t number);
   SqliteStatement& bind(int parameter, double number);
-  /// Advances to the next row. @return false at the end, after which parameters can be bound again
+  /// Returns false after the last row; parameters can then be bound again.
   bool step();
-  /// Runs the statement to its end.
   void run();
-  /// Ends the statement early.
   void reset() { sqlite3_reset(statement_.get()); }
 
   std::string text(int column) const;
@@ -71,7 +69,7 @@ class SqliteStatement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-/// Changes that are applied together; rolled back unless commit() is called.
+/// Rolls back unless commit() is called.
 class SqliteTransaction {
  public:
   explicit SqliteTransaction(SqliteDatabase& database) : database_(&database) {

@@ -18,12 +18,11 @@ namespace tofsmith {
 namespace {
 
 constexpr int application_id = 0x746f6673;  // "tofs"
-/// Version 1 had more columns and a table of processes. Both versions can be read and continued.
+/// Version 1 had more columns and a table of processes; it can be continued.
 constexpr int schema_version = 2, oldest_schema_version = 1;
 constexpr std::size_t header_bytes = 100;
 constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
 
-/// Returns the header of a database; shorter if the file is.
 std::string header_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string header(header_bytes, '\0');
@@ -32,7 +31,7 @@ std::string header_of(const std::filesystem::path& path) {
   return header;
 }
 
-/// Rejects existing files that are not databases before SQLite touches them.
+/// Rejects files that are not databases before SQLite touches them.
 void require_database(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -72,7 +71,7 @@ void create_if_empty(SqliteDatabase& database, const std::string& target) {
   transaction.commit();
 }
 
-/// SQLite cannot change the mode while another connection reads, and does not wait for it.
+/// SQLite does not wait for other connections to change the mode.
 void set_journal(SqliteDatabase& database, const std::string& mode) {
   for (int attempt = 0; database.try_execute("PRAGMA journal_mode = " + mode) == SQLITE_BUSY;
        ++attempt) {
@@ -83,7 +82,6 @@ void set_journal(SqliteDatabase& database, const std::string& mode) {
 
 using FileTime = std::filesystem::file_time_type;
 
-/// Returns the time of the last write; a fixed time if the file is missing.
 FileTime time_of(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::last_write_time(path, ignored);
@@ -111,7 +109,7 @@ std::filesystem::path make_directory() {
   return pattern;
 }
 
-/// In WAL mode even readers must create a file next to the database.
+/// In WAL mode even readers must create a file.
 bool asks_for_a_writable_place(SqliteDatabase& database) {
   const int code = database.try_execute("SELECT count(*) FROM sqlite_master");
   return code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
@@ -144,7 +142,7 @@ SqliteDatabase open_store_file(const std::filesystem::path& path, const std::str
   create_if_empty(database, target);
   require_ours(database, path);
   set_journal(database, network.empty() ? "WAL" : "DELETE");
-  // In WAL mode the file stays consistent even if a commit has not reached the disk.
+  // In WAL mode the file stays consistent even if a commit is lost.
   database.execute(network.empty() ? "PRAGMA synchronous = NORMAL" : "PRAGMA synchronous = FULL");
   return database;
 }

@@ -11,20 +11,19 @@
 namespace tofsmith {
 
 struct StoreHead {
-  std::string target;  ///< instruction set that the results were computed with
+  std::string target;  ///< instruction set of the results
 };
 
-/// Returns true if the header of a database file indicates WAL mode.
 bool is_in_wal_mode(const std::filesystem::path& path);
 
-/// Opens a store's file for writing; creates it if it is missing or empty.
-/// @param target   recorded in a new store
+/// Creates the file if it is missing or empty.
+/// @param target  recorded in a new store
 /// @param network  name of its network file system, or "" to use WAL mode
 /// @throws IoError if it is not a store, or as SweepStore::open()
 SqliteDatabase open_store_file(const std::filesystem::path& path, const std::string& target,
                                const std::string& network);
 
-/// A store's file opened for reading: the file itself or, if a killed process has left logs and the
+/// A store opened for reading: the file itself or, if a killed process has left logs and the
 /// directory is read-only, a temporary copy.
 struct ReadableStore {
   struct Directory {

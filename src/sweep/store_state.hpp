@@ -15,10 +15,10 @@ struct SweepStore::State {
   SqliteDatabase& database() { return file.database; }
 };
 
-/// Checksum that detects a damaged result.
+/// Detects a damaged result.
 std::string checksum_of(std::string_view key, std::string_view result);
 
-/// Reads an item from a row of `key, settings, status, result, checksum, message, seconds`.
+/// Reads a row of `key, settings, status, result, checksum, message, seconds`.
 /// @throws IoError if it is damaged
 StoredItem stored_item(const SqliteStatement& row, const std::filesystem::path& path);
 

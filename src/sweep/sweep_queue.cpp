@@ -14,7 +14,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Maximum number of items per call to the store.
 constexpr std::size_t max_items_per_call = 4096;
 
 }  // namespace
@@ -25,8 +24,7 @@ SweepQueue::SweepQueue(const WorkList& list, std::span<const std::string> keys, 
   std::erase_if(items_,
                 [&](std::int64_t i) { return !shard.holds(keys[static_cast<std::size_t>(i)]); });
   size_ = items_.size();
-  // Add items in the order of their keys, which is the order of the store, so that it grows at its
-  // end.
+  // The order of the store, which then grows at its end.
   const std::span<const std::int64_t> items(items_);
   for (std::size_t begin = 0; begin < items.size(); begin += max_items_per_call) {
     report(progress, 0.0, fmt::format("adding items: {} of {}", begin, items.size()));

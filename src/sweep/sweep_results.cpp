@@ -23,7 +23,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Values reported for every point.
 struct PointColumn {
   const char* name;
   double (*of)(const PointDepthError&);
@@ -49,8 +48,7 @@ constexpr std::array<PointColumn, 14> point_columns = {{
      [](const PointDepthError& p) { return bound_or_nan(p.direct_tof_bound_mae_m); }},
 }};
 
-/// Returns the axes that have their own column: not the light levels, which every point contains,
-/// nor the code, which has a column with its full name.
+/// Omits light levels, which every point contains, and the code, whose column has its full name.
 std::vector<std::size_t> reported_axes(const SweepSpec& spec) {
   std::vector<std::size_t> axes;
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
@@ -79,7 +77,6 @@ NpyArray integers(const std::vector<std::int64_t>& values) {
   return NpyArray::of<std::int64_t>({values.size()}, values);
 }
 
-/// Returns texts as rows of bytes.
 NpyArray names(const std::vector<std::string>& texts) {
   std::size_t width = 1;
   for (const std::string& text : texts) width = std::max(width, text.size());
@@ -89,7 +86,7 @@ NpyArray names(const std::vector<std::string>& texts) {
   return NpyArray::of<std::uint8_t>({texts.size(), width}, bytes);
 }
 
-/// Adds a text column as indices into its distinct values, in order of appearance.
+/// Writes indices into the distinct values, in order of appearance.
 void add_texts(NpzArrays& arrays, const std::string& name, const std::vector<std::string>& texts) {
   std::vector<std::string> distinct;
   std::map<std::string, std::int64_t> index_of;

@@ -18,7 +18,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Maximum number of items per transaction, because other processes wait for its end.
+/// Per transaction, because other processes wait for its end.
 constexpr std::size_t max_at_once = 4096;
 
 constexpr std::array<std::string_view, 4> status_words = {"pending", "running", "finished",

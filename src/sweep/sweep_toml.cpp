@@ -19,7 +19,6 @@
 namespace tofsmith {
 namespace {
 
-/// Maximum number of values of an axis.
 constexpr std::int64_t max_axis_values = 1'000'000;
 
 /// Axis keys that are not keys of the camera.
@@ -43,7 +42,7 @@ void check_key(const TableReader& table, const char* field, const std::string& k
                                              : fmt::format("did you mean \"{}\"?", near)));
 }
 
-/// Rounds to twelve digits, so that 0.1 + 0.2 gives the 0.3 of a written list.
+/// Rounds, so that 0.1 + 0.2 gives the 0.3 of a written list.
 double rounded(double value) { return *number_in(fmt::format("{:.12g}", value)); }
 
 std::vector<SettingValue> range_values(const TableReader& table, double from, double to,
@@ -87,7 +86,7 @@ bool may_be_value(const std::string& line) {
   return line.size() <= 4096 && (in_brackets || std::ranges::all_of(line, is_of_a_word));
 }
 
-/// Returns the value on a line of a one-column table, with numbers in TOML syntax.
+/// Returns the value in TOML syntax.
 std::string value_on_line(std::string_view line) {
   std::string_view text = trimmed(line);
   while (!text.empty() && std::string_view(",;\t ").find(text.back()) != std::string_view::npos)
@@ -99,15 +98,13 @@ std::string value_on_line(std::string_view line) {
   return finite_number_in(number) ? number : std::string(text);
 }
 
-/// Returns true if a line is the header of a column of values of an axis: "light.peak_factor" or
-/// "peak_factor".
+/// Recognizes "light.peak_factor" and "peak_factor".
 bool is_name_of(const std::string& line, const std::vector<std::string>& keys) {
   return std::ranges::any_of(keys, [&](const std::string& key) {
     return line == key || (!line.empty() && key.ends_with("." + line));
   });
 }
 
-/// @param keys  keys of the axis
 std::vector<SettingValue> file_values(const TableReader& table, const std::string& name,
                                       const std::vector<std::string>& keys) {
   const std::filesystem::path path = table.resolve("file", name);
@@ -124,7 +121,7 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
     const std::string place = fmt::format("{}:{}:{}", path.string(), line.number,
                                           line.text.find_first_not_of(" \t\r") + 1);
     if (&line == &lines.front() && is_name_of(value, keys)) continue;
-    if (!may_be_value(value))  // do not print the line: the file may be the wrong one
+    if (!may_be_value(value))  // do not print the line of a wrong file
       throw IoError(place,
                     "found a line that is not a value; expected a number, a word, a path or a text "
                     "in quotes");
@@ -174,7 +171,6 @@ void check_value(const SweepAxis& axis, const SettingValue& value) {
   }
 }
 
-/// Reads the key or keys of one [[axis]].
 std::vector<std::string> read_axis_keys(TableReader& table) {
   std::vector<std::string> keys;
   if (!table.contains("keys")) {
@@ -189,8 +185,7 @@ std::vector<std::string> read_axis_keys(TableReader& table) {
   return keys;
 }
 
-/// Returns the values that an entry gives to the keys of an axis: its elements if it is a list,
-/// else itself for each key.
+/// Returns the elements of a list, else the value for each key.
 /// @throws IoError for a list of another length
 std::vector<SettingValue> values_of_keys(const SettingValue& entry,
                                          const std::vector<std::string>& keys) {
@@ -208,8 +203,8 @@ std::vector<SettingValue> values_of_keys(const SettingValue& entry,
   return values;
 }
 
-/// Reads the entries of one [[axis]]. @throws IoError naming file:line:column
 /// @param keys  keys that the axis sets
+/// @throws IoError naming file:line:column
 std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
                                             const std::vector<std::string>& keys) {
   std::vector<SettingValue> entries;
@@ -242,7 +237,7 @@ std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key,
   return range_values(table, from, to, step);
 }
 
-/// Reads one [[axis]]: an axis per key, all but the first linked.
+/// Returns an axis per key, all but the first linked.
 std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
   const std::vector<std::string> keys = read_axis_keys(table);
   const char* const field = table.contains("keys") ? "keys" : "key";
@@ -332,7 +327,7 @@ void read_group(TableReader& table, SweepSpec& spec) {
     table.fail("name", fmt::format("found group \"{}\" a second time; expected one", name));
 }
 
-/// Checks that axes and groups that advance together have equal lengths.
+/// Axes and groups that advance together need equal lengths.
 void check_lengths(const SweepSpec& spec) {
   const auto refuse = [&](std::size_t axis, const std::string& name, std::int64_t size,
                           const std::string& first_name, std::int64_t first_size,
@@ -357,7 +352,6 @@ void check_lengths(const SweepSpec& spec) {
     }
 }
 
-/// Checks rules between axes and fixed settings.
 void check(const SweepSpec& spec) {
   if (spec.code.empty() && !has_axis(spec, "code"))
     throw IoError(spec.source_name,

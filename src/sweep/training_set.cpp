@@ -35,14 +35,14 @@ using Json = nlohmann::ordered_json;
 
 /// Increased whenever the files for the same inputs change.
 constexpr int training_set_version = 1;
-/// Number of scenes processed at a time; limits memory and the delay of an interrupt.
+/// Limits memory and the delay of an interrupt.
 constexpr std::int64_t scenes_at_once = 16;
 
 std::string_view bytes_of(const Image<float>& plane) {
   return {reinterpret_cast<const char*>(plane.pixels.data()), plane.size() * sizeof(float)};
 }
 
-/// Returns a hash that seeds everything random of a scene: seed of the set, name and content.
+/// Hash that seeds everything random of a scene.
 std::string identity_of(const TrainingScene& scene, const LoadedTrainingScene& loaded,
                         const CaptureOptions& capture) {
   const SceneImage& image = loaded.image;
@@ -61,7 +61,6 @@ double drawn(const LightRange& range, double uniform) {
   return std::clamp(level, range.low_e_per_s, range.high_e_per_s);
 }
 
-/// A scene with everything that determines its files.
 struct Example {
   std::string key;
   CaptureOptions capture;
@@ -74,7 +73,7 @@ NpyArray plane_array(const Image<float>& plane) {
       plane.pixels);
 }
 
-/// Returns the measured and the true arrays of a scene.
+/// Measured and true arrays.
 NpzArrays arrays_of(const Example& example, const RawFrames& raw, const Decoder& decoder) {
   const auto frames = static_cast<std::size_t>(raw.frames);
   const auto height = static_cast<std::size_t>(raw.height);
@@ -122,9 +121,8 @@ struct TrainingSetWriter::State {
   std::string setup;
   Decoder decoder;
 
-  /// Returns the scene with its key and its random light levels.
   Example prepared(const TrainingScene& scene, const TrainingSceneLoader& load) const;
-  /// Returns the contents of the scene's JSON file and its entry in the index.
+  /// Contents of the scene's JSON file and its entry in the index.
   Json parameters_of(const TrainingScene& scene, const Example& example,
                      const std::string& stem) const;
 };
@@ -200,7 +198,7 @@ TrainingSceneOutcome TrainingSetWriter::write(const TrainingScene& scene,
   make_output_directory(arrays.parent_path());
   const RawFrames raw = capture(example.scene.image, state_->code, state_->camera, example.capture);
   write_npz(arrays, arrays_of(example, raw, state_->decoder), OutputPolicy::overwrite);
-  // Written last, because this file marks the scene as finished.
+  // Last, because this file marks the scene as finished.
   write_file_atomically(parameters,
                         entry.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
                         OutputPolicy::overwrite);

@@ -27,13 +27,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The settings of an item: fixed settings combined with the values of its axes.
+/// Fixed settings with the values of the axes.
 struct Choice {
   std::string camera;
   std::vector<std::string> settings;
   std::string code;
   EvaluateOptions options;
-  /// From an axis; NaN: use the camera's.
+  /// NaN: use the camera's value.
   double signal_e_per_s = std::numeric_limits<double>::quiet_NaN();
   double ambient_e_per_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -75,7 +75,7 @@ Choice choose(const SweepSpec& spec, std::int64_t item) {
   return choice;
 }
 
-/// Returns a built-in name, or the path of a file relative to the sweep's.
+/// Returns a built-in name, or a path relative to the sweep's file.
 std::string resolved(const SweepSpec& spec, const std::string& name, bool is_ours) {
   return is_ours || name.empty() ? name : (spec.directory / name).string();
 }
@@ -86,7 +86,7 @@ Camera load_chosen_camera(const SweepSpec& spec, const Choice& choice) {
   return load_camera(resolved(spec, choice.camera, built_in), choice.settings);
 }
 
-/// Returns the exposures of a code to design, "optimized-k4"; none for existing codes.
+/// Returns 4 for "optimized-k4"; none for existing codes.
 std::optional<int> designed_exposures(std::string_view code) {
   constexpr std::string_view stem = "optimized-k";
   int exposures = 0;
@@ -97,7 +97,7 @@ std::optional<int> designed_exposures(std::string_view code) {
   return exposures;
 }
 
-/// Returns the options for designing the code of an item; they depend only on the item.
+/// Depends only on the item.
 DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& options, int exposures) {
   if (options.method != DecodeMethod::zncc)
     reject("method", name_of(options.method), "must be zncc to design codes");
@@ -117,7 +117,7 @@ DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& optio
 }
 
 CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Camera& camera) {
-  // A name that is not a file may be a misspelled family, which load_camera_code() reports.
+  // Another name may be a misspelled family, which load_camera_code() reports.
   const std::string file = resolved(spec, choice.code, is_family(choice.code));
   std::error_code ignored;  // such as a name that is too long
   const bool is_file = std::filesystem::exists(file, ignored);
@@ -126,7 +126,7 @@ CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Came
   return code;
 }
 
-/// Returns where the axis value of a setting was written; "" if it is not from an axis.
+/// Returns the place of the axis value; "" if the setting is not from an axis.
 /// @param setting  place of an error, which begins with the setting
 std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::string_view setting) {
   const std::vector<std::size_t> indices = spec.value_indices(item);
@@ -140,7 +140,7 @@ std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::stri
   return "";
 }
 
-/// Computes keys of items. A camera and a code that several items share are loaded and built once.
+/// Builds a camera and a code that several items share only once.
 class SetupCache {
  public:
   explicit SetupCache(const WorkList& list) : list_(list) {
