@@ -26,7 +26,7 @@ std::vector<std::byte> bytes_of_text(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// SHA-256 as 64 hexadecimal digits, as `sha256sum` prints it.
+/// Lower-case hexadecimal digits, as from `sha256sum`.
 std::string sha256_hex(std::span<const std::byte> bytes) {
   std::array<char, SHA256_DIGEST_STRING_LENGTH> digits{};
   return SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(),
@@ -107,7 +107,6 @@ Json waveform_json(const QuantizedWaveform& waveform, const WaveformExport& expo
   return json;
 }
 
-/// Positions of the outputs in a word.
 Json fields_json(const WaveformExport& exported) {
   Json json = Json::array();
   for (const PatternField& field :

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns the two-channel models that accept this format, by increasing sample rate.
+/// Two-channel models by increasing sample rate.
 std::vector<GeneratorModel> models_of_format(const std::string& format) {
   std::vector<GeneratorModel> models;
   for (const GeneratorModel& model : generator_models())
@@ -21,7 +21,6 @@ std::vector<GeneratorModel> models_of_format(const std::string& format) {
   return models;
 }
 
-/// Models with the same messages.
 struct SharedScript {
   GeneratorModel first;
   std::vector<std::string> names;
@@ -50,7 +49,7 @@ ExportedScripts export_scripts(const WaveformExport& exported) {
       try {
         add(scripts, upload_script(model, request));
       } catch (const std::invalid_argument& error) {
-        // Keeps the message of the fastest model, which is the last one.
+        // Keeps the message of the fastest model, the last one.
         if (exposure == 1) result.problem = error.what();
       }
     }

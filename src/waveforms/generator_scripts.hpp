@@ -12,21 +12,20 @@
 
 namespace tofsmith {
 
-/// Return the steps of each family for a request that fits the model.
+/// Steps for a request that fits the model.
 std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadRequest& request);
 std::vector<UploadStep> keysight_steps(const UploadRequest& request);
 std::vector<UploadStep> tektronix_steps(const UploadRequest& request);
 std::vector<std::string> siglent_outputs_off(const UploadRequest& request);
 std::vector<std::string> scpi_outputs_off(const UploadRequest& request);
 
-/// Returns the first line of a script, which lists the models.
+/// First line of a script, with the models.
 std::string script_heading(const GeneratorModel& model, const std::vector<std::string>& names);
-/// Returns the other lines of a script.
 std::string script_messages(const UploadScript& script);
 
 UploadStep message_step(std::string what, std::string message);
 UploadStep output_on(std::string message);
-/// Returns a query and the checks of its answer.
+/// Query with the checks of its answer.
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks);
 
 AnswerCheck number_check(int channel, std::string quantity, std::string field, double wanted,
@@ -34,7 +33,6 @@ AnswerCheck number_check(int channel, std::string quantity, std::string field, d
 AnswerCheck word_check(int channel, std::string quantity, std::string field,
                        std::vector<std::string> texts, bool within = false);
 
-/// Appends steps that set and check one channel.
 class ChannelSteps {
  public:
   ChannelSteps(std::vector<UploadStep>& steps, int channel) : steps_(steps), channel_(channel) {}
@@ -46,11 +44,11 @@ class ChannelSteps {
   int channel_;
 };
 
-/// Appends the first steps of standard SCPI scripts (Keysight, Tektronix): outputs off, reset.
+/// Standard SCPI (Keysight, Tektronix): outputs off, reset.
 void begin_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
-/// Appends the last steps: check that outputs are off; switch them on if requested.
+/// Checks that outputs are off; switches them on if requested.
 void end_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
-/// Load in SCPI [ohm]; infinity is 9.9e37.
+/// Infinity is 9.9e37 [ohm].
 double scpi_load_ohm(double load_ohm);
 
 std::string text_of(std::span<const std::byte> bytes);
@@ -60,7 +58,7 @@ double frequency_tolerance_hz(double frequency_hz, double relative);
 inline constexpr double scpi_frequency_tolerance = 1e-6;  ///< relative; Keysight and Tektronix
 inline constexpr double volt_tolerance_v = 1e-3;
 
-/// Returns a memory name that depends on the points: "M1_1F3A77C2".
+/// Returns a name that depends on the points: "M1_1F3A77C2".
 std::string memory_name(const QuantizedWaveform& waveform);
 
 }  // namespace tofsmith

@@ -9,7 +9,7 @@
 
 namespace tofsmith {
 
-/// Returns bytes as a definite-length block of IEEE 488.2: '#', number of digits, length, data.
+/// '#', number of digits, length, data (IEEE 488.2).
 /// @throws std::invalid_argument beyond 999999999 bytes
 std::vector<std::byte> ieee488_block(std::span<const std::byte> data);
 

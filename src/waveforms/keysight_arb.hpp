@@ -16,17 +16,16 @@ namespace tofsmith {
 /// Levels of the DAC of a 33500 or 33600, -32767 to 32767.
 inline constexpr std::int32_t keysight_levels = 65535;
 
-/// Returns a waveform of `keysight_levels` levels as an .arb file for a 33500 or 33600.
+/// Returns an .arb file for a 33500 or 33600.
 /// @param end_of_line  "\n" or "\r\n"
-/// @throws std::invalid_argument if the waveform is invalid or has a different number of levels
+/// @throws std::invalid_argument if the waveform is invalid or does not have `keysight_levels`
 std::string keysight_arb_text(const QuantizedWaveform& waveform,
                               std::string_view end_of_line = "\n");
-/// Returns only the points of that file, one per line.
+/// Returns only the points, one per line.
 /// @throws std::invalid_argument as keysight_arb_text()
 std::string keysight_points_text(const QuantizedWaveform& waveform,
                                  std::string_view end_of_line = "\n");
-/// Returns the points for DATA:ARB:DAC: big-endian 16-bit numbers (the default of FORM:BORD), for
-/// ieee488_block().
+/// Points for DATA:ARB:DAC: big-endian 16-bit numbers (the default of FORM:BORD).
 /// @throws std::invalid_argument as keysight_arb_text()
 std::vector<std::byte> keysight_dac_bytes(const QuantizedWaveform& waveform);
 

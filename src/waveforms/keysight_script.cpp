@@ -29,7 +29,7 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
         {number_check(channel, "points", "", static_cast<double>(waveform.codes.size()), 0.0)}));
     return;
   }
-  // The instrument cannot return the points in its memory, only a file saved from it.
+  // The instrument cannot return points, only a file saved from them.
   const std::string file = fmt::format("\"INT:\\{}.arb\"", name);
   steps.push_back(
       message_step("save it to a file", fmt::format("MMEM:STOR:DATA{} {}", channel, file)));

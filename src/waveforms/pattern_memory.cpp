@@ -15,7 +15,6 @@ namespace {
 
 constexpr int max_bits = 64;
 
-/// Returns the bits per output, which all waveforms share.
 int bits_per_output(std::span<const QuantizedWaveform> waveforms) {
   const auto levels = static_cast<std::uint32_t>(waveforms.front().levels);
   require(std::has_single_bit(levels), "levels", levels, "must be a power of two in a memory");

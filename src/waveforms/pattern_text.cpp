@@ -16,7 +16,7 @@ namespace {
 
 int hex_digits(const PatternMemory& memory) { return (memory.word_bits + 3) / 4; }
 
-/// Returns the comment and the meaning of the bits, each line after `mark`.
+/// Each line begins with `mark`.
 std::string heading(const PatternMemory& memory, std::string_view mark) {
   memory.validate();
   std::string text;
@@ -25,7 +25,7 @@ std::string heading(const PatternMemory& memory, std::string_view mark) {
   };
   LineCursor lines(memory.comment, "comment");
   while (!lines.at_end()) {
-    // Control characters in a code's name must not end the comment, as CR would in VHDL.
+    // Control characters in a name, such as CR in VHDL, must not end the comment.
     std::string words(lines.next());
     std::ranges::replace_if(
         words, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -41,7 +41,7 @@ std::string heading(const PatternMemory& memory, std::string_view mark) {
   return text;
 }
 
-/// One word per line: `write(out, word, is_last)`.
+/// Calls `write(out, word, is_last)`.
 template <typename Write>
 void each_word(std::string& text, const PatternMemory& memory, Write&& write) {
   auto out = std::back_inserter(text);
@@ -55,7 +55,7 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// Writes constants that describe the bits: `constant(name, value)`.
+/// Calls `constant(name, value)`.
 template <typename Constant>
 void each_constant(const PatternMemory& memory, Constant&& constant) {
   constant("WORD_BITS", memory.word_bits);

@@ -26,7 +26,7 @@ std::string wvdt_message(const WvdtCommand& command, WaveHeader header) {
   return message;
 }
 
-/// Siglent generators have no error queue; the answer confirms that all earlier messages were
+/// Siglent generators have no error queue; the answer confirms that earlier messages were
 /// processed.
 UploadStep siglent_settled(std::string what, double more_s) {
   UploadStep step = asked(std::move(what), "*OPC?", {word_check(0, "", "", {"1", "*OPC 1"})});

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int blank_lines = 7;  // in the header of a CSV
+constexpr int blank_lines = 7;
 
 int bits_of(WvdtPoints points) { return points == WvdtPoints::bits16_little_endian ? 16 : 14; }
 

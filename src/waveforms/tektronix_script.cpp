@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Waveforms of all channels are stored in user memories 1 to 4, each via the single edit memory.
+/// User memories 1 to 4 of all channels are written via the single edit memory.
 struct UserMemory {
   int number;
   const QuantizedWaveform* waveform;

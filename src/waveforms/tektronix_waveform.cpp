@@ -25,7 +25,7 @@ void put_u32_big(std::span<std::byte> into, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) into[i] = static_cast<std::byte>(value >> (24 - 8 * i));
 }
 
-/// Writes the minimum and maximum of each column of the preview.
+/// Minimum and maximum of each column of the preview.
 void draw(const std::vector<std::int32_t>& codes, std::span<std::byte> picture) {
   const std::size_t columns = std::min<std::size_t>(tfw_picture_columns, codes.size());
   for (std::size_t c = 0; c < columns; ++c) {

@@ -12,21 +12,20 @@
 
 namespace tofsmith {
 
-/// Levels of the DAC of an AFG, 0 to 16382. (Some sources use 16383: docs/formats.md.)
+/// 0 to 16382. (Some sources use 16383: docs/formats.md.)
 inline constexpr std::int32_t tektronix_afg_levels = 16383;
 inline constexpr std::int32_t tektronix_afg_full_levels = 16384;
 
-/// Returns the points as an AFG stores them and as TRACe:DATA expects them: big-endian 16-bit
-/// numbers.
+/// Returns big-endian 16-bit numbers, as for TRACe:DATA.
 /// @throws std::invalid_argument if the waveform is invalid or has more than 2^14 levels
 std::vector<std::byte> tektronix_afg_bytes(const QuantizedWaveform& waveform);
 /// Returns a .tfw file for AFG1000 to AFG31000: a header of 512 bytes with a preview, then the
-/// points. The file contains only the shape; frequency and voltages are set on the generator.
+/// points, without frequency and voltages.
 /// @throws std::invalid_argument as tektronix_afg_bytes()
 std::vector<std::byte> tektronix_tfw(const QuantizedWaveform& waveform);
-/// Returns a .wfm file ("MAGIC 1000") for AWG400 to AWG700, also read by AWG5000 and AWG7000. Each
-/// point is a little-endian float and a byte of markers: marker 1 is the trigger of every period,
-/// marker 2 the first point.
+/// Returns a .wfm file ("MAGIC 1000") for AWG400 to AWG700, AWG5000 and AWG7000: points as
+/// little-endian floats with a byte of markers. Marker 1 is the trigger of every period, marker 2
+/// the first point.
 /// @param end_of_line  "\r\n", "\n" or " \r\n"; sources disagree
 /// @throws std::invalid_argument if the waveform is invalid
 std::vector<std::byte> tektronix_wfm(const QuantizedWaveform& waveform,

@@ -92,7 +92,7 @@ void check_memory(const GeneratorModel& model, const UploadRequest& request) {
                 model.memories, model.name));
 }
 
-/// @throws std::invalid_argument naming the part of the request that does not fit the model
+/// @throws std::invalid_argument naming the part of the request that does not fit
 void check_upload(const GeneratorModel& model, const UploadRequest& request) {
   require(!request.channels.empty(), "channels", 0, "must be at least one");
   require((request.load_ohm >= 1.0 && request.load_ohm <= 1e6) || std::isinf(request.load_ohm),

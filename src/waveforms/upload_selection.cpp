@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Returns a channel with one exposure, or with all exposures and one selected.
+/// One exposure, or all exposures with one selected.
 template <typename IndexOf>
 UploadChannel channel_of(const WaveformExport& exported, const UploadSelection& selection,
                          int channel, IndexOf index_of) {

@@ -43,7 +43,6 @@ void check_options(const ExportOptions& options, const WaveformFormat& format) {
           fmt::format("must be finite and above low_v = {}", options.low_v));
 }
 
-/// Returns the number of points per period.
 int table_points(const ExportOptions& options, const WaveformFormat& format,
                  const std::optional<Generator>& own, const Camera& camera) {
   const double frequency_hz = camera.fundamental_frequency_hz;
@@ -91,7 +90,6 @@ std::int32_t levels_of(const WaveformFormat& format, int variant, int bits) {
   return format.levels > 0 ? format.levels : 1 << bits;
 }
 
-/// Returns the smallest number of periods that the format accepts.
 int fitting_periods(const WaveformFormat& format, int points, const std::optional<int>& asked) {
   const auto fits = [&](int periods) {
     const std::int64_t all = std::int64_t{points} * periods;
@@ -111,7 +109,6 @@ int fitting_periods(const WaveformFormat& format, int points, const std::optiona
          fmt::format("{}; no number of periods satisfies this", rule));
 }
 
-/// Properties that all waveforms of an arm share.
 struct ArmTables {
   const Generator& generator;
   double frequency_hz;

@@ -20,7 +20,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Warns if the hardware's rate is unknown and the files exceed the rate of every known generator.
+/// Warns if files exceed the rate of every known generator.
 std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera& camera,
                                     const ExportOptions& options) {
   const double max_hz = fastest_sample_rate_hz(exported.format.name);
@@ -34,7 +34,7 @@ std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera
 }
 
 constexpr double max_duty_change = 0.01;  // relative; larger changes are noted
-constexpr int max_points_away = 128;      // search range for alternative tables
+constexpr int max_points_away = 128;      // for alternative tables
 
 double duty_change(const GeneratorReport& report) {
   return report.duty_nominal > 0.0 ? std::abs(report.duty_actual / report.duty_nominal - 1.0) : 0.0;
@@ -44,7 +44,7 @@ const GeneratorReport& most_changed(const std::vector<GeneratorReport>& reports)
   return *std::ranges::max_element(reports, {}, duty_change);
 }
 
-/// Returns true if tables with this number of points per period are valid and preserve all duties.
+/// Returns true if tables with `points` per period are valid and keep all duties.
 bool keeps_duties(const CodeSet& code, const Camera& camera, ExportOptions options, int points) {
   options.samples = points;
   try {
@@ -56,7 +56,7 @@ bool keeps_duties(const CodeSet& code, const Camera& camera, ExportOptions optio
   }
 }
 
-/// Warns if rounding to points changes the width of pulses, and suggests tables that avoid it.
+/// Suggests tables if rounding to points changes the width of pulses.
 std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& camera,
                                     const ExportOptions& options) {
   if (exported.generators.empty()) return {};
@@ -79,14 +79,13 @@ std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& 
                      : fmt::format("{} would preserve all duties", fmt::join(others, " or ")))};
 }
 
-/// A file and its contents.
 using Product = std::pair<std::filesystem::path, std::span<const std::byte>>;
 
 std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-/// Returns true if the file exists with exactly these contents, written by an interrupted run.
+/// Returns true for a file of an interrupted run.
 bool is_written(const Product& product) {
   const auto& [path, content] = product;
   std::error_code ignored;
@@ -94,8 +93,7 @@ bool is_written(const Product& product) {
   return std::ranges::equal(read_binary_file(path), content);
 }
 
-/// Completes an interrupted run. If all files exist already, `policy` applies as for any existing
-/// file.
+/// Completes an interrupted run. If all files exist already, `policy` applies.
 void write_all(std::vector<Product> products, OutputPolicy policy) {
   if (!std::ranges::all_of(products, is_written)) std::erase_if(products, is_written);
   for (const auto& [path, content] : products) const AtomicFile probe(path, policy);
