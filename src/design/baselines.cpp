@@ -202,7 +202,6 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
       comparable, camera, trials.value_or(trials_per_point(camera)), search_seed(options));
   for (std::size_t i = 0; i < codes.size(); ++i) errors_m[i] = errors_m[first_like(codes, i)];
   const auto note = [](const std::string& name, std::vector<std::string>& names) {
-    // Codes occur twice: unchanged and adapted.
     if (names.empty() || names.back() != name) names.push_back(name);
   };
   std::vector<std::size_t> order;

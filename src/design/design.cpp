@@ -31,7 +31,7 @@ struct Task {
   DesignMethod method;
   std::string name;
   double effort;
-  std::optional<BrokenRule> why_not;  ///< reason if the camera is not supported
+  std::optional<BrokenRule> why_not;
   std::function<std::vector<Candidate>(const Progress&)> run;
 };
 
@@ -144,7 +144,6 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
 
 namespace {
 
-/// Checks the numbers of exposures, or of rows on cameras that read rows.
 void require_exposures(const Camera& camera, const DesignOptions& options) {
   constexpr int max_exposures = 8;
   if (camera.sensor.readout == Readout::rows) {
@@ -195,7 +194,6 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   const Contenders atlas = contending_atlas_codes(camera, options);
   add_atlas_codes(atlas, result);
 
-  // The direct optimization starts at the candidates found before it.
   const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);

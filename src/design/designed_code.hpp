@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// Smallest share of the integration time that designs assign to an exposure.
+/// As a share of the integration time.
 inline constexpr double min_exposure_share = 0.01;
 
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,

@@ -9,9 +9,9 @@
 
 namespace tofsmith {
 
-/// Explains the winner in three sentences: its lead, its number of exposures, and the limits of its
-/// error in dim and in bright light.
-/// @param exposures  requested numbers of exposures; empty: any
+/// Explains the winner: its lead, its number of exposures, and the limits of its error in dim and
+/// in bright light.
+/// @param exposures  requested numbers; empty: any
 std::vector<std::string> explain(const Camera& camera, const DesignResult& result,
                                  const std::vector<int>& exposures = {});
 

@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Divides shares by their sum, which differs from 1 by rounding errors.
+/// Corrects rounding errors of the sum.
 std::vector<double> normalized(std::vector<double> shares) {
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   for (double& share : shares) share /= sum;

@@ -12,9 +12,9 @@ namespace tofsmith {
 CodeSet with_split_exposures(const CodeSet& code, const Camera& camera,
                              const DesignOptions& options);
 
-/// Adds a copy with exposures of different length and the same name for each optimized and
-/// factorized code of several exposures; judge_candidates() keeps the better one. Does nothing for
-/// cameras that list times.
+/// Adds a copy with exposures of different length for each optimized and factorized code of several
+/// exposures; judge_candidates() keeps the better one of equal names. Does nothing for cameras that
+/// list times.
 void add_split_exposures(const Camera& camera, const DesignOptions& options, DesignResult& result,
                          const Progress& progress);
 

@@ -64,7 +64,7 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                 fmt::format("no candidate can be used on this camera: {}", reasons));
 }
 
-/// This is an error only if no candidate is left.
+/// An error only if no candidate is left.
 void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& options,
                                    DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {

@@ -23,7 +23,7 @@ std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camer
 ///   operating.multipath
 void require_judgeable(const Camera& camera, const DesignOptions& options);
 
-/// Implements judge() for validated options.
+/// As judge() with validated options.
 /// @throws std::invalid_argument if no candidate is left; Interrupted
 void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
                       const Progress& progress);

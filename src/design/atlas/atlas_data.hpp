@@ -6,7 +6,6 @@
 
 namespace tofsmith {
 
-/// Contents of src/design/atlas/atlas.txt.
 extern const std::string_view atlas_data;
 
 }  // namespace tofsmith

@@ -151,7 +151,6 @@ Estimate read_estimate(AtlasLines& lines, std::string_view kind) {
   return {value, standard_error};
 }
 
-/// Reads the rest of a code after the word `code`.
 AtlasEntry read_entry(AtlasLines& lines) {
   const AtlasCamera of = read_camera(lines);
   const Estimate linear_m = read_estimate(lines, "linear_m");

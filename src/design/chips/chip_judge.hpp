@@ -67,7 +67,6 @@ class ChipJudge {
   /// Lowers the required margins to the margins of the best of these codes.
   void ask_no_more_than(const std::vector<ChipCode>& codes);
 
-  /// Converts a score to an RMS error [m].
   double rms_m(double score) const;
   bool is_allowed(const ChipCode& code) const;
 

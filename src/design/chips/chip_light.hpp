@@ -27,7 +27,6 @@ struct ChipLight {
   }
 };
 
-/// Returns the unsupported property of a valid camera, if any.
 std::optional<BrokenRule> why_not_plain(const Camera& camera);
 
 void require_plain(const Camera& camera);

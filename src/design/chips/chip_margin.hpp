@@ -25,6 +25,7 @@ class ChipMargin {
 
  private:
   using Values = std::array<double, max_chip_measurements>;
+  /// Part of a chip with alternative depths.
   struct Stretch {
     int chip;
     double begin, end;

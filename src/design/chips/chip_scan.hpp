@@ -11,7 +11,6 @@
 
 namespace tofsmith {
 
-/// Modulations that are processed in parallel.
 inline constexpr int scan_lanes = 32;
 
 /// Table rows of an assignment. A row holds one value per modulation of a block; a word has

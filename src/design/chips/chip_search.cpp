@@ -40,7 +40,7 @@ class Annealing {
         cost_(cost(start, infinity)) {}
 
   void run(std::int64_t steps, ChipSearchCounts& counts, SharedProgress& progress) {
-    constexpr std::int64_t steps_reported = 64;  // per progress update
+    constexpr std::int64_t steps_reported = 64;
     for (std::int64_t step = 0; step < steps; ++step) {
       if (step % steps_reported == 0) progress.add(steps_reported);
       const double share = static_cast<double>(step) / static_cast<double>(steps);
@@ -136,8 +136,8 @@ class Annealing {
   double cost_;
 };
 
-/// Simulated annealing from the best of the given codes. All results are safe; none is proven
-/// optimal. Independent of the number of threads, because every start has its own random stream.
+/// All results are safe; none is proven optimal. Every start has its own random stream, so the
+/// result does not depend on the number of threads.
 BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>& seeds,
                             const ChipSearchOptions& options, ChipSearchCounts& counts,
                             const Progress& progress) {

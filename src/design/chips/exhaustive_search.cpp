@@ -44,7 +44,6 @@ class FirstTapLister {
     }
     const ChipWord first = current_.taps[0];
     const int duty = std::popcount(first);
-    // Subsets of the free chips, in descending order.
     for (ChipWord word = free; word > previous; word = (word - 1) & free) {
       if (rules_.equal_duty && std::popcount(word) != duty) continue;
       if (kind_[word] < first) continue;

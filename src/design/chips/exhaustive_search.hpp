@@ -51,11 +51,10 @@ struct ExhaustiveFinding {
   ChipSearchCounts counts;
 };
 
-/// Searches one exposure. Three taps of equal duty are pruned by the turning test, others by a
-/// bound on the metric.
+/// Prunes three taps of equal duty by the turning test, others by a bound on the metric.
 ExhaustiveFinding search_single_exposures(const ExhaustiveTask& task, const Progress& progress);
 
-/// Searches pairs of exposures, pruned by a bound on the metric.
+/// Prunes by a bound on the metric.
 ExhaustiveFinding search_exposure_pairs(const ExhaustiveTask& task, const Progress& progress);
 
 double exhaustive_size(const AssignmentRules& rules, int exposures);

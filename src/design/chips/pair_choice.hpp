@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// One pair per measurement, as index of a candidate.
+/// One index of a candidate per measurement.
 using PairChoice = std::vector<std::size_t>;
 
 CodeSet assemble(const std::string& name, const std::vector<Factorization>& factorizations,

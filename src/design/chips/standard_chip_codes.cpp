@@ -95,7 +95,6 @@ std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples)
     pair.modulation.push_back(repeated_pulse(0, (period + 1) / 2, period, 12));
     for (int i = 0; i < 3; ++i) pair.demodulation.push_back(repeated_pulse(i, 1, period, 12));
   }
-  // The light is on for one of three chips.
   pair.modulation.front() = repeated_pulse(0, 1, 3, 12);
   return {{"hamiltonian-k3-in-turn", hamiltonian_in_turn(samples)},
           {"three-phase-square", to_code_set(square, three_taps, "three-phase-square")},

@@ -14,10 +14,10 @@ namespace {
 
 // Conditions for the dual path, rotated so that any jump precedes sample 0.
 struct DualConditions {
-  Eigen::VectorXd gradient;  // of the least-squares term
-  Eigen::VectorXi bound;     // -1 at the lower, +1 at the upper bound, 0 inside
-  Eigen::VectorXi jump;      // sign of the jump after the sample
-  bool constant = true;      // no jumps
+  Eigen::VectorXd gradient;
+  Eigen::VectorXi bound;  // -1 at the lower, +1 at the upper bound, 0 inside
+  Eigen::VectorXi jump;   // sign of the jump after the sample
+  bool constant = true;
   double weight = 0;
 };
 

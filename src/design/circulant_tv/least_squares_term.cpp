@@ -83,7 +83,7 @@ void LeastSquaresTerm::prefix_gradient(const PiecewiseConstant& x, Eigen::Vector
   if (x.size() > 1)
     for (int j = 0; j < x.size(); ++j) {
       const double jump = x[j].value - x[x.previous(j)].value;
-      const int lead = origin - x[j].start;  // distance from the jump to the origin, modulo N
+      const int lead = origin - x[j].start;
       if (jump != 0)
         sums.noalias() += jump * curve_.segment(lead > 0 ? lead : lead + samples_, samples_ + 1);
     }

@@ -33,7 +33,7 @@ class CirculantOperator {
   const PeriodicTransform& transform() const { return transform_; }
   const Eigen::VectorXcd& spectrum() const { return spectrum_; }
 
-  /// Returns sum_n r[n]^2 from the half spectrum of r (Parseval).
+  /// Parseval: sum_n r[n]^2 from the half spectrum of r.
   double energy(const Eigen::VectorXcd& half) const {
     const int samples = transform_.samples();
     double sum = 2 * half.squaredNorm() - std::norm(half[0]);

@@ -11,7 +11,7 @@
 namespace tofsmith {
 
 struct AlternationResult {
-  SampledPair relaxed;   ///< last iterate
+  SampledPair relaxed;
   SampledPair playable;  ///< best projection of all iterates
   double playable_residual_rms = 0.0;
   std::vector<FactorizeIteration> history;

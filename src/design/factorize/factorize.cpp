@@ -131,7 +131,6 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   result.target_variation_rms =
       std::sqrt((target.samples.array() - target.samples.mean()).square().mean());
 
-  // Random starts, each with its best binary projection.
   std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
   const ProgressParts parts(progress, {60, 40});
   SharedProgress shared(parts[0], options.random_starts, "alternating convex steps");

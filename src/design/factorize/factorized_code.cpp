@@ -26,9 +26,8 @@ constexpr int min_exposures = 3, max_exposures = 6;  // of Hamiltonian targets
 std::vector<int> factorizable_exposures(const Camera& camera, const DesignOptions& options) {
   std::vector<int> exposures = options.exposures;
   if (exposures.empty()) exposures = suggested_exposures(camera, DesignMethod::factorize);
-  std::erase_if(exposures, [](int count) {  // others are for other methods
-    return count < min_exposures || count > max_exposures;
-  });
+  std::erase_if(exposures,
+                [](int count) { return count < min_exposures || count > max_exposures; });
   return exposures;
 }
 

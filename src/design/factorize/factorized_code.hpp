@@ -12,7 +12,7 @@ namespace tofsmith {
 /// Returns why factorization is impossible, or nothing.
 std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options);
 
-/// Returns the custom target, or Hamiltonian ones with the requested numbers of exposures.
+/// Returns the custom target, or Hamiltonian targets.
 std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options);
 
 /// Returns the ideal demodulations of the targets with one pulse each, if the camera supports them.

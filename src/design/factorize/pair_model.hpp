@@ -30,7 +30,6 @@ class PairModel {
   /// Returns the gain of both arms at harmonics [0, highest].
   Eigen::VectorXcd transfer(int highest) const { return camera_.transfer(highest); }
 
-  /// Returns the unscaled half spectrum.
   Eigen::VectorXcd spectrum(const Eigen::VectorXd& samples) const;
 
   /// First column of the circulant matrix that maps demodulation to correlation samples.
@@ -38,7 +37,6 @@ class PairModel {
   /// First column for modulation and time-reversed correlation samples.
   Eigen::VectorXd modulation_kernel(const Eigen::VectorXd& demodulation) const;
 
-  /// RMS residual over the bins, from half spectra.
   double residual_rms(const Eigen::VectorXcd& modulation,
                       const Eigen::VectorXcd& demodulation) const;
   double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;

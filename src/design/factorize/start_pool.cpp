@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-/// `count` equal pulses centred at zero, `spacing` apart [periods], of total duty `duty`.
+/// Equal pulses centred at zero; `spacing` and total duty in periods.
 Waveform centred_pulses(int count, double spacing, double duty) {
   std::vector<OnInterval> on;
   for (int i = 0; i < count; ++i) {

@@ -14,9 +14,9 @@ namespace tofsmith {
 /// Square-wave codes that a camera and the options of a design allow.
 struct FrequencyChoice {
   std::vector<int> frequencies;     ///< multiples of the fundamental, the highest first
-  std::vector<double> left_out_hz;  ///< not multiples of the fundamental, or too short pulses
+  std::vector<double> left_out_hz;  ///< not multiples, or too short pulses
   std::vector<double> duties;
-  std::vector<int> exposures;       ///< numbers of exposures, the smallest first
+  std::vector<int> exposures;       ///< the smallest first
   int max_frequencies = 1;          ///< in one code
   int min_phases = 2;               ///< per frequency
   int first_phases = 2;             ///< 3 if it measures ambient light

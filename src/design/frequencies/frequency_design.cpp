@@ -100,7 +100,7 @@ bool has_idle_frequency(const SquareCode& code) {
   });
 }
 
-/// Returns the best codes, each with different frequencies.
+/// Each has different frequencies.
 std::vector<RatedCode> finalists_of(const std::vector<RatedCode>& tried,
                                     const FrequencyChoice& choice, const Trials& trials) {
   std::vector<RatedCode> best;

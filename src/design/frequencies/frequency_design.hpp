@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Adds square-wave codes at frequencies of camera.light.square as candidates: the best codes of a
-/// search, with more phases and other splits of the time by trials, and the rule of thumb.
+/// Adds the best square-wave codes at frequencies of camera.light.square as candidates, with more
+/// phases and other splits of the time by trials, and the rule of thumb.
 /// @throws InvalidArgument if the camera has no such codes; Interrupted
 void add_frequency_candidates(const Camera& camera, const DesignOptions& options,
                               DesignResult& result, const Progress& progress);

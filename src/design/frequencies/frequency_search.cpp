@@ -109,7 +109,6 @@ class Branch {
   const FrequencyChoice& choice_;
 };
 
-/// Evaluates the sets in the order of their lower bounds.
 void search_branch(const std::vector<SquareCode>& sets, const FrequencyChoice& choice,
                    const SquareErrorEstimate& estimate, Best& best, FrequencySearch& search) {
   constexpr std::size_t at_a_time = 64;

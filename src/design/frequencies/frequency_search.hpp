@@ -15,6 +15,7 @@
 
 namespace tofsmith {
 
+/// A code and its error, estimated or by trials [m].
 struct RatedCode {
   SquareCode code;
   double error_m = infinity;
@@ -28,8 +29,7 @@ struct FrequencySearch {
   std::int64_t pruned_by_bound = 0;  ///< sets that are not among the best for any split of time
 };
 
-/// Moves time between frequencies while the error decreases. Exposures keep at least
-/// min_exposure_share.
+/// Moves time between frequencies while the error decreases; exposures keep min_exposure_share.
 /// @param moved  fraction of the time of the first frequency
 /// @return true if the error decreased
 template <typename ErrorOf>

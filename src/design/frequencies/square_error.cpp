@@ -19,7 +19,6 @@ constexpr int phases_tabulated = 512;
 constexpr int points_per_period = 16;  ///< of the highest frequency
 constexpr int highest_odd_harmonic = 9;
 
-/// Amplitude of harmonic h of a square wave.
 double harmonic_of_square(int h, double duty) { return std::sin(pi * h * duty) / (pi * h); }
 
 /// Ratio of a measurement to the correlation function of one gate.

@@ -10,7 +10,7 @@
 
 namespace tofsmith {
 
-/// Depths per block; tables are padded to whole blocks.
+/// Tables are padded to whole blocks.
 constexpr int depth_block = widest_vector / 2;
 
 /// Electrons and their shot noise per unit of signal (depths, K) and of ambient light (K); slopes

@@ -51,7 +51,6 @@ SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int
   return SwitchedLabels::from_cells(cells);
 }
 
-/// Number of brightest cells that approximate the waveform best.
 int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int min_on) {
   const auto total = static_cast<double>(order.size());
   int best = min_on;

@@ -7,10 +7,9 @@
 
 namespace tofsmith {
 
-/// Converts rendered waveforms to binary ones. Every cell goes to its largest gate class; with
-/// equal duties, the half that favours the first bucket most goes to it. Light is on in the
-/// brightest cells, whose number approximates the waveform best within the peak. Non-binary arms
-/// stay unchanged.
+/// Assigns every cell to its largest gate class; with equal duties, the half that favours the first
+/// bucket most goes to it. Light is on in the brightest cells, whose number approximates the
+/// waveform best within the peak. Non-binary arms stay unchanged.
 SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code);
 
 }  // namespace tofsmith

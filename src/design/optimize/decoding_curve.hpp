@@ -11,6 +11,7 @@
 
 namespace tofsmith {
 
+/// For aligned vector loads.
 template <typename Value>
 struct CacheLineAllocator {
   using value_type = Value;

@@ -21,7 +21,6 @@ class DepthErrorLoss {
  public:
   DepthErrorLoss(const SampledCamera& camera, MeasurementTable table, DepthErrorKind kind);
 
-  /// Mean variance over depths and measurements [e^2].
   double mean_variance_e2(const OperatingPoint& point) const;
 
   /// Returns the mean error of the soft decoder [bin].

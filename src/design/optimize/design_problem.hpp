@@ -15,6 +15,7 @@
 
 namespace tofsmith {
 
+/// Returns in a trial, and the number that the decoder assumes.
 enum class TrialReturns { one, two_taken_for_one, two };
 
 struct LightLevel {
@@ -23,6 +24,7 @@ struct LightLevel {
   double weight = 1.0;  ///< of the log error in the mean over all levels
 };
 
+/// A grid and its training light levels.
 struct CameraVariant {
   SampledCamera camera;
   /// Model for evaluating codes. Without band limit it has the camera's grid, because more bins
@@ -31,7 +33,6 @@ struct CameraVariant {
   std::vector<LightLevel> levels;
 
   double total_weight() const;
-  /// Levels that are not decoded as two returns.
   std::size_t usual_levels() const;
 };
 

@@ -26,7 +26,7 @@ std::vector<double> pull_back_light(const SwitchedLabels& light, const Eigen::Ve
                                     const Eigen::VectorXd& modulation) {
   const auto samples = static_cast<int>(gradient.size());
   const double level = 1.0 / light.share(1);
-  const double by_level = gradient.dot(modulation) * level;  // by the level, per duty
+  const double by_level = gradient.dot(modulation) * level;
   std::vector<double> result;
   for (std::size_t i = 0; i < light.runs(); ++i) {
     const double longer = light.label[i] == 1 ? -1.0 : 1.0;
@@ -84,7 +84,7 @@ bool is_playable(const SwitchedLabels& labels, double shortest) {
   return true;
 }
 
-/// Moves edges along the gradient and restores feasibility, if possible.
+/// Restores feasibility, if possible.
 void step_edges(SwitchedLabels& labels, const std::vector<double>& gradient, double rate,
                 double shortest, double light_peak, Adam& adam) {
   if (labels.runs() == 0) return;

@@ -196,7 +196,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   return candidates;
 }
 
-/// Codes for binary arms compete and provide one more start.
+/// Codes for binary arms also compete and provide one more start.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
                                      const Progress& progress) {

@@ -180,7 +180,7 @@ void OptimizePool::record(double log_error_bin) {
   history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
 }
 
-/// Replaces entries by the results of descents, at the best rotation.
+/// Results are at the best rotation.
 void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
                                std::uint64_t phase, std::size_t first_item,
                                SharedProgress& progress) const {

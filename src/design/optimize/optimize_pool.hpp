@@ -64,7 +64,7 @@ std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std:
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
               RandomStream& random);
 
-/// Clips parameters to [-limit, limit], so that a descent can change them.
+/// Allows a descent to change saturated parameters.
 WaveformParameters softened(WaveformParameters parameters, double limit);
 
 int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options);

@@ -25,7 +25,7 @@ struct OptimizeStart {
 OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
                              RandomStream& random);
 
-/// Random pair for one exposure, as parameters (cells, 1) and (cells, columns).
+/// Random pair of parameters (cells, 1) and (cells, columns).
 WaveformParameters random_pair(const DesignProblem& problem, RandomStream& random);
 
 SampledCode sampled_on(const WaveformSpace& space, const CodeSet& code);

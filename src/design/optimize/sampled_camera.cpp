@@ -46,7 +46,6 @@ bool sees_ambient(const Camera& camera, int exposures) {
   if (camera.sensor.readout != Readout::difference) return true;
   if (camera.sensor.tap_mismatch == 0.0) return false;
   const double leak = 0.5 * std::abs(camera.sensor.tap_mismatch);
-  // Light grows with time, noise with its root.
   const std::vector<double>& each_s = camera.exposure_s.each_s;
   const double exposure_s = each_s.empty() ? camera.exposure_s.total_s / exposures
                                            : *std::max_element(each_s.begin(), each_s.end());

@@ -12,6 +12,7 @@
 
 namespace tofsmith {
 
+/// Waveforms constant within N cells of a grid.
 struct SampledCode {
   Eigen::MatrixXd modulation;    ///< (N, E)
   Eigen::MatrixXd demodulation;  ///< (N, E x taps)
@@ -56,7 +57,7 @@ class SampledCamera {
   }
 
   Measured measure(const SampledCode& code) const;
-  /// As measure() without the table, which pull_back() does not need. Not for mixers.
+  /// Omits the table, which pull_back() does not need. Not for mixers.
   Measured transformed(const SampledCode& code) const;
 
   SampledCode pull_back(const Measured& measured, const MeasurementTable& gradient) const;

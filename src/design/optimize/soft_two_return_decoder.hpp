@@ -9,6 +9,7 @@
 
 namespace tofsmith {
 
+/// Delays of a second return, in bins of the grid.
 struct DelayBins {
   int shortest = 1, longest = 2;
 };

@@ -29,7 +29,7 @@ struct SwitchedLabels {
 struct SwitchedCode {
   std::vector<SwitchedLabels> light;  ///< per exposure, 1 = on; empty: sampled.modulation
   std::vector<SwitchedLabels> gates;  ///< per exposure, charge class; empty: sampled.demodulation
-  SampledCode sampled;                ///< of analog arms
+  SampledCode sampled;
 };
 
 Waveform light_waveform(const SwitchedLabels& light);

@@ -197,7 +197,6 @@ class ToneSearch {
           is_on[static_cast<std::size_t>(n)] != 0 ? static_cast<double>(samples_) / on_bins_ : 0.0;
   }
 
-  /// Geometric mean errors at nominal and dimmer light.
   void foresee(ToneCode& code) const {
     const double exposure_s = camera_.exposure_s.of(0, 1), range_m = camera_.range_m();
     const Sensor& sensor = camera_.sensor;
@@ -424,7 +423,6 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   }
   keep_best(codes, 2 * judged_sets, dim_weight);
 
-  // Selects with other random numbers than judge().
   const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   CodeSet code = search.code_set(tones);
