@@ -10,6 +10,7 @@
 
 namespace tofsmith {
 
+/// A file opened for reading. Errors contain its name.
 class InputFile {
  public:
   /// @throws IoError if it is missing, a directory or unreadable

@@ -145,7 +145,6 @@ void note_unused(const NpzReader& archive, const std::string& file,
     notes.push_back(fmt::format("{}: not used: {}", file, fmt::join(unused, ", ")));
 }
 
-/// Sorts columns by exposure, with the taps of an exposure adjacent.
 void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::string& file) {
   if (layout.taps > 1 && table.columns() > layout.taps && !layout.order)
     throw IoError(

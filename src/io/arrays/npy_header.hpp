@@ -45,7 +45,7 @@ struct NpyHeader {
   std::size_t data_bytes = 0;
 };
 
-/// Maximum length of a header [bytes].
+/// In bytes.
 inline constexpr std::size_t max_npy_header_bytes = 12 + 65536;
 
 /// @param start  first bytes of the file, up to max_npy_header_bytes

@@ -58,7 +58,6 @@ Cells cells_of(std::string_view line, char delimiter) {
   return cells;
 }
 
-/// Accepts NaN and infinity.
 std::optional<double> number_of(std::string_view text, char decimal) {
   std::string copy;
   if (decimal == ',') {

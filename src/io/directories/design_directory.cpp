@@ -28,7 +28,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Only reports need these details.
 Json details_json(const Candidate& candidate) {
   Json details = {{"message", candidate.message}};
   if (candidate.search) details["search"] = fields_json(*candidate.search);

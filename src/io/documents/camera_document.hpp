@@ -8,8 +8,7 @@
 
 namespace tofsmith {
 
-/// Returns all fields with the keys of a camera file, defaults filled in.
-/// @throws std::invalid_argument if the camera is invalid
+/// Fills in defaults. @throws std::invalid_argument if the camera is invalid
 nlohmann::ordered_json camera_document(const Camera& camera);
 
 }  // namespace tofsmith

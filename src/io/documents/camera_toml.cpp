@@ -31,7 +31,6 @@ std::string place_of_field(const std::string& field, const TableReader::Places& 
   return place;
 }
 
-/// @param name  the table: "light.impulse_response"
 void load_response(const std::string& name, const FieldReader& reader,
                    const TableReader::Places& places, ImpulseResponse& response) {
   if (response.kind != ImpulseResponse::Kind::file) return;

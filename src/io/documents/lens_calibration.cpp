@@ -34,7 +34,6 @@ const Names width_names = {"imagewidth", "width"};
 const Names height_names = {"imageheight", "height"};
 const Names size_names = {"imagesize", "resolution", "size"};
 
-/// The name is "" for a single camera.
 struct NamedCamera {
   std::string name;
   CalibrationFile file;

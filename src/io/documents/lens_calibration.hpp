@@ -13,17 +13,15 @@ namespace tofsmith {
 /// Reads the lens of a calibration file:
 /// - OpenCV's FileStorage as YAML, XML or JSON: `camera_matrix`, `distortion_coefficients`,
 ///   `fisheye_model`, `image_width`, `image_height` and other spellings,
-/// - ROS, a camera's file or a camera_info message: `K`, `D`, `distortion_model`, `width`,
-/// `height`,
+/// - ROS, a camera's file or a camera_info message: `K`, `D`, `distortion_model`, ...,
 /// - Kalibr's camchain: `intrinsics`, `distortion_coeffs`, `distortion_model`, `resolution`,
 /// - the factory calibration of an Azure Kinect (JSON).
 ///
 /// If all distortion coefficients are 0, the lens has no distortion.
 /// @param source_name  path, or name for error messages
-/// @param model   for files without a model, in which four coefficients are ambiguous; none: opencv
+/// @param model  for files without a model, where four coefficients are ambiguous; none: opencv
 /// @param camera  such as "cam1", or "2" for cameraMatrix2; empty: the only one, or the depth
-/// camera
-///   of an Azure Kinect
+///   camera of an Azure Kinect
 /// @throws IoError "file:line:column: ..." for syntax errors, missing values, several cameras,
 ///   skewed pixels, tilted sensors, other models, and binned or cropped images
 Lens parse_lens_calibration(std::string_view text, std::string_view source_name,

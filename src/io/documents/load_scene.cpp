@@ -56,7 +56,7 @@ void check_fields_fit(const SceneSource& source, SceneKind kind) {
                                            : "a scene file specifies its size in [view]");
 }
 
-/// The side as specified, or for an optical axis in the middle.
+/// Side of the images as specified, or for an optical axis in the middle.
 int side_of_lens(std::optional<int> stated, double axis_px, int fallback) {
   constexpr double max_side = 16384;
   const double side = std::round(2.0 * axis_px + 1.0);

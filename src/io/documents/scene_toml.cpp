@@ -183,7 +183,6 @@ Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& d
   return axes;
 }
 
-/// Default rotation centre.
 Eigen::Vector3d middle_of(const Plane& plane) { return plane.point; }
 Eigen::Vector3d middle_of(const Box& box) { return box.centre; }
 Eigen::Vector3d middle_of(const Sphere& sphere) { return sphere.centre; }

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::string_view spaces = " \t\r\n";
 
-/// Content of an element as YAML, without brackets.
 struct Content {
   std::string yaml;
   int words = 0, elements = 0;

@@ -20,7 +20,6 @@ std::uint64_t bytes_around_frames(const RawFormat& format) {
   return static_cast<std::uint64_t>(format.header_bytes + format.trailer_bytes);
 }
 
-/// Bytes of the frames in a file of `found` bytes.
 std::uint64_t bytes_of_frames(std::uint64_t found, const RawFormat& format) {
   return found - std::min(found, bytes_around_frames(format));
 }
@@ -123,7 +122,6 @@ std::string oversized_problem(const RawFormat& format, const OversizedNumber& nu
       fitting_changes(format, row));
 }
 
-/// Converts numbers of the file to measurements.
 class Measure {
  public:
   Measure(const RawFormat& f, const RawMarking& marking)

@@ -14,7 +14,7 @@
 
 namespace tofsmith {
 
-/// Reads rows of a dump; needs memory for these rows only.
+/// Needs memory for the requested rows only.
 class RawDumpReader {
  public:
   /// @throws IoError if the file cannot be read or its length does not match the format

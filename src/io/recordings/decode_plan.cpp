@@ -25,7 +25,7 @@ bool finds_multipath(const DepthDecoder& decoder) {
   return decoder.method() == DecodeMethod::two_return || decoder.method() == DecodeMethod::tail;
 }
 
-/// Checks the map separately, so that errors name its file.
+/// Errors name the file of the map.
 void load_map(const std::filesystem::path& path, const char* name, int height, int width,
               Image<float> PixelMaps::*map, PixelMaps& maps) {
   if (path.empty()) return;

@@ -94,7 +94,7 @@ double bytes_of_planes(const DecodeTarget& target, int rows) {
   return static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width * rows;
 }
 
-/// `row` is memory for each row that is read and decoded at a time.
+/// `row` is memory per row that is read and decoded at a time.
 FrameMemory buffer_memory(const RawFramesReader& reader, const DecodeTarget& target,
                           const Preparation& preparation,
                           const std::vector<std::unique_ptr<FramePipeline>>& pipelines) {
@@ -143,7 +143,6 @@ int rows_at_a_time(const FrameMemory& bytes, const DecodeTarget& target,
   return std::clamp(static_cast<int>(rows), 1, height);
 }
 
-/// Progress over all frames, with their rate.
 class Pace {
  public:
   Pace(const Progress& progress, const DecodeTarget& target)

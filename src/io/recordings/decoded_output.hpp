@@ -32,6 +32,7 @@ bool holds_depth_only(const std::filesystem::path& path);
 /// Fails early if write_planes() cannot write to this path. @throws IoError
 void check_decoded_output(const std::filesystem::path& path, OutputPolicy policy);
 
+/// Destination of decoded frames.
 struct DecodeTarget {
   std::filesystem::path path;  ///< numbered for several frames, unless stacked
   OutputPolicy policy = OutputPolicy::refuse_existing;
@@ -50,7 +51,6 @@ struct DecodeTarget {
 
   /// Frame 3 of 12 of name.npz is name-03.npz.
   std::filesystem::path frame_path(int frame) const;
-  /// One file per frame, or one per plane of a stack.
   std::vector<std::filesystem::path> paths() const;
   /// Returns true if rows are written as they arrive, not whole frames.
   bool in_rows() const { return path.extension() == ".npy"; }
@@ -60,9 +60,8 @@ struct DecodeTarget {
                ? 0
                : static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(view.width);
   }
-  /// Planes for output, points, counts and mixed pixels.
   std::vector<DecodedPlane> needed_planes() const;
-  /// Temporary memory per frame, in addition to its planes [bytes].
+  /// Memory in addition to the planes of a frame [bytes].
   std::size_t writing_bytes() const;
 };
 

@@ -46,7 +46,6 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
                     field, code));
 }
 
-/// Applies the order of exposures and the direction of delay.
 void apply(const DecodingTableOptions& options, MeasuredTable& measured) {
   if (!options.order.empty()) {
     const int side = measured.taps, exposures = measured.columns() / side;
@@ -104,7 +103,6 @@ std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measu
       is_measured ? " delays" : "");
 }
 
-/// Applies the user's order and direction of delay.
 Camera with_playback(Camera camera, const DecodingTableOptions& options) {
   if (options.order.empty() && !options.reversed) return camera;
   Playback playback = camera.playback.value_or(Playback());

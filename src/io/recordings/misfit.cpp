@@ -137,8 +137,8 @@ std::vector<Order> some_permutations(int n) {
   return {order, Order(order.rbegin(), order.rend())};
 }
 
-/// Orders of a driver: frequencies exchanged, phases exchanged within each frequency, or phase
-/// after phase.
+/// Orders in which a driver may deliver exposures: frequencies exchanged, phases exchanged within
+/// each frequency, or phase after phase.
 std::set<Order> plausible_orders(int exposures) {
   constexpr int max_all = 6;
   if (exposures <= max_all) {

@@ -43,7 +43,6 @@ struct Preparation {
   }
   /// A time filter needs one pipeline for each group of windows that share no exposure.
   int pipelines() const { return sliding > 0 && steps.time_filter ? sliding : 1; }
-  /// Recorded frames per submitted frame.
   int group() const { return hdr.empty() ? steps.average : static_cast<int>(hdr.size()); }
   /// Memory in addition to rows and pipeline.
   FrameMemory memory(int height, int width, int measurements) const;
@@ -53,7 +52,6 @@ std::vector<std::unique_ptr<FramePipeline>> prepare_pipelines(const FrameBackend
                                                               const Preparation& preparation,
                                                               int height, int width);
 
-/// Bands to read for the requested frames.
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands);
 

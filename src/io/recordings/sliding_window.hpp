@@ -13,7 +13,7 @@ namespace tofsmith {
 /// Number of windows of `exposures` consecutive exposures in a recording of whole frames.
 constexpr int windows_of(int frames, int exposures) { return (frames - 1) * exposures + 1; }
 
-/// The latest recording of each exposure of a code, in the order of the code.
+/// Latest recording of each exposure of a code, in the order of the code.
 class SlidingWindow {
  public:
   explicit SlidingWindow(int exposures) : exposures_(exposures) {}

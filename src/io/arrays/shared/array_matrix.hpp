@@ -45,7 +45,6 @@ Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place);
 /// Accepts one axis (a single column) or two.
 Eigen::MatrixXd columns_of(NpyArray array, std::string_view place);
 
-/// Returns a float64 array of shape (rows, columns).
 NpyArray array_of(const Eigen::MatrixXd& matrix);
 
 }  // namespace tofsmith

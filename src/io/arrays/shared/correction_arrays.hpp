@@ -14,7 +14,6 @@ namespace tofsmith {
 /// Prefix of arrays such as correction_height.
 inline constexpr std::string_view correction_prefix = "correction_";
 
-/// Adds one array per field of the correction.
 void add_correction(const DepthCorrection& correction, NpzArrays& arrays);
 
 /// Returns none if the archive has no depth correction.

@@ -34,7 +34,6 @@ TimedSamples timed_samples_of(const NumberTable& table, const std::string& file,
 /// Returns true if a column has no unit of time and increases by 1 per row.
 bool counts_samples(const NumberTable& table, Eigen::Index column);
 
-/// Returns true if the name of a column is "time" or has a unit of time.
 bool is_named_time(const NumberTable& table, Eigen::Index column);
 
 }  // namespace tofsmith

@@ -13,7 +13,6 @@
 
 namespace tofsmith {
 
-/// Returns a code's entry in evaluation and design documents.
 nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rotation_bin);
 
 /// Entries do not contain standard errors of outlier rates.

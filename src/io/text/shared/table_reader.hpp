@@ -133,7 +133,7 @@ class TableReader {
   void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
 
   bool contains(std::string_view key);
-  /// Includes the tables: "light.peak_factor".
+  /// Returns the key with its tables, such as "light.peak_factor".
   std::string full(std::string_view key) const { return prefix_ + std::string(key); }
   /// Position of the value, or of the table if the key is missing.
   std::string place_of(std::string_view key) const;
