@@ -13,7 +13,6 @@
 namespace tofsmith {
 namespace {
 
-/// Sums the errors [bin] of every round, at every rotation.
 template <typename Errors>
 std::vector<std::vector<double>> sums_by_rotation(const DepthTrials& trials,
                                                   std::span<const TrialRound> rounds,

@@ -39,7 +39,6 @@ double mean_over_albedo(double largest, Mae&& mae) {
     const double x = (i + 0.5) / nodes;  // albedo = x^2, d albedo = 2 x dx
     sum += 2.0 * x * std::min(largest, mae(x * x));
   }
-  // The midpoint rule integrates 2 x exactly.
   return sum / nodes;
 }
 

@@ -182,7 +182,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian_of_ro
   return by;
 }
 
-/// Returns columns for depth, signal and ambient light; the Fisher matrix is their Gram matrix.
+/// The Fisher matrix is the Gram matrix of the columns for depth, signal and ambient light.
 Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian(
     Eigen::Index depth, const OperatingPoint& point) const {
   if (covariance_) return whitened_jacobian_of_rows(depth, point);

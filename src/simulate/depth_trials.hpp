@@ -23,8 +23,8 @@ struct TrialBlock {
   std::span<const double> decoded_bin;
 };
 
-/// Trials first to first + trials - 1 of an operating point, one in each of `trials` equally
-/// probable slices of the range.
+/// Trials first to first + trials - 1 of an operating point, one per equally probable slice of the
+/// range.
 struct TrialRound {
   std::size_t point = 0;
   std::int64_t first = 0;
@@ -36,10 +36,8 @@ struct TrialRound {
 class DepthTrials {
  public:
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
-  /// Decodes with the table that a decoder assumes.
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options,
               DecodingTable believed);
-  /// Simulates a table at one light level.
   DepthTrials(const DecodingTable& table, const OperatingPoint& light,
               const EvaluateOptions& options);
 
@@ -50,8 +48,8 @@ class DepthTrials {
 
   std::vector<TrialRound> first_rounds() const;
 
-  /// Accumulates all trials of each round by `add(sums, block)` on all threads. Runs of trials are
-  /// merged in order by `merge(other)`, independent of the threads.
+  /// Accumulates rounds by `add(sums, block)` on all threads, and merges runs of trials in order by
+  /// `merge(other)`, independent of the threads.
   /// @param runs_at_once  number of sums in memory
   template <typename Sums, typename Add>
   std::vector<Sums> sum(std::span<const TrialRound> rounds, const Sums& none, const Add& add,

@@ -19,7 +19,6 @@ class FineCorrelation {
 
   /// Uses ForwardModel::straight_points_per_bin().
   explicit FineCorrelation(const ForwardModel& model);
-  /// @param points_per_bin  >= 1
   FineCorrelation(const ForwardModel& model, int points_per_bin);
   /// Accepts any table of tap values, (points, tap values).
   FineCorrelation(const Eigen::MatrixXd& table, int points_per_bin);
@@ -28,8 +27,8 @@ class FineCorrelation {
   /// Per period.
   int points() const { return points_; }
   double points_per_bin() const { return points_per_bin_; }
-  /// The table with the first row repeated, (points + 1, tap values). For rows of an exposure there
-  /// is one column, of time bin 0; bin n equals bin 0 at a depth n bins nearer.
+  /// The table with the first row repeated, (points + 1, tap values). Rows of an exposure have one
+  /// column, of time bin 0; bin n equals bin 0 at a depth n bins nearer.
   const std::vector<double>& table() const { return table_; }
   /// @param depth_bin  in [0, N]; @param chi  (tap values)
   void at(double depth_bin, double* chi) const;

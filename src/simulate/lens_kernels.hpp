@@ -36,7 +36,7 @@ struct DiscKernel {
 /// Area of the disc about the origin within [x0, x1] x [y0, y1].
 double disc_area(double radius, double x0, double x1, double y0, double y1);
 
-/// Discs of confusion, with radii rounded to steps of 2 %.
+/// Discs of confusion, with radii in steps of 2 %.
 class DiscKernels {
  public:
   /// @throws std::invalid_argument if a disc exceeds the largest supported radius

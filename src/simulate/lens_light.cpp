@@ -29,8 +29,7 @@ int mirrored(int i, int size) {
 
 int floor_division(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-/// Accumulates the light of rows of rays. Channels are the tap values of the range, and ambient
-/// light if it varies.
+/// Channels are the tap values of the range, and ambient light if it varies.
 class Band {
  public:
   Band(const RowCapture& rays, int samples, TapRange range, int first_row, int rows)
@@ -79,7 +78,6 @@ class Band {
     }
   }
 
-  /// Uses a disc per ray.
   void add_row(int row, const DiscKernels& kernels) {
     const int ray_row = mirrored(row, rays_.scene().height());
     read_rays(ray_row);

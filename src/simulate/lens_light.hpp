@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// Tap values first to first + count - 1, of one exposure or of all.
+/// Tap values of one exposure or of all.
 struct TapRange {
   int first = 0, count = 0;
 };

@@ -56,7 +56,6 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera,
   return frame;
 }
 
-/// @param depth_of  decodes a frame
 template <typename DepthOf>
 OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera,
                                  const OperatingMultipath& later, const EvaluateOptions& options,

@@ -13,7 +13,7 @@
 namespace tofsmith {
 
 namespace {
-// Relative values that omitted harmonics may cause where the response is 0.
+// Relative; omitted harmonics may cause such values where the response is 0.
 constexpr double rounding = 1e-7;
 }  // namespace
 
@@ -74,7 +74,7 @@ double PhotonInformation::largest(double signal_e, double other_e, double peak_f
 double PhotonInformation::undershoot(double peak_factor) const {
   const double least = response_.minCoeff();
   if (!may_ring_ || least >= -rounding * response_.maxCoeff()) return 0.0;
-  // Light within its peak reaches at most p times the negative part; impulses reach the minimum.
+  // Light within its peak reaches at most p times the negative part.
   return std::min(-least, -peak_factor * response_.cwiseMin(0.0).mean());
 }
 

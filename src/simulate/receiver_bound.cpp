@@ -90,7 +90,7 @@ double ReceiverBound::gathered(const OperatingPoint& point) const {
 
 double ReceiverBound::tap_information(const OperatingPoint& point) const {
   if (!photons_ || has_rows_) return infinity;
-  // Limits the mean over all depths; the limits from photons hold at each depth.
+  // Limits the mean over all depths, not each depth.
   return max_density_ * photons_->largest_slope_power() * gathered(point);
 }
 

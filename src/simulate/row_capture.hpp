@@ -13,7 +13,7 @@
 
 namespace tofsmith {
 
-/// The scene must outlive this object.
+/// Captures a scene, which must outlive this object, row by row.
 class RowCapture {
  public:
   /// @throws std::invalid_argument if scene or options are invalid

@@ -23,7 +23,7 @@ class RowTrials {
   void draw(const TrialStreams& streams, double ambient_e_per_s, int trials, TrialTile& tile) const;
 
  private:
-  /// Electrons and variances of ambient light and dark current, in the layout of of_signal_.
+  /// Electrons and variances without the signal, in the layout of of_signal_.
   std::vector<double> beside_signal(double ambient_e_per_s) const;
   void draw_poisson_rows(const TrialStreams& streams, double ambient_e_per_s, int trials,
                          TrialTile& tile) const;

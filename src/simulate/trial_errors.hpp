@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Sums over pairs of trials in neighbouring slices, for means of errors and of their squares, with
-/// the variance of both (collapsed strata).
+/// Sums over pairs of trials in neighbouring slices, for means and mean squares with variances
+/// (collapsed strata).
 struct ErrorSums {
   TileSums sums;
   std::int64_t trials = 0;

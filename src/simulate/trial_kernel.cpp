@@ -50,7 +50,6 @@ void place(const DepthSlices& slices, double rows, double rows_per_bin, int tria
   }
 }
 
-/// A chunk of trials, as rows of pixels_per_chunk.
 struct RecordChunk {
   alignas(64) std::uint32_t start[pixels_per_chunk];
   alignas(64) float fields[4 * max_measurements * pixels_per_chunk];
@@ -62,7 +61,6 @@ struct RecordChunk {
     for (int i = 0; i < trials; i += lanes)
       gather(model.records().data(), start + i, 0, count, fields + i);
   }
-  /// Value f plus share times change f + taps.
   HWY_INLINE Vector between(int f, int taps, Vector share, int i) const {
     return hn::MulAdd(share, load(fields + (f + taps) * pixels_per_chunk, i),
                       load(fields + f * pixels_per_chunk, i));

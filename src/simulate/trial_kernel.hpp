@@ -21,6 +21,7 @@ struct DepthSlices {
   bool on_bins = false;       ///< rounded down to a bin
 };
 
+/// Workspace, in rows of trials_per_tile.
 struct TrialTile {
   alignas(64) std::uint32_t words[4 * trials_per_tile];
   alignas(64) float normals[max_measurements * trials_per_tile];
@@ -50,7 +51,7 @@ struct PlaneNoise {
 /// position in the slice.
 void place_depths(const TrialModel& model, const DepthSlices& slices, int trials, TrialTile& tile);
 
-/// Fills pixels.plane from row, share, signal and `rank` rows of normals.
+/// Fills pixels.plane; `rank` rows of normals.
 void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile);
 
 /// Fills taps with expected electrons; for a mixer followed by their shot noise [e^2].

@@ -46,11 +46,10 @@ class TrialModel {
   int rows_per_bin() const { return rows_per_bin_; }
   int rows() const { return samples_ * rows_per_bin_; }
   bool has_own_shot_noise() const { return has_own_shot_noise_; }
-  /// x (taps), its change to the next row (taps), and both for x' if it differs from x.
+  /// x (taps), its change to the next row, and both for x' if it differs from x.
   const RecordTable& records() const { return records_; }
   const TapConversion& conversion() const { return conversion_; }
-  /// Returns true if raw numbers are affine in normal electrons; noise of any projection is then
-  /// normal.
+  /// Returns true if raw numbers are affine in normal electrons, hence any projection is normal.
   bool is_linear() const;
 
   /// If is_linear(): raw_per_e (K, taps) and raw_at_zero (K).

@@ -11,8 +11,7 @@
 
 namespace tofsmith {
 
-/// Bounds that depend only on the exposures of a code and their shares of the time; computed once
-/// for all codes. Not thread-safe.
+/// Bounds that depend only on the number and the shares of the exposures. Not thread-safe.
 class CameraBounds {
  public:
   struct Level {

@@ -12,8 +12,8 @@ namespace tofsmith {
 constexpr int cells_per_bin = 4;
 constexpr double min_e2 = 1e-9;  // avoids 0 / 0 without light and noise
 
-/// Returns values at the centre of cells, from a table of twice as many points, and the slope over
-/// each cell.
+/// Returns values at the centre of cells and slopes over each cell, from a table of twice as many
+/// points.
 inline void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
                                Eigen::MatrixXd& slope) {
   const Eigen::Index cells = fine.rows() / 2;
@@ -57,7 +57,7 @@ struct DepthPart {
     across = by_depth;
   }
 
-  /// [m]; infinite if depth cannot be separated from the other columns.
+  /// Standard deviation [m]; infinite if depth cannot be separated from the other columns.
   double deviation_m(double range_m) const { return length > 0.0 ? range_m / length : infinity; }
 
   Vector across;

@@ -89,8 +89,8 @@ class WeighedErrorByRotation {
   Eigen::VectorXd parted_;    // additional error at each rotation
 };
 
-/// Returns the first rotation with the smallest error; `errors` may be a monotone function of the
-/// errors.
+/// Returns the first rotation with the smallest error, or with the smallest monotone function of
+/// it.
 inline int best_of_rotations(const std::vector<double>& errors) {
   return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
 }
