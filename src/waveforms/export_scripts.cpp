@@ -12,7 +12,7 @@ namespace tofsmith {
 
 namespace {
 
-/// Two-channel models by increasing sample rate.
+/// By increasing sample rate.
 std::vector<GeneratorModel> models_of_format(const std::string& format) {
   std::vector<GeneratorModel> models;
   for (const GeneratorModel& model : generator_models())

@@ -19,13 +19,11 @@ std::vector<UploadStep> tektronix_steps(const UploadRequest& request);
 std::vector<std::string> siglent_outputs_off(const UploadRequest& request);
 std::vector<std::string> scpi_outputs_off(const UploadRequest& request);
 
-/// First line of a script, with the models.
 std::string script_heading(const GeneratorModel& model, const std::vector<std::string>& names);
 std::string script_messages(const UploadScript& script);
 
 UploadStep message_step(std::string what, std::string message);
 UploadStep output_on(std::string message);
-/// Query with the checks of its answer.
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks);
 
 AnswerCheck number_check(int channel, std::string quantity, std::string field, double wanted,
@@ -33,6 +31,7 @@ AnswerCheck number_check(int channel, std::string quantity, std::string field, d
 AnswerCheck word_check(int channel, std::string quantity, std::string field,
                        std::vector<std::string> texts, bool within = false);
 
+/// Appends steps that set and check one channel.
 class ChannelSteps {
  public:
   ChannelSteps(std::vector<UploadStep>& steps, int channel) : steps_(steps), channel_(channel) {}
@@ -58,7 +57,7 @@ double frequency_tolerance_hz(double frequency_hz, double relative);
 inline constexpr double scpi_frequency_tolerance = 1e-6;  ///< relative; Keysight and Tektronix
 inline constexpr double volt_tolerance_v = 1e-3;
 
-/// Returns a name that depends on the points: "M1_1F3A77C2".
+/// Depends on the points: "M1_1F3A77C2".
 std::string memory_name(const QuantizedWaveform& waveform);
 
 }  // namespace tofsmith

@@ -12,6 +12,7 @@
 
 namespace tofsmith {
 
+/// Bits of a word that drive one output.
 struct PatternField {
   std::string name;   ///< "light", "tap_1", ..., "trigger"
   int first_bit = 0;  ///< lowest bit; bit 0 is the least significant

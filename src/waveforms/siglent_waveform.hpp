@@ -30,6 +30,7 @@ enum class WvdtPoints {
   bits16_little_endian,  ///< X series: 16-bit two's complement, low byte first
 };
 
+/// Settings and points of a WVDT command.
 struct WvdtCommand {
   int channel = 1;            ///< >= 1
   std::string slot;           ///< "M50" for older generators; empty for the X series

@@ -25,7 +25,6 @@ void put_u32_big(std::span<std::byte> into, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) into[i] = static_cast<std::byte>(value >> (24 - 8 * i));
 }
 
-/// Minimum and maximum of each column of the preview.
 void draw(const std::vector<std::int32_t>& codes, std::span<std::byte> picture) {
   const std::size_t columns = std::min<std::size_t>(tfw_picture_columns, codes.size());
   for (std::size_t c = 0; c < columns; ++c) {
@@ -59,7 +58,7 @@ std::vector<std::byte> tektronix_tfw(const QuantizedWaveform& waveform) {
   const auto fields = std::span(file).subspan(tfw_fields_at);
   put_u32_big(fields, tfw_version);
   put_u32_big(fields.subspan(4), static_cast<std::uint32_t>(waveform.codes.size()));
-  put_u32_big(fields.subspan(8), 1);  // the file has a preview
+  put_u32_big(fields.subspan(8), 1);
   draw(waveform.codes, std::span(file).subspan(tfw_picture_at));
   std::ranges::copy(points, file.begin() + tfw_header_bytes);
   return file;

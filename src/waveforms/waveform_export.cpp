@@ -217,7 +217,7 @@ WaveformExport export_waveforms(const CodeSet& code, const Camera& actual,
         fitting_periods(exported.format, generator.points_in_table(frequency_hz), options.periods)};
   };
   const ArmTables light = arm(exported.light), sensor = arm(exported.sensor);
-  actual_code(code, actual);  // rejects vanishing pulses
+  actual_code(code, actual);
   for (int e = 0; e < code.exposures(); ++e) {
     exported.waveforms.push_back(light.of(code.modulation(e), true));
     exported.waveforms.back().name = fmt::format("modulation_{}", e + 1);
