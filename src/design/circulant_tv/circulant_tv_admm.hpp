@@ -21,7 +21,7 @@ struct CirculantTvAdmmOptions {
 /// ADMM with one split: x minimizes the data term (a division of spectra); z satisfies the rest by
 /// the exact proximal map
 ///   prox(v) = clip(prox_TV(v) - mu, 0, upper_bound),  mu >= 0 the price of the budget.
-/// A slow check of the active set.
+/// Slow, and independent of the active set.
 /// @param warm_start  initial x (N, finite), or empty
 /// @return z, feasible, with its certificate; stalled if the residuals vanish but the certificate
 ///   exceeds its tolerance

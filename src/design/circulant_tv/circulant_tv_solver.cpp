@@ -37,7 +37,7 @@ struct CirculantTvSolver::Workspace {
   Eigen::VectorXd sums;  // prefix sums of the gradient, from sums_origin
   int sums_origin = 0;
   Eigen::VectorXd priced_sums;
-  bool by_transform = false;  // without accumulated error
+  bool by_transform = false;  // FFT gradient, without accumulated error
   double squares = 0;         // least-squares term, if by_transform
   int problem_samples;
 
