@@ -167,7 +167,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
         try {
           return read_finished(path, key, name, camera);
         } catch (const IoError&) {
-          return {};  // design the code again
+          return {};  // damaged: design the code again
         }
       },
       .save =
@@ -184,7 +184,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options, OutputPolicy policy) const {
   make_output_directory(path_ / "codes");
-  std::error_code ignored;  // incomplete directories must not be read as designs
+  std::error_code ignored;  // design.json marks a complete design
   if (policy == OutputPolicy::overwrite) fs::remove(path_ / "design.json", ignored);
   write_file_atomically(path_ / "camera.toml", camera_to_toml(self_contained(camera)), policy);
   for (const Candidate& c : result.candidates)

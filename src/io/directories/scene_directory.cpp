@@ -119,7 +119,7 @@ Json write_decoding(const SceneDecoding& decoding, const std::string& light,
 
 void write_scene_result(const fs::path& directory, const SceneResult& scene, OutputPolicy policy) {
   make_output_directory(directory);
-  std::error_code ignored;  // its presence marks a complete scene
+  std::error_code ignored;  // scene.json marks a complete scene
   if (policy == OutputPolicy::overwrite) fs::remove(directory / "scene.json", ignored);
   write_float_image(directory / "true_depth.npy", scene.truth.depth_m, "depth", policy);
   write_float_image(directory / "albedo.npy", scene.truth.albedo, "albedo", policy);

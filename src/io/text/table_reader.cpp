@@ -73,7 +73,7 @@ void lay_over(toml::table& base, toml::table&& change) {
       lay_over(*below, std::move(*inner));
       continue;
     }
-    base.erase(key.str());  // also erases the key, with its old position
+    base.erase(key.str());  // also erases the key, which stores the old position
     node.visit([&, k = key](auto& value) { base.insert_or_assign(k, std::move(value)); });
   }
 }
