@@ -24,7 +24,7 @@ struct NoiseParts {
 ///              Gaussian of the same mean and variance, mu + sigma_r^2; both may be negative;
 ///   2. clip     at full_well_e, if it is set;
 ///   3. convert  round(electrons / gain_e_per_dn + black_level_dn), clipped to [0, 2^bits - 1], if
-///              adc_bits is set;
+///              adc_bits is set, otherwise electrons;
 ///   4. read     every tap, or the difference of each pair of buckets.
 /// The difference of the two taps of a mixer is drawn, clipped on both sides, converted and read.
 /// For rows, every time bin is drawn without read noise, which is added to the rows.
