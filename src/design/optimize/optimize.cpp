@@ -177,8 +177,8 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     pool.run_starts(stages[s], also, parts[0]);
     pool.run_hops(stages[s], parts[1]);
     pool.refine(stages[s], parts[2]);
-    std::vector<FinishedCode> finished = finished_codes(problem, judge, pool, camera, options,
-                                                        stages[s], finished_before, parts[3]);
+    std::vector<FinishedCode> finished =
+        finished_codes(problem, judge, pool, camera, options, stages[s], finished_before, parts[3]);
     finished_before += finished.size();
     std::vector<Candidate> made =
         candidates_of(problem, pool, camera, options, std::move(finished));

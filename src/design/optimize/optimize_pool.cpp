@@ -233,8 +233,8 @@ void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> a
     keep(std::move(entries));
   }
   starts_done_ = count;
-  continued_.assign(entries_.begin(),
-                    entries_.begin() + std::min<std::ptrdiff_t>(stage.refined, std::ssize(entries_)));
+  continued_.assign(entries_.begin(), entries_.begin() + std::min<std::ptrdiff_t>(
+                                                             stage.refined, std::ssize(entries_)));
 }
 
 void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
