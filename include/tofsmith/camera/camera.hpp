@@ -114,7 +114,7 @@ struct Sensor {
 /// Keys of [sensor].
 inline void describe(FieldVisitor& fields, Sensor& sensor) {
   fields.value(
-      Key("taps", "Values that are read out of one exposure; 2: two buckets", closed(1, 16))
+      Key("taps", "Number of values that are read out per exposure; 2: two buckets", closed(1, 16))
           .usually(1, 4),
       sensor.taps);
   fields.value(Key("binary", "Designed waveforms only switch on and off").basic(), sensor.binary);
@@ -132,7 +132,9 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                     .basic(),
                 sensor.noise, noise_models);
   fields.value(Key("dark_current_e_per_s",
-                   "Dark current of a tap; for rows, of all time bins together", at_least(0)),
+                   "Dark current of a tap; if the sensor reads out rows, of all time bins "
+                   "together",
+                   at_least(0)),
                sensor.dark_current_e_per_s);
   fields.value(Key("modulation_contrast",
                    "Demodulation contrast; a list contains one value per "
@@ -159,8 +161,8 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
   fields.value(Key("drain", "Charge can be discarded; otherwise the gains of all taps add up to 1"),
                sensor.drain);
   fields.choice(Key("readout",
-                    "Each tap, the difference of two taps, or rows: weighted sums of the "
-                    "light in the time bins of one exposure")
+                    "Values that are read out: each tap, the difference of two taps, or rows, "
+                    "which are weighted sums of the light in the time bins of one exposure")
                     .basic(),
                 sensor.readout, readouts);
   fields.choice(
@@ -173,12 +175,13 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                    "another",
                    above(0)),
                sensor.frame_period_s);
-  fields.value(Key("max_exposures", "Maximum number of exposures for the design method frequencies",
+  fields.value(Key("max_exposures",
+                   "Maximum number of exposures for the design method `frequencies`",
                    closed(1, 16)),
                sensor.max_exposures);
   fields.value(Key("integration_times_s",
-                   "Possible integration times of one exposure for the design method frequencies "
-                   "(default: any); the times of a code add up to exposure_s",
+                   "Possible integration times of one exposure for the design method "
+                   "`frequencies` (default: any); the times of a code add up to exposure_s",
                    above(0)),
                sensor.integration_times_s);
 }

@@ -38,8 +38,8 @@ inline void describe(FieldVisitor& fields, Generator& generator) {
   fields.value(Key("amplitude_bits", "Resolution of the amplitude", closed(1, 24)),
                generator.amplitude_bits);
   fields.value(Key("table_points",
-                   "Number of points in the table of one period; without it, the number of "
-                   "points output per period",
+                   "Number of points in the table of one period; default: as many as are output "
+                   "per period",
                    closed(2, 1048576)),
                generator.table_points);
   fields.value(Key("edge_grid_s",

@@ -48,11 +48,12 @@ inline void describe(FieldVisitor& fields, ImpulseResponse& response) {
   fields.choice(Key("kind", "Shape of the impulse response").required("\"hann\"").basic(),
                 response.kind, impulse_response_kinds);
   const Kind kind = response.kind;
-  fields.value(Key("f_max_hz", "Frequency at which the Hann window attenuates by 5", above(0))
-                   .required("150e6")
-                   .only(kind == Kind::hann, "kind = \"hann\"")
-                   .usually(1e7, 3e9),
-               response.f_max_hz);
+  fields.value(
+      Key("f_max_hz", "Frequency at which the Hann window attenuates by a factor of 5", above(0))
+          .required("150e6")
+          .only(kind == Kind::hann, "kind = \"hann\"")
+          .usually(1e7, 3e9),
+      response.f_max_hz);
   fields.value(Key("cutoff_hz", "-3 dB frequency", above(0))
                    .required("100e6")
                    .only(kind == Kind::gaussian || kind == Kind::lowpass,

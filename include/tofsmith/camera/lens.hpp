@@ -82,8 +82,8 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
           .only(is_pinhole, condition),
       lens.height_px);
   Key modes("frame_modes",
-            "Sensor with several frame sizes, which are crops or binned images; the pinhole "
-            "describes the whole sensor");
+            "Sensor whose smaller frames are cropped or binned; the pinhole parameters are "
+            "those of the whole sensor");
   modes.only(is_pinhole, condition);
   fields.part(modes, lens.frame_modes, [&](FieldVisitor& inner, FrameModes& sensor) {
     inner.choice(modes, sensor, frame_modes_words);

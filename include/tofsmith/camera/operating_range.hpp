@@ -137,17 +137,18 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                     "root mean square error"),
                 range.statistic, error_statistics);
   fields.value(Key("albedo",
-                   "Factor of the signal; \"uniform\": a fresh draw in (0, 1) for every "
+                   "Factor of the signal; \"uniform\": drawn uniformly from (0, 1) in every "
                    "trial",
                    left_open(0, 1))
                    .usually(0.05, 1),
                NumberOrWord{range.albedo, "uniform", range.uniform_albedo});
-  fields.value(Key("neighbours", "Number of pixels of one depth that a filter adds before decoding",
-                   closed(1, 10000)),
-               range.neighbours);
+  fields.value(
+      Key("neighbours", "Number of pixels at the same depth that a filter combines before decoding",
+          closed(1, 10000)),
+      range.neighbours);
   fields.value(Key("working_distance_m",
-                   "Nearest and farthest depth, between which decoding searches; without them, "
-                   "anywhere in the unambiguous range",
+                   "Nearest and farthest depth, between which decoding searches; default: the "
+                   "whole unambiguous range",
                    at_least(0)),
                range.working_distance_m);
   fields.value(Key("depths",

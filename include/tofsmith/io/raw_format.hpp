@@ -192,13 +192,13 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                     "negated"),
                 f.negate_columns, negated_lines_words);
   fields.value(Key("negate_from_row",
-                   "Row of each image in the file from which on numbers are negated, in addition "
-                   "to the other keys (two negations cancel); 0: none",
+                   "First row of each image in the file whose numbers are negated, as in all "
+                   "later rows, in addition to the other keys (two negations cancel); 0: none",
                    closed(0, 65535)),
                f.negate_from_row);
   fields.value(Key("negate_from_column",
-                   "Column of each image in the file from which on numbers are negated, in "
-                   "addition to the other keys (two negations cancel); 0: none",
+                   "First column of each image in the file whose numbers are negated, as in all "
+                   "later columns, in addition to the other keys (two negations cancel); 0: none",
                    closed(0, 65535)),
                f.negate_from_column);
   fields.choice(Key("layout",
