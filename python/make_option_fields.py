@@ -58,7 +58,7 @@ def documentation(field):
     default = field["if_absent"]
     if not default and field["default"] not in (None, "", []):
         default = str(field["default"])
-    text += f" ({default})" if default else ""
+    text += f" (default: {default})" if default else ""
     conditions = [field["range"], field["only_with"] and f"only with {field['only_with']}"]
     return "; ".join([text, *filter(None, conditions)]) + "."
 

@@ -34,7 +34,7 @@ std::string full_help(std::string_view unit, std::string_view help, std::string_
       end_of_noun = std::min(end_of_noun, text.find(mark));
     text.insert(end_of_noun, fmt::format(" [{}]", unit));
   }
-  if (!if_absent.empty()) text += fmt::format(" ({})", if_absent);
+  if (!if_absent.empty()) text += fmt::format(" (default: {})", if_absent);
   if (!only_with.empty()) text += fmt::format("; only with {}", only_with);
   return text;
 }

@@ -121,11 +121,11 @@ TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
   EXPECT_THAT(help, ContainsRegex("--trays INT:in .1, 9.( .4.|=4)"));
   EXPECT_THAT(help, HasSubstr("number of trays"));
   EXPECT_THAT(help, HasSubstr("power [W]"));
-  EXPECT_THAT(help, HasSubstr("width of the door [m] (as wide as the oven)"));
+  EXPECT_THAT(help, HasSubstr("width of the door [m] (default: as wide as the oven)"));
   EXPECT_THAT(help, HasSubstr("do not circulate the air"));
   EXPECT_THAT(help, HasSubstr("brown the top; only with heat top"));
   EXPECT_THAT(help, ContainsRegex("--heat TEXT:.top,bottom,both.( .both.|=both)"));
-  EXPECT_THAT(help, HasSubstr("heat at night (none)"));
+  EXPECT_THAT(help, HasSubstr("heat at night (default: none)"));
   EXPECT_THAT(help, HasSubstr("times [s]"));
 }
 
