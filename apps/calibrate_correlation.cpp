@@ -252,15 +252,16 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       "correlation functions, pixel maps and impulse responses from a flat target at known delays");
   command
       ->add_option("SWEEP", arguments->files,
-                   "a table of delay and K values (.csv .txt), a stack of frames (F,H,W,K) with "
-                   "--shifts, or an array (N,K) of one period (.npy .npz); with --reference, raw "
-                   "frames as for decode, in one file or one file per measurement")
+                   "a table with delay and K measurements per row (.csv .txt), an array (N,K) "
+                   "with N equal steps of delay over one period (.npy .npz), or a stack of F "
+                   "frames (F,H,W,K) with --shifts; with --reference, raw frames as for decode, "
+                   "in one file or one file per measurement")
       ->required();
   command->add_option("--shifts", arguments->shifts,
                       "delay of each frame of a stack, one per line or .npy");
   command
       ->add_option("--shift-unit", arguments->unit,
-                   "unit of the delays: s ms us ns ps, m of depth, bin, period")
+                   "unit of the delays: a unit of time, m of depth, bin, or period")
       ->check(one_of({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
       ->capture_default_str();
   CLI::Option* reference = command->add_option(
@@ -270,8 +271,9 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
   command
       ->add_option(
           "--reference-kind", arguments->reference_kind,
-          "kind of --reference: depth along the ray (radial) or along the optical axis (z), which "
-          "is converted with the camera's [lens] (as the file states, or radial)")
+          "kind of --reference: depth along the ray (radial) or along the optical axis (z), "
+          "which is converted with the camera's [lens] (default: as stated in the file, "
+          "otherwise radial)")
       ->needs(reference)
       ->check(one_of({"radial", "z"}));
   command
@@ -280,7 +282,7 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       ->needs(reference);
   command
       ->add_option("--dataset", arguments->dataset,
-                   "array of an .npz or data set of an .h5 that contains the frames")
+                   "array of an .npz file or dataset of an .h5 file with the frames")
       ->needs(reference)
       ->group(for_experts);
   command->add_option("--dark", arguments->dark,
@@ -293,7 +295,7 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       ->group(for_experts);
   command
       ->add_option("--code", arguments->codes,
-                   "codes to compare with: families or files (all built-in codes)")
+                   "codes to compare with: families or files (default: all built-in codes)")
       ->delimiter(',');
   command->add_option("--decimal", arguments->decimal, "decimal mark of a text file")
       ->check(one_of({"auto", "point", "comma"}))

@@ -99,7 +99,8 @@ void add_calibrate_noise(CLI::App& calibrate, Session& session) {
   const FieldOptions options(*command, arguments->given);
   options.add("black_level_dn", "--black-level");
   command->add_option("--code", arguments->code,
-                      "code that the camera used; required if it reads differences");
+                      "code that the camera used; required if the camera reads out differences "
+                      "of taps");
   options.add("averaged", "--averaged");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);

@@ -103,13 +103,17 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
   auto arguments = std::make_shared<ResponseArguments>();
   CLI::App* command = calibrate.add_subcommand(
       "impulse-response",
-      "bandwidth and impulse response of an arm from its recorded response to a pulse or step");
+      "bandwidth and impulse response of the light source or sensor, from its recorded response "
+      "to a pulse or step");
   command
       ->add_option("FILE", arguments->file,
-                   "oscilloscope CSV (time, value), or a histogram (.npy or values alone)")
+                   "oscilloscope CSV (time, value), or a histogram (.npy, or text with values "
+                   "only)")
       ->required();
   arguments->camera.add_to(*command);
-  command->add_option("--excitation", arguments->excitation, "excitation of the arm")
+  command
+      ->add_option("--excitation", arguments->excitation,
+                   "input of the light source or sensor during the record")
       ->check(one_of({"auto", "pulse", "step"}))
       ->capture_default_str();
   const FieldOptions fields(*command, arguments->record);
@@ -121,13 +125,14 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
   command
       ->add_option(
           "--arm", arguments->arm,
-          "arm with this response; system: both arms together, stored as the light's response")
+          "part of the camera with this response; system: light source and sensor together, "
+          "stored as response of the light source")
       ->check(one_of({"light", "sensor", "system"}))
       ->capture_default_str();
   command
       ->add_option("--as", arguments->as,
-                   "form of the response in the camera: file (the measured response, stored next "
-                   "to the camera) or a fit")
+                   "form of the response in the camera file: file (the measured response, "
+                   "stored next to the camera file) or the name of a fit")
       ->check(one_of({"file", "hann", "gaussian", "lowpass"}))
       ->capture_default_str();
   arguments->output.add_to(*command);

@@ -154,18 +154,20 @@ void add_calibrate_temperature(CLI::App& calibrate, Session& session) {
       ->required();
   CLI::Option* const sensor_column = command->add_option(
       "--sensor-column", arguments->sensor_column,
-      "name or number (from 1) of the column with the temperature of the sensor; the drifts with "
-      "both temperatures are fitted together (none: one temperature of the camera)");
+      "name or number (from 1) of the column with the temperature of the sensor, if the drifts "
+      "of sensor and light source are fitted separately");
   command->add_option("--light-column", arguments->light_column,
                       "name or number (from 1) of the column with the temperature of the light "
-                      "source, or of the camera (the only other column)");
+                      "source or of the camera (default: the only other column)");
   command->add_option("--code", arguments->code, "code that the camera used")->required();
   command->add_option("--reference-c", arguments->reference_c,
-                      "temperature of the other calibrations [degrees C], at which depth and "
-                      "signal are not corrected (the mean of the frames)");
+                      "reference temperature [degrees C], at which depth and signal are not "
+                      "corrected; use the temperature of the other calibrations (default: the "
+                      "mean of the frames)");
   command
       ->add_option("--sensor-reference-c", arguments->sensor_reference_c,
-                   "reference temperature of the sensor [degrees C] (the mean of the frames)")
+                   "reference temperature of the sensor [degrees C] (default: the mean of the "
+                   "frames)")
       ->needs(sensor_column);
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);

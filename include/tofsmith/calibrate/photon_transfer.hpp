@@ -26,7 +26,7 @@ struct PhotonTransferOptions {
 auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
   return std::tuple(
       Field("black_level_dn", o.black_level_dn, at_least(0), Help{"black level, if known"},
-            IfAbsent{"from dark frames, or the camera's"}),
+            IfAbsent{"from dark frames, otherwise the camera's"}),
       Field("adc_bits", o.adc_bits, closed(1, 24), Help{"resolution of the raw numbers"},
             IfAbsent{"the camera's, or the smallest usual one"}),
       Field("averaged", o.averaged, above(0),
