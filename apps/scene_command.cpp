@@ -155,8 +155,9 @@ void add_scene_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option(
       "-o,--output", arguments->output,
-      "directory for depth, z-depth, albedo, cosine, a mask of pixels beyond the range and a "
-      "preview; or one file for the radial distance (.npy .npz .exr .pfm .png)");
+      "directory for depth, z-depth, albedo, cosine of the angle of incidence, a mask of pixels "
+      "beyond the range and a preview; or one file for the radial distance (.npy .npz .exr .pfm "
+      ".png)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -92,14 +92,14 @@ void CameraArguments::add_positional(CLI::App& command) {
 void CameraArguments::add_temperature_to(CLI::App& command) {
   command
       .add_option("--temperature", temperature_c,
-                  "temperature of the camera [degrees C], for the corrections in its [temperature] "
-                  "(temperature.now_c, or the reference)")
+                  "temperature of the camera [degrees C], which determines the drift described "
+                  "in [temperature] (default: temperature.now_c, otherwise the reference)")
       ->transform(number_in("degrees C"))
       ->group(for_experts);
   command
       .add_option("--sensor-temperature", sensor_temperature_c,
                   "temperature of the sensor [degrees C], for cameras with [temperature.sensor] "
-                  "(temperature.sensor.now_c, or the reference)")
+                  "(default: temperature.sensor.now_c, otherwise the reference)")
       ->group(for_experts);
 }
 

@@ -378,27 +378,29 @@ void add_simulate_command(CLI::App& app, Session& session) {
   arguments->taps.add_to(*command);
   command
       ->add_option("--signal", arguments->signal_e_per_s,
-                   "signal of albedo 1 at the reference distance [e/s] (from the camera's "
-                   "[optics], or the middle of its operating points)")
+                   "signal of a white surface at the reference distance [e/s] (default: from "
+                   "the camera's [optics]; without [optics], the middle of its operating points)")
       ->transform(number_in("e/s"));
   command
       ->add_option("--ambient", arguments->ambient_e_per_s,
-                   "ambient light [e/s] (from the same source as --signal)")
+                   "ambient light [e/s] (default: from the same source as the default of "
+                   "--signal)")
       ->transform(number_in("e/s"));
   command
-      ->add_option(
-          "--signal-range", arguments->signal_range,
-          "a:b, with several scenes: draw the signal of each log-uniformly from a to b [e/s]")
+      ->add_option("--signal-range", arguments->signal_range,
+                   "range a:b [e/s] from which the signal of each of several scenes is drawn "
+                   "log-uniformly")
       ->group(for_experts);
   command
       ->add_option("--ambient-range", arguments->ambient_range,
-                   "a:b, with several scenes: draw the ambient light of each log-uniformly from a "
-                   "to b [e/s]")
+                   "range a:b [e/s] from which the ambient light of each of several scenes is "
+                   "drawn log-uniformly")
       ->group(for_experts);
   command
       ->add_option(
           "--shard", arguments->shard,
-          "i/n, with several scenes: simulate only the i-th of n parts, into the same directory")
+          "i/n: simulate only the i-th of n parts of several scenes; all parts can have the "
+          "same output directory")
       ->group(for_experts);
   const FieldOptions options(*command, arguments->options);
   options.add("reference_distance_m", "--reference-distance")->group(for_experts);

@@ -54,12 +54,14 @@ void MultipathLightArguments::add_to(CLI::App& command) {
       ->group(for_experts);
   command
       .add_option("--multipath-file", returns_,
-                  "multipath returns of every pixel (.npz: first, distance_m, ratio)")
+                  "multipath returns of every pixel (.npz with the arrays first, distance_m and "
+                  "ratio)")
       ->group(for_experts);
   CLI::Option* transient = command
                                .add_option("--transient", transient_,
-                                           "histogram of light over time that distributes the "
-                                           "signal (.npy): (T,) for all pixels, or (H,W,T)")
+                                           "histogram of arrival times (.npy), over which the "
+                                           "signal of a pixel is distributed: (T,) for all "
+                                           "pixels, or (H,W,T)")
                                ->group(for_experts);
   command
       .add_option("--transient-bin-s", transient_bin_s_, "duration of one bin of --transient [s]")
@@ -75,7 +77,7 @@ void MultipathLightArguments::add_to(CLI::App& command) {
       ->group(for_experts);
   command
       .add_option("--transient-background", transient_background_,
-                  "constant background to subtract from each histogram first")
+                  "constant background to subtract from each histogram before use")
       ->check(one_of({"none", "median"}))
       ->capture_default_str()
       ->needs(transient)

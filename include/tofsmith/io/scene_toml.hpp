@@ -45,18 +45,20 @@ auto fields_of(ConstOrNot<SceneSource> auto& s) {
   return std::tuple(
       Field("scene", s.scene,
             Help{"a built-in scene, a scene file (.toml), a mesh, or a depth image"}),
-      Field("image", s.image, Help{"albedo of a depth image (.png .npy .exr .pfm)"}),
+      Field("image", s.image,
+            Help{"image with the albedo of each pixel of a depth image (.png .npy .exr .pfm)"}),
       Field("ambient_image", s.ambient_image,
-            Help{"ambient light of each pixel, relative to that of the capture (.png .npy .exr "
-                 ".pfm)"}),
-      Field("kind", s.kind, Help{"content of a depth image: z along the axis, or radial distance"},
-            IfAbsent{"as the file states, or z"}),
+            Help{"image with the ambient light of each pixel, relative to the ambient light of "
+                 "the simulation (.png .npy .exr .pfm)"}),
+      Field("kind", s.kind,
+            Help{"content of a depth image: z along the optical axis, or radial distance"},
+            IfAbsent{"as stated in the file, otherwise z"}),
       Field("linear_image", s.linear_image,
             Help{"treat PNG images as linear light instead of sRGB"}),
       Field("width", s.width, closed(1, 16384), Help{"columns of a built-in scene or a mesh"},
-            IfAbsent{"as the camera's [lens], or 320"}),
+            IfAbsent{"width in the camera's [lens], otherwise 320"}),
       Field("height", s.height, closed(1, 16384), Help{"rows of a built-in scene or a mesh"},
-            IfAbsent{"as the camera's [lens], or 240"}),
+            IfAbsent{"height in the camera's [lens], otherwise 240"}),
       Field("scale_m", s.scale_m, above(0), Help{"length of one unit of a mesh"}, IfAbsent{"1"}),
       Field("time_s", s.time_s, finite(), Help{"time of the image of a moving scene"}));
 }

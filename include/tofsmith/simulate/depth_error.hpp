@@ -52,7 +52,8 @@ struct EvaluateOptions {
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
   return std::tuple(
       Field("trials", o.trials, closed(2, 4e9),
-            Help{"trials per operating point; with target_standard_error, the initial number"}),
+            Help{"trials per operating point; the initial number if a target standard error is "
+                 "given"}),
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
@@ -60,14 +61,16 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
       Field("depth", o.depth,
             Help{"true depths: uniform in the range, or on bins only (underestimates errors)"}),
       Field("clip_to_open_sensor", o.clip_to_open_sensor,
-            Help{"clip electrons to [0, T (S + A)], as in the simulator of the paper's authors"}),
+            Help{"clip the electrons of exposure T, signal S and ambient light A to [0, T (S + "
+                 "A)], as in the simulator of Gutierrez-Barragan et al., CVPR 2019"}),
       Field("method", o.method, decode_method_help),
       Field("unwrap_weights", o.unwrap_weights, unwrap_weights_help, unwrap_weights_condition),
       Field("target_standard_error", o.target_standard_error, right_open(0, 1),
-            Help{"relative standard error of the depth error at which trials end, such as 1% or "
-                 "0.01; 0: no target"}),
+            Help{"end the trials as soon as the depth error has this relative standard error, "
+                 "such as 1% or 0.01; 0: no target"}),
       Field("max_trials", o.max_trials, closed(2, 4e9),
-            Help{"maximum number of trials per operating point with target_standard_error"}),
+            Help{"maximum number of trials per operating point if a target standard error is "
+                 "given"}),
       Field("draw_every_measurement", o.draw_every_measurement,
             Help{"draw the noise of every measurement, so that all methods have the same noise"}),
       Field("bounds", o.bounds, Help{"compute the bounds; otherwise they are 0"}));
