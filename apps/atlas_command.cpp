@@ -146,21 +146,23 @@ void add_atlas_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<AtlasArguments>();
   CLI::App* command = app.add_subcommand(
       "atlas", "browse precomputed best codes by bandwidth, peak factor, taps and exposures");
-  command->add_option("--taps", arguments->taps, "numbers of taps, such as 1,2 (all)")
+  command->add_option("--taps", arguments->taps, "numbers of taps, such as 1,2 (default: all)")
       ->delimiter(',');
   command
       ->add_option("--exposures", arguments->exposures,
-                   "numbers of exposures, such as 3,4 (the best)")
+                   "numbers of exposures, such as 3,4 (default: only the best number for each "
+                   "camera)")
       ->delimiter(',');
   command->add_option("--peak", arguments->peak, "peak factor, or a range from:to");
   command->add_option(
       "--bandwidth", arguments->bandwidth,
-      "bandwidth of both arms in multiples of f0, or a range from:to; 0: unlimited");
+      "bandwidth of light source and sensor in multiples of the fundamental frequency, or a "
+      "range from:to; 0: unlimited");
   command
       ->add_option("--error", arguments->error, "kind of depth error for which codes were designed")
       ->check(one_of({"linear", "circular"}));
   command->add_option("--file", arguments->file,
-                      "atlas file, as written by scripts/atlas.sh (the built-in atlas)");
+                      "atlas file, as written by scripts/atlas.sh (default: the built-in atlas)");
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv) or a page with figures (.html)");
   command->callback([arguments, &session] { run_atlas(*arguments, session); });

@@ -132,11 +132,12 @@ void add_cameras_command(CLI::App& app, Session& session) {
   add_settings_option(*command, *settings);
   command->add_flag(
       "--raw-format", *raw_format,
-      "print the description of its raw frames instead (input for `decode --raw-format`)");
+      "print the description of the camera's raw frames instead of the camera (input for "
+      "`decode --raw-format`)");
   command
       ->add_flag("--keys", *keys,
-                 "list all keys of camera files, or of raw formats with --raw-format, with unit, "
-                 "range and default")
+                 "list unit, range and default of all keys of camera files; if combined with "
+                 "--raw-format, of all keys of raw formats")
       ->excludes("NAME", "--set");
   command->callback([name, settings, raw_format, keys, &session] {
     if (*keys && *raw_format)

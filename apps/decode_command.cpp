@@ -160,17 +160,18 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
   command
       .add_option(
           "RAW", arguments.raw,
-          "raw frames (.npy .npz .h5), (H,W,K) or (F,H,W,K); files of any format described by "
-          "--raw-format; K files, one per measurement in order, (H,W) or (F,H,W) each, or grey "
-          "images (.png .tiff .pgm); or -: standard input, with --raw-format and -o -")
+          "raw frames of F frames, H rows, W columns and K measurements: one file (.npy .npz "
+          ".h5) with (H,W,K) or (F,H,W,K); K files in the order of the measurements, with (H,W) "
+          "or (F,H,W) or grey images (.png .tiff .pgm); files that --raw-format describes; or "
+          "-: standard input, with --raw-format and -o -")
       ->required();
   const FieldOptions request(command, arguments.request);
   CLI::Option* const layout = request.add("layout", "--layout");
   CLI::Option* const dataset = request.add("dataset", "--dataset")->group(for_experts);
   request.add("raw_format", "--raw-format")->excludes(layout)->excludes(dataset);
   command.add_option("--code", arguments.code,
-                     "code that the camera used: a family, a code file or a measured table (.npz "
-                     ".npy .csv) (the .code.json next to the raw frames)");
+                     "code that the camera used: a family, a code file or a measured table "
+                     "(.npz .npy .csv) (default: the .code.json next to the raw frames)");
 }
 
 /// Options of maps and stray light.
@@ -205,14 +206,14 @@ void add_status_options(const FieldOptions<DecodeOptions>& options) {
 void add_output_options(CLI::App& command, DecodeArguments& arguments) {
   command
       .add_option("-o,--output", arguments.output,
-                  "depth file: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd, numbered if there "
-                  "are several frames; -: write the --outputs (depth) of each frame to standard "
-                  "output, in the layout of .npy without its header")
+                  "depth file: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd, numbered if "
+                  "there are several frames; -: write the planes of each frame, by default only "
+                  "depth, to standard output, in the layout of .npy without its header")
       ->required();
   command
       .add_option("--rays", arguments.rays,
-                  "map of rays, instead of the camera's [lens], for points and z (.npy): (H,W,2) "
-                  "with x/z and y/z, or (H,W,3) with directions")
+                  "ray of each pixel (.npy) for points and z, instead of the camera's [lens]: "
+                  "(H,W,2) with x/z and y/z, or (H,W,3) with directions")
       ->group(for_experts);
   const FieldOptions request(command, arguments.request);
   request.add("all_points", "--all-points")->group(for_experts);

@@ -72,12 +72,13 @@ void require_operating_multipath(const Camera& camera, const char* option) {
 
 void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& options) {
   command.add_option("--multipath", returns_,
-                     "design for pixels with a second return: ratio=0.1:0.5,delta=0.5:3 (metres), "
-                     "each uniform between its limits; overrides [operating.multipath]");
+                     "design for pixels with a second return, whose ratio and delay [m] are "
+                     "uniform between limits such as ratio=0.1:0.5,delta=0.5:3; overrides "
+                     "[operating.multipath]");
   command
       .add_option("--multipath-weight", weight_,
-                  "weight w in the objective E1^(1-w) E2^w, with the errors without (E1) and with "
-                  "multipath (E2)")
+                  "weight w in the objective E1^(1-w) E2^w; E1 is the error without multipath, "
+                  "E2 the error with multipath")
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
   two_return_weight_ =
       add_field_option(command, options, "two_return_weight", "--two-return-weight");
@@ -186,8 +187,8 @@ void add_design_command(CLI::App& app, Session& session) {
   const FieldOptions options(*command, arguments->options);
   options.add("method", "--method");
   command->add_option("--target", arguments->target,
-                      "target correlation functions to factorize: a family, a code file or a table "
-                      "(.csv .npy .npz) (Hamiltonian codes)");
+                      "target correlation functions to factorize: a family, a code file or a "
+                      "table (.csv .npy .npz) (default: Hamiltonian codes)");
   command->add_flag("--normalize", arguments->normalize,
                     "rescale the columns of a target table to [0, 1]");
   options.add("exposures", "--exposures")->allow_extra_args();
@@ -203,7 +204,8 @@ void add_design_command(CLI::App& app, Session& session) {
       ->group(for_experts);
   command->add_option("-o,--output", arguments->output,
                       "output directory for codes and report; repeating the command resumes an "
-                      "interrupted run (tofsmith-design, or the next free tofsmith-design-N)");
+                      "interrupted run (default: tofsmith-design; if it exists, the next free "
+                      "tofsmith-design-N)");
   command->callback([arguments, &session] {
     if (arguments->output.empty()) arguments->output = default_output();
     session.directory = arguments->output;

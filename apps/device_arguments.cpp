@@ -51,10 +51,10 @@ void DeviceArguments::add_to(CLI::App& command) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          "device for averaging, filtering and decoding: cpu; gpu: the first OpenCL GPU; auto: the "
-          "first GPU, but cpu for small frames and for methods other than zncc; an index or part "
-          "of a name from list; list: print the OpenCL devices and exit. Devices support only "
-          "zncc, with the same results as cpu")
+          "device for averaging, filtering and decoding: cpu; gpu: the first OpenCL GPU; auto: "
+          "the first GPU, but cpu for small frames and for methods other than zncc; list: print "
+          "the OpenCL devices and exit; or an index or part of a name in this list. OpenCL "
+          "devices support only zncc, with the same results as cpu")
       ->default_str(name_)
       ->group(for_experts);
 }

@@ -16,17 +16,17 @@ void DistanceArguments::add_to(CLI::App& command) {
   CLI::Option* distance =
       command
           .add_option("--distance", distances_m_,
-                      "surface distances in metres, such as 1,2,5, which replace the camera's "
-                      "operating points; light levels follow from its [optics]")
+                      "surface distances in metres, such as 1,2,5; they replace the camera's "
+                      "operating points, and the light levels follow from the camera's [optics]")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(positive_number())
           ->transform(number_in("m"));
-  command.add_option("--albedo", albedo_, "albedo of these surfaces")
+  command.add_option("--albedo", albedo_, "albedo of the surfaces at --distance")
       ->check(positive_number(1.0))
       ->capture_default_str()
       ->needs(distance);
-  command.add_option("--klux", klux_, "sunlight on these surfaces [klx]")
+  command.add_option("--klux", klux_, "sunlight on the surfaces at --distance [klx]")
       ->check(number_from_0_on())
       ->transform(number_in("klx"))
       ->needs(distance);

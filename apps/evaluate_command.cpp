@@ -311,12 +311,13 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                  "shift the depth origin of each code to minimize its linear error")
       ->group(for_experts);
   command->add_flag("--robustness", arguments->robustness,
-                    "also evaluate each code on perturbed cameras: bandwidth ±20 %, peak ±10 %, 50 "
-                    "ps edge jitter, 2 % tap mismatch");
+                    "also evaluate each code on perturbed cameras: bandwidth ±20 %, peak power "
+                    "±10 %, 50 ps edge jitter, 2 % tap mismatch");
   command->add_option(
       "--perturb", arguments->perturb,
-      "also evaluate each code with each of these perturbations, and with all together: "
-      "jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");
+      "also evaluate each code with each listed perturbation and with all of them together, "
+      "such as jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2% "
+      "(docs/calibration.md)");
   arguments->taps.add_to(*command);
   command->add_flag("--every-level", arguments->every_level,
                     "print a row for every light level, not only the mean, the best and the worst");

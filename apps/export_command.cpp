@@ -103,8 +103,8 @@ void add_export_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command =
       app.add_subcommand("export",
-                         "write waveform files for generators and pattern memories, and evaluate "
-                         "the depth error that their limits cause");
+                         "write waveform files for generators and pattern memories, and "
+                         "evaluate how the limits of this hardware change the depth error");
   ExportOptions& options = arguments->request.options;
   command->add_option("CODE", arguments->code, "family or code file (.code.json .npz .csv)")
       ->required();
@@ -120,7 +120,8 @@ void add_export_command(CLI::App& app, Session& session) {
   fields.add("periods", "--periods");
   command
       ->add_option("--volts", arguments->volts,
-                   "output voltages LOW,HIGH for zero and for peak light or full gain [V] (0,1)")
+                   "output voltages LOW,HIGH [V]: LOW for no light or zero gain, HIGH for peak "
+                   "light or full gain (default: 0,1)")
       ->delimiter(',')
       ->expected(2);
   const FieldOptions evaluate(*command, arguments->evaluate);
@@ -131,7 +132,7 @@ void add_export_command(CLI::App& app, Session& session) {
   command
       ->add_option("-o,--output", arguments->output,
                    "directory for all files, manifest.json and report.html; or one file, for "
-                   "formats that contain all waveforms")
+                   "formats with all waveforms in one file")
       ->required();
   command->footer(format_list());
   command->callback([arguments, &session] { run(*arguments, session); });

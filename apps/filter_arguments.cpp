@@ -70,15 +70,15 @@ void FilterArguments::add_to(CLI::App& command) {
   CLI::Option* const filter =
       command
           .add_option("--filter", strength_,
-                      "spatial filter, which averages measurements of neighbouring pixels at the "
-                      "same depth before decoding: light, normal or strong (off)")
+                      "spatial filter, which averages measurements of neighbouring pixels at "
+                      "the same depth before decoding: light, normal or strong (default: off)")
           ->check(one_of(strengths));
   add_settings<FilterOptions>(command, "--filter-set", "the spatial filter", filter, settings_);
   CLI::Option* const time_filter =
       command
           .add_option("--time-filter", max_frames_,
                       "temporal filter, which averages each pixel over about this many frames "
-                      "while it does not change (off)")
+                      "while the pixel does not change (default: off)")
           ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
   add_field_option(command, time_options_, "look_ahead", "--look-ahead")
       ->needs(time_filter)

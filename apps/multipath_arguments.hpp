@@ -23,8 +23,9 @@ class MultipathArguments {
     fields.add("tail_m", "--tail-length")->group(for_experts);
     CLI::Option* bayes = command
                              .add_flag("--bayes", bayes_,
-                                       "for two-return and tail: use the posterior median of depth "
-                                       "under a prior if one return does not explain the pixel")
+                                       "use the posterior median of the depth where one return "
+                                       "does not explain the measurements; only with method "
+                                       "two-return or tail")
                              ->group(for_experts);
     const FieldOptions prior(command, prior_);
     prior.add("single_probability", "--prior-single")->needs(bayes)->group(for_experts);

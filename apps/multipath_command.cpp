@@ -111,9 +111,9 @@ void run(const MultipathCommandArguments& arguments, const Session& session) {
 void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
   CLI::Option* scene =
       command.add_option("--scene", arguments.scene.scene,
-                         "also evaluate a scene with light reflected between its surfaces, decoded "
-                         "with the first code at the highest of --signals: built-in scene (see "
-                         "`tofsmith scene`), scene file (.toml) or mesh");
+                         "also evaluate a scene with light reflected between its surfaces: "
+                         "built-in scene (see `tofsmith scene`), scene file (.toml) or mesh; "
+                         "uses the first CODE and the highest of --signals");
   add_field_option(command, arguments.scene, "width", "--width")->needs(scene);
   add_field_option(command, arguments.scene, "height", "--height")->needs(scene);
   command.add_option("--bounce-rays", arguments.bounce.rays, "rays per pixel for bounced light")

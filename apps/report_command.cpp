@@ -46,7 +46,7 @@ void add_report_command(CLI::App& app, Session& session) {
       app.add_subcommand("report", "build the report page of a design or demo directory");
   command->add_option("DIR", arguments->directory, "output directory of design or demo")
       ->required();
-  command->add_option("-o,--output", arguments->output, "HTML file (DIR/report.html)");
+  command->add_option("-o,--output", arguments->output, "HTML file (default: DIR/report.html)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -40,7 +40,8 @@ void add_reproduce_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ReproduceArguments>();
   CLI::App* command = app.add_subcommand(
       "reproduce",
-      "reproduce figures and statements of the paper (runs python3 -m tofsmith.paper)");
+      "reproduce figures and statements of Gutierrez-Barragan et al., CVPR 2019 (runs python3 "
+      "-m tofsmith.paper)");
   command
       ->add_option("FIGURE", arguments->figures,
                    "one or several of: all, fig2 to fig11, table1, text")

@@ -140,14 +140,17 @@ void add_require_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RequireArguments>();
   CLI::App* command = app.add_subcommand(
       "require",
-      "bandwidth, power or exposure that a depth error requires, and limits for any code");
+      "compute the bandwidth, power or exposure that is necessary for a depth error, and lower "
+      "bounds for all codes");
   arguments->camera.add_positional(*command);
   arguments->camera.add_to(*command);
-  command->add_option("--error", arguments->error, "required depth error, such as 5mm")->required();
+  command->add_option("--error", arguments->error, "largest acceptable depth error, such as 5mm")
+      ->required();
   arguments->distance.add_to(*command);
   command
       ->add_option("--vary", arguments->vary,
-                   "quantities to vary, one at a time: bandwidth,power,exposure (all three)")
+                   "quantities to vary, one at a time: bandwidth,power,exposure (default: all "
+                   "three)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(one_of({"bandwidth", "power", "exposure"}));
@@ -160,7 +163,7 @@ void add_require_command(CLI::App& app, Session& session) {
   options.add("map", "!--no-map");
   command->add_option("-o,--output", arguments->output,
                       "write a page (.html), all numbers (.json), or a directory with page, "
-                      "numbers, codes and sufficient cameras");
+                      "numbers, codes and camera files that reach the error");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

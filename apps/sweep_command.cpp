@@ -149,14 +149,15 @@ void add_sweep_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand(
       "sweep",
-      "evaluate depth errors over cameras, codes, light levels and seeds, with results in a store");
+      "evaluate depth errors over cameras, codes, light levels and seeds, and store the results "
+      "in an SQLite file");
   command->add_option(
       "SWEEP", arguments->sweep,
       "sweep file (.toml) with camera, codes and an [[axis]] for each varied quantity");
   command->add_option("--store", arguments->store,
                       "SQLite file for results; finished items are not computed again");
   command->add_flag("--status", arguments->status,
-                    "do not compute: list, export and report finished items");
+                    "only list, export and report finished items, without computing others");
   command->add_option("--export", arguments->exports, "write results (.csv .json .npz; repeatable)")
       ->take_all()
       ->allow_extra_args(false);

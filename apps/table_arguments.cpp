@@ -33,7 +33,7 @@ std::vector<int> order_of(const std::vector<int>& given, const Camera& camera, i
 void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--range-m", range_m_,
-                  "unambiguous range of a measured table in metres (the camera's)")
+                  "unambiguous range of a measured table in metres (default: the camera's)")
       ->check(positive_number(1e6))
       ->transform(number_in("m"))
       ->group(for_experts);

@@ -31,11 +31,13 @@ struct TapArguments {
   std::string order;
 
   void add_to(CLI::App& command) {
-    command.add_option("--taps", taps, "number of taps of an NPZ code (the camera's)")
+    command.add_option("--taps", taps, "number of taps of an NPZ code (default: the camera's)")
         ->group(for_experts);
     command
         .add_option("--tap-order", order,
-                    "column order of an NPZ code with several taps (not detected automatically)")
+                    "column order of an NPZ code with several taps: all exposures of the first "
+                    "tap first (blocked), or all taps of the first exposure first "
+                    "(interleaved); not detected")
         ->check(one_of({"blocked", "interleaved"}))
         ->group(for_experts);
   }

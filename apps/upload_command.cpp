@@ -176,7 +176,8 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
   fields.add("periods", "--periods")->group(for_experts);
   command
       .add_option("--volts", arguments.volts,
-                  "output voltages LOW,HIGH for zero and for peak light or full gain [V] (0,1)")
+                  "output voltages LOW,HIGH [V]: LOW for no light or zero gain, HIGH for peak "
+                  "light or full gain (default: 0,1)")
       ->delimiter(',')
       ->expected(2);
   command.add_option("--load", arguments.load, "load impedance in ohms, or inf")
@@ -208,7 +209,7 @@ void add_upload_command(CLI::App& app, Session& session) {
       ->required();
   command->add_option(
       "--instrument", arguments->address,
-      "host or host:port (port 5025), vxi11://host, or a VISA resource name such as "
+      "host or host:port (default: port 5025), vxi11://host, or a VISA resource name such as "
       "USB0::...::INSTR");
   const FieldOptions selection(*command, arguments->selection);
   selection.add("light_channel", "--channel-light");

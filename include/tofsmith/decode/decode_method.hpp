@@ -34,8 +34,8 @@ std::string_view name_of(DecodeMethod method);
 DecodeMethod parse_decode_method(std::string_view name);
 
 inline constexpr Help decode_method_help{
-    "decoder: zncc or ml (maximum likelihood, slower) for any code; unwrap for sinusoids; "
-    "two-return or tail for multipath"};
+    "decoder: zncc (zero-mean normalized cross-correlation) or ml (maximum likelihood, slower) "
+    "for any code; unwrap for sinusoids; two-return or tail for multipath"};
 inline constexpr Help unwrap_weights_help{
     "weights of the frequencies: inverse variance of their depths, or f^2 (classical)"};
 inline constexpr OnlyWith unwrap_weights_condition{"method unwrap"};

@@ -32,10 +32,11 @@ auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
                     Field("min_confidence", o.min_confidence, closed(0, 1),
                           Help{"confidence below which a pixel is marked ambiguous"}),
                     Field("false_alarm_rate", o.false_alarm_rate, right_open(0, 1),
-                          Help{"share of consistent pixels that are marked inconsistent; 0: none"}),
+                          Help{"probability that a pixel is marked inconsistent although it "
+                               "fits the camera model; 0: mark none"}),
                     Field("model_error_percent", o.model_error_percent, closed(0, 100),
-                          Help{"tolerated error of the camera model, such as wiggling, relative to "
-                               "the signal; a larger value of the table replaces it"}));
+                          Help{"tolerated error of the camera model, such as wiggling, relative "
+                               "to the signal; overridden by a larger value in a measured table"}));
 }
 
 /// Decodes depth by zero-mean normalized cross-correlation, with the ambient component projected

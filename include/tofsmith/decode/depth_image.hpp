@@ -78,7 +78,7 @@ enum class PlaneUse {
   PLANE(float, confidence, confidence, "", usual,                                               \
         "probability that the depth lies in the main lobe")                                     \
   PLANE(float, deviation_m, deviation, "m", usual,                                              \
-        "predicted standard deviation of the depth, given that it is in the correct peak")      \
+        "predicted standard deviation of a depth in the main lobe")                             \
   PLANE(PixelStatus, status, status, "", usual, "reliability of the depth")                     \
   PLANE(float, delay_m, delay, "m", of_returns, "delay of the second return, NaN without one")  \
   PLANE(float, ratio, ratio, "", of_returns,                                                    \

@@ -73,26 +73,28 @@ struct DesignOptions {
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
   return std::tuple(
       Field("method", o.method,
-            Help{"best: try all applicable methods and rank them with the standard codes; "
-                 "optimize: minimize depth error; factorize: approximate correlation functions; "
-                 "search: exhaustive, on a chip clock; atlas: no search, rank known codes only; "
-                 "frequencies: square waves at frequencies of the chip"}),
+            Help{"best: try all applicable methods and rank their codes together with the "
+                 "standard codes; optimize: minimize the depth error; factorize: approximate "
+                 "target correlation functions; search: exhaustive search for codes that switch "
+                 "on a clock grid; atlas: only rank the codes of the atlas and standard codes; "
+                 "frequencies: square waves at frequencies that the camera supports"}),
       Field("exposures", o.exposures, closed(1, 16),
-            Help{"numbers of exposures or rows to try, such as 3,4,5"},
+            Help{"numbers of exposures to try, such as 3,4,5; for cameras that read out rows, "
+                 "numbers of rows"},
             IfAbsent{"suitable numbers for the camera"}),
       Field("target", o.target, FieldMark::apart),
       Field("factorize", o.factorize, Help{"options of factorization"}),
       Field("optimize", o.optimize, Help{"options of optimization"}),
       Field("search", o.search, Help{"options of the search on a chip clock"}),
       Field("robust", o.robust,
-            Help{"optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter and 2 % "
-                 "tap mismatch"}),
+            Help{"optimize for the worst case of ±20 % bandwidth, ±10 % peak power, 50 ps edge "
+                 "jitter and 2 % tap mismatch"}),
       Field("baselines", o.baselines,
             Help{"standard codes to compare with; unsupported ones are skipped"},
             IfAbsent{"suitable codes for the method"}),
       Field("atlas_cameras", o.atlas_cameras, closed(0, 1000),
-            Help{"number of most similar atlas cameras whose codes compete and start searches; 0: "
-                 "none"}),
+            Help{"number of the most similar cameras of the atlas; their codes are ranked as "
+                 "well, and searches start from them; 0: none"}),
       Field("best_rotation", o.best_rotation,
             Help{"choose the best origin of depth for every candidate"}),
       Field("split_exposures", o.split_exposures,
@@ -269,10 +271,9 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("vary_exposure", o.vary_exposure, Help{"vary the integration time"}),
       Field("max_factor", o.max_factor, left_open(1, 1e6),
             Help{"largest factor by which a quantity is increased or decreased"}),
-      Field(
-          "exact", o.exact,
-          Help{"design codes (minutes) instead of taking them from the atlas (seconds); the result "
-               "can be smaller"}),
+      Field("exact", o.exact,
+            Help{"design a code for each amount (minutes) instead of using codes of the atlas "
+                 "(seconds); smaller amounts can then suffice"}),
       Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
             OnlyWith{"exact"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),

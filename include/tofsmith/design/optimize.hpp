@@ -39,7 +39,7 @@ struct OptimizeOptions {
   void validate() const;
 };
 auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
-  constexpr OnlyWith multipath{"multipath of the camera's operating points"};
+  constexpr OnlyWith multipath{"multipath in the camera's [operating]"};
   return std::tuple(
       Field("samples", o.samples, closed(24, 960),
             Help{"cells per period while optimizing; fewer if the camera's shortest pulse is "
@@ -65,8 +65,8 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("polish_steps", o.polish_steps, at_least(0), Help{"gradient steps of polish"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),
       Field("two_return_weight", o.two_return_weight, at_least(0),
-            Help{"weight of the error of two-return decoding in the search, so that the code "
-                 "supports this decoding; 0: none"},
+            Help{"weight of the error of two-return decoding in the search; a weight above 0 "
+                 "finds codes that support two-return decoding"},
             multipath),
       Field(
           "max_two_return_loss", o.max_two_return_loss, at_least(1).or_infinity(),

@@ -86,12 +86,12 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
                  "detected"}),
       Field("dataset", r.dataset,
             Help{"array of an .npz file or dataset of an .h5 file with the raw numbers"},
-            IfAbsent{"raw, or the only one"}),
+            IfAbsent{"raw, otherwise the only one"}),
       Field("raw_format", r.raw_format,
             Help{"description (.raw.toml) of a raw file without header; see docs/raw_formats.md"}),
       Field("output", r.output, FieldMark::from_above),
       Field("outputs", r.outputs, Help{help_of_outputs()},
-            IfAbsent{"the planes from depth to status that the format supports"}),
+            IfAbsent{"those planes from depth to status that the format supports"}),
       Field("kind", r.kind,
             Help{"depth to write: radial distance, or z along the optical axis; .ply and .pcd "
                  "contain points"}),
@@ -105,8 +105,8 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"write undistorted planes (nearest pixel); pixels outside the lens's view are "
                  "invalid"}),
       Field("frame", r.frame, at_least(0),
-            Help{"index of the only frame to decode, from 0; with average or hdr, the index of a "
-                 "mean or merged frame"},
+            Help{"index of the only frame to decode, from 0; if frames are averaged or merged, "
+                 "the index of the averaged or merged frame"},
             IfAbsent{"all"}),
       Field("stack", r.stack,
             Help{"write all frames to one .npy (F,H,W), and each plane except depth to "
@@ -121,8 +121,8 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"decode a sliding window of exposures instead of frames: one depth image per "
                  "exposure"}),
       Field("stray_light", r.stray_light,
-            Help{"stray-light kernel from calibrate stray-light (.npy .npz .exr .pfm), removed "
-                 "from raw numbers"}),
+            Help{"kernel of the stray light to remove from raw numbers, from calibrate "
+                 "stray-light (.npy .npz .exr .pfm)"}),
       Field("averaged", r.averaged, left_open(0, 1e9),
             Help{"number of equal measurements averaged in each raw frame; determines the noise"}),
       Field("time_filter", r.time_filter, Help{"options of the temporal filter"}, IfAbsent{"none"}),
@@ -133,21 +133,21 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             IfAbsent{"off"}),
       Field("min_depth_m", r.min_depth_m, at_least(0),
             Help{"smallest radial depth after all corrections; pixels below it are too_near"},
-            IfAbsent{"the camera's working distance, or 0"}),
+            IfAbsent{"the camera's working distance, otherwise 0"}),
       Field("max_depth_m", r.max_depth_m, above(0),
             Help{"largest radial depth after all corrections; pixels above it are too_far"},
-            IfAbsent{"the camera's working distance, or the range"}),
+            IfAbsent{"the camera's working distance, otherwise the range"}),
       Field("offset_map", r.offset_map,
-            Help{"depth offset of each pixel in metres (.npy .npz .exr .pfm), subtracted; NaN: "
-                 "dead pixel"}),
+            Help{"depth offset of each pixel in metres (.npy .npz .exr .pfm), subtracted from "
+                 "the depth; NaN: dead pixel"}),
       Field("offset_m", r.offset_m, Help{"depth offset of all pixels, subtracted from the result"}),
       Field(
           "gain_map", r.gain_map,
           Help{
               "relative response of each pixel, removed from signal and ambient; NaN: dead pixel"}),
       Field("memory_mb", r.memory_mb, left_open(0, 1e9),
-            Help{"memory for frames in flight, in addition to about 50 MB; larger frames are "
-                 "decoded in bands"}),
+            Help{"memory for frames in flight, in addition to about 50 MB; frames that do not "
+                 "fit are decoded in bands"}),
       Field("order", r.order, FieldMark::from_above),
       Field("policy", r.policy, FieldMark::from_above),
       Field("other_inputs", r.other_inputs, FieldMark::from_above));

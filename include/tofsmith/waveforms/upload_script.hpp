@@ -58,7 +58,7 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
                  "output"}),
       Field("true_arb", r.true_arb, Help{"output every point instead of skipping some"}, siglent),
       Field("wave_header", r.wave_header,
-            Help{"form of the header of a waveform, on which sources disagree"}, siglent),
+            Help{"form of the header of a waveform; published descriptions of it differ"}, siglent),
       Field("settle_s", r.settle_s, closed(0, 60), Help{"pause after a waveform"}, siglent),
       Field("patience_s", r.patience_s, closed(0, 600),
             Help{"additional time for a reset and for files"}),

@@ -149,11 +149,12 @@ struct ExportOptions {
 auto fields_of(ConstOrNot<ExportOptions> auto& o) {
   return std::tuple(
       Field("format", o.format, Help{"format of the files"}),
-      Field("variant", o.variant, Help{"variant of the format, if sources disagree about it"},
+      Field("variant", o.variant,
+            Help{"variant of the format, if published descriptions of it differ"},
             IfAbsent{"the first"}),
       Field("samples", o.samples, Help{"number of points in the table of one period"}),
       Field("bits", o.bits,
-            Help{"amplitude bits of the hardware, at most the format's (1 = on and off)"}),
+            Help{"amplitude bits of the hardware, at most the bits of the format; 1: on and off"}),
       Field("sample_rate_hz", o.sample_rate_hz, above(0),
             Help{"maximum number of points per second of the hardware"}),
       Field("edge_grid_s", o.edge_grid_s, above(0),
