@@ -158,8 +158,7 @@ void add_codes_command(CLI::App& app, Session& session) {
       "codes", "list the built-in code families, or print, plot and save one code");
   command->add_option("NAME", arguments->name, "family or code file");
   command
-      ->add_option("-N,--samples", arguments->samples,
-                   "samples per period (default: the camera's)")
+      ->add_option("-N,--samples", arguments->samples, "samples per period (default: the camera's)")
       ->check(CLI::Range(8, 65536));
   command->add_option("-o,--output", arguments->output,
                       "output file: .code.json, .npz, .csv, or .html (a page with plots)");

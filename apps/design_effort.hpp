@@ -12,7 +12,7 @@ inline void add_effort(CLI::App& command, double& effort) {
   command
       .add_option("--effort", effort,
                   "search effort: 0.1 for a quick result, 3 for the last percent of "
-                  "improvement; 0: no search, only rank codes of the atlas and standard codes")
+                  "improvement; 0: no search, only rank atlas codes and standard codes")
       ->check(number_that("0 or in [0.01, 100]",
                           [](double its) { return its == 0.0 || (its >= 0.01 && its <= 100.0); }))
       ->capture_default_str();

@@ -175,10 +175,10 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                    "another",
                    above(0)),
                sensor.frame_period_s);
-  fields.value(Key("max_exposures",
-                   "Maximum number of exposures for the design method `frequencies`",
-                   closed(1, 16)),
-               sensor.max_exposures);
+  fields.value(
+      Key("max_exposures", "Maximum number of exposures for the design method `frequencies`",
+          closed(1, 16)),
+      sensor.max_exposures);
   fields.value(Key("integration_times_s",
                    "Possible integration times of one exposure for the design method "
                    "`frequencies` (default: any); the times of a code add up to exposure_s",

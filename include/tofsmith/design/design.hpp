@@ -76,7 +76,7 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
             Help{"best: try all applicable methods and rank their codes together with the "
                  "standard codes; optimize: minimize the depth error; factorize: approximate "
                  "target correlation functions; search: exhaustive search for codes that switch "
-                 "on a clock grid; atlas: only rank the codes of the atlas and standard codes; "
+                 "on a clock grid; atlas: only rank atlas codes and standard codes; "
                  "frequencies: square waves at frequencies that the camera supports"}),
       Field("exposures", o.exposures, closed(1, 16),
             Help{"numbers of exposures to try, such as 3,4,5; for cameras that read out rows, "
@@ -272,7 +272,7 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("max_factor", o.max_factor, left_open(1, 1e6),
             Help{"largest factor by which a quantity is increased or decreased"}),
       Field("exact", o.exact,
-            Help{"design a code for each amount (minutes) instead of using codes of the atlas "
+            Help{"design a code for each amount (minutes) instead of using atlas codes "
                  "(seconds); smaller amounts can then suffice"}),
       Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
             OnlyWith{"exact"}),
