@@ -39,23 +39,24 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result,
   const Candidate& winner = result.winner();
   const std::string among = among_exposures(result, measure, exposures);
   std::string text =
-      fmt::format("{} is the best code{}{}: {} {} error", winner.code.name(), among,
-                  camera.operating.multipath ? " including multipath" : "",
-                  length_mm(winner.error.of(measure).geometric_mean_m), name_of(measure));
-  const Candidate* baseline = best_baseline(result, measure);
-  if (baseline) {
+      fmt::format("{} is the best code{}{}. Its {} error is {}", winner.code.name(), among,
+                  camera.operating.multipath ? ", including multipath" : "", name_of(measure),
+                  length_mm(winner.error.of(measure).geometric_mean_m));
+  const bool is_standard = !winner.is_designed() && winner.method != "atlas";
+  if (const Candidate* baseline = best_baseline(result, measure)) {
     const Estimate gain = gain_over(result, *baseline, measure);
-    text += fmt::format(", smaller by a factor of {:.2f} ± {:.2f} than with {}", gain.value,
-                        gain.standard_error, baseline->code.name());
+    text += fmt::format(
+        "; the error of {}, the best {}standard code{}, is {:.2f} ± {:.2f} times "
+        "as large",
+        baseline->code.name(), is_standard ? "other " : "",
+        among.empty() ? "" : " with any number of exposures", gain.value, gain.standard_error);
   }
-  if (!among.empty()) return text + " (with any number of exposures).";
-  if (winner.is_designed()) return text + (baseline ? ", the best standard code." : ".");
+  if (!among.empty() || winner.is_designed()) return text + ".";
   const bool any_designed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                         [](const Candidate& c) { return c.is_designed(); });
-  return text +
-         fmt::format("; it is a {}, {}.",
-                     winner.method == "atlas" ? "code of the atlas" : "standard code",
-                     any_designed ? "and no designed code is better" : "and no code was designed");
+  return text + fmt::format(". The best code is {}; {}.",
+                            is_standard ? "a standard code" : "an atlas code",
+                            any_designed ? "no designed code is better" : "no code was designed");
 }
 
 std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorMeasure measure) {
@@ -74,8 +75,8 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
   std::string others;
   for (const auto& [exposures, error_m] : error_by_exposures(result, measure))
     if (exposures != winner.exposures)
-      others += fmt::format("{}{} would give {} mm", others.empty() ? "" : ", ", exposures,
-                            plain_number(1e3 * error_m, 3));
+      others += fmt::format("{}{} mm with {}", others.empty() ? "" : ", ",
+                            plain_number(1e3 * error_m, 3), exposures);
   const int harmonics = useful_harmonics(camera);
   const std::string band =
       harmonics == 0
@@ -83,14 +84,16 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
           : fmt::format("a bandwidth of {} harmonics (each with a transmission of at least 4 %)",
                         harmonics);
   return fmt::format(
-      "With {} and {} per exposure, it has {} exposure{}{}: more exposures or taps distinguish "
-      "more depths, but divide the same light and add read noise.",
+      "The camera has {} and {} per exposure. The best code has {} exposure{}.{} More exposures or "
+      "taps distinguish more depths, but divide the same light and add read noise.",
       band,
       camera.sensor.is_signed() ? std::string("one mixer output")
       : winner.taps == 1        ? std::string("one tap")
                                 : fmt::format("{} taps", winner.taps),
       winner.exposures, winner.exposures == 1 ? "" : "s",
-      others.empty() ? std::string() : fmt::format(" ({})", others));
+      others.empty()
+          ? std::string()
+          : fmt::format(" The smallest errors with other numbers of exposures are {}.", others));
 }
 
 std::string what_limits_it(const DesignResult& result) {
@@ -102,25 +105,32 @@ std::string what_limits_it(const DesignResult& result) {
   constexpr double exceeds = 2.0;  // bound / error
   const bool is_rows = result.winner().code.is_rows();
   const auto describe = [is_rows](const PointDepthError& p) {
-    std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
+    const double error_m = p.circular_mde_m.value;
     // Errors are limited by the range, the bound is not: a few depths can dominate its mean.
-    if (p.cramer_rao_mae_m > exceeds * p.circular_mde_m.value)
-      text +=
-          " (its Cramer-Rao bound is not meaningful there, because its correlation functions are "
-          "nearly flat at some depth or the light is too dim)";
-    else if (p.cramer_rao_mae_m > 0.0)
-      text += fmt::format(", {:.2f} times its Cramer-Rao bound",
-                          p.circular_mde_m.value / p.cramer_rao_mae_m);
+    const bool is_meaningful = !(p.cramer_rao_mae_m > exceeds * error_m);
+    std::vector<std::string> ratios;
+    if (p.cramer_rao_mae_m > 0.0 && is_meaningful)
+      ratios.push_back(fmt::format("{:.2f} times the Cramer-Rao bound of the code",
+                                   error_m / p.cramer_rao_mae_m));
     if (p.receiver_bound_mae_m > 0.0)
-      text += fmt::format(" and {:.2f} times {}", p.circular_mde_m.value / p.receiver_bound_mae_m,
-                          is_rows ? "the bound of the full histogram of its light"
-                                  : "the bound of all codes on this camera");
+      ratios.push_back(fmt::format(
+          "{:.2f} times the {}", error_m / p.receiver_bound_mae_m,
+          is_rows ? "bound of the full histogram of the light" : "receiver bound of the camera"));
+    std::string text = plain_number(1e3 * error_m, 3) + " mm";
+    if (!ratios.empty()) text += fmt::format(", which is {}", fmt::join(ratios, " and "));
+    if (!is_meaningful)
+      text +=
+          "; the Cramer-Rao bound is not meaningful there, because the correlation functions are "
+          "nearly flat at some depth or the light is too dim";
     return text;
   };
-  if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*min));
+  if (points.size() == 1)
+    return fmt::format("The circular error of the best code is {}.", describe(*min));
   return fmt::format(
-      "Its circular error is smallest at S = {:.3g}, A = {:.3g} e/s: {}. It is largest at "
-      "S = {:.3g}, A = {:.3g} e/s, where {:.0f} % of the depths are outliers: {}.",
+      "The circular error of the best code is smallest at a signal of {:.3g} e/s and ambient light "
+      "of {:.3g} e/s. There, the error is {}. The error is largest at a signal of {:.3g} e/s and "
+      "ambient light of {:.3g} e/s. There, {:.0f} % of the depths are outliers, and the error is "
+      "{}.",
       min->point.signal_e_per_s, min->point.ambient_e_per_s, describe(*min),
       max->point.signal_e_per_s, max->point.ambient_e_per_s, 100 * max->outlier_rate.value,
       describe(*max));
@@ -131,17 +141,19 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
   const Candidate& winner = result.winner();
   const Estimate its = winner.multipath->single_path.of(kind);
   std::string text = fmt::format(
-      "With a second return of ratio {} to {} at a delay of {} to {} m, its {} error is {}",
+      "With a second return of ratio {} to {} and a delay of {} to {} m, the {} error of the best "
+      "code is {}",
       returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1], name_of(kind),
       length_mm(its));
   if (const Candidate* baseline = best_baseline(result, kind)) {
     const Estimate other = baseline->multipath->single_path.of(kind);
-    text += fmt::format("; that of {} is {}", baseline->code.name(), length_mm(other));
+    text += fmt::format("; the error of {} is {}", baseline->code.name(), length_mm(other));
   }
   if (const auto& two_return = winner.multipath->two_return)
-    return text + fmt::format("; with two-return decoding, its error is {} (circular).",
-                              length_mm(two_return->circular_m));
-  return text + "; it has too few independent means for two-return decoding.";
+    return text +
+           fmt::format(". With two-return decoding, the circular error of the best code is {}.",
+                       length_mm(two_return->circular_m));
+  return text + ". The best code has too few independent means for two-return decoding.";
 }
 
 }  // namespace

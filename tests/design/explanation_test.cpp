@@ -23,9 +23,9 @@ std::string limit_of(double bound_over_error) {
 }
 
 TEST(Explanation, NeverReportsAnErrorBelowItsBoundAsARatio) {
-  EXPECT_THAT(limit_of(0.8), HasSubstr("1.25 times its Cramer-Rao bound"));
+  EXPECT_THAT(limit_of(0.8), HasSubstr("1.25 times the Cramer-Rao bound of the code"));
   EXPECT_THAT(limit_of(100), HasSubstr("correlation functions are nearly flat at some depth"));
-  EXPECT_THAT(limit_of(100), Not(HasSubstr("times its Cramer-Rao bound")));
+  EXPECT_THAT(limit_of(100), Not(HasSubstr("times the Cramer-Rao bound of the code")));
 }
 
 }  // namespace
