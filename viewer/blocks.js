@@ -57,7 +57,7 @@ function codeOf({text}) {
   const copy = element('button', {
     type: 'button',
     onclick: async () => {
-      copy.textContent = await copyText(text) ? 'Copied' : 'Copy by hand';
+      copy.textContent = await copyText(text) ? 'Copied' : 'Cannot copy';
     }
   }, 'Copy');
   return element(

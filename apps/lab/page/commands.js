@@ -24,7 +24,7 @@ export class Commands {
           'aria-label': 'Copy the command',
           onclick: async () => {
             const isCopied = await copyText(text.textContent);
-            copy.textContent = isCopied ? 'Copied' : 'Copy by hand';
+            copy.textContent = isCopied ? 'Copied' : 'Cannot copy';
             announce(
                 isCopied ? 'Copied the command.' : 'The browser does not allow the page to copy.');
             setTimeout(() => {
