@@ -78,8 +78,8 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)
     session.say(
-        "each code is evaluated at its best origin of depth; `evaluate` keeps its origin unless "
-        "--best-rotation is given");
+        "the depth origin of each code is shifted to minimize its linear error; `evaluate` does "
+        "this only with --best-rotation");
   session.say(verdict(camera, result));
   for (const std::string& reason : result.left_out) session.say("  excluded: " + reason);
 }

@@ -61,7 +61,7 @@ Table fits_table(const std::vector<IdealCodeFit>& fits) {
   Table table{.id = "codes",
               .caption = "Fits of ideal codes to the table.",
               .columns = {{"code"},
-                          {"left (%)", true},
+                          {"residual (%)", true},
                           {"without response (%)", true},
                           {"delay (periods)", true},
                           {"response"},
@@ -93,7 +93,7 @@ Page correlation_report(const CalibratedCorrelation& found, const std::vector<Id
     maps.blocks.push_back(image_figure(
         {.id = "offset-map",
          .title = "Offset",
-         .caption = "Difference of each decoded depth to the true depth."},
+         .caption = "Difference between decoded and true depth of each pixel."},
         {{.pixels = found.maps.delay_offset_m}},
         {.label = "offset", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.01}));
     maps.blocks.push_back(

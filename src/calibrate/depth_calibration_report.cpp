@@ -184,13 +184,14 @@ Page temperature_report(const TemperatureDrift& found, const std::string& source
   section.blocks.push_back(drift_figure(
       {.id = "depth-over-temperature",
        .title = "Depth",
-       .caption = "Difference of each frame to the mean of all frames: median over pixels."},
+       .caption = "Difference between each frame and the mean of all frames; median over pixels."},
       found, found.offset_m, found.offset_m_per_c, 1e3, {.label = "depth change", .unit = "mm"}));
   section.blocks.push_back(drift_figure(
       {.id = "signal-over-temperature",
        .title = "Signal",
-       .caption = "Logarithm of the signal: difference of each frame to the mean of all frames, "
-                  "median over pixels."},
+       .caption =
+           "Logarithm of the signal: difference between each frame and the mean of all frames; "
+           "median over pixels."},
       found, found.log_signal, found.signal_per_c, 1e2, {.label = "signal change", .unit = "%"}));
   return finished_calibration_page({.title = fmt::format("Drift with temperature of {}", source),
                                     .subtitle = fmt::format("{} frames around {:.1f} degrees C",

@@ -242,7 +242,7 @@ KeyValueList camera_description(const Camera& camera) {
                     generator_text(camera.sensor.generator, camera.fundamental_frequency_hz));
   if (camera.sensor.tap_mismatch != 0.0)
     add("tap mismatch", fmt::format("{:.3g} %", 100 * camera.sensor.tap_mismatch));
-  add("noise", fmt::format("{} electrons, read noise {:.4g} e",
+  add("noise", fmt::format("{} shot noise, read noise {:.4g} e",
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));
   add("ranked by",

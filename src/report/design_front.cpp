@@ -62,8 +62,9 @@ Table comparison(const Camera& camera, const DesignResult& result) {
       .title = "The best code and the standard codes",
       .caption = fmt::format(
           "Error: geometric mean of the {} depth error over the {} of {} light levels at which the "
-          "best code has at most {:.0f} % outliers (off by more than {:.2g} m). Ratio: error "
-          "over all levels, relative to the best code; codes are ranked by this error.",
+          "best code has at most {:.0f} % outliers (errors above {:.2g} m). Ratio: geometric mean "
+          "over all light levels, divided by that of the best code; codes are ranked by this "
+          "ratio.",
           name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
           best.outlier_threshold_m),
       .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
@@ -82,23 +83,23 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
   const std::vector<std::size_t> levels = usable_levels(winner.error);
   KeyNumbers numbers{
       {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
-       {fmt::format("{} depth error, {} of {} levels", name_of(measure), levels.size(),
+       {fmt::format("{} depth error at {} of {} light levels", name_of(measure), levels.size(),
                     winner.error.points.size()),
         fmt::format("{:.1f} mm", error_mm(winner.error, levels, measure))}}};
   if (winner.multipath)
     numbers.entries.push_back(
-        {"depth error with multipath, all levels",
+        {"depth error with multipath at all light levels",
          fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(measure.kind).value)});
   for (const char* name : {"sinusoid-k4", "square-k4"})
     if (const Candidate* other = result.find(name); other && other != &winner)
       numbers.entries.push_back(
-          {fmt::format("smaller error than {}", name),
+          {fmt::format("error of {} relative to the best code", name),
            fmt::format("{:.2f} times", gain_over(result, *other, measure).value)});
   if (!scene || scene->captures.empty()) return numbers;
   const SceneCapture& brightest = scene->captures.back();
   for (const SceneDecoding& decoding : brightest.decodings)
     if (decoding.code == winner.code.name())
-      numbers.entries.push_back({fmt::format("mean scene error, {} light", brightest.light),
+      numbers.entries.push_back({fmt::format("mean error in the scene, {} light", brightest.light),
                                  fmt::format("{:.1f} mm", 1e3 * decoding.error.mean_m)});
   return numbers;
 }
@@ -120,8 +121,8 @@ constexpr KnownFile known_files[] = {
     {"codes", "every code"},
     {"waveforms", "waveforms of every code as CSV"},
     {"raw.npy", "raw frames of the scene with the best code"},
-    {"depth.npy", "depth decoded from them (also .npz .exr .pfm .png)"},
-    {"points.ply", "the same as a point cloud"},
+    {"depth.npy", "depth decoded from raw.npy (also .npz .exr .pfm .png)"},
+    {"points.ply", "decoded depth as a point cloud"},
 };
 
 bool has(const std::vector<std::string>& files, const char* name) {

@@ -63,20 +63,21 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
 }
 
 Table residual_table(const DesignResult& result) {
-  Table table{.id = "residuals",
-              .caption =
-                  "All measurements of the designed codes. Factorized pairs are selected by depth "
-                  "error. Residual: distance of the selected pair from the target. Smallest: "
-                  "smallest distance of all pairs found.",
-              .columns = {{"code"},
-                          {"measurement", true},
-                          {"residual", true},
-                          {"smallest", true},
-                          {"modulation duty", true},
-                          {"peak", true},
-                          {"demodulation duty", true},
-                          {"edges", true},
-                          {"start"}}};
+  Table table{
+      .id = "residuals",
+      .caption =
+          "One row per measurement of the designed codes. Residual: distance of the selected "
+          "pair of waveforms from the target. Smallest: smallest distance of all pairs "
+          "found; it can be smaller, because pairs are selected by depth error.",
+      .columns = {{"code"},
+                  {"measurement", true},
+                  {"residual", true},
+                  {"smallest", true},
+                  {"modulation duty", true},
+                  {"peak", true},
+                  {"demodulation duty", true},
+                  {"edges", true},
+                  {"start"}}};
   for (const Candidate& c : result.candidates)
     for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
       const MeasurementReport& m = c.per_measurement[k];
@@ -143,7 +144,7 @@ Section search_section(const DesignResult& result) {
   Section section{.title = "Designed codes"};
   Table found = residual_table(result);
   if (!found.rows.empty()) section.blocks.push_back(std::move(found));
-  Table searches{.caption = "Searches.", .columns = {{"code"}, {"found by"}}};
+  Table searches{.caption = "How each code was found.", .columns = {{"code"}, {"found by"}}};
   for (const Candidate& c : result.candidates)
     if (c.search)
       searches.rows.push_back({c.code.name(), fmt::format("{}. {}", c.message, c.search->account)});
@@ -163,8 +164,8 @@ Table explanation(const DesignResult& result, DepthErrorKind kind) {
   Table table{.columns = {{"question"}, {"answer"}}};
   if (kind == DepthErrorKind::linear)
     table.caption =
-        "Every code is evaluated at its best origin of depth; `evaluate` keeps its origin unless "
-        "--best-rotation is given.";
+        "The depth origin of each code is shifted to minimize its linear error; `evaluate` does "
+        "this only with --best-rotation.";
   for (std::size_t i = 0; i < result.explanation.size(); ++i)
     table.rows.push_back(
         {i < questions.size() ? questions[i] : "Further remarks", result.explanation[i]});
@@ -250,7 +251,8 @@ Section zncc_comparison(std::span<const EvaluatedCode> codes) {
   return {"Maximum likelihood compared with correlation",
           {table_of_rows("zncc",
                          "Depth error of the same trials decoded by zero-mean normalized "
-                         "cross-correlation, and the ratio of the maximum-likelihood error to it.",
+                         "cross-correlation (zncc), and ratio of the maximum-likelihood (ml) error "
+                         "to the zncc error.",
                          zncc_comparison_rows(codes, true), {0})}};
 }
 

@@ -56,10 +56,10 @@ Table distance_table(std::span<const DepthErrorRow> codes, const std::vector<std
   Table table{.id = "distance-to-bounds",
               .caption =
                   "Ratio of the circular error to each bound (geometric mean over the operating "
-                  "points). The Cramér-Rao bound limits unbiased estimators of one code, the "
-                  "receiver bound all codes of the camera, the direct time-of-flight bound all "
-                  "receivers with this light. The bounds ignore wraps and wrong lobes, so they can "
-                  "exceed large errors, which the unambiguous range limits.",
+                  "points). The Cramér-Rao bound applies to unbiased estimators of one code. The "
+                  "receiver bound applies to all codes of the camera. The direct time-of-flight "
+                  "(ToF) bound applies to all receivers with this light. The unambiguous range "
+                  "limits large errors, but not the bounds, so ratios can be below 1.",
               .columns = {{"code"},
                           {"error / Cramér-Rao", true},
                           {"error / receiver bound", true},
@@ -88,9 +88,10 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
   const DepthErrorReport& first = *codes[0].error;
   Table table{.id = "comparison",
               .caption = fmt::format(
-                  "Depth error over {} operating points (geometric means; \"arithmetic\" is "
-                  "the arithmetic mean of the circular error), {} trials each, N = {}, "
-                  "true depths {}; ± is one standard error. Errors are mean absolute "
+                  "Errors are geometric means over {} operating points; the column arithmetic "
+                  "contains the arithmetic mean of the circular error. Each operating point has {} "
+                  "trials with N = {} samples per period and true depths {}; ± is one "
+                  "standard error. K is the number of measurements. Errors are mean absolute "
                   "errors; rms columns contain root mean square errors, in which rare large errors "
                   "dominate. Outliers are circular errors above {:.2g} m.",
                   first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
@@ -106,7 +107,7 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                           {"outliers (%)", true}}};
   if (codes[best].ratio) {
     table.columns.push_back({"ratio", true});
-    table.caption += " Ratio: error by which codes are ranked, relative to the best code.";
+    table.caption += " Codes are ranked by the ratio of their error to that of the best code.";
   }
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;
@@ -147,8 +148,9 @@ Figure error_maps(const OperatingRange& range, const std::vector<DepthErrorRow>&
   return heat_map_figure(
       {.id = "error-maps",
        .title = fmt::format("Mean {} depth error by light level", name_of(range.error)),
-       .caption = "Common logarithmic colour scale, best code first; if there are many codes, only "
-                  "the best of each family."},
+       .caption =
+           "All maps have the same logarithmic colour scale. The best code is first; if there "
+           "are many codes, only the best code of each family is shown."},
       maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
@@ -191,10 +193,11 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
   add_bound("direct ToF bound", Dash::dash, &PointDepthError::direct_tof_bound_mae_m);
   return line_figure(
       {.id = id,
-       .title = "Circular depth error over light",
+       .title = "Circular depth error over signal",
        .caption =
-           fmt::format("At ambient light of {} e/s, with the Cramér-Rao bound of {}, the receiver "
-                       "bound of the camera and the direct time-of-flight bound of the light.",
+           fmt::format("The ambient light is {} e/s. The Cramér-Rao bound is computed for {}. The "
+                       "receiver bound applies to all codes of the camera, and the direct "
+                       "time-of-flight (ToF) bound to all receivers with this light.",
                        level_text(ambient), first.code)},
       series, {.label = "signal", .unit = "e/s", .logarithmic = true},
       {.label = "circular depth error", .unit = "mm", .logarithmic = true});

@@ -127,7 +127,8 @@ Section multipath_scene_section(const MultipathScene& scene, const Camera& camer
   Section section{.title = "Scene with indirect light: " + scene.name};
   section.blocks.push_back(Paragraph{
       fmt::format("Light reaches each surface directly and after reflection at one other surface. "
-                  "Captured with {}, S = {} e/s for albedo 1 at {:.2f} m, A = {} e/s.",
+                  "The scene is captured with {}, a signal of {} e/s from a surface of albedo 1 at "
+                  "{:.2f} m, and ambient light of {} e/s.",
                   scene.code, level_text(scene.light.signal_e_per_s),
                   scene.light.reference_distance_m, level_text(scene.light.ambient_e_per_s))});
   section.blocks.push_back(depth_figure(scene, truth_m, camera));

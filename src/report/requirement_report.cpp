@@ -62,10 +62,10 @@ Figure error_map(const RequirementMap& map, double error_m) {
   return heat_map_figure(
       {.id = "error-map",
        .title = "Depth error over bandwidth and power",
-       .caption =
-           fmt::format("Smallest error of the codes found for each bandwidth at the power of "
-                       "the camera. Cells of at most {} suffice.",
-                       length_text(error_m))},
+       .caption = fmt::format(
+           "Smallest error of the codes found. The codes were found for each bandwidth at "
+           "the power of the camera. Errors of at most {} suffice.",
+           length_text(error_m))},
       {values}, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 

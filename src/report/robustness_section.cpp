@@ -52,9 +52,10 @@ std::vector<Row> robustness_rows(const std::vector<JudgedCode>& codes) {
 Section robustness_section(const std::vector<JudgedCode>& codes) {
   const bool is_linear = codes.empty() || codes.front().robustness.kind == DepthErrorKind::linear;
   std::string caption = fmt::format(
-      "{} depth error (geometric mean over the operating points) on cameras that differ from their "
-      "description, decoded with the correlation functions of the actual camera (calibrated) and "
-      "of the described camera (uncalibrated). All use the same depths and noise.",
+      "{} depth error (geometric mean over the operating points) on cameras that differ from "
+      "the nominal camera. Calibrated: decoded with the correlation functions of the actual "
+      "camera. Uncalibrated: decoded with the correlation functions of the nominal camera. The "
+      "depths and the noise are the same for all cameras.",
       is_linear ? "Linear" : "Circular");
   return {"Robustness",
           {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};

@@ -87,8 +87,9 @@ std::optional<Figure> averaged_figure(const SceneResult& scene, const std::strin
   return image_figure(
       {.id = "averaged",
        .title = "Averaged measurements",
-       .caption = "Effective number of averaged measurements of each pixel (ratio of "
-                  "variances), which is smallest at edges and where no light returns.",
+       .caption = "Effective number of averaged measurements of each pixel: ratio of the noise "
+                  "variances before and after filtering. It is smallest at edges and where no "
+                  "light returns.",
        .alt_text = "Maps of the number of averaged measurements"},
       images, {.label = "measurements", .map = ColourMap::cividis, .logarithmic = true},
       {.max_side = 160});  // smooth images
@@ -201,8 +202,10 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
   return image_figure(
       {.id = "before-after",
        .title = fmt::format("Depth of the scene {}", scene.name),
-       .caption = fmt::format("{}; mean errors without filtering. Drag the border to compare.",
-                              light_text(capture)),
+       .caption =
+           fmt::format("{}. The labels contain mean errors without filtering. Drag the border to "
+                       "compare.",
+                       light_text(capture)),
        .alt_text = fmt::format("Depth decoded with {} on the left and {} on the right",
                                standard->code, best_code)},
       {{.title = "", .pixels = best->depth_m, .before = standard->depth_m}},
@@ -213,11 +216,11 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
 Section scene_section(const SceneResult& scene, const Camera& camera,
                       const std::string& best_code) {
   Section section{.title = "A scene: " + scene.name};
-  section.blocks.push_back(Paragraph{
-      fmt::format("The scene is captured in simulation at each light level and decoded with every "
-                  "code. The signal S is that of a surface of albedo 1 that faces the camera at "
-                  "{:.2f} m; it decreases with the square of the distance.",
-                  scene.reference_distance_m)});
+  section.blocks.push_back(Paragraph{fmt::format(
+      "The scene is captured in simulation at each light level and decoded with every "
+      "code. S is the signal from a surface of albedo 1 that faces the camera at {:.2f} m; "
+      "the signal decreases with the square of the distance. A is the ambient light.",
+      scene.reference_distance_m)});
   const auto is_filtered = [](const SceneCapture& capture) {
     return std::ranges::any_of(capture.decodings,
                                [](const SceneDecoding& d) { return d.filtered.has_value(); });
