@@ -140,7 +140,7 @@ Page atlas_page(const std::vector<AtlasEntry>& entries, const std::string& comma
   Section figures{"Depth error", {}};
   figures.blocks.emplace_back(atlas_figure(
       best,
-      {"bandwidth", "Error over bandwidth", "bandwidth of both arms (f0)", true,
+      {"bandwidth", "Error over bandwidth", "bandwidth of light source and sensor (f0)", true,
        [](const AtlasCamera& of) { return of.bandwidth_f0; }},
       "With the best number of exposures; geometric mean over peak factors.", colours));
   figures.blocks.emplace_back(

@@ -114,8 +114,8 @@ Page export_page(const ExportedCode& exported, const std::string& command_line) 
              "loss",
              fmt::format(
                  "{} depth error with nominal waveforms, with actual waveforms, and with actual "
-                 "waveforms that are decoded as if they were nominal (uncalibrated). All use the "
-                 "same depths and noise, {} trials each, seed {}.",
+                 "waveforms that are decoded as if they were nominal (uncalibrated). The depths "
+                 "and the noise are the same, with {} trials per operating point and seed {}.",
                  kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->nominal.trials,
                  loss->nominal.seed),
              generator_loss_rows(*loss, kind), {0})}});
