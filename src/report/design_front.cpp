@@ -62,17 +62,18 @@ Table comparison(const Camera& camera, const DesignResult& result) {
       .title = "The best code and the standard codes",
       .caption = fmt::format(
           "Error: geometric mean of the {} depth error over the {} of {} light levels at which the "
-          "best code has at most {:.0f} % outliers (errors above {:.2g} m). Ratio: geometric mean "
-          "over all light levels, divided by that of the best code; codes are ranked by this "
-          "ratio.",
+          "best code has at most {:.0f} % outliers (errors above {:.2g} m). Ratio: this error "
+          "divided by that of the best code. Codes are ranked by the mean over all light levels.",
           name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
           best.outlier_threshold_m),
       .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
       .highlighted_row = 0};
-  for (const Candidate* c : compared(result, measure))
+  const double best_mm = error_mm(best, levels, measure);
+  for (const Candidate* c : compared(result, measure)) {
+    const double its_mm = error_mm(c->error, levels, measure);
     table.rows.push_back({c->code.name(), fmt::format("{}", c->error.exposures),
-                          fmt::format("{:.1f}", error_mm(c->error, levels, measure)),
-                          fmt::format("{:.2f}", gain_over(result, *c, measure).value)});
+                          fmt::format("{:.1f}", its_mm), fmt::format("{:.2f}", its_mm / best_mm)});
+  }
   return table;
 }
 
@@ -81,11 +82,12 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
   const DepthErrorMeasure measure = camera.operating.measure();
   const Candidate& winner = result.winner();
   const std::vector<std::size_t> levels = usable_levels(winner.error);
+  const double best_mm = error_mm(winner.error, levels, measure);
   KeyNumbers numbers{
       {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
        {fmt::format("{} depth error at {} of {} light levels", name_of(measure), levels.size(),
                     winner.error.points.size()),
-        fmt::format("{:.1f} mm", error_mm(winner.error, levels, measure))}}};
+        fmt::format("{:.1f} mm", best_mm)}}};
   if (winner.multipath)
     numbers.entries.push_back(
         {"depth error with multipath at all light levels",
@@ -94,7 +96,7 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
     if (const Candidate* other = result.find(name); other && other != &winner)
       numbers.entries.push_back(
           {fmt::format("error of {} relative to the best code", name),
-           fmt::format("{:.2f} times", gain_over(result, *other, measure).value)});
+           fmt::format("{:.2f} times", error_mm(other->error, levels, measure) / best_mm)});
   if (!scene || scene->captures.empty()) return numbers;
   const SceneCapture& brightest = scene->captures.back();
   for (const SceneDecoding& decoding : brightest.decodings)
