@@ -53,7 +53,7 @@ TEST(Atlas, ReadsCamerasErrorsAndSwitchingTimes) {
                                    .taps = 1,
                                    .exposures = 3,
                                    .error = DepthErrorKind::linear}));
-  EXPECT_EQ(entry.code.name(), "atlas-t1-k3-p4-b10-linear");
+  EXPECT_EQ(entry.code.name(), "atlas-3x1-peak4-hann10-linear");
   EXPECT_EQ(entry.error_m().value, 0.2);
   EXPECT_EQ(entry.circular_m.standard_error, 0.0005);
   EXPECT_EQ(entry.code.demodulation(1).on_intervals(),
@@ -91,6 +91,8 @@ TEST(Atlas, EveryCodeFitsItsOwnCamera) {
     EXPECT_EQ(entry.code.exposures(), entry.of.exposures);
     EXPECT_EQ(find_atlas_entry(entry.code.name()), &entry);
   }
+  EXPECT_EQ(find_atlas_entry("atlas-t1-k4-p15-b10-linear"),
+            find_atlas_entry("atlas-4x1-peak15-hann10-linear"));
   EXPECT_EQ(find_atlas_entry("atlas"), nullptr);
 }
 
@@ -156,13 +158,13 @@ TEST(Atlas, ReturnsTheNearestCodesThatSuitACamera) {
     }
     return found;
   };
-  EXPECT_THAT(names({}, 1),
-              testing::ElementsAre("atlas-t1-k3-p4-b10-linear:15", "atlas-t1-k3-p4-b10-linear:4"));
+  EXPECT_THAT(names({}, 1), testing::ElementsAre("atlas-3x1-peak4-hann10-linear:15",
+                                                 "atlas-3x1-peak4-hann10-linear:4"));
   EXPECT_EQ(names({}, 2).size(), 4u);
   EXPECT_TRUE(names({4}, 2).empty());
   EXPECT_TRUE(names({}, 0).empty());
   camera.light.peak_factor = 3;  // the original codes need a peak factor of 4
-  EXPECT_THAT(names({}, 1), testing::ElementsAre("atlas-t1-k3-p4-b10-linear:3"));
+  EXPECT_THAT(names({}, 1), testing::ElementsAre("atlas-3x1-peak4-hann10-linear:3"));
   camera.sensor.taps = 2;
   EXPECT_TRUE(names({}, 4).empty());
 }
@@ -238,7 +240,7 @@ TEST(Atlas, DesignsThatStartFromItAreBitIdenticalForAnyNumberOfThreads) {
   }
   const Candidate* designed = results[0].find("optimized-k4");
   ASSERT_NE(designed, nullptr);
-  EXPECT_THAT(designed->message, HasSubstr("gradient descent from atlas-t1-k4"));
+  EXPECT_THAT(designed->message, HasSubstr("gradient descent from atlas-4x1"));
   expect_same_code(results[0].winner().code, results[1].winner().code);
 }
 
@@ -326,7 +328,7 @@ TEST(Design, RejectsConstantLightWithThatReason) {
 
 TEST(Atlas, IsReadIdenticallyInEveryLocale) {
   const GermanLocale locale;
-  EXPECT_EQ(parse_atlas(one_code)[0].code.name(), "atlas-t1-k3-p4-b10-linear");
+  EXPECT_EQ(parse_atlas(one_code)[0].code.name(), "atlas-3x1-peak4-hann10-linear");
   EXPECT_EQ(parse_atlas(one_code)[0].circular_m.standard_error, 0.0005);
 }
 

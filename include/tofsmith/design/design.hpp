@@ -194,7 +194,9 @@ struct AtlasCamera {
 /// Best known code for a camera of the atlas.
 struct AtlasEntry {
   AtlasCamera of;
-  CodeSet code;  ///< "atlas-t1-k4-p15-b10-linear": taps, exposures, peak, bandwidth
+  /// Named "atlas-4x1-peak15-hann10-linear": exposures x taps, peak factor, bandwidth over f0, kind
+  /// of error. Without bandwidth limit, "pulse0.0075" is the shortest pulse in periods.
+  CodeSet code;
   Estimate linear_m, circular_m;  ///< on that camera, geometric means over the light levels
   const Estimate& error_m() const {
     return of.error == DepthErrorKind::linear ? linear_m : circular_m;
@@ -206,7 +208,8 @@ inline constexpr int atlas_version = 1;
 
 /// The atlas, sorted by taps, exposures, peak, bandwidth and kind of error.
 const std::vector<AtlasEntry>& code_atlas();
-/// Null if there is none.
+/// Returns the entry with this code name, or with its former name "atlas-t1-k4-p15-b10-linear";
+/// null for other names.
 const AtlasEntry* find_atlas_entry(std::string_view code);
 
 /// Parses an atlas file of scripts/atlas.sh.

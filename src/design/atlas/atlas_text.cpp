@@ -22,12 +22,25 @@ constexpr std::string_view atlas_head = "tofsmith atlas ";
 
 std::string short_number(double value) { return fmt::format("{:.6g}", value); }
 
+std::string name_from(const AtlasCamera& of, std::string name, std::string_view bandwidth,
+                      std::string_view pulse) {
+  if (of.bandwidth_f0 > 0.0) name += fmt::format("-{}{}", bandwidth, short_number(of.bandwidth_f0));
+  if (of.shortest_pulse_periods > 0.0)
+    name += fmt::format("-{}{}", pulse, short_number(of.shortest_pulse_periods));
+  return fmt::format("{}-{}", name, name_of(of.error));
+}
+
 std::string entry_name(const AtlasCamera& of) {
-  std::string name =
-      fmt::format("atlas-t{}-k{}-p{}", of.taps, of.exposures, short_number(of.peak_factor));
-  if (of.bandwidth_f0 > 0.0) name += "-b" + short_number(of.bandwidth_f0);
-  if (of.shortest_pulse_periods > 0.0) name += "-s" + short_number(of.shortest_pulse_periods);
-  return name + "-" + std::string(name_of(of.error));
+  return name_from(
+      of, fmt::format("atlas-{}x{}-peak{}", of.exposures, of.taps, short_number(of.peak_factor)),
+      "hann", "pulse");
+}
+
+/// Returns the name in tofsmith 0.1 before its release, which files of users may contain.
+std::string former_name(const AtlasCamera& of) {
+  return name_from(
+      of, fmt::format("atlas-t{}-k{}-p{}", of.taps, of.exposures, short_number(of.peak_factor)),
+      "b", "s");
 }
 
 class AtlasLines {
@@ -206,7 +219,7 @@ const std::vector<AtlasEntry>& code_atlas() {
 
 const AtlasEntry* find_atlas_entry(std::string_view code) {
   for (const AtlasEntry& entry : code_atlas())
-    if (entry.code.name() == code) return &entry;
+    if (entry.code.name() == code || former_name(entry.of) == code) return &entry;
   return nullptr;
 }
 
