@@ -90,7 +90,8 @@ void require(const std::optional<BrokenRule>& broken);
 std::optional<std::string> text_of(const std::optional<BrokenRule>& broken);
 
 /// Returns the entry of `known` with the smallest edit distance to `word`, or "" if none is
-/// similar. The longer common prefix resolves ties.
+/// similar: more than two edits require the same first letter. Ties are resolved by the longer
+/// common prefix.
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& known);
 
@@ -103,9 +104,11 @@ std::string nearest_word(std::string_view word, const Range& known) {
   const auto common_beginning = [word](std::string_view other) {
     return std::mismatch(word.begin(), word.end(), other.begin(), other.end()).first - word.begin();
   };
+  constexpr int max_edits_of_other_words = 2;
   int best_distance = static_cast<int>(word.size()) / 3 + 2;
   for (const auto& candidate : known) {
     const int distance = edit_distance(word, candidate);
+    if (distance > max_edits_of_other_words && common_beginning(candidate) == 0) continue;
     if (distance < best_distance || (distance == best_distance && !best.empty() &&
                                      common_beginning(candidate) > common_beginning(best))) {
       best_distance = distance;

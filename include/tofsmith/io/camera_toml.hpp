@@ -48,6 +48,9 @@ Camera with_settings(const Camera& camera, Settings settings);
 std::vector<KeyDescription> describe_camera_keys(const Camera& camera);
 /// Returns the names of all keys of camera files.
 std::vector<std::string> camera_keys();
+/// Returns a camera key with the same last part, such as "sensor.taps" for "taps" or
+/// "light.taps"; the -3 dB frequency of an impulse response for a bandwidth; "" for other keys.
+std::string similar_camera_key(std::string_view key);
 /// Returns the descriptions as a JSON list with the members `key`, `part` (table), `type`, `unit`,
 /// `help`, `range`, `condition`, `example` (of required keys), `default` (null: none) and `words`.
 std::string camera_keys_json();
@@ -55,6 +58,10 @@ std::string camera_keys_json();
 /// Returns the camera as TOML with all defaults: parse_camera_toml(camera_to_toml(c)) == c.
 /// @throws std::invalid_argument if the camera is invalid
 std::string camera_to_toml(const Camera& camera);
+/// Returns a calibrated camera as TOML without optional keys that equal their default, so that the
+/// file contains no values that nobody specified.
+/// @param assumed  values that equal those of this camera have a comment; null: no comments
+std::string calibrated_camera_toml(const Camera& camera, const Camera* assumed);
 /// Returns a lens as JSON on one line, with the keys of a camera file.
 std::string lens_to_json(const Lens& lens);
 /// Inverse of lens_to_json(); does not check the values.

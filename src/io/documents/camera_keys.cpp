@@ -69,6 +69,23 @@ std::vector<std::string> camera_keys() {
   return names;
 }
 
+std::string similar_camera_key(std::string_view key) {
+  std::string_view name = key.substr(key.rfind('.') + 1);
+  if (name == "bandwidth" || name == "bandwidth_hz") name = "cutoff_hz";
+  std::string similar;
+  std::ptrdiff_t most = -1;
+  for (const KeyDescription& described : describe_camera_keys(Camera())) {
+    const std::string& known = described.name;
+    if (described.type == ValueType::table || known.substr(known.rfind('.') + 1) != name) continue;
+    const std::ptrdiff_t common =
+        std::mismatch(key.begin(), key.end(), known.begin(), known.end()).first - key.begin();
+    if (common <= most) continue;
+    most = common;
+    similar = known;
+  }
+  return similar;
+}
+
 std::string camera_keys_json() {
   Camera complete;
   complete.operating = default_operating_range();

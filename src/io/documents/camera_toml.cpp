@@ -54,6 +54,10 @@ void load_lens(const FieldReader& reader, const TomlDocument& document, std::opt
 
 Camera parse_camera_toml(std::string_view text, std::string_view source_name, Settings settings) {
   TomlDocument document(text, source_name);
+  document.suggest_keys([](std::string_view key) {
+    const std::string similar = similar_camera_key(key);
+    return similar == key ? "" : similar;  // a key under another condition
+  });
   for (const std::string& setting : settings) document.apply(setting);
 
   Camera camera;

@@ -114,7 +114,9 @@ toml::table parse_setting(const std::string& setting) {
       } catch (const toml::parse_error&) {  // report the error in the user's text
       }
     throw IoError(describe_setting(setting),
-                  fmt::format("{}; expected key = value", error.description()));
+                  fmt::format("{}{}", error.description(),
+                              setting.find('=') == setting.npos ? "; expected key = value"
+                                                                : toml_hint(setting, 1)));
   }
 }
 
@@ -478,11 +480,15 @@ std::filesystem::path TableReader::resolve(std::string_view key, const std::stri
 void TableReader::finish() const {
   for (const auto& [key, node] : table_) {
     if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
-    const std::string near = nearest_word(key.str(), known_);
+    std::string near = document_.suggestion(full(key.str()));
+    if (near.empty()) {
+      near = nearest_word(key.str(), known_);
+      if (!near.empty()) near = full(near);
+    }
     throw IoError(document_.place_of(key.source()),
                   fmt::format("unknown key {}; {}", full(key.str()),
                               near.empty() ? fmt::format("expected {}", fmt::join(known_, ", "))
-                                           : key_suggestion(key.str(), full(near))));
+                                           : key_suggestion(key.str(), near)));
   }
   if (missing_) throw *missing_;
 }

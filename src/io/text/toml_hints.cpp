@@ -51,6 +51,10 @@ std::string toml_hint(std::string_view text, std::size_t line) {
   const std::string_view key = trimmed(whole.substr(0, sign));
   std::string_view value = trimmed(whole.substr(sign + 1, whole.find('#') - sign - 1));
   const std::string_view written = value;
+  constexpr std::string_view common_bytes = "\xe2\x80";  // of typographic quotes
+  if (value.starts_with(common_bytes)) return "; text needs straight quotes, such as \"mine\"";
+  if (value.starts_with('"') && value.find('"', 1) == value.npos)
+    return fmt::format("; text ends with a quote: {} = {}\"", key, value);
   if (is_word(value)) return fmt::format("; text needs quotes: {} = \"{}\"", key, value);
   if (!take_number(value) || value.empty()) return "";
   if (value.starts_with(',') && value.size() > 1 && is_digit(value[1]))

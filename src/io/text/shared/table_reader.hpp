@@ -8,11 +8,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/shared/enum_words.hpp"
@@ -41,6 +43,13 @@ class TomlDocument {
   /// @throws IoError for invalid syntax, or if there is no key to remove
   void apply(const std::string& setting);
 
+  /// Sets the function that returns a key of another table to suggest for an unknown key.
+  void suggest_keys(std::function<std::string(std::string_view)> suggestion) {
+    suggestion_ = std::move(suggestion);
+  }
+  /// Returns the key to suggest for an unknown key; "" without one.
+  std::string suggestion(std::string_view key) const { return suggestion_ ? suggestion_(key) : ""; }
+
   const toml::table& root() const { return root_; }
   const std::string& source_name() const { return source_name_; }
   /// Returns "file:line:column", or "setting 'light.peak_factor=5'".
@@ -53,6 +62,7 @@ class TomlDocument {
 
   std::string source_name_;
   toml::table root_;
+  std::function<std::string(std::string_view)> suggestion_;
 };
 
 /// Reads the fields of one table. Missing fields keep their values. finish() rejects keys that were
