@@ -159,7 +159,7 @@ void add_codes_command(CLI::App& app, Session& session) {
   command->add_option("NAME", arguments->name, "family or code file");
   command
       ->add_option("-N,--samples", arguments->samples, "samples per period (default: the camera's)")
-      ->check(CLI::Range(8, 65536));
+      ->check(integer_in(8, 65536));
   command->add_option("-o,--output", arguments->output,
                       "output file: .code.json, .npz, .csv, or .html (a page with plots)");
   arguments->camera.add_to(*command);
@@ -173,7 +173,8 @@ void add_codes_command(CLI::App& app, Session& session) {
       arguments->camera.settings.push_back(fmt::format("samples={}", arguments->samples));
     const Camera camera = arguments->camera.load();
     require_no_measured_table(arguments->name);
-    const CodeSet code = load_code(arguments->name, camera, arguments->taps.file_options());
+    const CodeSet code =
+        load_code(arguments->name, camera, arguments->taps.file_options_for({arguments->name}));
     if (!arguments->output.empty())
       write(session, code, camera, arguments->output, arguments->taps.tap_order());
     show(session, code, camera);

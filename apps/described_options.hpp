@@ -81,6 +81,8 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
       if (field.range.is_restricted)
         added->check(number_that(field.range.text(std::is_integral_v<Single>),
                                  [range = field.range](double v) { return range.contains(v); }));
+      else if (std::is_unsigned_v<Single>)
+        added->check(number_that(">= 0", [](double v) { return v >= 0.0; }));  // CLI11 wraps -1
     }
   }
   if constexpr (is_list<Value>) added->delimiter(',')->allow_extra_args(false);

@@ -22,6 +22,7 @@
 #include "commands.hpp"
 #include "help_pages.hpp"
 #include "interrupt.hpp"
+#include "number_checks.hpp"
 #include "printed_text.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
@@ -102,25 +103,59 @@ std::string camera_key_of(std::string option) {
   option = option.substr(0, option.find('='));
   option.erase(0, option.find_first_not_of('-'));
   std::ranges::replace(option, '-', '_');
-  for (const KeyDescription& key : describe_camera_keys(Camera()))
-    if (key.type != ValueType::table && key.name.substr(key.name.rfind('.') + 1) == option)
-      return key.name;
-  return "";
+  return similar_camera_key(option);
+}
+
+/// Returns the name similar to an unknown option, command or subcommand; "" if none is similar.
+std::string similar_name(std::string_view word, const std::vector<std::string>& known) {
+  if (!word.starts_with("--")) return nearest_word(word, known);
+  std::vector<std::string> names;  // the dashes, which all options share, are not similarities
+  for (const std::string& name : known) names.push_back(name.substr(2));
+  const std::string near = nearest_word(word.substr(2), names);
+  return near.empty() ? near : "--" + near;
+}
+
+/// Returns the description of a wrong number or type of values in the words of this program.
+/// @param text  of CLI11, such as "Could not convert: --order = 0-3"
+std::string value_problem(const CLI::App& app, const std::string& text) {
+  constexpr std::string_view prefix = "Could not convert: ", sign = " = ";
+  if (text.starts_with(prefix)) {
+    const std::size_t end = text.find(sign);
+    const std::string option = text.substr(prefix.size(), end - prefix.size());
+    const CLI::Option* const found = chosen(app).get_option_no_throw(option);
+    const bool is_whole =
+        found != nullptr && found->get_type_name().find("INT") != std::string::npos;
+    return fmt::format("{}: found {}; expected {}", option, text.substr(end + sign.size()),
+                       is_whole ? "an integer" : "a number");
+  }
+  const std::string option = text.substr(0, text.find(':'));
+  if (text.ends_with(" missing")) return fmt::format("{}: found no value; expected one", option);
+  constexpr std::string_view most = "At Most 1 required but received ";
+  if (const std::size_t at = text.find(most); at != std::string::npos)
+    return fmt::format("{}: found {} values; expected one", option, text.substr(at + most.size()));
+  return text;
 }
 
 /// Returns a one-sentence description of the error in the arguments.
 std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> rest = app.remaining(true);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || rest.empty()) return error.what();
+  const bool lacks_command =
+      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
+      std::string_view(error.what()).find("subcommand") != std::string_view::npos;
+  if (lacks_command && (rest.empty() || rest.front().starts_with('-')))
+    return fmt::format("found no subcommand; expected one of {}",
+                       fmt::join(known_words(chosen(app), false), ", "));
+  if (!lacks_command && (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || rest.empty()))
+    return value_problem(app, error.what());
   const std::string& word = rest.front();
   const bool option = word.size() > 1 && word.front() == '-';
-  const bool command = !option && &chosen(app) == &app;
-  const std::vector<std::string> known = known_words(app, option);
+  const bool command = !option && (&chosen(app) == &app || lacks_command);
+  const std::vector<std::string> known = known_words(option ? app : chosen(app), option);
   if (option && std::ranges::find(known, "--set") != known.end())
     if (const std::string key = camera_key_of(word); !key.empty())
       return fmt::format("unknown option '{}'; it is a key of the camera: --set {}=...", word, key);
   std::string near;
-  if (option || command) near = nearest_word(word, known);
+  if (option || command) near = similar_name(word, known);
   std::string text = fmt::format("{} '{}'",
                                  option    ? "unknown option"
                                  : command ? "unknown command"
@@ -197,7 +232,7 @@ int run(int argc, char** argv) {
   app.add_flag_callback("--quiet", silence_progress, "do not print progress on standard error");
   app.add_flag("--force", session.force, "overwrite existing output files");
   app.add_option("--threads", session.threads, "number of threads; 0: all cores")
-      ->check(CLI::Range(0, 1024));
+      ->check(integer_in(0, 1024));
   std::unique_ptr<ThreadLimit> thread_limit;
   app.parse_complete_callback(
       [&] { thread_limit = std::make_unique<ThreadLimit>(session.threads); });

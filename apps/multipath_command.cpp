@@ -90,9 +90,10 @@ void run(const MultipathCommandArguments& arguments, const Session& session) {
       throw UsageError(fmt::format("-o {}: unknown extension; expected .json or .html", output));
     session.check_output(output);
   }
+  const CodeFileOptions file_options = arguments.taps.file_options_for(arguments.codes);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));
+    codes.push_back(load_camera_code(name, camera, file_options));
   const std::optional<MultipathScene> lit = lit_scene(arguments, codes, camera);
   const MultipathScene* scene = lit ? &*lit : nullptr;
   std::vector<MultipathErrorReport> reports;
@@ -117,7 +118,7 @@ void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
   add_field_option(command, arguments.scene, "width", "--width")->needs(scene);
   add_field_option(command, arguments.scene, "height", "--height")->needs(scene);
   command.add_option("--bounce-rays", arguments.bounce.rays, "rays per pixel for bounced light")
-      ->check(CLI::Range(16, 65536))
+      ->check(integer_in(16, 65536))
       ->capture_default_str()
       ->needs(scene)
       ->group(for_experts);

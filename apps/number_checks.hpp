@@ -32,12 +32,16 @@ inline CLI::Validator number_in(std::string_view unit, bool is_integer = false) 
     double plain = 0.0;
     if (!is_integer && CLI::detail::lexical_cast(text, plain)) return std::string();
     const auto number = number_in_unit(text, unit);
-    if (!number && unit.empty()) return std::string();  // the next check reports it
-    if (!number) return fmt::format("found {}; expected {}", text, number_rule(unit));
-    if (!is_integer)
+    if (!number && unit.empty() && !is_integer) return std::string();  // the next check reports it
+    if (!number)
+      return fmt::format("found {}; expected {}", text,
+                         unit.empty() ? "an integer" : number_rule(unit));
+    if (!is_integer) {
       text = fmt::format("{}", *number);
-    else if (*number == std::trunc(*number) && std::abs(*number) <= max_integer)
+    } else if (std::abs(*number) <= max_integer) {
+      if (*number != std::trunc(*number)) return fmt::format("found {}; expected an integer", text);
       text = fmt::format("{:.0f}", *number);
+    }
     return std::string();
   });
   return rewrite;
@@ -52,6 +56,11 @@ inline CLI::Validator number_that(const std::string& rule, std::function<bool(do
                        : fmt::format("found {}; must be {}", text, rule);
           },
           rule};
+}
+
+inline CLI::Validator integer_in(int min, int max) {
+  return number_that(fmt::format("in [{}, {}]", min, max),
+                     [min, max](double value) { return value >= min && value <= max; });
 }
 
 /// The following validators reject NaN.

@@ -7,9 +7,11 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -55,6 +57,19 @@ std::vector<std::string> differing_keys(const Camera& camera, const Camera& reco
   return differences;
 }
 
+/// Returns the warning about a camera file next to raw frames; none without a difference. The file
+/// may be damaged, since another camera is used.
+std::optional<std::string> camera_warning(const fs::path& file, const Camera& camera) {
+  try {
+    const auto differences = differing_keys(camera, load_camera(file.string()));
+    if (differences.empty()) return std::nullopt;
+    return fmt::format("warning: the camera differs from {}: {}", file.string(),
+                       fmt::join(differences, ", "));
+  } catch (const IoError& error) {
+    return fmt::format("warning: {}; this file next to the raw frames is not used", error.what());
+  }
+}
+
 /// Returns true if two codes have different correlation functions on a camera, or if the camera
 /// does not support the recorded one.
 bool differs(const std::string& code, const std::string& recorded, const Camera& camera,
@@ -92,10 +107,8 @@ std::vector<std::string> recording_conflicts(const fs::path& raw, const std::str
   std::vector<std::string> warnings;
   const fs::path recorded_camera = camera_beside(raw), recorded = code_beside(raw);
   if (is_file(recorded_camera))
-    if (const auto differences = differing_keys(camera, load_camera(recorded_camera.string()));
-        !differences.empty())
-      warnings.push_back(fmt::format("warning: the camera differs from {}: {}",
-                                     recorded_camera.string(), fmt::join(differences, ", ")));
+    if (auto warning = camera_warning(recorded_camera, camera))
+      warnings.push_back(std::move(*warning));
   if (warnings.empty() && is_file(recorded) && !is_same_file(code, recorded) &&
       !names_measured_table(code) && differs(code, recorded.string(), camera, file_options))
     warnings.push_back(

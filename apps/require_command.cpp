@@ -142,8 +142,8 @@ void add_require_command(CLI::App& app, Session& session) {
       "require",
       "compute the bandwidth, power or exposure that is necessary for a depth error, and lower "
       "bounds for all codes");
-  arguments->camera.add_positional(*command);
   arguments->camera.add_to(*command);
+  arguments->camera.add_positional(*command);
   command->add_option("--error", arguments->error, "largest acceptable depth error, such as 5mm")
       ->required();
   arguments->distance.add_to(*command);

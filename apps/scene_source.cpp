@@ -69,8 +69,9 @@ std::string beyond_range_remark(const SceneExtent& extent) {
   if (extent.beyond_range == 0) return "";
   return fmt::format(
       "note: {} pixels ({:.3g} % of all pixels with a depth) lie beyond the camera's unambiguous "
-      "range of {}: their depth wraps",
-      extent.beyond_range, 100.0 * extent.beyond_range_share(), length_text(extent.range_m));
+      "range of {}: their depth wraps{}",
+      extent.beyond_range, 100.0 * extent.beyond_range_share(), length_text(extent.range_m),
+      extent.beyond_range_share() == 1.0 ? "; check that the depth is in metres" : "");
 }
 
 }  // namespace tofsmith::apps

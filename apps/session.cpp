@@ -86,7 +86,8 @@ void CameraArguments::add_to(CLI::App& command) {
 }
 
 void CameraArguments::add_positional(CLI::App& command) {
-  command.add_option("CAMERA", name, "camera file (.toml) or name of a built-in camera");
+  command.add_option("CAMERA", name, "camera file (.toml) or name of a built-in camera")
+      ->excludes(command.get_option("--camera"));
 }
 
 void CameraArguments::add_temperature_to(CLI::App& command) {

@@ -212,6 +212,10 @@ void check_truth(const SimulateArguments& arguments, const LoadedScene& scene,
 }
 
 void simulate_set(const SimulateArguments& arguments, Session& session) {
+  if (const std::filesystem::path output = arguments.output;
+      output.extension() == ".npy" || output.extension() == ".npz")
+    throw UsageError(
+        fmt::format("-o {}: found several scenes; expected a directory", output.string()));
   if (!(arguments.truth.empty() && arguments.truth_near.empty() && arguments.truth_far.empty()))
     throw UsageError(
         "--truth: is not valid with several scenes, whose ground truth is always written");
@@ -233,7 +237,8 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
                                           arguments.ambient_e_per_s, usual.ambient_e_per_s),
                    .capture = arguments.options,
                    .shard = parse_shard(arguments.shard)}},
-      load_camera_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
+      load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code})),
+      camera, session);
 }
 
 /// Rejects options that are only valid with several scenes.
@@ -304,6 +309,8 @@ OutputPolicy check_outputs(const SimulateArguments& arguments, const CodeSet& re
   for (const std::string& truth :
        {arguments.truth, arguments.truth_near, arguments.truth_far, arguments.returns.truth()})
     if (!truth.empty()) outputs.emplace_back(truth);
+  for (const std::string& truth : {arguments.truth, arguments.truth_near, arguments.truth_far})
+    if (!truth.empty()) depth_extension(truth);  // checks it
   const OutputPolicy policy = policy_to_go_on(outputs, session.output_policy());
   for (const std::filesystem::path& output : outputs)
     session.check_output(
@@ -316,7 +323,8 @@ void run(SimulateArguments& arguments, Session& session) {
   check_is_of_one_scene(arguments);
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
+  const CodeSet code =
+      load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code}));
   const OutputPolicy policy = check_outputs(arguments, code, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);

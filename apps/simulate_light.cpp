@@ -86,13 +86,13 @@ void MultipathLightArguments::add_to(CLI::App& command) {
                              .add_option("--bounces", bounces_,
                                          "1: add light reflected by one other surface of the "
                                          "scene, computed by ray tracing; 0: none")
-                             ->check(CLI::Range(0, 1))
+                             ->check(integer_in(0, 1))
                              ->capture_default_str();
   command
       .add_option(
           "--bounce-rays", bounce_.rays,
           "rays per pixel for --bounces; noise decreases slightly faster than 1 / sqrt(rays)")
-      ->check(CLI::Range(16, 65536))
+      ->check(integer_in(16, 65536))
       ->capture_default_str()
       ->needs(bounces)
       ->group(for_experts);

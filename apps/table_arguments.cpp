@@ -68,13 +68,13 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                 : keep_end_point_   ? "--keep-end-point"
                                                     : nullptr;
   if (of_tables && !names_measured_table(code)) {
-    load_camera_code(code, camera, taps.file_options());  // reports an invalid code first
+    load_camera_code(code, camera, taps.file_options_for({code}));  // reports an invalid code first
     throw UsageError(
         fmt::format("{} is only valid with a measured table; {} is a code, for which the camera "
                     "determines these values",
                     of_tables, code));
   }
-  DecodingTableOptions options{.file = taps.file_options(),
+  DecodingTableOptions options{.file = taps.file_options_for({code}),
                                .range_m = range_m_,
                                .ambient = {},
                                .axes = {},

@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "help_pages.hpp"
+#include "session.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 
 namespace tofsmith::apps {
 
@@ -45,6 +51,19 @@ struct TapArguments {
     return order.empty() ? std::nullopt : std::optional(parse_tap_order(order));
   }
   CodeFileOptions file_options() const { return {.taps = taps, .tap_order = tap_order()}; }
+  /// As file_options(), for the codes of a command.
+  /// @throws UsageError if an option is given and no code is an array
+  CodeFileOptions file_options_for(const std::vector<std::string>& codes) const {
+    const bool reads_columns = std::ranges::any_of(codes, [](const std::string& code) {
+      return code.ends_with(".npz") || code.ends_with(".npy") || names_measured_table(code);
+    });
+    if ((taps || !order.empty()) && !reads_columns)
+      throw UsageError(fmt::format(
+          "{}: found the code {}; expected an array (.npz); the number of taps of the camera is "
+          "--set sensor.taps={}",
+          taps ? "--taps" : "--tap-order", fmt::join(codes, ", "), taps.value_or(2)));
+    return file_options();
+  }
 };
 
 }  // namespace tofsmith::apps

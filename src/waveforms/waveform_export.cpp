@@ -54,6 +54,10 @@ int table_points(const ExportOptions& options, const WaveformFormat& format,
     points = Generator{.sample_rate_hz = *options.sample_rate_hz}.points_per_period(frequency_hz);
   else if (own)
     points = own->points_per_period(frequency_hz);
+  if (options.sample_rate_hz)
+    require(points >= 2, "sample_rate_hz", *options.sample_rate_hz,
+            fmt::format("must be at least {:.4g}, 2 points per period of {:.4g} Hz; check the unit",
+                        2 * frequency_hz, frequency_hz));
   return std::min(points, format.max_points);
 }
 

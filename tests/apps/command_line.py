@@ -50,9 +50,11 @@ class CommandLineTest(unittest.TestCase):
             needs_camera = not os.path.exists(self.path(recorded))
         elif command == "codes":
             needs_camera = first and not first.startswith("-")
+        elif command == "require":
+            needs_camera = first.startswith("-")
         else:
-            needs_camera = command in ("calibrate", "evaluate", "export", "multipath", "require",
-                                       "simulate", "upload")
+            needs_camera = command in ("calibrate", "evaluate", "export", "multipath", "simulate",
+                                       "upload")
         return (*arguments, "--camera", "paper-10f0") if needs_camera else arguments
 
     def start(self, *arguments, **options):

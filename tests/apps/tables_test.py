@@ -169,7 +169,7 @@ class Tables(CommandLineTest):
         for table in ("t.npy", "t.npz"):
             for command in (["evaluate", table], ["codes", table],
                             ["simulate", "table-top", "--code", table, "-o", "r.npy"]):
-                self.refuse(command, table, "measured table (corrfs only)", "only decode supports")
+                self.refuse(command, table, "measured table", "only decode supports")
         self.refuse(["decode", "raw.npy", "--code", "other.npz", "-o", "d.npy"], "other.npz",
                     "curves, made", "modfs", "corrfs")
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tofsmith/core/image.hpp"
@@ -12,6 +13,10 @@
 #include "tofsmith/simulate/capture.hpp"
 
 namespace tofsmith {
+
+/// Returns the extension of a depth image in lower case.
+/// @throws IoError if read_depth() and write_depth() do not support it
+std::string depth_extension(const std::filesystem::path& path);
 
 /// Reads depth [m], (H, W), from .npy, .npz, .exr or .pfm (metres, see read_float_image()) or .png
 /// (16-bit grey, millimetres). 0 and infinity become NaN (no return).

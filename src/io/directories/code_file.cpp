@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/shared/enum_words.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/shared/file_kind.hpp"
 #include "io/shared/read_file.hpp"
@@ -17,7 +20,9 @@ namespace {
 std::string near_family(const std::string& name) {
   std::vector<std::string> known;
   for (const FamilyDescription& family : list_families()) known.push_back(family.example);
-  std::string near = nearest_word(name, known);
+  std::string in_lower_case = name;
+  std::ranges::transform(in_lower_case, in_lower_case.begin(), lower_case);
+  std::string near = nearest_word(in_lower_case, known);
   if (near.empty()) return "; `tofsmith codes` lists them";
   // Keep the user's number; only the word before it is wrong.
   const auto without_number = [](const std::string& word) {
@@ -74,6 +79,10 @@ CodeSet load_code(const std::string& name_or_path, const Camera& camera,
     throw IoError(name_or_path, fmt::format("there is no such file and no built-in family of that "
                                             "name{}",
                                             near_family(name_or_path)));
+  if (lower_extension(name_or_path) == ".toml")
+    throw IoError(name_or_path,
+                  "found a camera or another TOML file; expected a code: a family, .json, .npz or "
+                  ".csv (--camera selects a camera)");
   if (reads_rows && lower_extension(name_or_path) == ".npz") return read_rows(name_or_path);
   return read_code(name_or_path, layout);
 }

@@ -22,10 +22,6 @@ namespace {
 constexpr double m_per_mm = 1e-3;
 constexpr int max_png_mm = 65535;
 
-std::string depth_extension(const std::filesystem::path& path) {
-  return known_extension(path, {".npy", ".npz", ".exr", ".pfm", ".png"});
-}
-
 Image<float> depth_from_png(const PngImage& png, const std::string& file) {
   if (png.channels != 1 || png.bit_depth != 16)
     throw IoError(file, fmt::format("found {} channels of {} bits; expected 16-bit grey, depth in "
@@ -70,6 +66,10 @@ void mark_no_return(Image<float>& depth_m) {
 }
 
 }  // namespace
+
+std::string depth_extension(const std::filesystem::path& path) {
+  return known_extension(path, {".npy", ".npz", ".exr", ".pfm", ".png"});
+}
 
 Image<float> read_depth(const std::filesystem::path& path) {
   const bool millimetres = depth_extension(path) == ".png";

@@ -96,9 +96,13 @@ bool is_negated(const RawFormat& f, const FilePlace& place) {
          (f.negate_from_column > 0 && place.column >= f.negate_from_column);
 }
 
-/// Describes the byte orders and alignments with which all numbers of a row fit into their bits.
+/// Describes each sign, byte order and alignment with which all numbers of a row fit into their
+/// bits.
 std::string fitting_changes(const RawFormat& format, std::span<const std::byte> row) {
   std::string changes;
+  RawFormat with_sign = format;
+  with_sign.is_signed = true;
+  if (!find_oversized_number(with_sign, row)) changes = "signed = true";
   for (const bool big_endian : {format.big_endian, !format.big_endian})
     for (const RawAlignment align : {RawAlignment::low, RawAlignment::high}) {
       RawFormat other = format;

@@ -35,7 +35,13 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
                          .dataset = request.dataset,
                          .format = {},
                          .marking = table.marking};
-  if (!request.raw_format.empty()) options.format = read_raw_format(request.raw_format);
+  if (!request.raw_format.empty()) {
+    options.format = read_raw_format(request.raw_format);
+    if (request.raw.front().extension() == ".npy" && options.format->header_bytes == 0)
+      throw IoError(request.raw.front().string(),
+                    "found a NumPy array, which describes itself; expected binary frames as in " +
+                        request.raw_format.string() + ", or no raw format");
+  }
   return RawFramesReader(request.raw, options);
 }
 

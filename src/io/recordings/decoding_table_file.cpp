@@ -141,8 +141,9 @@ void require_no_measured_table(const std::string& code) {
   if (names_measured_table(code))
     throw IoError(
         code,
-        "found a measured table (corrfs only), which only decode supports; expected .json, .npz "
-        "with modfs and demodfs, or .csv with columns modulation_1, ... and demodulation_1, ...");
+        "found no modulation and demodulation functions, as in a measured table, which only decode "
+        "supports; expected .json, .npz with modfs and demodfs, or .csv with columns modulation_1, "
+        "... and demodulation_1, ...");
 }
 
 CodeSet load_camera_code(const std::string& code, const Camera& camera,
