@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "calibrate_output.hpp"
 #include "commands.hpp"
@@ -36,10 +38,14 @@ void CalibrateOutput::check(const Session& session, const std::vector<std::strin
   policy = session.check_outputs(outputs);
 }
 
-void CalibrateOutput::write_camera(const Camera& camera, const Session& session,
-                                   const std::string& next) const {
+void CalibrateOutput::write_camera(const Camera& camera, const CameraArguments& from,
+                                   const Session& session, const std::string& next) const {
   if (camera_path.empty()) return;
-  write_camera_toml(camera_path, camera, policy);
+  std::optional<Camera> assumed;
+  if (std::ranges::count(built_in_camera_names(), from.name) > 0)
+    assumed = built_in_camera(from.name);
+  write_file_atomically(camera_path, calibrated_camera_toml(camera, assumed ? &*assumed : nullptr),
+                        policy);
   session.say(fmt::format(
       "wrote {} (values that were not fitted are from camera {})\nnext: {}", camera_path,
       camera.name,

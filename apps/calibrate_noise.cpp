@@ -68,7 +68,8 @@ void run(NoiseArguments& arguments, const Session& session) {
   PhotonTransfer found;
   try {
     if (reads_differences) {
-      const CodeSet code = load_camera_code(arguments.code, base, arguments.taps.file_options());
+      const CodeSet code =
+          load_camera_code(arguments.code, base, arguments.taps.file_options_for({arguments.code}));
       found = photon_transfer(levels, dark, make_decoding_table(ForwardModel(code, base), base),
                               options);
     } else {
@@ -81,7 +82,7 @@ void run(NoiseArguments& arguments, const Session& session) {
   session.say(text_table(noise_rows(found)));
   session.say(note_lines(found.notes));
   arguments.output.write_page(noise_report(found, session.command_line), session);
-  arguments.output.write_camera(with_noise(base, found), session);
+  arguments.output.write_camera(with_noise(base, found), arguments.camera, session);
 }
 
 }  // namespace

@@ -113,7 +113,8 @@ Camera camera_of(const Camera& camera, const TemperatureDrift& found,
 void run(TemperatureArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   arguments.output.check(session);
-  const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
+  const CodeSet code =
+      load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code}));
   const RawFrames frames = read_raw_frames(arguments.file);
   const ReadTemperatures read = read_temperatures(arguments);
   TemperatureDrift found;
@@ -131,7 +132,7 @@ void run(TemperatureArguments& arguments, const Session& session) {
   arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),
                               session);
   arguments.output.write_camera(
-      camera_of(camera, found, arguments), session,
+      camera_of(camera, found, arguments), arguments.camera, session,
       fmt::format(
           "tofsmith decode RAW --code {} --camera {} --temperature {:.0f}{}", arguments.code,
           arguments.output.camera_path, found.mean_c,

@@ -62,6 +62,22 @@ class Calibrate(BenchRecordsTest):
             self.do(*command, "--force")
             self.assertLess(self.errors_m("depth.npy", truth).max(), 5e-3, (taps, difference))
 
+    def test_the_camera_file_marks_or_omits_values_that_nobody_gave(self):
+        self.record()
+        self.write("own.toml", "fundamental_frequency_hz = 15e6\n[sensor]\nread_noise_e = 7\n")
+        def fitted(camera):
+            self.do("calibrate", "impulse-response", "scope.csv", "--arm", "light", "--camera",
+                    camera, "-o", "fitted.toml", "--force")
+            lines = self.bytes_of("fitted.toml").decode().splitlines()
+            return {line.split(" = ")[0]: line for line in lines if " = " in line}
+        lines = fitted("own.toml")
+        self.assertEqual(sorted(lines), ["fundamental_frequency_hz", "impulse_response", "name",
+                                         "read_noise_e"])
+        self.assertNotIn("not measured", "".join(lines.values()))
+        lines = fitted("indoor")
+        self.assertIn("# of the camera indoor, not measured", lines["source_power_w"])
+        self.assertNotIn("not measured", lines["name"])
+
     def test_direction_and_order_are_stored_in_the_camera_or_given_as_options(self):
         truth = self.swept(taps=2, difference=True, order=(0, 1, 3, 2), sign=-1)
         self.do("calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt", "--shift-unit",

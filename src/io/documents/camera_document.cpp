@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include "io/documents/shared/document_text.hpp"
@@ -50,6 +51,61 @@ std::string camera_to_json(const Camera& camera) {
 
 std::string camera_to_toml(const Camera& camera) { return format_toml(camera_document(camera)); }
 
+namespace {
+
+/// Adds the comments of keys such as "light.peak_factor" to lines of TOML; "" for no comment.
+std::string with_comments(const std::string& toml,
+                          const std::function<std::string(const std::string&)>& comment_of) {
+  std::string text, table;
+  std::istringstream lines(toml);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string key = line.substr(0, line.find(" = "));
+    if (line.starts_with('[')) table = line.substr(1, line.find(']') - 1) + ".";
+    const std::string comment = key == line || key == "name" ? "" : comment_of(table + key);
+    text += comment.empty() ? line + "\n" : fmt::format("{:40}  # {}\n", line, comment);
+  }
+  return text;
+}
+
+nlohmann::ordered_json::json_pointer pointer_to(std::string key) {
+  std::ranges::replace(key, '.', '/');
+  return nlohmann::ordered_json::json_pointer("/" + key);
+}
+
+/// Removes optional keys that equal their default, except the name, and tables that become empty.
+void remove_defaults(nlohmann::ordered_json& document) {
+  using Place = nlohmann::ordered_json::json_pointer;
+  const auto remove = [&](const Place& place, const nlohmann::ordered_json& usual) {
+    if (!document.contains(place) || document[place] != usual) return;
+    const Place table = place.parent_pointer();
+    document[table].erase(place.back());
+    if (document[table].empty() && !table.empty())
+      document[table.parent_pointer()].erase(table.back());
+  };
+  const nlohmann::ordered_json no_response = {{"kind", "none"}};
+  remove(Place("/light/impulse_response"), no_response);
+  remove(Place("/sensor/impulse_response"), no_response);
+  for (const auto& key : nlohmann::ordered_json::parse(camera_keys_json()))
+    if (key.contains("default") && key["example"] == "" && key["key"] != "name")
+      remove(pointer_to(key["key"]), key["default"]);
+}
+
+}  // namespace
+
+std::string calibrated_camera_toml(const Camera& camera, const Camera* assumed) {
+  nlohmann::ordered_json document = camera_document(camera);
+  remove_defaults(document);
+  const std::string toml = format_toml(document);
+  if (assumed == nullptr) return toml;
+  const nlohmann::ordered_json others = camera_document(*assumed);
+  return with_comments(toml, [&](const std::string& key) {
+    const auto place = pointer_to(key);
+    return others.contains(place) && document.contains(place) && others[place] == document[place]
+               ? fmt::format("of the camera {}, not measured", assumed->name)
+               : "";
+  });
+}
+
 std::string built_in_camera_toml(const std::string& name) {
   const std::string toml = camera_to_toml(built_in_camera(name));
   const std::vector<BuiltInCamera> all = list_built_in_cameras();
@@ -57,17 +113,7 @@ std::string built_in_camera_toml(const std::string& name) {
       all.begin(), all.end(), [&](const BuiltInCamera& camera) { return camera.name == name; });
   std::string text = fmt::format("# {}\n", listed.description);
   if (!listed.code.empty()) text += fmt::format("# code: {}\n", listed.code);
-  std::istringstream lines(toml);
-  std::string table;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string key = line.substr(0, line.find(" = "));
-    if (line.starts_with('[')) table = line.substr(1, line.find(']') - 1) + ".";
-    if (key == line || key == "name")
-      text += line + "\n";
-    else
-      text += fmt::format("{:40}  # {}\n", line, listed.source_of(table + key));
-  }
-  return text;
+  return text + with_comments(toml, [&](const std::string& key) { return listed.source_of(key); });
 }
 
 void write_camera_toml(const std::filesystem::path& path, const Camera& camera,
