@@ -8,6 +8,7 @@
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
+#include "tofsmith/simulate/depth_error_text.hpp"
 
 namespace tofsmith::apps {
 
@@ -66,16 +67,16 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
   const auto error_text = [&](const Candidate& c, DepthErrorKind of) {
     return estimate_mm_text(c.error.of({of, statistic}).geometric_mean_m);
   };
-  std::vector<std::vector<std::string>> rows{{"code", "K", fmt::format("linear {}(mm)", rms),
-                                              fmt::format("circular {}(mm)", rms), "rotation (bin)",
-                                              "made by"}};
+  std::vector<std::vector<std::string>> rows{
+      {"code", exposures_by_taps_title, fmt::format("linear {}(mm)", rms),
+       fmt::format("circular {}(mm)", rms), "rotation (bin)", "made by"}};
   for (const Candidate* c : by_geometric_mean_error(result, camera.operating.measure()))
-    rows.push_back({c->code.name(), fmt::format("{}", c->error.measurements),
-                    error_text(*c, DepthErrorKind::linear),
-                    error_text(*c, DepthErrorKind::circular), fmt::format("{}", c->rotation_bin),
-                    c->method});
+    rows.push_back(
+        {c->code.name(), exposures_by_taps(c->error), error_text(*c, DepthErrorKind::linear),
+         error_text(*c, DepthErrorKind::circular), fmt::format("{}", c->rotation_bin), c->method});
   if (camera.operating.multipath) add_multipath(rows, result, kind);
   session.say(text_table(rows));
+  session.say(depth_error_legend);
   if (kind == DepthErrorKind::linear)
     session.say(
         "the depth origin of each code is shifted to minimize its linear error; `evaluate` does "

@@ -25,6 +25,7 @@
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
+#include "tofsmith/simulate/depth_error_text.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith::apps {
@@ -176,6 +177,7 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
                   "one standard error; factors in parentheses are circular error / bound",
                   trials_text(codes, options), options.seed, camera.samples,
                   true_depths_text(camera, options), name_of(options.method)));
+  session.say(depth_error_legend);
   if (codes.front().error.points.size() > 2 && !every_level)
     session.say(fmt::format("to print all {}, use --every-level or -o FILE (.csv .json .html)",
                             light_levels_text(camera.operating)));
@@ -265,9 +267,10 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (!arguments.perturb.empty()) perturbed = parse_perturbations(arguments.perturb);
   if (perturbed)
     static_cast<void>(perturbations(camera, *perturbed));  // validates before long work
+  const CodeFileOptions file_options = arguments.taps.file_options_for(arguments.codes);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));
+    codes.push_back(load_camera_code(name, camera, file_options));
   std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
   if (perturbed) judge_robustness(evaluated, codes, camera, arguments.options, *perturbed);
   if (!arguments.output.empty())

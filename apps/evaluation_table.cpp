@@ -10,6 +10,7 @@
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/csv.hpp"
 #include "tofsmith/report/design_report.hpp"
+#include "tofsmith/simulate/depth_error_text.hpp"
 
 namespace tofsmith::apps {
 
@@ -30,7 +31,7 @@ using Row = std::vector<std::string>;
 
 Row point_row(const DepthErrorReport& error, std::string_view which, const PointDepthError& p) {
   return {error.code,
-          fmt::format("{}", error.measurements),
+          exposures_by_taps(error),
           std::string(which),
           fmt::format("{:.3g}", p.point.signal_e_per_s),
           fmt::format("{:.3g}", p.point.ambient_e_per_s),
@@ -44,7 +45,7 @@ Row point_row(const DepthErrorReport& error, std::string_view which, const Point
 
 Row mean_row(const DepthErrorReport& error) {
   return {error.code,
-          fmt::format("{}", error.measurements),
+          exposures_by_taps(error),
           fmt::format("mean of {}", error.points.size()),
           "",
           "",
@@ -60,9 +61,9 @@ Row mean_row(const DepthErrorReport& error) {
 
 std::vector<std::vector<std::string>> evaluation_rows(const std::vector<EvaluatedCode>& codes,
                                                       DepthErrorKind kind, bool every_level) {
-  std::vector<Row> rows{{"code", "K", "light", "signal (e/s)", "ambient (e/s)", "linear (mm)",
-                         "circular (mm)", "outliers (%)", "Cramer-Rao (mm)", "receiver (mm)",
-                         "direct ToF (mm)"}};
+  std::vector<Row> rows{{"code", exposures_by_taps_title, "light", "signal (e/s)", "ambient (e/s)",
+                         "linear (mm)", "circular (mm)", "outliers (%)", "Cramer-Rao (mm)",
+                         "receiver (mm)", "direct ToF (mm)"}};
   const auto error_m = [kind](const PointDepthError& p) {
     return (kind == DepthErrorKind::linear ? p.linear_mde_m : p.circular_mde_m).value;
   };

@@ -13,6 +13,7 @@
 #include "report/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
+#include "tofsmith/simulate/depth_error_text.hpp"
 
 namespace tofsmith {
 namespace {
@@ -98,7 +99,7 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                   first.outlier_threshold_m),
               .columns = {{"code"},
                           {"made by"},
-                          {"K", true},
+                          {exposures_by_taps_title, true},
                           {"linear (mm)", true},
                           {"circular (mm)", true},
                           {"arithmetic (mm)", true},
@@ -115,9 +116,9 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
     for (const PointDepthError& p : e.points) outliers += p.outlier_rate.value;
     if (i == best) table.highlighted_row = static_cast<int>(table.rows.size());
     table.rows.push_back(
-        {e.code, codes[i].method, fmt::format("{}", e.measurements),
-         estimate_mm_text(e.linear.geometric_mean_m), estimate_mm_text(e.circular.geometric_mean_m),
-         estimate_mm_text(e.circular.mean_m), estimate_mm_text(e.linear_rmse.geometric_mean_m),
+        {e.code, codes[i].method, exposures_by_taps(e), estimate_mm_text(e.linear.geometric_mean_m),
+         estimate_mm_text(e.circular.geometric_mean_m), estimate_mm_text(e.circular.mean_m),
+         estimate_mm_text(e.linear_rmse.geometric_mean_m),
          estimate_mm_text(e.circular_rmse.geometric_mean_m),
          fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
     if (codes[best].ratio)

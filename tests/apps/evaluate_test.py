@@ -18,11 +18,11 @@ class Evaluate(CommandLineTest):
         points = {code["name"]: [point["linear_mde_m"] for point in code["points"]]
                   for code in self.do_json("evaluate", *codes, *FAST)["codes"]}
         lines = self.do("evaluate", *codes, *FAST).splitlines()
-        self.assertEqual([line.split()[2] for line in lines[1:7]], ["mean", "best", "worst"] * 2)
+        self.assertEqual([line.split()[4] for line in lines[1:7]], ["mean", "best", "worst"] * 2)
         for code, first in zip(codes, (1, 4)):
             for line, error_m in ((first + 1, min(points[code])), (first + 2, max(points[code]))):
                 self.assertIn(code, lines[line])
-                self.assertAlmostEqual(float(lines[line].split()[5]) / error_m, 1e3, delta=1)
+                self.assertAlmostEqual(float(lines[line].split()[7]) / error_m, 1e3, delta=1)
         self.assertIn("all 25 light levels of the camera (S = 1e+03 to 1e+05, A = 100 to 1e+05 e/s), "
                       "use --every-level", "\n".join(lines))
         full = [lines[i] for i in (0, 2, 3, 5, 6)]  # without means, which have no bounds

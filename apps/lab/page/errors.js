@@ -107,7 +107,7 @@ export class ErrorsView {
               'th', {scope: 'row'},
               element('span', {class: 'row-dot', style: `background:${seriesColour(i)}`}),
               problem ? `${one.name}, last valid result` : one.name),
-          cell(String(one.measurements)),
+          cell(`${one.exposures} x ${one.taps}`),
           ...['linear', 'circular'].map(
               (which) =>
                   cell(errorText(one[which].geometric_mean_m, one[which].geometric_mean_se_m))),
@@ -115,7 +115,7 @@ export class ErrorsView {
           cell(fixedText(100 * Math.max(...one.points.map((p) => p.outlier_rate)), 3)));
     };
     const head = [
-      'code', 'K', 'linear (mm)', 'circular (mm)', 'lowest circular (mm)',
+      'code', 'exposures x taps', 'linear (mm)', 'circular (mm)', 'lowest circular (mm)',
       'at signal, ambient (e/s)', 'max outliers (%)'
     ];
     const levels = known[0].one.points.length;
