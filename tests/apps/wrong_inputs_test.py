@@ -39,7 +39,41 @@ FILES = {
     "packing.raw.toml": DUMP + 'packing = "raw12"\n',
     "s.toml": "[[sphere]]\ncentre_m = [0, 0, 2]\nradius = 1\n",
     "sweep.toml": f'camera = "{"A" * 300}"\ncodes = ["sinusoid-k4"]\n',
+    "khz.toml": "fundamental_frequency_hz = 20\n",
+    "equals.toml": CAMERA + "exposure_s 0.02\n",
+    "colon.toml": "fundamental_frequency_hz: 20e6\n",
+    "quote.toml": 'name = "mine\n' + CAMERA,
+    "curly.toml": "name = \u201cmine\u201d\n" + CAMERA,
+    "sections.toml": CAMERA + "[sensors]\ntaps = 2\n",
+    "again.toml": CAMERA + "[sensor]\ntaps = 2\n[sensor]\nread_noise_e = 3\n",
+    "no_table.toml": CAMERA + "taps = 2\n",
+    "bandwidth.toml": CAMERA + "[light]\nbandwidth_hz = 80e6\n",
+    "focal.toml": CAMERA + "[optics]\nfocal_length_m = 4\n",
+    "peak.toml": CAMERA + "[light]\npeak_factor = 0.5\n",
+    "drain.toml": CAMERA + "[sensor]\ndrain = 1\n",
+    "text_taps.toml": CAMERA + '[sensor]\ntaps = "2"\n',
+    "cutoff.toml": CAMERA + '[light]\nimpulse_response = { kind = "lowpass" }\n',
+    "mhz.toml": CAMERA + '[light]\nimpulse_response = { kind = "lowpass", cutoff_mhz = 80 }\n',
+    "behind.toml": CAMERA + "[lens]\nfx_px = -300\nfy_px = 300\ncx_px = 3.5\ncy_px = 2.5\n",
+    "level.toml": CAMERA + "[operating]\nsignal_e_per_s = 3e6\n",
+    "levels.toml": CAMERA + "[operating]\nsignal_e_per_s = []\n",
+    "inf.toml": CAMERA + "exposure_s = inf\n",
     "c.code.json": "{}",
+    "cut.code.json": '{"name": "x", "modu',
+    "columns.csv": "time,light\n0,1\n1,0\n",
+    "no_bits.raw.toml": DUMP.replace("bits = 12\n", ""),
+    "little.raw.toml": DUMP + 'byte_order = "LE"\n',
+    "layout.raw.toml": DUMP + 'layout = "HWK"\n',
+    "wide.raw.toml": DUMP.replace("bits = 12", "bits = 33"),
+    "header.raw.toml": DUMP + "header_bytes = 100\n",
+    "ball.toml": "[[ball]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n",
+    "flat_centre.toml": "[[sphere]]\ncentre_m = [0, 0]\nradius_m = 1\n",
+    "m.obj": "v 0 0 1\nv 1 0 1\nf 1 2 9\n",
+    "no_codes.toml": 'camera = "good.toml"\n',
+    "no_values.toml": 'camera = "good.toml"\ncodes = ["sinusoid-k4"]\n[[axis]]\n'
+                      'key = "light.peak_factor"\nvalues = []\n',
+    "no_camera.toml": 'camera = "goood.toml"\ncodes = ["sinusoid-k4"]\n',
+    "two.txt": "0\n1\n",
     "note.txt": "hello\n",
 }
 
@@ -146,6 +180,108 @@ report . | design.json
 calibrate noise raw.npy -o c.toml | --dark
 calibrate correlation note.txt -o c.toml | note.txt
 calibrate correlation raw.npy --reference-kind z -o c.toml | --reference
+decode --code sinusoid-k4 -o d.npy | RAW is required
+decode raw.npy raw.npy --code sinusoid-k4 -o d.npy | 2 files, one per measurement; expected 4
+decode raw.npy --code good.toml -o d.npy | good.toml; camera; expected a code
+decode raw.npy --code raw.npy -o d.npy | shape (2, 4, 4); expected (N, K)
+decode raw.npy --code multifrequency-4x4-5x4 -o d.npy | 4 measurements; expected 8
+decode raw.npy --code sinusoid-k4 --set sensor.taps=2 -o d.npy | 4 measurements; expected 8
+decode raw.npy --code sinusoid-k4 --taps 2 -o d.npy | --taps; sinusoid-k4; --set sensor.taps=2
+decode raw.npy --code sinusoid-k4 -o raw.npy | raw.npy; is the input
+decode raw.npy --code sinusoid-k4 -o absent/d.npy | directory absent does not exist
+decode raw.npy --code sinusoid-k4 -o d.jpg | ".jpg"; expected .npy
+decode raw.npy --code sinusoid-k4 --order 0-3 -o d.npy | --order: found 0-3
+decode raw.npy --code sinusoid-k4 --order 1,2,3,4 -o d.npy | order = 1, 2, 3, 4; 0, 1, ...
+decode raw.npy --code sinusoid-k4 --bits 12 -o d.npy | unknown option '--bits'
+decode raw.npy --code sinusoid-k4 --lens l.yaml -o d.ply | unknown option '--lens'
+decode raw.npy --code sinusoid-k4 --hdr 1,4 -o d.npy | 2 exposures; 1 frame
+decode raw.npy --code sinusoid-k4 --kind depth -o d.npy | --kind; {radial,z}
+decode raw.npy --code sinusoid-k4 --raw-format d.raw.toml -o d.npy | raw.npy; NumPy array
+decode planes.npy --code sinusoid-k4 -o d.npy | shape (4, 30, 40); --layout planar
+decode complex.npy --code sinusoid-k4 -o d.npy | complex numbers
+decode z.npz --code sinusoid-k4 -o d.npy | depth, depth_is_z; 'raw'
+decode good.toml --code sinusoid-k4 -o d.npy | '.toml'; expected .npy
+decode d.bin --code sinusoid-k5 --raw-format d.raw.toml -o d.npy | 4 measurements; expected 5
+decode d.bin --code sinusoid-k4 --raw-format no_bits.raw.toml -o d.npy | found no bits; bits = 12
+decode d.bin --code sinusoid-k4 --raw-format little.raw.toml -o d.npy | "LE"; "little"
+decode d.bin --code sinusoid-k4 --raw-format layout.raw.toml -o d.npy | "HWK"; "interleaved"
+decode d.bin --code sinusoid-k4 --raw-format wide.raw.toml -o d.npy | bits = 33; [1, 32]
+decode d.bin --code sinusoid-k4 --raw-format header.raw.toml -o d.npy | 64 bytes; 100 of header
+decode signed.bin --code sinusoid-k4 --raw-format d.raw.toml -o d.npy | signed = true would fit
+decode d.bin --code sinusoid-k4 --raw-format absent.raw.toml -o d.npy | absent.raw.toml; no such file
+evaluate good.toml sinusoid-k4 | good.toml; camera; --camera
+evaluate columns.csv | columns.csv; modulation_1
+evaluate cut.code.json | cut.code.json:1
+evaluate Sinusoid_K4 | did you mean sinusoid-k4?
+evaluate sinusoid | did you mean sinusoid-k4?
+evaluate --code sinusoid-k4 | unknown option '--code'
+evaluate sinusoid-k4 --camera khz.toml | khz.toml:1; 20 MHz are 20e6
+evaluate sinusoid-k4 --camera equals.toml | equals.toml:2; expected '='
+evaluate sinusoid-k4 --camera colon.toml | colon.toml:1; expected '='
+evaluate sinusoid-k4 --camera quote.toml | quote.toml:1; ends with a quote
+evaluate sinusoid-k4 --camera curly.toml | curly.toml:1; straight quotes
+evaluate sinusoid-k4 --camera sections.toml | did you mean sensor?
+evaluate sinusoid-k4 --camera again.toml | again.toml:4; 'sensor'
+evaluate sinusoid-k4 --camera no_table.toml | no_table.toml:2; did you mean sensor.taps?
+evaluate sinusoid-k4 --camera bandwidth.toml | did you mean light.impulse_response.cutoff_hz?
+evaluate sinusoid-k4 --camera focal.toml | did you mean lens.focal_length_m?
+evaluate sinusoid-k4 --camera peak.toml | peak.toml:3; >= 1
+evaluate sinusoid-k4 --camera drain.toml | found 1; expected true or false
+evaluate sinusoid-k4 --camera text_taps.toml | found "2"; expected an integer
+evaluate sinusoid-k4 --camera cutoff.toml | cutoff_hz = 100e6
+evaluate sinusoid-k4 --camera mhz.toml | did you mean light.impulse_response.cutoff_hz, in Hz?
+evaluate sinusoid-k4 --camera behind.toml | lens.fx_px = -300
+evaluate sinusoid-k4 --camera level.toml | expected a list of numbers
+evaluate sinusoid-k4 --camera levels.toml | at least one level
+evaluate sinusoid-k4 --camera inf.toml | found inf; finite
+evaluate sinusoid-k4 --set light.cutoff_hz=80e6 | did you mean light.impulse_response.cutoff_hz?
+evaluate sinusoid-k4 --set exposure_s=0,02 | decimals have a point
+evaluate sinusoid-k4 --set light.peak_factor=high | found "high"; expected a number
+evaluate sinusoid-k4 --set sensor.taps=9 | multiple of the 9 taps
+evaluate sinusoid-k4 --taps 3 | --taps; --set sensor.taps=3
+evaluate sinusoid-k4 --camera | --camera: found no value
+evaluate sinusoid-k4 --camera good.toml --camera lens.toml | --camera: found 2 values
+evaluate sinusoid-k4 --seed -3 | --seed: found -3; >= 0
+evaluate sinusoid-k4 --seed today | --seed; today
+evaluate sinusoid-k4 --threads many | --threads; found many
+evaluate sinusoid-k4 --perturb bandwith=20% | bandwith=20%; bandwidth
+evaluate sinusoid-k4 --perturb jitter=5 | such as 50ps
+evaluate sinusoid-k4 --distance 3 --albedo 50 --camera indoor | --albedo: found 50; at most 1
+design good.toml --camera lens.toml | CAMERA; --camera
+design good.toml --exposures 3-5 | --exposures: found 3-5; expected an integer
+design good.toml --method search | sensor.shortest_pulse_s
+design good.toml --target sinusoid-k4 --method optimize | --method factorize
+design good.toml --bandwidth 80MHz | --set light.impulse_response.cutoff_hz=
+design sinusoid-k4 | no built-in camera of that name
+require good.toml --error 5 mm | unexpected argument 'mm'
+require good.toml --error 5mm | light.impulse_response = { kind = "lowpass"
+require indoor --error 5mm --vary bandwith | did you mean bandwidth?
+export sinusoid-k4 --format csv --rate 660 -o w | sample_rate_hz = 660; check the unit
+export sinusoid-k4 --format csv --bits 12.5 -o w | --bits: found 12.5; expected an integer
+export sinusoid-k4 --format csv -o w.docx | w.docx; expected .csv
+simulate table-top --code sinusoid-k4 --truth t.txt -o r.npy | t.txt; expected one of .npy
+simulate table-top --code sinusoid-k4 --frames 2.5 -o r.npy | --frames: found 2.5
+simulate raw.npy --code sinusoid-k4 -o r.npy | shape (2, 4, 4); expected (H, W)
+simulate note.txt --code sinusoid-k4 -o r.npy | several scenes; expected a directory
+simulate ball.toml --code sinusoid-k4 -o r.npy | unknown key ball; sphere
+simulate flat_centre.toml --code sinusoid-k4 -o r.npy | found 2 numbers; three
+simulate m.obj --code sinusoid-k4 -o r.npy | m.obj:3; vertex index 9
+simulate table-top --scene room --code sinusoid-k4 -o r.npy | unknown option '--scene'
+sweep no_codes.toml --store s.sqlite | codes = [
+sweep no_values.toml --store s.sqlite | values; empty list
+sweep no_camera.toml --store s.sqlite | goood.toml; no such file
+sweep good.toml --store s.sqlite --shard 9/8 | 9/8; such as 3/8
+atlas --taps 7 | found no code; tofsmith atlas
+calibrate | expected one of; noise
+calibrate noize raw.npy | unknown command 'noize'; did you mean noise?
+calibrate correlation raw.npy -o c.toml | --shifts; --reference
+calibrate correlation raw.npy --shifts two.txt -o c.toml | 2 shifts; expected 1
+calibrate noise raw.npy --dark raw.npy -o c.toml | pairs of equal light
+codes fourier-k200 | 200; [2, 16]
+codes sinusoid-k4 --samples 1 | --samples: found 1; [8, 65536]
+lab --port 8080 | unknown option '--port'
+report note.txt | design.json
+version | unknown command 'version'; expected one of
 """.strip().splitlines()
 
 # Commands that succeed with a warning or a note.
@@ -153,6 +289,7 @@ NOTED = """
 decode mixed.npy -o a.npy | raw numbers do not fit this code; --order 0,2,1,3
 decode mixed.npy --camera paper-10f0 -o b.npy | warning: the camera differs from mixed.camera.toml
 decode mixed.npy --code square-k4 -o c.npy | warning: the code square-k4 differs from mixed.code.json
+decode broken.npy --code sinusoid-k4 --camera good.toml -o d.npy | warning: broken.camera.toml:1; not used
 """.strip().splitlines()
 
 
@@ -163,13 +300,16 @@ class WrongInputs(CommandLineTest):
             self.write(name, content)
         np.save(self.path("raw.npy"), np.arange(32, dtype=np.float32).reshape(2, 4, 4))
         np.save(self.path("bool.npy"), np.ones((2, 4, 4), bool))
+        np.save(self.path("planes.npy"), np.ones((4, 30, 40), np.float32))
+        np.save(self.path("complex.npy"), np.ones((2, 4, 4), complex))
         np.save(self.path("flat.npy"), np.ones((2, 4), np.float32))
         np.savez(self.path("z.npz"), depth=np.ones((2, 4), np.float32),
                  depth_is_z=np.ones(1, np.uint8))
+        self.write("signed.bin", np.arange(-16, 16, dtype="<i2").tobytes())
         self.write("d.bin", np.arange(300, 332, dtype="<u2").tobytes())
 
     def test_each_is_refused_with_its_cause(self):
-        self.assertGreaterEqual(len(WRONG), 90)
+        self.assertGreaterEqual(len(WRONG), 140)
         for row in WRONG:
             command, words = row.split(" | ")
             before = self.files()
@@ -187,6 +327,8 @@ class WrongInputs(CommandLineTest):
         raw = np.load(self.path("mixed.npy"))
         os.remove(self.path("mixed.npy"))
         np.save(self.path("mixed.npy"), raw[..., [0, 2, 1, 3]])
+        os.link(self.path("mixed.npy"), self.path("broken.npy"))
+        self.write("broken.camera.toml", "[light\n")
         for row in NOTED:
             command, words = row.split(" | ")
             with self.subTest(command=command):
