@@ -318,9 +318,8 @@ Camera with_scaled(Camera camera, CameraQuantity quantity, double factor) {
       require(
           light.kind != ImpulseResponse::Kind::none || sensor.kind != ImpulseResponse::Kind::none,
           "impulse_response", "none",
-          "must be set for at least one arm to vary the bandwidth, such as light.impulse_response "
-          "= "
-          "{ kind = \"lowpass\", cutoff_hz = 100e6 }");
+          "must be set for at least one arm to vary the bandwidth, such as "
+          "light.impulse_response = { kind = \"lowpass\", cutoff_hz = 100e6 }");
       scale_bandwidth(light, factor);
       scale_bandwidth(sensor, factor);
       if (camera.sensor.shortest_pulse_s) *camera.sensor.shortest_pulse_s /= factor;

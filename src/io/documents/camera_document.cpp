@@ -68,7 +68,7 @@ std::string with_comments(const std::string& toml,
 }
 
 nlohmann::ordered_json::json_pointer pointer_to(std::string key) {
-  std::ranges::replace(key, '.', '/');
+  std::replace(key.begin(), key.end(), '.', '/');
   return nlohmann::ordered_json::json_pointer("/" + key);
 }
 
